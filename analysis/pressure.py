@@ -1,0 +1,146 @@
+"""Pressure that the opposite body puts on the upper particles, and quantities read off it: p_i = F_z,i / spacing.
+
+Here F_z,i is the force of the whole lower body on upper particle i, positive upwards, so that compression is positive.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Profile:
+    """The state of a contact along x; all arrays (n,), sorted by x.
+
+    x: positions of the upper particles [LU]; z_lower, z_upper: heights of the lower and upper surface there [LU];
+    pressure: force on the upper particle in +z per spacing, compression positive [FU/LU];
+    shear: force on the upper particle in +x per spacing [FU/LU].
+    """
+
+    x: Array
+    z_lower: Array
+    z_upper: Array
+    pressure: Array
+    shear: Array
+
+    def __post_init__(self) -> None:
+        shapes = {array.shape for array in (self.x, self.z_lower, self.z_upper, self.pressure, self.shear)}
+        if len(shapes) != 1 or self.x.ndim != 1:
+            raise ValueError(f"the arrays of a profile must be 1-D and equally long, got shapes {sorted(shapes)}")
+        if np.any(np.diff(self.x) < 0.0):
+            raise ValueError("the arrays of a profile must be sorted by x")
+
+
+def pressure_profile(
+    x_upper: ArrayLike,
+    z_upper: ArrayLike,
+    z_lower: ArrayLike,
+    force_x: ArrayLike,
+    force_z: ArrayLike,
+    spacing: float,
+) -> Profile:
+    """Return p = F_z / spacing and q = F_x / spacing over x, sorted by x.
+
+    x_upper, z_upper: upper particles [LU], (n,); z_lower: height of the lower surface for each of them [LU], (n,);
+    force_x, force_z: force of the lower body on each upper particle [FU], (n,); spacing of the particles [LU].
+    Valid for any order of the particles. Raises ValueError for unequal lengths, a spacing <= 0 or a value not finite.
+    """
+    if not spacing > 0.0:
+        raise ValueError(f"spacing must be positive, got {spacing}")
+    columns = [np.asarray(column, dtype=np.float64) for column in (x_upper, z_lower, z_upper, force_z, force_x)]
+    if not all(np.all(np.isfinite(column)) for column in columns):
+        raise ValueError("positions and forces of a profile must be finite")
+    if len({column.shape for column in columns}) != 1 or columns[0].ndim != 1:
+        raise ValueError(f"positions and forces must be 1-D and equally long: {[c.shape for c in columns]}")
+    order = np.argsort(columns[0], kind="stable")
+    x, lower, upper, normal, tangential = (column[order] for column in columns)
+    return Profile(x, lower, upper, normal / spacing, tangential / spacing)
+
+
+def normal_force(profile: Profile, spacing: float) -> float:
+    """Return F = spacing * sum p_i, the whole normal force [FU], compression positive.
+
+    spacing of the particles [LU]. Tension outside the contact radius is part of it, as it is of the external force.
+    """
+    return float(spacing * np.sum(profile.pressure))
+
+
+def mean_pressure(profile: Profile, spacing: float, radius: float) -> float:
+    """Return F / (pi a^2), the mean pressure of the three-dimensional contact that the model stands for [FU/LU^2].
+
+    spacing of the particles [LU]; radius: contact radius a [LU]. F is the whole normal force, tension beyond a included,
+    because that is the force of Eq. (8). This is the paper's mean pressure: R = 1000, a = 35 and the row R = 1000 of
+    Table 1 give F = 1.950 F_A = 2.867 FU, F / (pi a^2) = 7.45e-4 FU/LU^2 = 784 MPa (paper: about 800 MPa), while
+    F / (2 a) has no unit of a pressure. Source: Geike and Popov 2007, Section 4. Valid for one contact.
+    Raises ValueError for a radius <= 0: a contact of no extent has no mean pressure.
+    """
+    if not radius > 0.0:
+        raise ValueError(f"a mean pressure needs a contact radius above 0, got {radius}")
+    return normal_force(profile, spacing) / (math.pi * radius**2)
+
+
+def gap_to_lower(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike, z_lower: ArrayLike) -> Array:
+    """Return g_i = z_i - z_low(x_i) [LU], (n,): height of each upper particle above the straight-line lower surface.
+
+    x_upper, z_upper: upper particles [LU], (n,); x_lower, z_lower: lower particles in any order [LU], (m,), m >= 1.
+    Particles that hang over an end of the lower body have no surface below them: NaN.
+    """
+    x_low, z_low = np.asarray(x_lower, dtype=np.float64), np.asarray(z_lower, dtype=np.float64)
+    order = np.argsort(x_low, kind="stable")
+    surface = np.interp(np.asarray(x_upper, dtype=np.float64), x_low[order], z_low[order], left=np.nan, right=np.nan)
+    gap: Array = np.asarray(z_upper, dtype=np.float64) - surface
+    return gap
+
+
+def smallest_distance(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike, z_lower: ArrayLike) -> float:
+    """Return min_ij |r_i - r_j| [LU] over upper particles i and lower particles j.
+
+    x_upper, z_upper [LU], (n,); x_lower, z_lower [LU], (m,). Raises ValueError where a body has no particle or a
+    position is not finite.
+    """
+    from scipy.spatial import cKDTree
+
+    upper = np.column_stack([np.asarray(x_upper, dtype=np.float64), np.asarray(z_upper, dtype=np.float64)])
+    lower = np.column_stack([np.asarray(x_lower, dtype=np.float64), np.asarray(z_lower, dtype=np.float64)])
+    if not (len(upper) and len(lower)):
+        raise ValueError("a distance between the bodies needs a particle in each of them")
+    distances, _ = cKDTree(lower).query(upper)
+    return float(np.min(distances))
+
+
+@dataclass(frozen=True)
+class Interpenetration:
+    """Whether upper particles lie below the lower surface; depth: largest depth below it [LU]; particles: how many."""
+
+    occurs: bool
+    depth: float
+    particles: int
+
+
+def interpenetration(
+    x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike, z_lower: ArrayLike
+) -> Interpenetration:
+    """Return where upper particles lie below the straight-line lower surface: depth = max(0, -min g_i).
+
+    Arguments as for `gap_to_lower`. Particles beyond the ends of the lower body are above or below nothing and don't
+    count. The paper names interpenetration as the limit of a model of one layer (Section 5).
+    """
+    gap = gap_to_lower(x_upper, z_upper, x_lower, z_lower)
+    below = gap[np.isfinite(gap) & (gap < 0.0)]
+    return Interpenetration(below.size > 0, float(-np.min(below, initial=0.0)), int(below.size))
+
+
+def end_pressure_share(profile: Profile) -> float:
+    """Return max(|p_first|, |p_last|) / max |p|, between 0 and 1 [-]; 0 where there is no pressure at all.
+
+    Far below 1e-3 the chain is long enough: "the contact region should be smaller than the chain" (paper, Section 4).
+    """
+    size = np.abs(profile.pressure)
+    largest = float(np.max(size, initial=0.0))
+    return float(max(size[0], size[-1])) / largest if largest > 0.0 else 0.0

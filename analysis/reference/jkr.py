@@ -1,0 +1,101 @@
+"""JKR: a soft sphere that adheres to a flat, F(a) = 4 E* a^3/3R - (8 pi E* W a^3)^(1/2).
+
+W = 2 gamma is the work of adhesion of two equal surfaces, gamma the surface energy of one of them; Geike and Popov
+(2007) call gamma the work of adhesion. Forces are positive in compression. Valid for a Tabor number well above 1 and
+a << R. Source: K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301. Any consistent units.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.reference.interaction import Floats
+
+CRITICAL_RADIUS_RATIO = 0.25 ** (1.0 / 3.0)
+"""a_cr/a_0 where a fixed load pulls off, (1/4)^(1/3) = 0.630."""
+FIXED_GRIPS_RADIUS_RATIO = (1.0 / 36.0) ** (1.0 / 3.0)
+"""a_cr/a_0 where a prescribed displacement pulls off, (1/36)^(1/3) = 0.303."""
+FIXED_GRIPS_FORCE_RATIO = -5.0 / 9.0
+"""F/F_A where a prescribed displacement pulls off."""
+
+
+def work_of_adhesion(surface_energy: float) -> float:
+    """Return W = 2 gamma of two equal surfaces [force/length]; `surface_energy` gamma of one side [force/length]."""
+    return 2.0 * surface_energy
+
+
+@dataclass(frozen=True)
+class Jkr:
+    """One adhesive sphere.
+
+    Args:
+        radius: effective radius R [length].
+        contact_modulus: E* [stress].
+        work_of_adhesion: W = 2 gamma [force/length].
+
+    Raises:
+        ValueError: if one of them is not positive.
+    """
+
+    radius: float
+    contact_modulus: float
+    work_of_adhesion: float
+
+    def __post_init__(self) -> None:
+        """Check the signs."""
+        for name in ("radius", "contact_modulus", "work_of_adhesion"):
+            if not getattr(self, name) > 0.0:
+                raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
+
+    def pull_off_force(self) -> float:
+        """Return (3/2) pi W R = 3 pi gamma R, the largest tension held under a fixed load, as a magnitude [force]."""
+        return 1.5 * math.pi * self.work_of_adhesion * self.radius
+
+    def force(self, contact_radius: Floats | float) -> Floats:
+        """Return F(a) = 4 E* a^3/3R - sqrt(8 pi E* W a^3) [force], shape of `contact_radius` a >= 0 [length]."""
+        a = np.asarray(contact_radius, dtype=np.float64)
+        e, w = self.contact_modulus, self.work_of_adhesion
+        return np.asarray(4.0 * e * a**3 / (3.0 * self.radius) - np.sqrt(8.0 * math.pi * e * w * a**3))
+
+    def contact_radius(self, force: Floats | float) -> Floats:
+        """Return the stable a(F): a^3 = (3R/4E*) [F + 2 F_A + sqrt(4 F_A F + 4 F_A^2)] [length].
+
+        Args:
+            force: F >= -F_A, any shape [force].
+
+        Raises:
+            ValueError: if the tension exceeds the pull-off force.
+        """
+        f, f_a = np.asarray(force, dtype=np.float64), self.pull_off_force()
+        if np.any(f < -f_a):
+            raise ValueError(f"no equilibrium: the tension exceeds the pull-off force {f_a}")
+        cube = f + 2.0 * f_a + 2.0 * np.sqrt(f_a * (f + f_a))
+        return np.cbrt(0.75 * self.radius / self.contact_modulus * cube)
+
+    def displacement(self, contact_radius: Floats | float) -> Floats:
+        """Return d(a) = a^2/R - sqrt(2 pi W a/E*) [length], shape of `contact_radius` a >= 0 [length]."""
+        a = np.asarray(contact_radius, dtype=np.float64)
+        return np.asarray(
+            a**2 / self.radius - np.sqrt(2.0 * math.pi * self.work_of_adhesion * a / self.contact_modulus)
+        )
+
+    def zero_load_radius(self) -> float:
+        """Return a_0 = (9 pi W R^2 / 2 E*)^(1/3) [length]."""
+        return math.cbrt(4.5 * math.pi * self.work_of_adhesion * self.radius**2 / self.contact_modulus)
+
+    def critical_radius(self) -> float:
+        """Return a where a fixed load pulls off, (9 pi W R^2 / 8 E*)^(1/3) [length]: dF/da = 0."""
+        return CRITICAL_RADIUS_RATIO * self.zero_load_radius()
+
+    def critical_radius_fixed_grips(self) -> float:
+        """Return a where a prescribed displacement pulls off, (pi W R^2 / 8 E*)^(1/3) [length]: dd/da = 0."""
+        return FIXED_GRIPS_RADIUS_RATIO * self.zero_load_radius()
+
+
+def jkr_reduced_force(reduced_radius: Floats | float) -> Floats:
+    """Return F/F_A = 4 x^3 - 4 x^(3/2), x = a/a_0 >= 0, shape of `reduced_radius`: free of any parameter."""
+    x = np.asarray(reduced_radius, dtype=np.float64)
+    return np.asarray(4.0 * x**3 - 4.0 * x**1.5)

@@ -1,0 +1,1 @@
+"""LAMMPS text fragments and scenes that ship with the program."""

@@ -1,0 +1,95 @@
+"""The two-exponential law with a finite core, V(r) = A exp(−r/a) − B exp(−r/b) (Geike and Popov 2007, Section 3.1)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Exponential:
+    """One term amplitude·exp(−r/range); amplitude [FU·LU] > 0, range [LU] > 0."""
+
+    amplitude: float
+    range: float
+
+    def energy(self, r: ArrayLike) -> Array:
+        """E(r) = A exp(−r/a) [FU·LU] for distances r [LU] of any shape."""
+        return np.asarray(self.amplitude * np.exp(-np.asarray(r, dtype=float) / self.range))
+
+    def force(self, r: ArrayLike) -> Array:
+        """−E′(r) = (A/a) exp(−r/a) [FU]."""
+        return self.energy(r) / self.range
+
+    def stiffness(self, r: ArrayLike) -> Array:
+        """E″(r) = (A/a²) exp(−r/a) [FU/LU]."""
+        return self.energy(r) / self.range**2
+
+
+@dataclass(frozen=True)
+class DoubleExponential:
+    """V(r) = repulsion − attraction; without an attraction the law only repels.
+
+    Args:
+        repulsion: the term A exp(−r/a).
+        attraction: the term B exp(−r/b), or None. With it the law must repel at r = 0 (A/a > B/b) and
+            attract far away (b > a), so that exactly one distance is force-free.
+
+    Raises:
+        ValueError: if the two terms leave no force-free distance.
+    """
+
+    repulsion: Exponential
+    attraction: Exponential | None = None
+
+    def __post_init__(self) -> None:
+        if self.attraction is None:
+            return
+        if self.attraction.range <= self.repulsion.range:
+            raise ValueError("the attraction must reach further than the repulsion (b > a)")
+        if self.attraction.force(0.0) >= self.repulsion.force(0.0):
+            raise ValueError("the repulsion must prevail at r = 0 (A/a > B/b)")
+
+    def energy(self, r: ArrayLike) -> Array:
+        """V(r) [FU·LU] for distances r ≥ 0 [LU] of any shape."""
+        value = self.repulsion.energy(r)
+        return value if self.attraction is None else value - self.attraction.energy(r)
+
+    def force(self, r: ArrayLike) -> Array:
+        """f(r) = −V′(r) [FU], positive where the particles repel each other."""
+        value = self.repulsion.force(r)
+        return value if self.attraction is None else value - self.attraction.force(r)
+
+    def stiffness(self, r: ArrayLike) -> Array:
+        """V″(r) = −f′(r) [FU/LU], negative where a pair can become unstable."""
+        value = self.repulsion.stiffness(r)
+        return value if self.attraction is None else value - self.attraction.stiffness(r)
+
+    @property
+    def longest_range(self) -> float:
+        """The range of the term that decides the law far away [LU]."""
+        return self.repulsion.range if self.attraction is None else self.attraction.range
+
+    def force_free_distance(self) -> float:
+        """r₀ with f(r₀) = 0: r₀ = ln[(A/a)/(B/b)] / (1/a − 1/b) [LU].
+
+        Raises:
+            ValueError: for a law without attraction, which is force-free nowhere.
+        """
+        if self.attraction is None:
+            raise ValueError("a law without attraction has no force-free distance")
+        ratio = float(self.repulsion.force(0.0) / self.attraction.force(0.0))
+        return math.log(ratio) / (1.0 / self.repulsion.range - 1.0 / self.attraction.range)
+
+    def cutoff_for(self, share: float) -> float:
+        """Distance [LU] beyond which the force stays below `share` of the longest term's force at r₀ (at 0 without attraction).
+
+        The far force falls as exp(−r/b), so the cutoff is r₀ + b ln(1/share).
+        """
+        start = self.force_free_distance() if self.attraction is not None else 0.0
+        return start + self.longest_range * math.log(1.0 / share)

@@ -1,0 +1,118 @@
+"""LAMMPS `pair_style table` files of a central law, exact down to a particle standing on its opposite.
+
+LAMMPS interpolates g(s) = f(r)/r over s = r² on a uniform grid and stops where a pair comes closer than the first
+entry. The two bodies therefore lie in parallel planes a small offset ε apart (out of plane, with no motion there), and
+the table is a function of the distance in space r_L = √(r² + ε²):
+
+    F_table(r_L) = f(r) · r_L / r,      so that the force in the plane, F_table · r / r_L, is f(r) exactly.
+
+Since r_L² = r² + ε², the offset only shifts the grid: it costs no accuracy, and r_L ≥ ε keeps every run going.
+Within one grid cell of r = 0, where a finite core's g = f/r diverges, g is held at its value one cell out: there, and
+only there, the force falls to 0 at r = 0 instead of jumping to its opposite.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from potentials.double_exponential import Array, DoubleExponential
+
+SECTION = "DOUBLE_EXPONENTIAL"
+FEWEST_POINTS = 2_000
+MOST_POINTS = 400_000
+INNER_CELLS = 4
+"""Grid cells between the first entry and r = 0: a spline's end condition does not reach across them."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A tabulated law.
+
+    Attributes:
+        law: the law that it stands for.
+        cutoff: r_c [LU]; the energy is V(r) − V(r_c), the force f(r) up to r_c and 0 beyond.
+        points: number of grid points over r_L².
+    """
+
+    law: DoubleExponential
+    cutoff: float
+    points: int
+
+    @property
+    def cell(self) -> float:
+        """Grid step of r² [LU²]."""
+        return self.cutoff**2 / (self.points - 1 - INNER_CELLS)
+
+    @property
+    def plane_offset(self) -> float:
+        """ε [LU], the distance of the two bodies' planes: ε² lies one cell beyond the grid's own margin."""
+        return float(np.sqrt((INNER_CELLS + 1) * self.cell))
+
+    @property
+    def core(self) -> float:
+        """Distance [LU] below which the force is smoothed to 0 instead of following the law."""
+        return float(np.sqrt(self.cell))
+
+    def grid(self) -> Array:
+        """r_L² [LU²] of every entry, shape (points,)."""
+        first = self.plane_offset**2 - INNER_CELLS * self.cell
+        return first + self.cell * np.arange(self.points)
+
+    def entries(self) -> tuple[Array, Array, Array]:
+        """(r_L [LU], energy [FU·LU], F_table [FU]), each of shape (points,)."""
+        squared = self.grid()
+        distance = np.sqrt(squared)
+        r = np.sqrt(np.maximum(squared - self.plane_offset**2, self.cell))
+        energy = self.law.energy(r) - self.law.energy(self.cutoff)
+        return distance, energy, self.law.force(r) * distance / r
+
+    def force(self, r: Array) -> Array:
+        """The force in the plane [FU] that LAMMPS makes of this table at distances r ≤ r_c [LU]: a cubic spline of F_table/r_L over r_L²."""
+        distance, _, force = self.entries()
+        spline = CubicSpline(self.grid(), force / distance)
+        return np.asarray(spline(r**2 + self.plane_offset**2) * r)
+
+    def error_beyond(self, r_min: float, samples: int = 20_000) -> float:
+        """Largest interpolation error of the force [FU] for r_min ≤ r ≤ r_c, from samples dense near r_min."""
+        r = r_min * (self.cutoff / r_min) ** np.linspace(0.0, 1.0, samples)
+        return float(np.max(np.abs(self.force(r) - self.law.force(r))))
+
+
+def table_for(law: DoubleExponential, cutoff: float, closest: float, error: float) -> Table:
+    """The smallest table whose force is within `error` [FU] of the law from `closest` [LU] up to the cutoff [LU].
+
+    The number of points doubles until the measured error (`Table.error_beyond`) is small enough, or MOST_POINTS is
+    reached: what was reached stands in the file's header either way.
+    """
+    table = Table(law, cutoff, FEWEST_POINTS)
+    while table.error_beyond(closest) > error and 2 * table.points <= MOST_POINTS:
+        table = Table(law, cutoff, 2 * table.points)
+    return table
+
+
+def write_table(table: Table, closest: float, path: Path) -> None:
+    """Write the LAMMPS table file, whole or not at all; its header states the law and the measured error."""
+    law = table.law
+    terms = f"{law.repulsion.amplitude:.17g} exp(-r/{law.repulsion.range:.17g})"
+    if law.attraction is not None:
+        terms += f" - {law.attraction.amplitude:.17g} exp(-r/{law.attraction.range:.17g})"
+    distance, energy, force = table.entries()
+    header = (
+        f"# V(r) = {terms}, r in the plane [LU], V [FU LU]\n"
+        f"# cut at r = {table.cutoff:.17g} and shifted there to zero energy\n"
+        f"# r_L = sqrt(r^2 + e^2), e = {table.plane_offset:.17g} LU: the bodies lie in planes that far apart\n"
+        f"# measured: force within {table.error_beyond(closest):.2e} FU of the law for r >= {closest:.3g} LU;"
+        f" smoothed to zero below r = {table.core:.2g} LU\n\n"
+        f"{SECTION}\nN {table.points} RSQ {distance[0]:.17g} {distance[-1]:.17g}\n\n"
+    )
+    rows = np.empty((table.points, 4))
+    rows.T[:] = np.arange(1, table.points + 1), distance, energy, force
+    body = ("%d %.17g %.17g %.17g\n" * table.points) % tuple(rows.ravel().tolist())
+    part = path.with_name(path.name + ".part")
+    part.write_text(header + body)
+    os.replace(part, path)

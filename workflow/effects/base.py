@@ -1,0 +1,46 @@
+"""What an effect brings to a deck."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import IntEnum
+
+
+class Stage(IntEnum):
+    """Order of the fragments in a deck: a force that acts comes before what takes parts of it away or integrates it."""
+
+    BODIES = 0
+    SPRINGS = 1
+    DRAG = 2
+    GUIDE = 3
+    PULL = 4
+    PLATE = 5
+    MOTION = 6
+
+
+@dataclass(frozen=True)
+class Contribution:
+    """One effect's part of a deck.
+
+    Attributes:
+        name: the effect, the scene's table.
+        stage: where its fragment stands.
+        fragments: names in `lammps_inputs/fragments`, in order.
+        variables: LAMMPS variables that the fragments need, name to value.
+        pair_style: its part of the shared slot `pair_style`, or "".
+        step_begin, step_end: fragments around every measurement.
+        files: further files that the deck reads.
+    """
+
+    name: str
+    stage: Stage
+    fragments: tuple[str, ...]
+    variables: dict[str, str] = field(default_factory=dict)
+    pair_style: str = ""
+    step_begin: tuple[str, ...] = ()
+    step_end: tuple[str, ...] = ()
+
+
+def number(value: float) -> str:
+    """A number as LAMMPS text that reads back to the same double."""
+    return repr(float(value))

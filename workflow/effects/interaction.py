@@ -1,0 +1,22 @@
+"""Effect [interaction]: V(r) = A exp(−r/a) − B exp(−r/b) between particles of opposite bodies, from a table."""
+
+from workflow.effects.base import Contribution, Stage, number
+from workflow.scene import Scene
+from workflow.settings import Settings
+
+SKIN = 0.5
+"""Neighbour-list skin over the spacing: a row of a path moves a body by less, so a list lasts for a relaxation."""
+
+
+def interaction(scene: Scene, settings: Settings) -> Contribution:
+    """Shared slots: `pair_style`, and the tally of opposite forces in every measurement."""
+    assert settings.table is not None
+    return Contribution(
+        "interaction",
+        Stage.SPRINGS,
+        ("interaction",),
+        {"interaction_skin": number(SKIN * scene.bodies.spacing)},
+        pair_style=f"table spline {settings.table.points}",
+        step_begin=("steps/measuring_opposite",),
+        step_end=("steps/measured_opposite",),
+    )

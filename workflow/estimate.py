@@ -1,0 +1,115 @@
+"""What a contact will roughly look like, before LAMMPS runs: independent opposite pairs under the undeformed profile.
+
+A particle on each side, each on its spring k, at the actual distance r have the undeformed gap
+
+    G(r) = r − 2 f(r)/k,       f(r) = Σ_j f_pair(√(r² + (js)²)) r/√(r² + (js)²)
+
+with f the force of a whole straight row of opposite particles. F(d) = Σ_i f(r_i) with G(r_i) = r₀ + h(x_i) − d, where
+h is the profile. This chooses chain lengths, first steps and time scales; no result depends on it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from potentials import DoubleExponential
+
+Array = NDArray[np.float64]
+GRID = 4000
+CONTACT_POINTS = 401
+
+
+class Profile(Protocol):
+    """The undeformed shape of the upper body."""
+
+    def height(self, x: Array) -> Array:
+        """Height [LU] at x [LU]."""
+
+
+@dataclass(frozen=True)
+class ContactEstimate:
+    """Independent pairs under a profile.
+
+    Attributes:
+        gap: undeformed gap G [LU] over a grid of distances, made monotone where pairs would snap.
+        force: force [FU] of one particle on that grid.
+        rest: distance r₀ [LU] of the apexes at displacement 0.
+        profile: the upper body's shape.
+        spacing: [LU].
+        stiffness: contact stiffness of one particle [FU/LU], both springs in series.
+    """
+
+    gap: Array
+    force: Array
+    rest: float
+    profile: Profile
+    spacing: float
+    stiffness: float
+
+    def contact_force(self, displacement: float) -> float:
+        """F(d) [FU], compression positive."""
+        half = self.half_width(displacement, self.gap[-1])
+        x = np.linspace(-half, half, CONTACT_POINTS)
+        per_particle = np.interp(self.rest + self.profile.height(x) - displacement, self.gap, self.force, right=0.0)
+        return float(np.trapezoid(per_particle, x)) / self.spacing
+
+    def half_width(self, displacement: float, gap: float) -> float:
+        """Half-width [LU] within which the undeformed gap is below `gap` [LU] at this displacement [LU]."""
+        height = gap - self.rest + displacement
+        if height <= 0:
+            return self.spacing
+        inner, outer = 0.0, self.spacing
+        while float(self.profile.height(np.asarray([outer]))[0]) < height:
+            inner, outer = outer, 2 * outer
+        for _ in range(60):
+            middle = 0.5 * (inner + outer)
+            if float(self.profile.height(np.asarray([middle]))[0]) < height:
+                inner = middle
+            else:
+                outer = middle
+        return outer
+
+    def displacement_at(self, force: float) -> float:
+        """Displacement [LU] at which F(d) reaches a compressive force [FU] ≥ 0."""
+        low = self.rest - float(self.gap[-1])
+        high = max(1.0, 2 * self.rest)
+        while self.contact_force(high) < force:
+            high *= 2
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            if self.contact_force(middle) < force:
+                low = middle
+            else:
+                high = middle
+        return high
+
+
+def row_force(law: DoubleExponential, r: Array, spacing: float, cutoff: float) -> Array:
+    """Force [FU] of a straight row of opposite particles on one that stands opposite, at distances r [LU], shape (n,)."""
+    reach = int(cutoff / spacing)
+    offsets = spacing * np.arange(-reach, reach + 1)
+    distance = np.hypot(r[:, None], offsets[None, :])
+    forces = np.where(distance <= cutoff, law.force(distance), 0.0) * r[:, None] / distance
+    return np.asarray(forces.sum(axis=1))
+
+
+def particles_estimate(
+    law: DoubleExponential, profile: Profile, spacing: float, stiffness: float, cutoff: float, rest: float
+) -> ContactEstimate:
+    """The estimate for two chains whose particles are held by springs `stiffness` [FU/LU] each."""
+    r = np.linspace(cutoff / GRID, cutoff, GRID)
+    force = row_force(law, r, spacing, cutoff)
+    gap = np.maximum.accumulate(r - 2 * force / stiffness)
+    gap += np.arange(GRID) * 1e-12 * cutoff
+    return ContactEstimate(gap, force, rest, profile, spacing, stiffness / 2)
+
+
+def plane_estimate(profile: Profile, spacing: float, stiffness: float) -> ContactEstimate:
+    """The estimate for one chain on a rigid plane: one-sided springs `stiffness` [FU/LU]."""
+    deepest = 1e6 * spacing
+    gap = np.asarray([-deepest, 0.0])
+    return ContactEstimate(gap, -stiffness * gap, 0.0, profile, spacing, stiffness)

@@ -1,0 +1,68 @@
+"""Where contacts are opened: one deck, one run folder, the LAMMPS process, and the time spent in it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from workflow.datafile import assemble, write_data
+from workflow.deck import Deck
+from workflow.engine import Engine
+from workflow.experiments.contact import Contact
+from workflow.lattice import bodies
+from workflow.progress import Progress
+from potentials.table import write_table
+
+SIDE_MARGIN = 20.0
+"""Free space beside the chains over the spacing, beyond what a slide needs."""
+HEAD_MARGIN = 100.0
+"""Free space above and below the bodies over the spacing and over the cutoff."""
+
+
+@dataclass
+class Bench:
+    """Opens contacts of one deck, one after the other, in one folder.
+
+    Attributes:
+        deck: what is run.
+        folder: the run folder; system.data and the table are in it.
+        progress: told of phases and steps.
+        time_limit: for each contact [s].
+        lammps_seconds, steps: summed over all contacts so far.
+    """
+
+    deck: Deck
+    folder: Path
+    progress: Progress
+    time_limit: float
+    lammps_seconds: float = field(default=0.0, init=False)
+    steps: int = field(default=0, init=False)
+
+    @contextmanager
+    def contact(self) -> Iterator[Contact]:
+        """A fresh contact at displacement 0, in a LAMMPS instance of its own."""
+        with Engine.session(self.folder, time_limit=self.time_limit, progress=self.progress) as session:
+            try:
+                yield Contact(self.deck, session)
+            finally:
+                self.lammps_seconds += session.lammps_seconds
+                self.steps += session.steps
+
+
+def write_system(deck: Deck, folder: Path) -> None:
+    """Write what a deck reads: system.data, and the table if it has one."""
+    scene, settings = deck.scene, deck.settings
+    both = bodies(scene, settings)
+    anchors = len(both[-1].anchors) + len(both[-1].far_anchors)
+    mass = settings.plate_mass / anchors if scene.plate is not None else scene.bodies.mass
+    side = SIDE_MARGIN * scene.bodies.spacing
+    if scene.experiment.kind == "slide":
+        side += scene.experiment.distance
+    head = HEAD_MARGIN * max(scene.bodies.spacing, settings.cutoff) + 2 * abs(settings.largest_displacement)
+    margin = (math.ceil(side), math.ceil(head))
+    write_data(assemble(both, scene.neighbours is not None, scene.bodies.mass, mass, margin), scene.title, folder / "system.data")
+    if settings.table is not None:
+        write_table(settings.table, settings.closest, folder / "interaction.table")

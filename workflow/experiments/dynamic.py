@@ -1,0 +1,86 @@
+"""Force control in time, the paper's way: hold a load until plate and particles are at rest, or until the bodies part."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from workflow.experiments.contact import Contact, State
+from workflow.experiments.outcome import UntrustedError, require_trust
+
+CHUNK = 0.25
+"""Time between two looks at the contact, over the settling time."""
+MOST_CHUNKS = 2_000
+"""Looks at one load after which it counts as never coming to rest."""
+AT_REST = 0.1
+"""Unbalanced part of the load, and load that the plate would still travel through, over the load scale and tolerance."""
+LOST = 0.7
+"""Tension over the largest one under this load at which a plate that moves off counts as lost."""
+RESTLESS = 1e-3
+"""Smallest tolerance to which a state in time is brought to rest."""
+
+
+@dataclass(frozen=True)
+class Held:
+    """What a load led to.
+
+    Attributes:
+        load: compression positive [FU].
+        states: measured on the way.
+        held: whether the contact carries it at rest.
+        steps: LAMMPS timesteps that it took.
+        unbalance: |contact force − load| at the end [FU].
+    """
+
+    load: float
+    states: tuple[State, ...]
+    held: bool
+    steps: int
+    unbalance: float
+
+    @property
+    def last(self) -> State:
+        """The last state."""
+        return self.states[-1]
+
+
+def chunk_steps(contact: Contact) -> int:
+    """Timesteps between two looks."""
+    return max(20, math.ceil(CHUNK * contact.settings.settle_time / contact.settings.time_step))
+
+
+def hold(contact: Contact, load: float, load_scale: float) -> Held:
+    """Apply a load to a `load` phase and run until it is held at rest, or lost.
+
+    At rest means both: the contact's force balances the load within AT_REST·tolerance·load_scale, and at its present
+    velocity the plate would within a settling time change the contact's force by no more than that.
+
+    Raises:
+        UntrustedError: the contact neither comes to rest nor is lost, or see `require_trust`.
+    """
+    settings = contact.settings
+    near = AT_REST * contact.scene.accuracy.tolerance * load_scale
+    steps, states, largest = chunk_steps(contact), [], 0.0
+    stiffness = load_scale / max(settings.largest_displacement, settings.closest, 0.1 * contact.scene.bodies.spacing)
+    for count in range(1, MOST_CHUNKS + 1):
+        state = contact.row(load, steps)
+        states.append(state)
+        unbalance = abs(state.force - load)
+        travel = abs(state.plate_velocity) * settings.settle_time * stiffness
+        if unbalance <= near and travel <= near:
+            require_trust(contact.scene, settings, state)
+            return Held(load, tuple(states), True, count * steps, unbalance)
+        largest = max(largest, -state.force)
+        if _lost(contact, state, largest):
+            return Held(load, tuple(states), False, count * steps, unbalance)
+    raise UntrustedError(
+        f"the contact did not come to rest under {load:.4g} FU within {MOST_CHUNKS * steps} timesteps (phase {state.phase}): "
+        f"{unbalance:.2g} FU are unbalanced. More [damping] or [plate] damping settles it sooner"
+    )
+
+
+def _lost(contact: Contact, state: State, largest: float) -> bool:
+    if state.smallest_distance > max(contact.settings.cutoff, 0.0) and contact.settings.law is not None:
+        return True
+    leaving = state.plate_velocity < 0.0
+    return leaving and largest > 0.0 and -state.force < LOST * largest

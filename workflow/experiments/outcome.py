@@ -1,0 +1,108 @@
+"""What an experiment hands over: quantities with uncertainty, the curve, profiles, the schedule, and its doubts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from analysis.pressure import Profile, end_pressure_share
+from analysis.radius import ContactRadius, compressive_radius, tensile_radius
+from workflow.deck import Phase
+from workflow.experiments.contact import State
+from workflow.scene import Scene
+from workflow.settings import Settings
+
+
+class UntrustedError(RuntimeError):
+    """The run ended, but its result can't be trusted; the message says why and what to do."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number with its uncertainty, both in `unit`."""
+
+    value: float
+    uncertainty: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The result of one experiment.
+
+    Attributes:
+        quantities: by the names of the contract.
+        states: every measured state of the final schedule, in order.
+        profiles: the states that are reported, by name.
+        radii: contact radius of each reported profile.
+        phases: the schedule.
+        warnings: by name, what limits the trust in the numbers.
+        friction: columns of friction.csv, for a slide.
+    """
+
+    quantities: Mapping[str, Quantity]
+    states: tuple[State, ...]
+    profiles: Mapping[str, Profile]
+    radii: Mapping[str, float]
+    phases: tuple[Phase, ...]
+    warnings: Mapping[str, str] = field(default_factory=dict)
+    friction: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+
+
+END_SHARE_LIMIT = 1.0
+"""Pressure at a chain's end over the largest one, per unit of tolerance, from which on the chain cuts the contact."""
+RESIDUAL_LIMIT = 0.1
+"""Largest residual force of a particle over the force scale, per unit of tolerance, for a converged state."""
+
+
+def radius_of(scene: Scene, profile: Profile) -> ContactRadius | None:
+    """The contact radius as the contract defines it; None where the bodies do not touch."""
+    if scene.interaction is not None and scene.interaction.attraction is not None:
+        return tensile_radius(profile)
+    return compressive_radius(profile)
+
+
+def require_trust(scene: Scene, settings: Settings, state: State) -> None:
+    """Refuse a state that is no result.
+
+    Raises:
+        UntrustedError: bodies that went through each other, particles not at rest, a contact that reaches the end of
+            a chain.
+    """
+    at = f"at displacement {state.displacement:.4g} LU (phase {state.phase})"
+    if state.depth > 0.0:
+        raise UntrustedError(
+            f"the bodies went through each other {at}: a particle lies {state.depth:.3g} LU below the opposite surface. "
+            "One layer of particles cannot carry this load: lower the load or the displacement, take a stronger "
+            "repulsion, a range nearer to the spacing, or stiffer neighbour springs"
+        )
+    limit = RESIDUAL_LIMIT * scene.accuracy.tolerance * settings.force_scale
+    if scene.method == "quasistatic" and state.residual > limit:
+        raise UntrustedError(
+            f"not converged {at}: a particle is left with a force of {state.residual:.2g} FU, above {limit:.2g} FU. "
+            "Loosen [accuracy] tolerance, or take smaller steps"
+        )
+    radius = radius_of(scene, state.profile)
+    if radius is not None and radius.reaches_end:
+        raise UntrustedError(
+            f"the contact reaches the end of the chain {at}: take more bodies.particles than {settings.particles} "
+            '(or "auto"), or a smaller load'
+        )
+
+
+def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:
+    """Named warnings about states that are results, but limited ones."""
+    found = {}
+    share = max(end_pressure_share(state.profile) for state in states)
+    if share > END_SHARE_LIMIT * scene.accuracy.tolerance:
+        found["chain_end"] = (
+            f"the outermost particles carry up to {share:.2g} of the largest pressure, so the chain of "
+            f'{settings.particles} particles cuts the contact: take more bodies.particles, or "auto"'
+        )
+    closest = min(state.smallest_distance for state in states)
+    if settings.table is not None and closest < settings.closest:
+        found["table_core"] = (
+            f"opposite particles came as close as {closest:.3g} LU; the table was chosen for {settings.closest:.3g} LU "
+            f"and follows the law within {settings.table.error_beyond(max(closest, settings.table.core)):.1e} FU there"
+        )
+    return found

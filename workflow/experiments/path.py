@@ -1,0 +1,119 @@
+"""Prescribed displacement, there and back: the curve F(d), its largest tension and its load-free radius."""
+
+from __future__ import annotations
+
+import math
+
+from workflow.deck import Phase
+from workflow.experiments.bench import Bench
+from workflow.experiments.contact import State
+from workflow.experiments.marks import crossing, largest_tension
+from workflow.experiments.outcome import Outcome, Quantity, doubts, radius_of, require_trust
+from workflow.units import FORCE, LENGTH
+
+RELAXATIONS = 3.0
+"""Time that a dynamic path gives the particles at each displacement, over their settling time."""
+
+
+def path(bench: Bench) -> Outcome:
+    """F_A, a₀ and a_cr of a scene with `[experiment] kind = "path"`, read off the branch that unloads last.
+
+    A quantity that the path does not reach (no tension, no crossing of F = 0) is left out, and a warning says so.
+
+    Raises:
+        UntrustedError: see `require_trust`.
+    """
+    scene, settings = bench.deck.scene, bench.deck.settings
+    phases = schedule(bench)
+    with bench.contact() as contact:
+        states = contact.replay(phases)
+    for state in states:
+        require_trust(scene, settings, state)
+    quantities, warnings = _read_off(bench, [s for s in states if s.phase == phases[-1].name])
+    last = states[-1].profile
+    radius = radius_of(scene, last)
+    return Outcome(
+        quantities,
+        tuple(states),
+        {"final": last},
+        {"final": math.nan if radius is None else radius.value},
+        phases,
+        warnings | doubts(scene, settings, tuple(states)),
+    )
+
+
+def schedule(bench: Bench) -> tuple[Phase, ...]:
+    """One phase for each stretch of rising ("loading") or falling ("unloading") displacement."""
+    scene, settings = bench.deck.scene, bench.deck.settings
+    assert scene.experiment.kind == "path"
+    dynamic = scene.method == "dynamic"
+    rest = (math.ceil(RELAXATIONS * settings.settle_time / settings.time_step),) if dynamic else ()
+    values = scene.experiment.values()
+    stretches: list[tuple[str, list[float]]] = [("loading", [values[0]])]
+    for before, value in zip(values, values[1:], strict=False):
+        branch = "loading" if value > before else "unloading"
+        if stretches[-1][0] != branch:
+            stretches.append((branch, []))
+        stretches[-1][1].append(value)
+    stretches = [(branch, rows) for branch, rows in stretches if rows]
+    counts: dict[str, int] = {}
+    phases = []
+    for branch, rows in stretches:
+        counts[branch] = counts.get(branch, 0) + 1
+        name = branch if counts[branch] == 1 else f"{branch}_{counts[branch]}"
+        kind = "displace_dynamic" if dynamic else "displace"
+        phases.append(Phase(name, kind, tuple((float(d), *rest) for d in rows), state=rows is stretches[-1][1]))
+    return tuple(phases)
+
+
+def _read_off(bench: Bench, branch: list[State]) -> tuple[dict[str, Quantity], dict[str, str]]:
+    scene = bench.deck.scene
+    displacement, force = [s.displacement for s in branch], [s.force for s in branch]
+    quantities, warnings = {}, {}
+    if scene.interaction is None or scene.interaction.attraction is None:
+        deepest = max(branch, key=lambda s: s.displacement)
+        quantities["largest_force"] = Quantity(deepest.force, _noise(bench, deepest), FORCE)
+        radius = radius_of(scene, deepest.profile)
+        if radius is not None:
+            quantities["largest_radius"] = Quantity(radius.value, radius.uncertainty, LENGTH)
+        return quantities, warnings
+    peak = largest_tension(displacement, force)
+    if 0 < peak.index < len(branch) - 1 and peak.tension > 0:
+        quantities["adhesion_force"] = Quantity(peak.smooth, peak.uncertainty + _noise(bench, branch[peak.index]), FORCE)
+        radius = radius_of(scene, branch[peak.index].profile)
+        if radius is not None:
+            step = abs(displacement[peak.index - 1] - displacement[peak.index])
+            other = radius_of(scene, branch[peak.index - 1].profile)
+            spread = abs(other.value - radius.value) if other is not None and step > 0 else 0.0
+            quantities["critical_radius"] = Quantity(radius.value, radius.uncertainty + spread, LENGTH)
+    else:
+        warnings["no_peak"] = (
+            "the largest tension lies at an end of the last branch, so the path gives no adhesion_force: "
+            "go further back, or use kind = \"pull_off\""
+        )
+    zero = _zero_load(bench, branch, displacement, force)
+    if zero is None:
+        warnings["no_zero_load"] = "the force does not pass 0 on the last branch, so there is no zero_load_radius"
+    else:
+        quantities["zero_load_radius"] = zero
+    return quantities, warnings
+
+
+def _zero_load(bench: Bench, branch: list[State], displacement: list[float], force: list[float]) -> Quantity | None:
+    try:
+        index, place = crossing(displacement, force, 0.0)
+    except ValueError:
+        return None
+    first, second = (radius_of(bench.deck.scene, branch[i].profile) for i in (index, min(index + 1, len(branch) - 1)))
+    if first is None or second is None:
+        return None
+    gap = displacement[min(index + 1, len(branch) - 1)] - displacement[index]
+    part = (place - displacement[index]) / gap if gap else 0.0
+    value = first.value + part * (second.value - first.value)
+    bend = 0.125 * abs(second.value - first.value)
+    return Quantity(value, max(first.uncertainty, second.uncertainty) + bend, LENGTH)
+
+
+def _noise(bench: Bench, state: State) -> float:
+    """What a residual force on every particle may add up to [FU]."""
+    return state.residual * math.sqrt(bench.deck.settings.particles)

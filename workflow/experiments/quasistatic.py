@@ -1,0 +1,88 @@
+"""Prescribed displacement: approach a force from below, and unload until the bodies separate."""
+
+from __future__ import annotations
+
+from workflow.experiments.contact import Contact, State
+from workflow.experiments.outcome import UntrustedError, require_trust
+
+MOST_ROWS = 2_000
+"""Rows of one branch of a search; a search that needs more has no end in sight."""
+APPROACH = 0.3
+"""How near to a wanted force a search must come, over the tolerance."""
+SEPARATED = 0.02
+"""Tension over the largest one at which bodies that move apart count as separated."""
+PAST_PEAK = 0.5
+"""Tension over the largest one below which increments may grow."""
+GROWTH = 1.2
+OVERSHOOT = 1.02
+"""Secant steps aim a little beyond, so that a bracket forms instead of a slow approach from one side."""
+SAME_PLACE = 1e-12
+"""Displacements [LU] nearer than this are the same place: a force that still differs has jumped."""
+
+
+def approach(contact: Contact, force: float, start: float, step: float, direction: int = 1) -> list[State]:
+    """Rows of growing displacement (direction 1; falling: −1) from `start` [LU] until the force is `force` [FU].
+
+    Increments are `step` [LU] at most and follow the secant of the last two rows near the end. The last state's force
+    is within APPROACH·tolerance of the wanted one.
+
+    Raises:
+        UntrustedError: see `require_trust`; also where the wanted force cannot be held.
+    """
+    scale = abs(force) if force != 0.0 else contact.settings.force_scale
+    near = APPROACH * contact.scene.accuracy.tolerance * scale
+    states = [_trusted(contact, start)]
+    before, beyond = None, None
+    while abs(states[-1].force - force) > near:
+        last = states[-1]
+        if direction * (last.force - force) > 0:
+            beyond = last
+        else:
+            before = last
+        if before is None:
+            raise UntrustedError(f"{force:.4g} FU cannot be approached: the force starts at {last.force:.4g} FU")
+        if beyond is not None and abs(beyond.displacement - before.displacement) < SAME_PLACE:
+            raise UntrustedError(f"the force jumps past {force:.4g} FU at displacement {before.displacement:.6g} LU")
+        if len(states) > MOST_ROWS or (direction < 0 and last.smallest_distance > contact.settings.cutoff):
+            raise UntrustedError(f"{force:.4g} FU is never reached: the largest tension is smaller")
+        states.append(_trusted(contact, _next(before, beyond, states, force, direction * step)))
+    return states
+
+
+def _next(before: State, beyond: State | None, states: list[State], force: float, step: float) -> float:
+    """The secant's place, kept inside the bracket or within one step."""
+    if beyond is not None:
+        part = (force - before.force) / (beyond.force - before.force)
+        return before.displacement + min(max(part, 0.05), 0.95) * (beyond.displacement - before.displacement)
+    ahead = 1.0
+    if len(states) > 1 and states[-1].force != states[-2].force:
+        slope = (states[-1].force - states[-2].force) / (states[-1].displacement - states[-2].displacement)
+        needed = OVERSHOOT * (force - before.force) / slope / step
+        ahead = min(1.0, needed) if needed > 0 else 1.0
+    return before.displacement + ahead * step
+
+
+def separate(contact: Contact, start: float, step: float) -> list[State]:
+    """Rows of falling displacement from `start` [LU] until the tension has passed its largest value and is gone."""
+    displacement, states, largest = start, [_trusted(contact, start)], 0.0
+    for _ in range(MOST_ROWS):
+        displacement -= step
+        state = _trusted(contact, displacement)
+        states.append(state)
+        largest = max(largest, -state.force)
+        if largest > 0.0 and -state.force < PAST_PEAK * largest and state.force <= 0.0:
+            step *= GROWTH
+        if _apart(contact, state, largest):
+            return states
+    raise UntrustedError(f"the bodies did not separate within {MOST_ROWS} increments of the displacement")
+
+
+def _apart(contact: Contact, state: State, largest: float) -> bool:
+    gone = largest > 0.0 and abs(state.force) < SEPARATED * largest
+    return gone or state.smallest_distance > contact.settings.cutoff
+
+
+def _trusted(contact: Contact, displacement: float) -> State:
+    state = contact.row(displacement)
+    require_trust(contact.scene, contact.settings, state)
+    return state

@@ -1,0 +1,52 @@
+"""A failed run in one sentence: LAMMPS's own words without their wrapping, the command, the phase, the step.
+
+    "ERROR on proc 0: … (src/run.cpp:1)\nLast input line: run 9" ──▶ "LAMMPS stopped: …, at: run 9"
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+
+class EngineError(RuntimeError):
+    """LAMMPS gave no result.
+
+    Attributes:
+        message: the cause, one sentence.
+        phase: the phase of the experiment, as given to `Session.execute`.
+        step: the timestep that LAMMPS had reached (after a crash or a kill: up to a fifth of a second earlier).
+        folder: the run folder, whose files are kept.
+        log_tail: the last lines of its log, and what the process said when it died.
+    """
+
+    def __init__(self, message: str, phase: str, step: int, folder: Path, log_tail: str) -> None:
+        """Keep the attributes; all of them are arguments, so that the error can be pickled."""
+        super().__init__(message, phase, step, folder, log_tail)
+        self.message, self.phase, self.step, self.folder, self.log_tail = message, phase, step, folder, log_tail
+
+    def __str__(self) -> str:
+        """Return one sentence: phase, step, cause, and where the files are."""
+        return f"phase {self.phase!r}, step {self.step}: {self.message} (files kept in {self.folder})"
+
+
+def plain_message(raw: str, log: str = "", commands: str = "") -> str:
+    """Return LAMMPS's error text as one sentence that quotes the failed command or formula.
+
+    Args:
+        raw: the text of LAMMPS, with its prefix, source location and pointer to the manual.
+        log: the log, to name the command if the text does not quote it: LAMMPS logs a line before it runs it.
+        commands: the lines that were to be run, to tell commands from output in the log.
+    """
+    text, _, quoted = raw.partition("Last input line:")
+    text = re.sub(r"For more information see \S+|\([\w./+-]+\.(?:cpp|h):\d+\)", "", text)
+    text = " ".join(re.sub(r"^\s*ERROR(?: on proc \d+)?:", "", text).split()).rstrip(".")
+    command = " ".join(quoted.strip().partition("\n")[0].split())
+    if not command:
+        known = {" ".join(line.split()) for line in re.sub(r"&[ \t]*\n", " ", commands).splitlines()} - {""}
+        logged = (" ".join(line.split()) for line in reversed(log.splitlines()))
+        command = next((line for line in logged if line in known), "")
+    lost = re.match(r"Lost atoms: original (\d+) current (\d+)", text)
+    if lost:
+        text = f"{int(lost[1]) - int(lost[2])} of {lost[1]} atoms left the box ({text})"
+    return f"LAMMPS stopped: {text}" + (f", at: {command}" if command else "")

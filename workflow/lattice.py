@@ -1,0 +1,84 @@
+"""Geometry: where particles and anchors stand at displacement 0.
+
+Particle i stands at x_i = (i − (N−1)/2)·spacing; the lower body at z = 0, the upper one at z = rest + h(x). In LAMMPS
+the paper's z is z and the plane of motion is y = const: y = 0 for the lower body, y = ε for the upper one (see
+`potentials.table`).
+
+An anchor is a particle's place in its bulk. Neighbour springs of zero rest length, k_n (p_{i+1} − p_i), pull a chain's
+ends inward and a curved chain straight. Their force on the undeformed chain, r_i = k_n Σ_j (p_j − p_i) over the
+neighbours j of i, is cancelled exactly by moving each anchor by −r_i/k: since a bulk spring is linear and of zero rest
+length too, that is a constant force −r_i on particle i, and Σ r_i = 0 leaves the force on the plate as it is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workflow.scene import Scene
+from workflow.settings import Settings
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Body:
+    """One body; positions [LU] of shape (N, 3), columns x, y (out of plane), z.
+
+    Attributes:
+        name: "lower" or "upper".
+        particles: undeformed places.
+        anchors: the bulk's ends of the bulk springs.
+        far_anchors: the bulk's ends of the long bonds, shape (N, 3), or (0, 3).
+    """
+
+    name: str
+    particles: Array
+    anchors: Array
+    far_anchors: Array
+
+
+def places(count: int, spacing: float) -> Array:
+    """x_i = (i − (N−1)/2)·spacing [LU], shape (count,)."""
+    return (np.arange(count) - 0.5 * (count - 1)) * spacing
+
+
+def neighbour_forces(particles: Array, stiffness: float) -> Array:
+    """Forces r_i [FU] of zero-length neighbour springs on the chain `particles` (N, 3) [LU]; their sum is 0."""
+    pull = stiffness * np.diff(particles, axis=0)
+    force = np.zeros_like(particles)
+    force[:-1] += pull
+    force[1:] -= pull
+    return force
+
+
+def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
+    """The bodies of a scene, lower one first; on a rigid plane the upper one alone."""
+    x = places(settings.particles, scene.bodies.spacing)
+    flat = np.zeros_like(x)
+    offset = settings.table.plane_offset if settings.table is not None else 0.0
+    upper = np.column_stack([x, flat + offset, settings.rest + scene.bodies.profile.height(x)])
+    if scene.bodies.lower == "rigid_plane":
+        return (_body("upper", upper, scene, settings),)
+    lower = np.column_stack([x, flat, flat])
+    return _body("lower", lower, scene, settings), _body("upper", upper, scene, settings)
+
+
+def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body:
+    shift = np.zeros_like(particles)
+    if scene.neighbours is not None:
+        rest = neighbour_forces(particles, scene.neighbours.stiffness)
+        shift[:, 2] = -rest[:, 2] / settings.bulk_stiffness
+        if scene.horizontal is not None:
+            shift[:, 0] = -rest[:, 0] / scene.bodies.tangential_stiffness
+    anchors = particles + shift
+    if settings.far == 0.0:
+        return Body(name, particles, anchors, np.empty((0, 3)))
+    away = np.zeros(3)
+    if scene.bodies.tangential_stiffness > settings.bulk_stiffness:
+        away[0] = -settings.far
+    else:
+        away[2] = settings.far if name == "upper" else -settings.far
+    return Body(name, particles, anchors, anchors + away)

@@ -1,0 +1,136 @@
+"""Who hears how far a run is: a bar on a terminal, a few plain lines elsewhere, or nobody.
+
+    phase(name, expected_steps) ──▶ advance(steps) … ──▶ close()
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import Any, Protocol, TextIO
+
+QUIET_SECONDS = 5.0
+"""Least time between two plain lines of the same phase."""
+
+
+class Progress(Protocol):
+    """A listener to a run."""
+
+    def phase(self, name: str, expected_steps: int | None = None) -> None:
+        """Begin a phase of that many steps; None where the number is unknown."""
+
+    def advance(self, steps: int) -> None:
+        """Note that so many more steps of the phase are done."""
+
+    def note(self, text: str) -> None:
+        """Tell one line."""
+
+    def close(self) -> None:
+        """End; further calls do nothing."""
+
+
+class Silent:
+    """Nobody listens."""
+
+    def phase(self, name: str, expected_steps: int | None = None) -> None:
+        """Do nothing."""
+
+    def advance(self, steps: int) -> None:
+        """Do nothing."""
+
+    def note(self, text: str) -> None:
+        """Do nothing."""
+
+    def close(self) -> None:
+        """Do nothing."""
+
+
+class Lines:
+    """Plain lines for a log file or a pipe: one at the start of a phase, then at most one every few seconds.
+
+    Args:
+        stream: where to write.
+        quiet: least time between two lines of a phase [s].
+    """
+
+    def __init__(self, stream: TextIO, quiet: float = QUIET_SECONDS) -> None:
+        """Write nothing yet."""
+        self._stream, self._quiet = stream, quiet
+        self._name, self._expected, self._done = "", None, 0
+        self._start = self._last = time.monotonic()
+
+    _expected: int | None
+
+    def phase(self, name: str, expected_steps: int | None = None) -> None:
+        """Write the name and the expected steps."""
+        self._name, self._expected, self._done = name, expected_steps, 0
+        self._start = self._last = time.monotonic()
+        self.note(name if expected_steps is None else f"{name}: {expected_steps} steps")
+
+    def advance(self, steps: int) -> None:
+        """Count; write the count if the last line is old enough."""
+        self._done += steps
+        now = time.monotonic()
+        if now - self._last < self._quiet:
+            return
+        self._last = now
+        share = ""
+        if self._expected and 0 < self._done <= self._expected:
+            left = (now - self._start) * (self._expected / self._done - 1.0)
+            share = f" of {self._expected}, about {left:.0f} s left"
+        self.note(f"{self._name}: step {self._done}{share}")
+
+    def note(self, text: str) -> None:
+        """Write the line at once."""
+        print(text, file=self._stream, flush=True)
+
+    def close(self) -> None:
+        """Leave the stream open: it is not ours."""
+
+
+class Bar:
+    """A bar on a terminal: phase, steps, expected remaining time.
+
+    Args:
+        stream: the terminal.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        """Load rich and show nothing yet."""
+        from rich.console import Console
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+        columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+        self._rich = Progress(*columns, console=Console(file=stream), transient=True)
+        self._task: Any = None
+
+    def phase(self, name: str, expected_steps: int | None = None) -> None:
+        """Replace the bar by that of the new phase."""
+        self._drop()
+        self._rich.start()
+        self._task = self._rich.add_task(name, total=expected_steps)
+
+    def advance(self, steps: int) -> None:
+        """Move the bar."""
+        if self._task is not None:
+            self._rich.advance(self._task, steps)
+
+    def note(self, text: str) -> None:
+        """Print a line above the bar."""
+        self._rich.console.print(text, markup=False, highlight=False)
+
+    def close(self) -> None:
+        """Remove the bar and give the terminal back."""
+        self._drop()
+        self._rich.stop()
+
+    def _drop(self) -> None:
+        if self._task is not None:
+            self._rich.remove_task(self._task)
+            self._task = None
+
+
+def choose_progress(stream: TextIO | None = None) -> Progress:
+    """Return a bar if the stream (standard error by default) is a terminal, otherwise plain lines."""
+    stream = stream or sys.stderr
+    return Bar(stream) if stream.isatty() else Lines(stream)

@@ -1,0 +1,88 @@
+"""The four experiments of a scene: load, path, pull_off, slide.
+
+A prescribed path from d₀ to d₁ in n steps holds d_i = d₀ (1 − i/n) + d₁ i/n for i = 0…n, and back in the same places.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Literal, Self
+
+from annotated_types import MinLen
+from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic_core import PydanticCustomError
+
+from workflow.scene.quantities import Compression, Displacement, Force, Length, StepCount, Table
+
+Method = Literal["quasistatic", "dynamic"]
+_METHOD = '"quasistatic" (no time) or "dynamic" (as in the paper); absent: by the tables present'
+
+
+class Span(Table):
+    """Evenly spaced displacements from one place to another, by default there and back."""
+
+    from_: Displacement = Field(alias="from", description="displacement at the start")
+    to: Displacement = Field(description="displacement at the turning point")
+    steps: StepCount = Field(description="number of steps of one leg")
+    return_: bool = Field(default=True, alias="return", description="whether to go back to the start as well")
+
+    @model_validator(mode="after")
+    def _ends_differ(self) -> Self:
+        if self.from_ == self.to:
+            raise PydanticCustomError("scene", '"from" and "to" must differ')
+        return self
+
+    def values(self) -> list[float]:
+        """Displacements [LU] in order: steps + 1 on the way there, then `steps` back; the turning point once."""
+        fractions = [i / self.steps for i in range(self.steps + 1)]
+        there = [self.from_ * (1 - t) + self.to * t for t in fractions]
+        return there + there[-2::-1] if self.return_ else there
+
+
+def _list_or_table(value: object) -> str:
+    return "table" if isinstance(value, Mapping | Span) else "list"
+
+
+# strict=False on the tuple alone: TOML has lists, a frozen table holds a tuple. Its numbers stay strict.
+_Listed = Annotated[tuple[Displacement, ...], Field(strict=False), MinLen(1), Tag("list")]
+Displacements = Annotated[_Listed | Annotated[Span, Tag("table")], Discriminator(_list_or_table)]
+
+
+class Load(Table):
+    """Equilibrium under a normal force."""
+
+    kind: Literal["load"] = Field(description="equilibrium under a force")
+    force: Force = Field(description="normal force on the upper body, compression positive")
+    method: Method | None = Field(default=None, description=_METHOD)
+
+
+class Path(Table):
+    """Prescribed displacements of the upper body."""
+
+    kind: Literal["path"] = Field(description="prescribed displacement, there and back")
+    displacements: Displacements = Field(description="displacements, compression positive: a list or an even span")
+    method: Method | None = Field(default=None, description=_METHOD)
+
+    def values(self) -> list[float]:
+        """Displacements [LU] in the order in which they are visited, the turning point of a span once."""
+        listed = self.displacements
+        return listed.values() if isinstance(listed, Span) else list(listed)
+
+
+class PullOff(Table):
+    """Compression by a preload, then the largest tension that the contact holds."""
+
+    kind: Literal["pull_off"] = Field(description="compress by the preload, then the largest tension held")
+    preload: Compression = Field(description="compressive force F_D before the pull")
+    method: Method | None = Field(default=None, description=_METHOD)
+
+
+class Slide(Table):
+    """Sliding under a normal force, pulled through the cantilever; always dynamic."""
+
+    kind: Literal["slide"] = Field(description="normal force and cantilever; always dynamic")
+    normal_force: Compression = Field(description="compressive force held while sliding")
+    distance: Length = Field(description="way of the driven end of the cantilever")
+
+
+Experiment = Annotated[Load | Path | PullOff | Slide, Discriminator("kind")]

@@ -1,0 +1,198 @@
+"""Do the tables of a scene fit together? One rule per physical reason, each mistake with what to do about it.
+
+Two bodies touch in one way only if the force f(r) = (A/a) exp(−r/a) − (B/b) exp(−r/b) repels at contact,
+A/a > B/b, and attracts far off, b > a. It then vanishes once, at r₀ = ln(A b / (B a)) a b / (b − a).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from workflow.scene.problems import Problem, shown
+from workflow.scene.tables import EFFECTS, TIMED, Bodies, Plate, default_method
+
+EXCLUDED = {
+    "load": {"cantilever": "only a slide is pulled through a spring"},
+    "path": {
+        "plate": "a path prescribes the plate's place, so the plate has no motion of its own",
+        "cantilever": "only a slide is pulled through a spring",
+    },
+    "pull_off": {
+        "noise": "a thermal pull-off depends on the waiting time, which the scene does not state",
+        "cantilever": "only a slide is pulled through a spring",
+    },
+    "slide": {},
+}
+"""Effects that an experiment cannot have by any method, and why."""
+
+NEEDED = {
+    "load": ("damping", "plate"),
+    "path": ("damping",),
+    "pull_off": ("damping", "plate"),
+    "slide": ("damping", "plate", "cantilever"),
+}
+"""Effects that a dynamic experiment cannot do without."""
+
+INSTEAD = {"noise": 'kind = "load"', "cantilever": 'kind = "slide"', "plate": 'kind = "load"'}
+"""Which experiment has what another one excludes."""
+
+ADD = {
+    "damping": '[damping] with coefficient = "auto"',
+    "plate": '[plate] with mass = "auto"',
+    "cantilever": "[cantilever] with stiffness and velocity",
+}
+"""How to add a table that is missing."""
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A scene that may have wrong values: `data` as in the file, and the keys at which a value is `unsound`."""
+
+    data: Mapping[str, Any]
+    unsound: frozenset[tuple[str | int, ...]]
+
+    def has(self, *keys: str) -> bool:
+        """Whether something, right or wrong, stands at `keys`."""
+        value: Any = self.data
+        for key in keys:
+            value = value.get(key) if isinstance(value, Mapping) else None
+        return value is not None
+
+    def sound(self, *keys: str) -> bool:
+        """Whether what stands at `keys`, if anything, is right, with all that is above and inside it."""
+        return not any(bad[: len(keys)] == keys[: len(bad)] for bad in self.unsound)
+
+    def get(self, *keys: str, default: Any = None) -> Any:
+        """The value at `keys`, `default` where it is absent, None where it is unsound."""
+        if not self.sound(*keys):
+            return None
+        value: Any = self.data
+        for key in keys:
+            value = value.get(key) if isinstance(value, Mapping) else None
+        return default if value is None else value
+
+    @property
+    def kind(self) -> str | None:
+        """Kind of the experiment, None if that is not known."""
+        kind = self.get("experiment", "kind")
+        return kind if isinstance(kind, str) else None
+
+    @property
+    def lower(self) -> str | None:
+        """What the lower body is, None if that is not known."""
+        lower = self.get("bodies", "lower", default=Bodies.model_fields["lower"].default)
+        return lower if isinstance(lower, str) and self.has("bodies") else None
+
+
+def _lower_body(draft: Draft) -> Iterator[Problem]:
+    """Particles need an interaction; a rigid plane has none, neither holds anything nor pulls sideways."""
+    if draft.lower == "particles" and not draft.has("interaction"):
+        yield Problem("interaction", "missing", hint='add [interaction], or use bodies.lower = "rigid_plane"')
+    if draft.lower != "rigid_plane":
+        return
+    if draft.kind in ("pull_off", "slide"):
+        why = "hold" if draft.kind == "pull_off" else "drag"
+        hint = 'use lower = "particles" and an [interaction]'
+        yield Problem("bodies.lower", f"a rigid plane cannot {why} the upper body", shown("rigid_plane"), hint)
+        return
+    if draft.has("interaction"):
+        hint = 'remove it, or use bodies.lower = "particles"'
+        yield Problem("interaction", 'not with bodies.lower = "rigid_plane", which is touched directly', hint=hint)
+    if draft.has("horizontal"):
+        hint = 'remove it, or use bodies.lower = "particles"'
+        yield Problem("horizontal", "useless on a rigid plane, which never pulls a particle sideways", hint=hint)
+
+
+def _law(draft: Draft) -> Iterator[Problem]:
+    """The interaction repels near and attracts far, so that one distance is force-free; the cutoff is beyond it."""
+    terms = [("interaction", term, key) for term in ("repulsion", "attraction") for key in ("amplitude", "range")]
+    values = [draft.get(*term) for term in terms]
+    if None in values:
+        return
+    A, a, B, b = values
+    if b <= a:
+        must = f"must be greater than the range of the repulsion, {a:g} (LU)"
+        yield Problem("interaction.attraction.range", must, shown(b), "the bodies would never attract each other")
+        return
+    ratio = math.log(A) - math.log(a) - math.log(B) + math.log(b)
+    if ratio <= 0:
+        must = f"must be less than {A / a * b:.6g} (FU·LU), so that A/a > B/b and particles repel when they touch"
+        yield Problem("interaction.attraction.amplitude", must, shown(B), "lower it, or raise repulsion.amplitude")
+        return
+    r0 = ratio * a * b / (b - a)
+    cutoff = draft.get("interaction", "cutoff", default="auto")
+    if cutoff is not None and cutoff != "auto" and cutoff <= r0:
+        must = f"must be greater than the force-free distance, {r0:.6g} (LU)"
+        yield Problem("interaction.cutoff", must, shown(cutoff), 'raise it, or use "auto"')
+
+
+def _tables_of_experiment(draft: Draft) -> Iterator[Problem]:
+    """Each experiment and method has tables that it needs and tables that it cannot have."""
+    present = tuple(name for name in EFFECTS if draft.has(name))
+    kind = draft.kind
+    if kind is None:
+        if "noise" in present and "damping" not in present:
+            yield _missing("damping", "[noise]")
+        return
+    for name, why in EXCLUDED[kind].items():
+        if name in present:
+            hint = f"remove it, or use {INSTEAD[name]}"
+            yield Problem(name, f"not in a {kind}: {why}", hint=hint)
+    if not draft.sound("experiment", "method"):
+        return
+    rest = tuple(name for name in present if name not in EXCLUDED[kind])
+    given = "dynamic" if kind == "slide" else draft.get("experiment", "method")
+    method = given or default_method(rest)
+    if method == "quasistatic":
+        for name in TIMED:
+            if name in rest:
+                hint = 'remove it, or use experiment.method = "dynamic"'
+                yield Problem(name, f"not in a quasistatic {kind}, which has no time in it", hint=hint)
+        return
+    cause = "" if given else ", made dynamic by " + ", ".join(f"[{name}]" for name in rest if name in TIMED)
+    for name in NEEDED[kind]:
+        if name not in present:
+            also = " and by [noise]" if given and name == "damping" and "noise" in rest else ""
+            yield _missing(name, f"a {'' if kind == 'slide' else 'dynamic '}{kind}{cause}{also}")
+
+
+def _missing(name: str, needed_by: str) -> Problem:
+    return Problem(name, f"missing, needed by {needed_by}", hint=f"add {ADD[name]}")
+
+
+def _plate_can_slide(draft: Draft) -> Iterator[Problem]:
+    """A slide moves the plate along x."""
+    free = draft.get("plate", "free", default=Plate.model_fields["free"].default)
+    if draft.kind == "slide" and draft.has("plate") and free is not None and "x" not in free:
+        yield Problem("plate.free", 'must contain "x" in a slide', shown(free), 'write free = ["x", "z"]')
+
+
+def _something_holds(draft: Draft) -> Iterator[Problem]:
+    """Without attraction nothing can be pulled: no pull-off, and no load that is not compressive."""
+    if draft.has("interaction", "attraction"):
+        return
+    if draft.kind == "pull_off" and draft.lower == "particles" and draft.has("interaction"):
+        hint = "without it nothing holds the bodies together"
+        yield Problem("interaction.attraction", "missing, needed by a pull_off", hint=hint)
+    force = draft.get("experiment", "force")
+    if draft.kind == "load" and force is not None and force <= 0:
+        hint = "compression is positive; a tensile force needs interaction.attraction"
+        yield Problem("experiment.force", "must be greater than 0 (FU) without attraction", shown(force), hint)
+
+
+RULES: tuple[Callable[[Draft], Iterator[Problem]], ...] = (
+    _lower_body,
+    _law,
+    _tables_of_experiment,
+    _plate_can_slide,
+    _something_holds,
+)
+
+
+def check_fit(data: Mapping[str, Any], unsound: frozenset[tuple[str | int, ...]] = frozenset()) -> list[Problem]:
+    """Every breach of a rule across the tables of `data` that can be told in spite of the `unsound` values in it."""
+    draft = Draft(data, unsound)
+    return [problem for rule in RULES for problem in rule(draft)]

@@ -1,0 +1,102 @@
+"""What is wrong with a scene: one line per mistake, in the words of the scene file."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+SHOWN = 60
+"""Characters of a given value that a message shows."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One mistake: where (`path`), what was `given` (as TOML, or None), what is allowed, and what to do (`hint`)."""
+
+    path: str
+    message: str
+    given: str | None = None
+    hint: str = ""
+
+    def __str__(self) -> str:
+        """One line: `path = given: message; hint`."""
+        given = "" if self.given is None else f" = {self.given}"
+        hint = f"; {self.hint}" if self.hint else ""
+        return f"{self.path}{given}: {self.message}{hint}"
+
+
+class SceneError(Exception):
+    """A scene cannot be used; `problems` has every mistake found, in the order of the scene's tables."""
+
+    def __init__(self, problems: Iterable[Problem]) -> None:
+        """Hold `problems`; as the only argument, so that the error survives pickling between processes."""
+        self.problems = tuple(problems)
+        super().__init__(self.problems)
+
+    def __str__(self) -> str:
+        """All problems, one on each line."""
+        return "\n".join(str(problem) for problem in self.problems)
+
+
+def as_toml(value: object) -> str:
+    """`value` as TOML text on one line: text, numbers, booleans, lists and tables (inline).
+
+    Anything else, which a scene cannot hold, comes out as Python shows it.
+    """
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return '"' + "".join(_escaped(c) for c in value) + '"'
+    if isinstance(value, float):
+        return repr(float(value)) if math.isfinite(value) else f"{value}"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(as_toml(item) for item in value) + "]"
+    if isinstance(value, Mapping):
+        inside = ", ".join(f"{as_key(str(key))} = {as_toml(item)}" for key, item in value.items())
+        return f"{{ {inside} }}" if inside else "{}"
+    return str(value)
+
+
+def shown(value: object) -> str:
+    """`value` as TOML, shortened to at most `SHOWN` characters: for messages."""
+    try:
+        text = as_toml(value)
+    except (ValueError, RecursionError):  # an integer of thousands of digits; nesting without end
+        return "…"
+    return text if len(text) <= SHOWN else text[: SHOWN - 1] + "…"
+
+
+def as_key(key: str) -> str:
+    """`key` as TOML writes it: bare where it can be, else in quotes."""
+    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else as_toml(key)
+
+
+def path_of(keys: Iterable[str | int]) -> str:
+    """The dotted path of nested `keys`, list places in brackets: `experiment.displacements[2]`."""
+    path = ""
+    for key in keys:
+        path += f"[{key}]" if isinstance(key, int) else ("." if path else "") + as_key(key)
+    return path
+
+
+def nearest(word: str, allowed: Iterable[str]) -> str | None:
+    """The one of `allowed` that a person who wrote `word` most likely meant, or None."""
+    known = list(allowed)
+    plain = word.strip().lower().replace("-", "_").replace(" ", "_")
+    starting = [name for name in known if len(plain) > 2 and name.startswith(plain)]
+    if len(starting) == 1:
+        return starting[0]
+    return next(iter(get_close_matches(plain, known, n=1, cutoff=0.7)), None)
+
+
+def _escaped(character: str) -> str:
+    if character in '"\\':
+        return "\\" + character
+    if character.isprintable():
+        return character
+    named = {"\n": "\\n", "\t": "\\t", "\r": "\\r"}
+    code = ord(character)
+    return named.get(character) or (f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}")

@@ -1,0 +1,65 @@
+"""Types of the values in a scene: for each, its range and its model unit in one name.
+
+Model units: length LU (the spacing), force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT in FU·LU.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal, get_type_hints
+
+from annotated_types import Ge, Gt, Le
+from pydantic import BaseModel, ConfigDict, Discriminator, Tag
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """Model unit of a number, as metadata of its type; "1" marks a number without dimension."""
+
+    name: str
+
+
+class Table(BaseModel):
+    """A table of a scene: immutable, no unknown keys, no conversion between types, finite numbers only."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+
+Length = Annotated[float, Gt(0), Unit("LU")]
+Stiffness = Annotated[float, Gt(0), Unit("FU/LU")]
+Mass = Annotated[float, Gt(0), Unit("MU")]
+Energy = Annotated[float, Gt(0), Unit("FU·LU")]
+Velocity = Annotated[float, Gt(0), Unit("LU/TU")]
+DampingCoefficient = Annotated[float, Gt(0), Unit("FU·TU/LU")]
+DampingCoefficientOrZero = Annotated[float, Ge(0), Unit("FU·TU/LU")]
+Force = Annotated[float, Unit("FU")]
+Compression = Annotated[float, Gt(0), Unit("FU")]
+Displacement = Annotated[float, Unit("LU")]
+RelativeTolerance = Annotated[float, Ge(1e-7), Le(0.1), Unit("1")]
+ParticleCount = Annotated[int, Ge(3), Le(10_000_000), Unit("1")]
+StepCount = Annotated[int, Ge(1), Le(1_000_000), Unit("1")]
+Seed = Annotated[int, Ge(1), Le(2**31 - 1), Unit("1")]
+
+
+def _number_or_auto(value: object) -> str:
+    return "auto" if isinstance(value, str) else "number"
+
+
+# The discriminator makes one mistake one error: a string can only have meant "auto", all else only a number.
+_Either = Discriminator(_number_or_auto)
+_Auto = Annotated[Literal["auto"], Tag("auto")]
+AutoLength = Annotated[Annotated[Length, Tag("number")] | _Auto, _Either]
+AutoMass = Annotated[Annotated[Mass, Tag("number")] | _Auto, _Either]
+AutoDamping = Annotated[Annotated[DampingCoefficient, Tag("number")] | _Auto, _Either]
+AutoDampingOrZero = Annotated[Annotated[DampingCoefficientOrZero, Tag("number")] | _Auto, _Either]
+AutoParticleCount = Annotated[Annotated[ParticleCount, Tag("number")] | _Auto, _Either]
+
+
+def keys_of(table: type[Table]) -> dict[str, str]:
+    """Field name of every key that may stand in `table`, in order: {key as written in TOML: name in Python}."""
+    return {field.alias or name: name for name, field in table.model_fields.items()}
+
+
+def annotation_of(table: type[Table], key: str) -> object:
+    """Full type (with its `Annotated` marks) of the key `key` of `table`. Raises KeyError for an unknown key."""
+    return get_type_hints(table, include_extras=True)[keys_of(table)[key]]

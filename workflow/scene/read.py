@@ -1,0 +1,127 @@
+"""A scene from a TOML file or a dict: either a `Scene` whose tables fit together, or every problem at once."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable, Mapping
+from os import PathLike, fspath
+from pathlib import Path as FilePath
+from typing import Any
+
+from workflow.scene.check import check_tables
+from workflow.scene.fit import check_fit
+from workflow.scene.overrides import apply_overrides, remove_effects
+from workflow.scene.problems import Problem, SceneError
+from workflow.scene.quantities import Table
+from workflow.scene.tables import Scene
+
+MEANING = {
+    "Cannot overwrite a value": "this key is given twice",
+    "Cannot declare": "this table is given twice",
+    "Invalid value": "this is no value",
+    "Expected newline or end of document": "there is something behind the value",
+    "Unclosed array": "a list is not closed",
+    "Expected '=' after a key": "a key needs = and a value",
+    "Invalid statement": "this is neither key = value nor a [table]",
+    "Invalid initial character for a key part": "this is neither key = value nor a [table]",
+    "Expected ']' at the end of a table declaration": "the name of a table is not closed with ]",
+    "Unterminated string": "the text is not closed with a quote",
+    "Illegal character '\\n'": "the text is not closed with a quote",
+    "Unclosed inline table": "an inline table { … } must be closed on the same line",
+    "Exceeds the limit": "a whole number has thousands of digits",
+}
+"""What the messages of tomllib, by their beginnings, mean to a person."""
+
+HINTS = {
+    "Invalid value": "text stands in quotes; a number has digits on both sides of its point; true and false are small",
+    "Expected newline or end of document": "one key = value on a line; a decimal point is no comma; no units",
+}
+
+
+def read_scene(path: str | PathLike[str], overrides: Iterable[str] = (), without: Iterable[str] = ()) -> Scene:
+    """The scene in the TOML file `path`, changed by `overrides` and `without` as in `scene_from_dict`.
+
+    Raises SceneError with every problem: also for a file that is missing, unreadable, not UTF-8 or not TOML.
+    """
+    return scene_from_dict(_parsed(fspath(path)), overrides, without)
+
+
+def scene_from_dict(
+    data: Mapping[str, Any] | Scene, overrides: Iterable[str] = (), without: Iterable[str] = ()
+) -> Scene:
+    """The scene that `data` (keys as in a scene file; None counts as absent) describes. `data` is left as it is.
+
+    `overrides` are strings "table.key=value", applied in order, the value read as TOML or else as bare text; `without`
+    has names of effects whose tables are then removed. Raises SceneError with every problem at once.
+    """
+    plain = _plain(data)
+    if not isinstance(plain, dict):
+        raise SceneError([Problem("scene", "must be a table of tables")])
+    problems = apply_overrides(plain, _listed(overrides)) + remove_effects(plain, _listed(without))
+    checked = check_tables(plain)
+    problems += checked.problems
+    problems += check_fit(checked.data, checked.unsound)
+    if problems or checked.scene is None:
+        raise SceneError(sorted(problems, key=_rank))
+    return checked.scene
+
+
+def _listed(words: Iterable[str]) -> list[str]:
+    """`words` as a list; one string alone is one word."""
+    return [words] if isinstance(words, str) else list(words)
+
+
+def _plain(value: Any) -> Any:
+    """A copy of `value` in dicts and lists, without keys that hold None."""
+    if isinstance(value, Table):
+        return _plain(value.model_dump(by_alias=True))
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items() if item is not None}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    return value
+
+
+def _rank(problem: Problem) -> int:
+    """Place of a problem in a report: changes from outside, the tables in the order of a scene, what is unknown."""
+    order = list(Scene.model_fields)
+    table = re.split(r"[.\[]", problem.path)[0]
+    if problem.path.startswith(("set ", "without ")):
+        return -1
+    return order.index(table) if table in order else len(order)
+
+
+def _parsed(path: str) -> dict[str, Any]:
+    """The TOML file `path` as a dict; raises SceneError with one problem where there is none."""
+    try:
+        text = FilePath(path).read_bytes().decode("utf-8-sig")
+    except FileNotFoundError as error:
+        raise SceneError([Problem(path, "no such file")]) from error
+    except IsADirectoryError as error:
+        raise SceneError([Problem(path, "is a directory", hint="name the scene file in it")]) from error
+    except UnicodeDecodeError as error:
+        line = error.object[: error.start].count(b"\n") + 1
+        raise SceneError([Problem(f"{path}, line {line}", "not UTF-8 text", hint="save it as UTF-8")]) from error
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise SceneError([Problem(path, f"cannot be read: {reason}")]) from error
+    try:
+        return tomllib.loads(text)
+    except ValueError as error:
+        raise SceneError([_syntax_problem(path, text, str(error))]) from error
+    except RecursionError as error:
+        raise SceneError([Problem(path, "lists or tables are nested too deeply")]) from error
+
+
+def _syntax_problem(path: str, text: str, reason: str) -> Problem:
+    """A mistake in the TOML itself: the line and its text, and what is wrong with it."""
+    begin = next((begin for begin in MEANING if reason.startswith(begin)), "")
+    what = MEANING.get(begin, reason)
+    found = re.search(r"\(at line (\d+), column (\d+)\)$", reason)
+    if found is None:
+        return Problem(f"{path}, at its end" if "end of document" in reason else path, what)
+    line = text.split("\n")[int(found[1]) - 1].strip()
+    if line.count("{") > line.count("}"):
+        what = MEANING["Unclosed inline table"]
+    return Problem(f"{path}, line {found[1]}, column {found[2]}", f"{what}: {line[:80]}", hint=HINTS.get(begin, ""))

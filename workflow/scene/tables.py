@@ -1,0 +1,189 @@
+"""The typed scene: one frozen model per table of a scene file.
+
+Interaction of two particles at distance r: V(r) = A exp(−r/a) − B exp(−r/b), with A, a the amplitude and range of the
+repulsion and B, b those of the attraction.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from annotated_types import MinLen
+from pydantic import AfterValidator, Field
+from pydantic_core import PydanticCustomError
+
+from workflow.scene.experiments import Experiment, Method, Slide
+from workflow.scene.quantities import (
+    AutoDamping,
+    AutoDampingOrZero,
+    AutoLength,
+    AutoMass,
+    AutoParticleCount,
+    Energy,
+    Length,
+    Mass,
+    RelativeTolerance,
+    Seed,
+    Stiffness,
+    Table,
+    Velocity,
+)
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+EFFECTS = ("interaction", "neighbours", "horizontal", "damping", "noise", "plate", "cantilever")
+"""Names of all effects in deck order; each is also the name of its scene table."""
+
+TIMED = ("damping", "noise", "plate", "cantilever")
+"""Effects that exist in time only, so that a quasistatic run cannot have them."""
+
+
+class Parabola(Table):
+    """Profile of the upper body: z = x²/2R."""
+
+    kind: Literal["parabola"] = Field(description="z = x²/2R, the paper's circle")
+    radius: Length = Field(description="radius of curvature R at the apex")
+
+    def height(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Height z = x²/2R [LU] of the profile above its apex at the places `x` [LU]; same shape as `x`."""
+        return x**2 / (2 * self.radius)
+
+
+# One member so far. With a second: Annotated[Parabola | Other, Discriminator("kind")], as in experiments.py; the
+# messages about `kind` work for both.
+Profile = Parabola
+
+
+class Bodies(Table):
+    """The two bodies: chains of particles, each particle held to its own bulk by a spring."""
+
+    particles: AutoParticleCount = Field(description='particles per body, or "auto": as many as the contact needs')
+    spacing: Length = Field(description="distance of neighbouring particles")
+    profile: Profile = Field(description="shape of the upper body")
+    bulk_stiffness: Stiffness = Field(description="stiffness of each particle to its bulk, normal direction")
+    bulk_stiffness_tangential: Stiffness | None = Field(
+        default=None, description="stiffness of each particle to its bulk, along x; absent: as in normal direction"
+    )
+    mass: Mass = Field(default=1.0, description="mass of a particle; matters only where something moves in time")
+    lower: Literal["particles", "rigid_plane"] = Field(
+        default="particles", description='lower body: "particles" like the upper one, or a "rigid_plane"'
+    )
+
+    @property
+    def tangential_stiffness(self) -> float:
+        """Stiffness [FU/LU] of each particle to its bulk along x: the given one, else `bulk_stiffness`."""
+        given = self.bulk_stiffness_tangential
+        return self.bulk_stiffness if given is None else given
+
+
+class Exponential(Table):
+    """One term of the interaction: amplitude · exp(−r/range)."""
+
+    amplitude: Energy = Field(description="energy at distance zero")
+    range: Length = Field(description="decay length")
+
+
+class Interaction(Table):
+    """Effect: V(r) = A exp(−r/a) − B exp(−r/b) between opposite bodies."""
+
+    repulsion: Exponential = Field(description="repulsive term, A and a")
+    attraction: Exponential | None = Field(default=None, description="attractive term, B and b; absent: no adhesion")
+    cutoff: AutoLength = Field(
+        default="auto", description='distance beyond which no force acts, or "auto": by the tolerance'
+    )
+
+
+class Neighbours(Table):
+    """Effect: springs between neighbouring particles of one body, with transverse rigidity."""
+
+    stiffness: Stiffness = Field(description="stiffness of a spring between neighbours")
+
+
+class Horizontal(Table):
+    """Effect: particles may also move along x. It has no keys."""
+
+
+class Damping(Table):
+    """Effect: viscous damping of particles."""
+
+    coefficient: AutoDamping = Field(description='drag force over velocity, or "auto": near critical')
+
+
+class Noise(Table):
+    """Effect: thermal forces on the particles; with the damping it makes one Langevin thermostat."""
+
+    temperature: Energy = Field(description="temperature as energy k_BT")
+    seed: Seed = Field(description="seed of the random forces")
+
+
+def _free_directions(free: tuple[str, ...]) -> tuple[str, ...]:
+    if len(set(free)) < len(free):
+        raise PydanticCustomError("scene", "must name each direction once")
+    if "z" not in free:
+        raise PydanticCustomError("scene", 'must contain "z"')
+    return tuple(sorted(free))
+
+
+Free = Annotated[tuple[Literal["x", "z"], ...], Field(strict=False), MinLen(1), AfterValidator(_free_directions)]
+
+
+class Plate(Table):
+    """Effect: the upper plate is a rigid body with inertia, loaded by a force. Absent: its place is prescribed."""
+
+    mass: AutoMass = Field(default="auto", description='mass of the plate, or "auto"')
+    free: Free = Field(default=("z",), description='directions in which the plate may move: ["z"] or ["x", "z"]')
+    damping: AutoDampingOrZero = Field(default="auto", description='drag force over velocity of the plate, or "auto"')
+
+
+class Cantilever(Table):
+    """Effect: the plate is pulled along x through a spring whose far end moves steadily."""
+
+    stiffness: Stiffness = Field(description="stiffness of the spring")
+    velocity: Velocity = Field(description="velocity of the driven end")
+
+
+class Accuracy(Table):
+    """How exact the results are to be; chooses every numerical setting that the scene leaves open."""
+
+    tolerance: RelativeTolerance = Field(default=1e-3, description="relative error allowed in the main results")
+
+
+def _one_line(title: str) -> str:
+    if not title.strip() or not title.isprintable():
+        raise PydanticCustomError("scene", "must be one line of text, not empty")
+    return title
+
+
+class Scene(Table):
+    """A whole scene. `read_scene` and `scene_from_dict` check that its tables fit together; this class does not."""
+
+    title: Annotated[str, AfterValidator(_one_line)] = Field(description="what the scene shows, one line")
+    bodies: Bodies = Field(description="the two bodies")
+    interaction: Interaction | None = Field(default=None, description="forces between opposite bodies")
+    neighbours: Neighbours | None = Field(default=None, description="springs between neighbouring particles")
+    horizontal: Horizontal | None = Field(default=None, description="particles may also move along x")
+    damping: Damping | None = Field(default=None, description="viscous damping of particles")
+    noise: Noise | None = Field(default=None, description="thermal forces")
+    plate: Plate | None = Field(default=None, description="the upper plate moves under a force")
+    cantilever: Cantilever | None = Field(default=None, description="the plate is pulled through a spring")
+    accuracy: Accuracy = Field(default=Accuracy(), description="how exact")
+    experiment: Experiment = Field(description="what is done")
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Names of the effects that this scene has, in deck order."""
+        return tuple(name for name in EFFECTS if getattr(self, name) is not None)
+
+    @property
+    def method(self) -> Method:
+        """The method given, else "dynamic" if a plate, damping or noise is there, else "quasistatic"."""
+        if isinstance(self.experiment, Slide):
+            return "dynamic"
+        return self.experiment.method or default_method(self.effects)
+
+
+def default_method(effects: tuple[str, ...]) -> Method:
+    """Method of a scene that names none and has these `effects`; a slide is always dynamic besides."""
+    return "dynamic" if {"plate", "damping", "noise"} & set(effects) else "quasistatic"

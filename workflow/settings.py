@@ -1,0 +1,234 @@
+"""Every number that a scene leaves open: chain length, cutoff, table, time step, thresholds, increments.
+
+Each is derived from `[accuracy] tolerance` (relative, on the main results) by the rule stated beside it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from potentials import DoubleExponential, Exponential
+from potentials.table import Table, table_for
+from workflow.estimate import ContactEstimate, particles_estimate, plane_estimate
+from workflow.scene import Scene
+
+CUTOFF_SHARE = 1e-3
+"""Force at an automatic cutoff over the law's own, per unit of tolerance: the tail left out is ten times that at most."""
+TABLE_SHARE = 0.1
+"""Table error over the law's force at r = 0, per unit of tolerance, at the closest distance that a result may have."""
+CLOSEST_SHARE = 0.2
+"""That distance over the force-free one (with attraction) or over the repulsion's range (without)."""
+RESIDUAL_SHARE = 1e-3
+"""Norm of the forces left on the particles over the force scale, per unit of tolerance."""
+FAR_SHARE = 10.0
+"""Length of a long bond over the spacing, per 1/tolerance: a sideways move u bends its force by u/2L."""
+STILL_STEP = 0.2
+"""ω_max·Δt without noise: a tenth of the Verlet integrator's limit, since equilibria do not depend on it."""
+NOISE_BIAS = 0.4
+"""Relative error of ⟨u²⟩ over (ω Δt)² with `fix langevin` and `fix nve`, measured at ω Δt = 0.1: 0.4 %."""
+SOFTENING = 0.6
+"""Stiffness of the contact under tension over that under the preload: automatic damping is critical for the former."""
+CHAIN_MARGIN = 1.1
+"""Length of an automatic chain over what the estimate asks for."""
+LOADING_STEPS = 24
+"""Increments from first touch to the preload on the first pass of a search."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """The numbers of one run; units as in the scene.
+
+    Attributes:
+        particles: per body.
+        rest: apex distance at displacement 0 [LU].
+        law, cutoff, table, closest: the interaction, its cutoff [LU], its table, and the smallest distance [LU] for
+            which the table was chosen; None or 0 on a rigid plane.
+        bulk_stiffness: normal bond of a particle to its anchor [FU/LU]; on a rigid plane such that plane and bond in
+            series have the scene's value.
+        plane_stiffness: one-sided stiffness of the rigid plane [FU/LU]; 0 without one.
+        far: length of the long bond that makes normal and tangential stiffness differ [LU]; 0 where they do not.
+        force_scale: force of one particle [FU] against which residuals are judged.
+        force_tolerance: norm of the residual forces at which a minimisation stops [FU].
+        displacement_step: first increment of a search [LU].
+        time_step: [TU].
+        damping: coefficient of a particle [FU·TU/LU].
+        plate_mass, plate_damping: [MU], [FU·TU/LU].
+        settle_time: about one period of the plate on its contact [TU].
+        largest_displacement: what the estimate expects [LU].
+    """
+
+    particles: int
+    rest: float
+    law: DoubleExponential | None
+    cutoff: float
+    table: Table | None
+    closest: float
+    bulk_stiffness: float
+    plane_stiffness: float
+    far: float
+    force_scale: float
+    force_tolerance: float
+    displacement_step: float
+    time_step: float
+    damping: float
+    plate_mass: float
+    plate_damping: float
+    settle_time: float
+    largest_displacement: float
+    estimate: ContactEstimate
+
+
+def interaction_law(scene: Scene) -> DoubleExponential | None:
+    """The scene's law, or None on a rigid plane."""
+    if scene.interaction is None:
+        return None
+    terms = scene.interaction
+    attraction = None if terms.attraction is None else Exponential(terms.attraction.amplitude, terms.attraction.range)
+    return DoubleExponential(Exponential(terms.repulsion.amplitude, terms.repulsion.range), attraction)
+
+
+def settings_for(scene: Scene) -> Settings:
+    """Choose every open number of a scene."""
+    tolerance = scene.accuracy.tolerance
+    bodies = scene.bodies
+    law = interaction_law(scene)
+    plane = _plane_stiffness(scene)
+    bond = bodies.bulk_stiffness if law is not None else 1.0 / (1.0 / bodies.bulk_stiffness - 1.0 / plane)
+    cutoff, rest, closest, table = 0.0, 0.0, 0.0, None
+    if law is None:
+        estimate = plane_estimate(bodies.profile, bodies.spacing, bodies.bulk_stiffness)
+    else:
+        cutoff = _cutoff(scene, law)
+        rest = law.force_free_distance() if law.attraction is not None else cutoff
+        closest = CLOSEST_SHARE * (rest if law.attraction is not None else law.repulsion.range)
+        table = table_for(law, cutoff, closest, TABLE_SHARE * tolerance * float(law.force(0.0)))
+        estimate = particles_estimate(law, bodies.profile, bodies.spacing, bodies.bulk_stiffness, cutoff, rest)
+    largest = _largest_displacement(scene, estimate)
+    particles = bodies.particles if bodies.particles != "auto" else _chain_length(scene, estimate, largest)
+    force_scale = _force_scale(scene, law, largest)
+    motion = _motion(scene, law, closest, plane, estimate, largest, particles)
+    different = scene.horizontal is not None and bodies.tangential_stiffness != bodies.bulk_stiffness
+    return Settings(
+        particles=particles,
+        rest=rest,
+        law=law,
+        cutoff=cutoff,
+        table=table,
+        closest=closest,
+        bulk_stiffness=bond,
+        plane_stiffness=plane,
+        far=FAR_SHARE / tolerance * bodies.spacing if different else 0.0,
+        force_scale=force_scale,
+        force_tolerance=RESIDUAL_SHARE * tolerance * force_scale,
+        displacement_step=_displacement_step(law, estimate, largest),
+        largest_displacement=largest,
+        estimate=estimate,
+        **motion,
+    )
+
+
+def _plane_stiffness(scene: Scene) -> float:
+    """One-sided stiffness of the rigid plane.
+
+    In series with a bond it is exact for a particle on its own (bond and plane 2k each give k). Neighbour springs and
+    thermal motion see the bond alone, so with them the plane is 1/tolerance times stiffer than the chain.
+    """
+    if scene.bodies.lower != "rigid_plane":
+        return 0.0
+    stiffness = scene.bodies.bulk_stiffness
+    if scene.neighbours is None and scene.noise is None:
+        return 2.0 * stiffness
+    neighbours = 0.0 if scene.neighbours is None else scene.neighbours.stiffness
+    return (stiffness + 4.0 * neighbours) / scene.accuracy.tolerance
+
+
+def _cutoff(scene: Scene, law: DoubleExponential) -> float:
+    assert scene.interaction is not None
+    if scene.interaction.cutoff != "auto":
+        return scene.interaction.cutoff
+    return law.cutoff_for(CUTOFF_SHARE * scene.accuracy.tolerance)
+
+
+def _largest_displacement(scene: Scene, estimate: ContactEstimate) -> float:
+    experiment = scene.experiment
+    match experiment.kind:
+        case "load":
+            return estimate.displacement_at(max(experiment.force, 0.0))
+        case "pull_off":
+            return estimate.displacement_at(experiment.preload)
+        case "slide":
+            return estimate.displacement_at(experiment.normal_force)
+        case _:
+            return max(experiment.values())
+
+
+def _chain_length(scene: Scene, estimate: ContactEstimate, largest: float) -> int:
+    """Particles of an automatic chain: up to where the force of a particle is a tenth of the tolerance of the largest."""
+    force = np.abs(estimate.force)
+    strongest = float(np.max(force[estimate.gap > estimate.rest - largest], initial=0.0))
+    felt = force > 0.1 * scene.accuracy.tolerance * strongest
+    reach = float(estimate.gap[felt][-1]) if strongest > 0 and felt.any() else estimate.rest
+    half = CHAIN_MARGIN * estimate.half_width(max(largest, 0.0), reach)
+    return 2 * (math.ceil(half / scene.bodies.spacing) + 2)
+
+
+def _force_scale(scene: Scene, law: DoubleExponential | None, largest: float) -> float:
+    """The largest tension of one pair, or without attraction the force of the deepest particle."""
+    if law is not None and law.attraction is not None:
+        r = law.force_free_distance() + law.longest_range * np.linspace(0.0, 5.0, 2001)
+        return float(-law.force(r).min())
+    return max(largest, 1e-3 * scene.bodies.spacing) * scene.bodies.bulk_stiffness / 2
+
+
+def _displacement_step(law: DoubleExponential | None, estimate: ContactEstimate, largest: float) -> float:
+    """A part of the way to the preload, and never more than a quarter of the range over which the force changes."""
+    step = max(largest, 0.0) / LOADING_STEPS
+    if law is None or law.attraction is None:
+        return step if step > 0 else 0.1 * estimate.spacing
+    limit = 0.25 * law.longest_range
+    return min(step, limit) if step > 0 else limit
+
+
+def _motion(
+    scene: Scene,
+    law: DoubleExponential | None,
+    closest: float,
+    plane: float,
+    estimate: ContactEstimate,
+    largest: float,
+    particles: int,
+) -> dict[str, float]:
+    """Time step, damping, plate mass and settling time from the stiffest and the softest motion of the scene."""
+    bodies = scene.bodies
+    stiffest = max(bodies.bulk_stiffness, bodies.tangential_stiffness) + plane
+    if law is not None:
+        rows = 1.0 + 2.0 * law.repulsion.range / bodies.spacing
+        stiffest += 2.0 * rows * float(law.stiffness(closest))
+    if scene.neighbours is not None:
+        stiffest += 4.0 * scene.neighbours.stiffness
+    product = STILL_STEP if scene.noise is None else min(STILL_STEP, math.sqrt(scene.accuracy.tolerance / NOISE_BIAS))
+    touching = 2.0 * estimate.half_width(max(largest, 0.0), estimate.rest) / bodies.spacing
+    contact = max(touching, 1.0) * estimate.stiffness
+    plate_mass = 0.0
+    if scene.plate is not None:
+        plate_mass = particles * bodies.mass if scene.plate.mass == "auto" else scene.plate.mass
+    moving = plate_mass + particles * bodies.mass
+    critical = 2.0 * math.sqrt(SOFTENING * contact * moving)
+    damping = 0.0
+    if scene.damping is not None:
+        automatic = critical / particles if scene.plate is not None else math.sqrt(bodies.bulk_stiffness * bodies.mass)
+        damping = automatic if scene.damping.coefficient == "auto" else scene.damping.coefficient
+    plate_damping = 0.0
+    if scene.plate is not None:
+        plate_damping = max(0.0, critical - particles * damping) if scene.plate.damping == "auto" else scene.plate.damping
+    slowest = contact / moving if scene.plate is not None else bodies.bulk_stiffness / bodies.mass
+    return {
+        "time_step": product / math.sqrt(stiffest / bodies.mass),
+        "damping": damping,
+        "plate_mass": plate_mass,
+        "plate_damping": plate_damping,
+        "settle_time": 2.0 * math.pi / math.sqrt(slowest),
+    }

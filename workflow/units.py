@@ -1,0 +1,13 @@
+"""The one unit system: length LU (the spacing), force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT."""
+
+LENGTH = "LU"
+FORCE = "FU"
+MASS = "MU"
+TIME = "TU"
+ENERGY = "FU·LU"
+STIFFNESS = "FU/LU"
+LINE_PRESSURE = "FU/LU"
+MEAN_PRESSURE = "FU/LU²"
+DAMPING = "FU·TU/LU"
+VELOCITY = "LU/TU"
+RATIO = "1"

