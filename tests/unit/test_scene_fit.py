@@ -169,14 +169,11 @@ def test_the_law_is_accepted_where_force_changes_sign_once_from_repulsion(
     amplitudes: tuple[float, float], ranges: tuple[float, float]
 ) -> None:
     (A, B), (a, b) = amplitudes, ranges
-    margin = 1e-3  # of finite differences: nearer to the limit the sign of the force is round-off
-    assume(abs(A * b / (B * a) - 1) > margin and abs(b / a - 1) > margin)
+    # Nearer to the limits the sign of the difference is round-off, or the force is smaller than any float.
+    assume(abs(A * b / (B * a) - 1) > 1e-3 and abs(b / a - 1) > 0.05)
     law = {"repulsion": {"amplitude": A, "range": a}, "attraction": {"amplitude": B, "range": b}}
-    far = 60 * max(a, b) * abs(1 / (a / b - 1))
-    near_repels = force(law, 0.0) > 0
-    far_attracts = a < b  # beyond `far`, where the floats are all zero, the longer range decides
-    assert far > 0
-    if near_repels and far_attracts:
+    far = (1 + abs(math.log(A * b / (B * a)))) * a * b / abs(b - a)  # where the longer range outweighs the amplitudes
+    if force(law, 0.0) > 0 > force(law, far):
         assert scene_from_dict(BASE | {"interaction": law}).interaction is not None
     else:
         with pytest.raises(SceneError) as caught:

@@ -32,6 +32,7 @@ class Bench:
         progress: told of phases and steps.
         time_limit: for each contact [s].
         lammps_seconds, steps: summed over all contacts so far.
+        phase, timestep: where the latest contact is or ended.
     """
 
     deck: Deck
@@ -40,6 +41,8 @@ class Bench:
     time_limit: float
     lammps_seconds: float = field(default=0.0, init=False)
     steps: int = field(default=0, init=False)
+    phase: str = field(default="start", init=False)
+    timestep: int = field(default=0, init=False)
 
     @contextmanager
     def contact(self) -> Iterator[Contact]:
@@ -50,6 +53,7 @@ class Bench:
             finally:
                 self.lammps_seconds += session.lammps_seconds
                 self.steps += session.steps
+                self.phase, self.timestep = session.phase, session.timestep
 
 
 def write_system(deck: Deck, folder: Path) -> None:

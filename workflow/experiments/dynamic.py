@@ -7,9 +7,11 @@ from dataclasses import dataclass
 
 from workflow.experiments.contact import Contact, State
 from workflow.experiments.outcome import UntrustedError, require_trust
+from workflow.settings import Settings
 
 CHUNK = 0.25
 """Time between two looks at the contact, over the settling time."""
+FEWEST_STEPS = 20
 MOST_CHUNKS = 2_000
 """Looks at one load after which it counts as never coming to rest."""
 AT_REST = 0.1
@@ -44,9 +46,9 @@ class Held:
         return self.states[-1]
 
 
-def chunk_steps(contact: Contact) -> int:
+def chunk_steps(settings: Settings) -> int:
     """Timesteps between two looks."""
-    return max(20, math.ceil(CHUNK * contact.settings.settle_time / contact.settings.time_step))
+    return max(FEWEST_STEPS, math.ceil(CHUNK * settings.settle_time / settings.time_step))
 
 
 def hold(contact: Contact, load: float, load_scale: float) -> Held:
@@ -60,7 +62,7 @@ def hold(contact: Contact, load: float, load_scale: float) -> Held:
     """
     settings = contact.settings
     near = AT_REST * contact.scene.accuracy.tolerance * load_scale
-    steps, states, largest = chunk_steps(contact), [], 0.0
+    steps, states, largest = chunk_steps(settings), [], 0.0
     stiffness = load_scale / max(settings.largest_displacement, settings.closest, 0.1 * contact.scene.bodies.spacing)
     for count in range(1, MOST_CHUNKS + 1):
         state = contact.row(load, steps)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from analysis.pressure import mean_pressure
+from workflow.deck import Phase
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import State
 from workflow.experiments.outcome import Outcome, Quantity, doubts, radius_of
@@ -40,7 +41,7 @@ def load_quasistatic(bench: Bench) -> Outcome:
 def load_outcome(
     bench: Bench,
     states: tuple[State, ...],
-    phases: tuple,
+    phases: tuple[Phase, ...],
     force_uncertainty: float,
     displacement_uncertainty: float,
 ) -> Outcome:

@@ -82,12 +82,20 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
             f"not converged {at}: a particle is left with a force of {state.residual:.2g} FU, above {limit:.2g} FU. "
             "Loosen [accuracy] tolerance, or take smaller steps"
         )
-    radius = radius_of(scene, state.profile)
-    if radius is not None and radius.reaches_end:
+    if _reaches_end(scene, state.profile):
         raise UntrustedError(
             f"the contact reaches the end of the chain {at}: take more bodies.particles than {settings.particles} "
             '(or "auto"), or a smaller load'
         )
+
+
+def _reaches_end(scene: Scene, profile: Profile) -> bool:
+    """Whether the contact's edge, the largest tension or else the last loaded particle, is a chain's last particle."""
+    pressure = profile.pressure
+    if scene.interaction is not None and scene.interaction.attraction is not None:
+        largest = float(pressure.min())
+        return largest < 0.0 and largest in (pressure[0], pressure[-1])
+    return bool(max(pressure[0], pressure[-1]) > 0.0) and scene.interaction is None
 
 
 def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:

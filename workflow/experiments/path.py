@@ -9,6 +9,8 @@ from workflow.experiments.bench import Bench
 from workflow.experiments.contact import State
 from workflow.experiments.marks import crossing, largest_tension
 from workflow.experiments.outcome import Outcome, Quantity, doubts, radius_of, require_trust
+from workflow.scene import Scene
+from workflow.settings import Settings
 from workflow.units import FORCE, LENGTH
 
 RELAXATIONS = 3.0
@@ -24,12 +26,14 @@ def path(bench: Bench) -> Outcome:
         UntrustedError: see `require_trust`.
     """
     scene, settings = bench.deck.scene, bench.deck.settings
-    phases = schedule(bench)
+    phases = schedule(scene, settings)
     with bench.contact() as contact:
         states = contact.replay(phases)
     for state in states:
         require_trust(scene, settings, state)
-    quantities, warnings = _read_off(bench, [s for s in states if s.phase == phases[-1].name])
+    adhesive = scene.interaction is not None and scene.interaction.attraction is not None
+    branch = [s for s in states if s.phase == phases[-1].name]
+    quantities, warnings = _adhesion(bench, branch) if adhesive else (_largest(bench, states), {})
     last = states[-1].profile
     radius = radius_of(scene, last)
     return Outcome(
@@ -42,9 +46,8 @@ def path(bench: Bench) -> Outcome:
     )
 
 
-def schedule(bench: Bench) -> tuple[Phase, ...]:
+def schedule(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     """One phase for each stretch of rising ("loading") or falling ("unloading") displacement."""
-    scene, settings = bench.deck.scene, bench.deck.settings
     assert scene.experiment.kind == "path"
     dynamic = scene.method == "dynamic"
     rest = (math.ceil(RELAXATIONS * settings.settle_time / settings.time_step),) if dynamic else ()
@@ -66,17 +69,21 @@ def schedule(bench: Bench) -> tuple[Phase, ...]:
     return tuple(phases)
 
 
-def _read_off(bench: Bench, branch: list[State]) -> tuple[dict[str, Quantity], dict[str, str]]:
+def _largest(bench: Bench, states: list[State]) -> dict[str, Quantity]:
+    """Without adhesion: force and radius where the displacement is largest."""
+    deepest = max(states, key=lambda s: s.displacement)
+    quantities = {"largest_force": Quantity(deepest.force, _noise(bench, deepest), FORCE)}
+    radius = radius_of(bench.deck.scene, deepest.profile)
+    if radius is not None:
+        quantities["largest_radius"] = Quantity(radius.value, radius.uncertainty, LENGTH)
+    return quantities
+
+
+def _adhesion(bench: Bench, branch: list[State]) -> tuple[dict[str, Quantity], dict[str, str]]:
     scene = bench.deck.scene
     displacement, force = [s.displacement for s in branch], [s.force for s in branch]
-    quantities, warnings = {}, {}
-    if scene.interaction is None or scene.interaction.attraction is None:
-        deepest = max(branch, key=lambda s: s.displacement)
-        quantities["largest_force"] = Quantity(deepest.force, _noise(bench, deepest), FORCE)
-        radius = radius_of(scene, deepest.profile)
-        if radius is not None:
-            quantities["largest_radius"] = Quantity(radius.value, radius.uncertainty, LENGTH)
-        return quantities, warnings
+    quantities: dict[str, Quantity] = {}
+    warnings: dict[str, str] = {}
     peak = largest_tension(displacement, force)
     if 0 < peak.index < len(branch) - 1 and peak.tension > 0:
         quantities["adhesion_force"] = Quantity(peak.smooth, peak.uncertainty + _noise(bench, branch[peak.index]), FORCE)

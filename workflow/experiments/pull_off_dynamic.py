@@ -18,6 +18,7 @@ from workflow.experiments.contact import Contact, State
 from workflow.experiments.dynamic import LOST, Held, hold
 from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, radius_of, require_trust
 from workflow.fragments import fragment
+from workflow.scene import Scene
 from workflow.units import FORCE, LENGTH
 
 MOST_LEVELS = 60
@@ -95,7 +96,7 @@ def pull_off_dynamic(bench: Bench) -> Outcome:
 
 
 def _search(contact: Contact, preload: float) -> tuple[Held, Search]:
-    guess = _guess(contact)
+    guess = contact.settings.estimate.pull_off_force()
     scale = max(preload, guess)
     contact.begin("loading", "load")
     first = hold(contact, preload, scale)
@@ -118,13 +119,6 @@ def _search(contact: Contact, preload: float) -> tuple[Held, Search]:
         if search.done:
             return first, search
     raise UntrustedError(f"the pull-off force was not bracketed within {MOST_LEVELS} tensions: it is above {search.best:.6g} FU")
-
-
-def _guess(contact: Contact) -> float:
-    """Pull-off force of independent pairs [FU]."""
-    settings = contact.settings
-    places = np.linspace(settings.rest - settings.cutoff, max(settings.largest_displacement, settings.rest), 200)
-    return max(-min(settings.estimate.contact_force(float(d)) for d in places), settings.force_scale)
 
 
 def _schedule(first: Held, search: Search) -> tuple[Phase, ...]:
@@ -168,7 +162,9 @@ def _outcome(bench: Bench, search: Search, phases: tuple[Phase, ...], states: li
     return Outcome(quantities, tuple(states), profiles, values, phases, doubts(scene, settings, (loaded, zero, *held)))
 
 
-def _critical_radius(scene, held: list[State], adhesion: float, last: float) -> tuple[float, float]:
+def _critical_radius(
+    scene: Scene, held: list[State], adhesion: float, last: float
+) -> tuple[float, float]:
     """Radius at the pull-off itself: near it a falls with √(F_A − F), so the last two held states lead there."""
     if len(held) < 2:
         return last, last

@@ -1,6 +1,6 @@
 """The four experiments of a scene: load, path, pull_off, slide.
 
-A prescribed path from d₀ to d₁ in n steps holds d_i = d₀ (1 − i/n) + d₁ i/n for i = 0…n, and back in the same places.
+A prescribed path from d₀ to d₁ in n steps holds d_i = (d₀ (n − i) + d₁ i)/n for i = 0…n, and back in the same places.
 """
 
 from __future__ import annotations
@@ -34,8 +34,9 @@ class Span(Table):
 
     def values(self) -> list[float]:
         """Displacements [LU] in order: steps + 1 on the way there, then `steps` back; the turning point once."""
-        fractions = [i / self.steps for i in range(self.steps + 1)]
-        there = [self.from_ * (1 - t) + self.to * t for t in fractions]
+        n = self.steps
+        between = [(self.from_ * (n - i) + self.to * i) / n for i in range(1, n)]
+        there = [self.from_, *between, self.to]
         return there + there[-2::-1] if self.return_ else there
 
 

@@ -1,0 +1,152 @@
+"""A scene to a finished run folder, and many scenes through an executor."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from workflow.deck import Deck
+from workflow.engine import EngineError
+from workflow.experiments import Bench, Outcome, UntrustedError, perform, planned, write_system
+from workflow.progress import Progress, Silent
+from workflow.report import FILES, curve_of, draw, failure, results, write_results, write_tables, write_whole
+from workflow.scene import Scene, scene_to_toml
+from workflow.settings import settings_for
+
+TIME_LIMIT = 3600.0
+"""Wall time after which LAMMPS is stopped, for each pass of a search [s]."""
+
+
+class FolderError(RuntimeError):
+    """A folder that no run may be written into."""
+
+
+class RunError(RuntimeError):
+    """A run that gave no numbers; results.json in its folder says the same.
+
+    Attributes:
+        folder: the run folder, whose files are kept.
+    """
+
+    def __init__(self, message: str, folder: Path) -> None:
+        """Keep both; they are arguments, so that the error can be pickled."""
+        super().__init__(message, folder)
+        self.message, self.folder = message, folder
+
+    def __str__(self) -> str:
+        """Return the message and where the files are."""
+        return f"{self.message}\nfiles kept in {self.folder}"
+
+
+@dataclass(frozen=True)
+class Run:
+    """A finished run.
+
+    Attributes:
+        folder: with every file of the run.
+        results: what results.json holds.
+        outcome: quantities, states, profiles as Python objects.
+    """
+
+    folder: Path
+    results: dict[str, Any]
+    outcome: Outcome
+
+
+def run(
+    scene: Scene,
+    folder: Path | str,
+    figures: bool = True,
+    progress: Progress | None = None,
+    time_limit: float = TIME_LIMIT,
+) -> Run:
+    """Run a scene in a folder and leave everything there.
+
+    Args:
+        scene: what `read_scene` returns.
+        folder: made if it does not exist; an earlier run in it is replaced.
+        figures: whether to draw.
+        progress: told of phases and steps.
+        time_limit: wall time for LAMMPS [s].
+
+    Raises:
+        FolderError: the folder holds something else.
+        RunError: LAMMPS failed, or the result can't be trusted.
+    """
+    started = time.perf_counter()
+    folder = prepare(Path(folder))
+    deck = _write(scene, folder)
+    bench = Bench(deck, folder, progress or Silent(), time_limit)
+
+    def timing() -> dict[str, float]:
+        total = time.perf_counter() - started
+        return {"total_s": total, "lammps_s": bench.lammps_seconds, "steps": bench.steps}
+
+    try:
+        outcome = perform(bench)
+    except (EngineError, UntrustedError) as error:
+        facts = {"message": getattr(error, "message", str(error)), "phase": bench.phase, "step": bench.timestep}
+        write_results(folder, failure(scene, facts, timing()))
+        raise RunError(str(facts["message"]) + f" [phase {bench.phase}, step {bench.timestep}]", folder) from error
+    write_whole(folder / "in.lammps", deck.text(outcome.phases))
+    (folder / "saved.lammpstrj").unlink(missing_ok=True)
+    curve = curve_of(scene, outcome)
+    write_tables(folder, outcome, curve)
+    if figures:
+        draw(folder, scene, outcome, curve)
+    document = results(scene, outcome, timing())
+    write_results(folder, document)
+    return Run(folder, document, outcome)
+
+
+def write_deck(scene: Scene, folder: Path | str) -> Path:
+    """Write system.data, the table and in.lammps with the planned schedule; nothing runs. Returns the folder."""
+    folder = prepare(Path(folder))
+    _write(scene, folder)
+    return folder
+
+
+def prepare(folder: Path) -> Path:
+    """Make the folder, or clear an earlier run out of it.
+
+    Raises:
+        FolderError: it is a file, or holds files and none of a run.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise FolderError(f"{folder} is a file; a run needs a folder")
+    if folder.is_dir() and any(folder.iterdir()) and not (folder / "in.lammps").exists():
+        raise FolderError(f"{folder} holds files that are not of a run; choose another folder with --out")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name in FILES:
+            (folder / name).unlink(missing_ok=True)
+    except OSError as error:
+        raise FolderError(f"{folder} cannot be written: {error.strerror}") from None
+    return folder.resolve()
+
+
+def _write(scene: Scene, folder: Path) -> Deck:
+    settings = settings_for(scene)
+    deck = Deck(scene, settings)
+    write_whole(folder / "in.lammps", deck.text(planned(scene, settings)))
+    write_whole(folder / "scene.toml", scene_to_toml(scene))
+    write_system(deck, folder)
+    return deck
+
+
+def run_many(scenes: Iterable[tuple[Scene, Path]], executor: Executor) -> Iterator[Run | RunError]:
+    """Run (scene, folder) pairs through an executor; results come in the order given, failures among them."""
+    futures = [executor.submit(_run_quietly, scene, folder) for scene, folder in scenes]
+    for future in futures:
+        yield future.result()
+
+
+def _run_quietly(scene: Scene, folder: Path) -> Run | RunError:
+    try:
+        return run(scene, folder, figures=False)
+    except RunError as error:
+        return error

@@ -1,0 +1,85 @@
+"""Sliding: a normal force, and a cantilever that pulls the plate along x at a steady velocity (Fig. 9 of the paper)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from workflow.deck import Phase
+from workflow.experiments.bench import Bench
+from workflow.experiments.contact import State
+from workflow.experiments.dynamic import hold
+from workflow.experiments.load_dynamic import standard_error
+from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, radius_of, require_trust
+from workflow.scene import Scene
+from workflow.settings import Settings
+from workflow.units import FORCE
+
+ROWS_PER_SPACING = 50
+"""Measured states per spacing of the drive's way."""
+
+
+def slide(bench: Bench) -> Outcome:
+    """Static and mean friction of a scene with `[experiment] kind = "slide"`.
+
+    friction is the force of the cantilever. The static one is its largest value; the mean one is taken over the second
+    half of the way.
+
+    Raises:
+        UntrustedError: see `hold` and `require_trust`; also where the drive never makes the plate slide.
+    """
+    scene, settings = bench.deck.scene, bench.deck.settings
+    experiment = scene.experiment
+    assert experiment.kind == "slide"
+    rows, stride = slide_rows(scene, settings)
+    with bench.contact() as contact:
+        contact.begin("loading", "load")
+        loaded = hold(contact, experiment.normal_force, experiment.normal_force)
+        contact.begin("sliding", "load", ("steps/drive",), expected_steps=rows * stride)
+        states = [contact.row(experiment.normal_force, stride) for _ in range(rows)]
+        contact.write_state()
+        contact.finish()
+    for state in states:
+        require_trust(scene, settings, state)
+    return _outcome(bench, loaded.last, states, contact.phases)
+
+
+def slide_rows(scene: Scene, settings: Settings) -> tuple[int, int]:
+    """(rows, timesteps of each) that bring the drive over the distance of a slide."""
+    experiment, cantilever = scene.experiment, scene.cantilever
+    assert experiment.kind == "slide" and cantilever is not None
+    rows = max(20, math.ceil(ROWS_PER_SPACING * experiment.distance / scene.bodies.spacing))
+    return rows, max(1, round(experiment.distance / cantilever.velocity / settings.time_step / rows))
+
+
+def _outcome(bench: Bench, loaded: State, states: list[State], phases: tuple[Phase, ...]) -> Outcome:
+    scene, settings = bench.deck.scene, bench.deck.settings
+    assert scene.cantilever is not None
+    friction = np.asarray([s.cantilever_force for s in states])
+    time = np.asarray([s.step - loaded.step for s in states]) * settings.time_step
+    steady = friction[len(friction) // 2 :]
+    top = int(np.argmax(friction))
+    if top == len(friction) - 1:
+        raise UntrustedError(
+            "the plate never slid: the cantilever's force still rises at the end; take a longer experiment.distance "
+            "or a stiffer cantilever"
+        )
+    missed = float(np.max(np.abs(np.diff(friction[max(0, top - 1) : top + 1])), initial=0.0))
+    quantities = {
+        "mean_friction": Quantity(float(steady.mean()), standard_error(steady.tolist()), FORCE),
+        "static_friction": Quantity(float(friction[top]), missed, FORCE),
+    }
+    columns = {
+        "time": tuple(time.tolist()),
+        "drive": tuple((scene.cantilever.velocity * time).tolist()),
+        "plate_x": tuple(s.plate_x for s in states),
+        "plate_z": tuple(-s.displacement for s in states),
+        "friction": tuple(friction.tolist()),
+        "normal_force": tuple(s.force for s in states),
+    }
+    last = states[-1]
+    radius = radius_of(scene, last.profile)
+    radii = {"final": math.nan if radius is None else radius.value}
+    warnings = doubts(scene, settings, tuple(states))
+    return Outcome(quantities, (loaded, *states), {"final": last.profile}, radii, phases, warnings, columns)

@@ -1,0 +1,104 @@
+"""Numbers out of a LAMMPS instance: values and per-atom arrays, checked to be finite, copied, sorted by atom id."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+INDEXED = re.compile(r"(?P<kind>[cfv])_(?P<base>\w+)(?:\[(?P<column>\d+)\])?")
+CATEGORIES = {"c": "compute", "f": "fix", "v": "variable"}
+
+# As in `lammps.constants`, which only the worker may import.
+PER_ATOM, ATOM_VARIABLE = 1, 1
+VECTOR, ARRAY, COLUMNS = 1, 2, 5
+
+
+class RefusalError(Exception):
+    """A request that cannot be answered; its text is one sentence for the user."""
+
+
+def read_value(lammps: Any, name: str) -> float:
+    """Return an equal-style variable by its name, or a formula.
+
+    Raises:
+        RefusalError: it is not finite.
+        Exception: LAMMPS cannot evaluate it; quotes the name.
+    """
+    formula = f"v_{name}" if lammps.has_id("variable", name) else name
+    try:
+        number = lammps.eval(formula)
+    except Exception as error:
+        raise _quoting(error, name) from None
+    if number is None or not np.isfinite(number):
+        raise RefusalError(f"the value of {name!r} is {number}, not a finite number")
+    return float(number)
+
+
+def read_atoms(lammps: Any, names: Sequence[str]) -> dict[str, Any]:
+    """Return copies of per-atom arrays by name, with "id" and "type", in the order of the ids.
+
+    Raises:
+        RefusalError: there are no atoms, no such array, or a number in it is not finite.
+        Exception: LAMMPS cannot compute it; quotes the name.
+    """
+    count = lammps.extract_setting("nlocal")
+    if not count:
+        raise RefusalError("atoms were asked for, but there are none")
+    identity = _rows(lammps, "id", count)
+    order = np.argsort(identity)
+    arrays = {"id": identity[order], "type": _rows(lammps, "type", count)[order]}
+    for name in names:
+        arrays[name] = _rows(lammps, name, count)[order]
+        _require_finite(name, arrays[name], arrays["id"])
+    return arrays
+
+
+def require_finite_positions(lammps: Any) -> None:
+    """Refuse to go on with a position that is NaN or infinite: LAMMPS itself runs on with it.
+
+    Raises:
+        RefusalError: there is one.
+    """
+    count = lammps.extract_setting("nlocal")
+    if count:
+        _require_finite("position", _rows(lammps, "x", count), _rows(lammps, "id", count))
+
+
+def _require_finite(name: str, rows: Any, identity: Any) -> None:
+    if not np.isfinite(rows).all():
+        bad = np.sort(identity[~np.isfinite(rows.reshape(len(rows), -1)).all(axis=1)])
+        more = f" (and of {len(bad) - 1} more)" if len(bad) > 1 else ""
+        raise RefusalError(f"the {name} of atom {bad[0]}{more} is not a finite number")
+
+
+def _rows(lammps: Any, name: str, count: int) -> Any:
+    """Return the per-atom array `name`, the first `count` rows, as LAMMPS orders them (a view: copy it)."""
+    match = INDEXED.fullmatch(name)
+    try:
+        data = _styled_rows(lammps, **match.groupdict()) if match else lammps.numpy.extract_atom(name)
+    except Exception as error:
+        raise _quoting(error, name) from None
+    if data is None or len(data) < count or name == "mass":  # LAMMPS lists mass, which is by type, among them
+        raise RefusalError(f"LAMMPS has no per-atom array {name!r}")
+    return data[:count]
+
+
+def _styled_rows(lammps: Any, kind: str, base: str, column: str | None) -> Any:
+    """Return the per-atom data of compute, fix or variable `base`, one column of it if asked, None if unknown."""
+    category = CATEGORIES[kind]
+    if not lammps.has_id(category, base):
+        return None
+    if kind == "v":
+        per_atom = lammps.lib.lammps_extract_variable_datatype(lammps.lmp, base.encode()) == ATOM_VARIABLE
+        return lammps.numpy.extract_variable(base, "all", ATOM_VARIABLE) if per_atom else None
+    columns = getattr(lammps, f"extract_{category}")(base, PER_ATOM, COLUMNS)
+    data = getattr(lammps.numpy, f"extract_{category}")(base, PER_ATOM, ARRAY if columns else VECTOR)
+    return data if column is None else data[:, int(column) - 1]
+
+
+def _quoting(error: Exception, asked: str) -> Exception:
+    """Return the error in the form of LAMMPS's other errors, which quote what failed."""
+    return Exception(f"{error}\nLast input line: {asked}")

