@@ -20,12 +20,16 @@ from multiprocessing import Pipe
 from pathlib import Path
 from typing import Any
 
-HOME = Path(__file__).parents[1]
-BOOT = (
-    "import sys; sys.path.insert(0, sys.argv[1]); from workflow.worker import main; "
-    "del sys.path[0]; main(*map(int, sys.argv[2:]))"
-)
-"""How a worker starts: with our package, whatever the current folder and the user's script are."""
+BOOT = """
+import sys, types
+package = types.ModuleType("workflow")
+package.__path__ = [sys.argv[1]]
+sys.modules["workflow"] = package
+from workflow.worker import main
+main(*map(int, sys.argv[2:]))
+"""
+"""How a worker starts: from our files, whatever the current folder and the user's script are, and from no more of them
+than it needs: the package's `__init__.py` does not run."""
 
 TICK = 0.2
 """Seconds between two looks at the deadline and the progress while a worker is busy."""
@@ -74,7 +78,7 @@ class WorkerProcess:
             file.truncate(16)
             self._board_map = mmap.mmap(file.fileno(), 16)
             numbers = theirs.fileno(), file.fileno(), os.getpid()
-            command = [sys.executable, "-c", BOOT, str(HOME), *map(str, numbers)]
+            command = [sys.executable, "-c", BOOT, str(Path(__file__).parent), *map(str, numbers)]
             self._process = subprocess.Popen(
                 command,
                 pass_fds=(theirs.fileno(), file.fileno()),

@@ -35,7 +35,6 @@ FREES_THE_CLOCK = re.compile(r"\bclear\b")
 LOOP = re.compile(rb"^Loop time of .* for (\d+) steps", re.MULTILINE)
 
 
-
 def mpi_candidates() -> Iterator[str]:
     """Places of the MPI library, the likeliest first: beside the interpreter, in the mpich wheel, the system's."""
     yield str(Path(sys.prefix) / "lib" / MPI_LIBRARY)

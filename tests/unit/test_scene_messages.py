@@ -93,7 +93,7 @@ ONE_LINE_EACH: list[tuple[list[str], str]] = [
     (["interaction.cutoff=-1"], 'interaction.cutoff = -1: must be greater than 0 (LU), or "auto"'),
     (["interaction.cutoff=far"], 'interaction.cutoff = "far": must be a number greater than 0 (LU), or "auto"'),
     ([*PLATE, "plate.mass=0"], 'plate.mass = 0: must be greater than 0 (MU), or "auto"'),
-    ([*PLATE, "plate.damping=-1"], 'plate.damping = -1: must be of at least 0 (FU·TU/LU), or "auto"'),
+    ([*PLATE, "plate.damping=-1"], 'plate.damping = -1: must be at least 0 (FU·TU/LU), or "auto"'),
     ([*PLATE, "damping.coefficient=0"], 'damping.coefficient = 0: must be greater than 0 (FU·TU/LU), or "auto"'),
     ([*PLATE, 'plate.free=["x"]'], 'plate.free = ["x"]: must contain "z"'),
     ([*PLATE, 'plate.free=["z", "z"]'], 'plate.free = ["z", "z"]: must name each direction once'),
@@ -123,7 +123,10 @@ ONE_LINE_EACH: list[tuple[list[str], str]] = [
     ([LISTED, "experiment.displacements=3"], f"experiment.displacements = 3: {DISPLACEMENTS}"),
     ([LISTED, 'experiment.displacements=[0, "a"]'], 'experiment.displacements[1] = "a": must be a number (LU)'),
     ([LISTED, "experiment.displacements=[0, inf]"], "experiment.displacements[1] = inf: must be a finite number (LU)"),
-    ([SPAN, "experiment.displacements.to=0"], None or "experiment.displacements = { from = 0, to = 0, steps = 5 }: "),
+    (
+        [SPAN, "experiment.displacements.to=0"],
+        'experiment.displacements = { from = 0, to = 0, steps = 5 }: "from" and "to" must differ',
+    ),
     ([SPAN, "experiment.displacements.return=no"], 'experiment.displacements.return = "no": must be true or false'),
     (
         [SPAN, "experiment.displacements.steps=0"],
@@ -138,8 +141,8 @@ ONE_LINE_EACH: list[tuple[list[str], str]] = [
     (["bodies.profile={ radius = 3.0 }"], 'bodies.profile.kind: missing; must be "parabola"'),
     (["bodies.profile=parabola"], 'bodies.profile = "parabola": must be a table with kind, radius'),
     (
-        ["bodies.lower=rigid_plan", "experiment={kind='load', force=1}", "interaction={}"],
-        'bodies.lower = "rigid_plan": must be "particles" or "rigid_plane"; did you mean "rigid_plane"?',
+        ["bodies.lower=particle"],
+        'bodies.lower = "particle": must be "particles" or "rigid_plane"; did you mean "particles"?',
     ),
     (["title="], 'set "title=": no value; write table.key=value, for example experiment.method=dynamic'),
     (['title=""'], 'title = "": must be one line of text, not empty'),
@@ -181,8 +184,7 @@ ONE_LINE_EACH: list[tuple[list[str], str]] = [
 
 @pytest.mark.parametrize(("overrides", "line"), ONE_LINE_EACH, ids=[str(line) for _, line in ONE_LINE_EACH])
 def test_one_mistake_is_one_line(overrides: list[str], line: str) -> None:
-    printed = [text for text in lines(*overrides) if text.partition(" ")[0].rstrip(":") != "unused"]
-    assert len([text for text in printed if text.startswith(line)]) == 1
+    assert lines(*overrides) == [line]
 
 
 def test_missing_tables_and_keys() -> None:
@@ -218,7 +220,7 @@ def test_a_misspelt_table_counts_as_the_table_that_was_meant() -> None:
 def test_no_message_shows_the_inside_of_the_program() -> None:
     for overrides, _ in ONE_LINE_EACH:
         printed = "\n".join(lines(*overrides))
-        for word in ("pydantic", "tuple", "literal", "Input should", "union", "discriminat", "function-", "constrained"):
+        for word in ("pydantic", "tuple", "literal", "Input should", "union", "discriminat", "function-"):
             assert word not in printed
 
 
@@ -255,7 +257,7 @@ def test_long_values_are_shortened() -> None:
 
 
 def test_values_are_shown_as_toml() -> None:
-    assert as_toml({"a b": [True, "q\"\\\n\x01"], "c": {}}) == '{ "a b" = [true, "q\\"\\\\\\n\\u0001"], c = {} }'
+    assert as_toml({"a b": [True, 'q"\\\n\x01'], "c": {}}) == '{ "a b" = [true, "q\\"\\\\\\n\\u0001"], c = {} }'
     assert path_of(("a", "b c", 2)) == 'a."b c"[2]'
 
 

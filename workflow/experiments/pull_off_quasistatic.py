@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analysis.radius import ContactRadius
 from workflow.deck import Phase
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import State
@@ -25,14 +26,17 @@ WINDOW_ROWS = 8
 """Rows on either side of the largest tension in a refined pass."""
 ZOOM = 0.25
 """Width of the window of one pass over that of the one before."""
+LATTICE = 1e-3
+"""Part of a spacing below which a radius is not looked at any closer: the interpolation between particles limits it."""
 SHARE = 0.3
 """Part of the tolerance that the schedule may use up."""
 
 
 @dataclass(frozen=True)
 class Pass:
-    """One whole schedule and its measured states."""
+    """One whole schedule and its measured states; `wanted` is the preload F_D [FU]."""
 
+    wanted: float
     phases: tuple[Phase, ...]
     loading: list[State]
     unloading: list[State]
@@ -48,9 +52,19 @@ class Pass:
         return largest_tension([s.displacement for s in self.unloading], [s.force for s in self.unloading])
 
     @property
-    def zero_load(self) -> tuple[int, float]:
-        """Where the force crosses zero while unloading."""
-        return crossing([s.displacement for s in self.unloading], [s.force for s in self.unloading], 0.0)
+    def zero(self) -> State:
+        """The state marked F = 0, in a refined pass."""
+        return self.unloading[len(self.phases[1].rows) - 1]
+
+    @property
+    def critical(self) -> State:
+        """The state marked as the largest tension, in a refined pass."""
+        return self.unloading[len(self.phases[1].rows) + len(self.phases[2].rows) - 1]
+
+    @property
+    def zero_load(self) -> float:
+        """Displacement at which the force crosses zero while unloading [LU]."""
+        return crossing([s.displacement for s in self.unloading], [s.force for s in self.unloading], 0.0)[1]
 
 
 def pull_off_quasistatic(bench: Bench) -> Outcome:
@@ -67,9 +81,9 @@ def pull_off_quasistatic(bench: Bench) -> Outcome:
     window = settings.displacement_step
     for _ in range(MOST_PASSES):
         before = latest
-        latest = _replay(bench, _refined(before, experiment.preload, window))
+        latest = _replay(bench, experiment.preload, _refined(before, experiment.preload, window))
         window *= ZOOM
-        if _agree(before, latest, experiment.preload, tolerance, settings.force_scale):
+        if _agree(bench, before, latest, experiment.preload, tolerance):
             return _outcome(bench, before, latest)
     raise UntrustedError(
         f"the pull-off force still changes from {before.peak.tension:.6g} to {latest.peak.tension:.6g} FU after "
@@ -85,20 +99,20 @@ def _first(bench: Bench, preload: float) -> Pass:
         contact.begin("unloading", "displace")
         unloading = separate(contact, loading[-1].displacement, step)
         contact.finish()
-        return Pass(contact.phases, loading, unloading)
+        return Pass(preload, contact.phases, loading, unloading)
 
 
 def _refined(known: Pass, preload: float, window: float) -> tuple[Phase, ...]:
     """The schedule of the next pass: loading, unloading to F = 0, pulling to the largest tension, separating."""
     climbed = sorted({s.displacement for s in known.loading if s.force < preload and s is not known.loading[-1]})
-    _, deepest = _force_at(known.loading, preload)
+    deepest = _displacement_at(known.loading, preload)
     loading = [d for d in climbed if d < deepest - 1e-9] + [deepest]
-    zero = known.zero_load[1]
-    peak = known.unloading[known.peak.index].displacement
-    fine = peak + window * np.linspace(1.0, -1.0, 2 * WINDOW_ROWS + 1)
+    zero = known.zero_load
+    peak = known.peak.position
+    fine = peak + window * np.linspace(1.0, -1.0, 2 * WINDOW_ROWS)
     fine = fine[fine < zero - 1e-9]
     coarse = [s.displacement for s in known.unloading if not fine[-1] <= s.displacement <= fine[0]]
-    falling = sorted({deepest, zero, *coarse, *fine.tolist()}, reverse=True)
+    falling = sorted({deepest, zero, peak, *coarse, *fine.tolist()}, reverse=True)
     falling = [d for d in falling if d <= deepest]
     parts = {
         "unloading": [d for d in falling if d >= zero],
@@ -111,67 +125,66 @@ def _refined(known: Pass, preload: float, window: float) -> tuple[Phase, ...]:
     return (Phase("loading", "displace", tuple((d,) for d in loading)), *later)
 
 
-def _force_at(states: Sequence[State], force: float) -> tuple[int, float]:
+def _displacement_at(states: Sequence[State], force: float) -> float:
     """Displacement of a force on a rising branch, through its two nearest rows."""
     ordered = sorted(states, key=lambda s: s.displacement)
     near = sorted(ordered, key=lambda s: abs(s.force - force))[:2]
     if len(near) < 2 or near[0].force == near[1].force:
-        return 0, near[0].displacement
+        return near[0].displacement
     part = (force - near[0].force) / (near[1].force - near[0].force)
-    return 0, near[0].displacement + part * (near[1].displacement - near[0].displacement)
+    return near[0].displacement + part * (near[1].displacement - near[0].displacement)
 
 
-def _replay(bench: Bench, phases: tuple[Phase, ...]) -> Pass:
+def _replay(bench: Bench, wanted: float, phases: tuple[Phase, ...]) -> Pass:
     with bench.contact() as contact:
         states = contact.replay(phases)
         for state in states:
             require_trust(contact.scene, contact.settings, state)
     climbed = len(phases[0].rows)
-    return Pass(phases, states[:climbed], states[climbed:])
+    return Pass(wanted, phases, states[:climbed], states[climbed:])
 
 
-def _agree(before: Pass, latest: Pass, preload: float, tolerance: float, scale: float) -> bool:
-    tension = latest.peak.tension
-    critical = sum(len(phase.rows) for phase in latest.phases[1:3]) - 1
+def _agree(bench: Bench, before: Pass, latest: Pass, preload: float, tolerance: float) -> bool:
+    """Whether two passes give the same results, and the latest has its marked states where they belong."""
+    tension, radius = latest.peak.tension, _radius(bench, latest.critical).value
     return (
         abs(tension - before.peak.tension) <= tolerance * tension
         and latest.peak.uncertainty <= tolerance * tension
         and abs(latest.preload - preload) <= tolerance * preload
-        and abs(_zero_state(latest).force) <= tolerance * max(tension, scale)
-        and tension + latest.unloading[critical].force <= tolerance * tension
+        and abs(latest.zero.force) <= tolerance * tension
+        and tension + latest.critical.force <= tolerance * tension
+        and _critical_spread(bench, latest) <= max(tolerance * radius, LATTICE * bench.deck.scene.bodies.spacing)
     )
 
 
-def _zero_state(of: Pass) -> State:
-    return of.unloading[len(of.phases[1].rows) - 1]
+def _critical_spread(bench: Bench, latest: Pass) -> float:
+    """How much a_cr changes from the critical state to where the curve of the same pass has its maximum [LU]."""
+    rows = sorted(latest.unloading, key=lambda s: abs(s.displacement - latest.critical.displacement))
+    near = next(s for s in rows if s.displacement != latest.critical.displacement)
+    distance = abs(latest.peak.position - latest.critical.displacement)
+    change = abs(_radius(bench, near).value - _radius(bench, latest.critical).value)
+    return change * distance / abs(near.displacement - latest.critical.displacement)
 
 
 def _outcome(bench: Bench, before: Pass, latest: Pass) -> Outcome:
     scene, settings = bench.deck.scene, bench.deck.settings
-    zero = _zero_state(latest)
-    critical = latest.unloading[sum(len(phase.rows) for phase in latest.phases[1:3]) - 1]
-    peak = latest.peak
-    residual = abs(critical.residual) * np.sqrt(settings.particles)
-    adhesion = max(abs(peak.tension - before.peak.tension), peak.uncertainty) + _law_share(bench) * peak.tension + residual
+    zero, critical, peak = latest.zero, latest.critical, latest.peak
+    residual = abs(critical.residual) * float(np.sqrt(settings.particles))
+    missed = max(abs(peak.tension - before.peak.tension), peak.uncertainty)
     states = (*latest.loading, *latest.unloading)
-    radii = {"zero_load": _radius(bench, zero, latest), "critical": _radius(bench, critical, latest)}
-    old = radius_of(scene, before.unloading[before.peak.index].profile)
-    assert old is not None
-    spread = abs(old.value - radii["critical"].value)
+    critical_radius, zero_radius = _radius(bench, critical), _radius(bench, zero)
+    slope = abs(zero_radius.value - critical_radius.value) / peak.tension
     quantities = {
-        "adhesion_force": Quantity(peak.tension, float(adhesion), FORCE),
-        "critical_radius": Quantity(radii["critical"].value, radii["critical"].uncertainty + spread, LENGTH),
-        "zero_load_radius": radii["zero_load"],
-        "preload": Quantity(latest.preload, abs(latest.preload - scene.experiment.preload), FORCE),
+        "adhesion_force": Quantity(peak.tension, missed + residual + _law_share(bench) * peak.tension, FORCE),
+        "critical_radius": Quantity(
+            critical_radius.value, critical_radius.uncertainty + _critical_spread(bench, latest), LENGTH
+        ),
+        "zero_load_radius": Quantity(zero_radius.value, zero_radius.uncertainty + slope * abs(zero.force), LENGTH),
+        "preload": Quantity(latest.preload, abs(latest.preload - latest.wanted), FORCE),
     }
-    return Outcome(
-        quantities,
-        states,
-        {"zero_load": zero.profile, "critical": critical.profile},
-        {name: radius.value for name, radius in radii.items()},
-        latest.phases,
-        doubts(scene, settings, states),
-    )
+    profiles = {"zero_load": zero.profile, "critical": critical.profile}
+    radii = {"zero_load": zero_radius.value, "critical": critical_radius.value}
+    return Outcome(quantities, states, profiles, radii, latest.phases, doubts(scene, settings, states))
 
 
 def _law_share(bench: Bench) -> float:
@@ -183,9 +196,8 @@ def _law_share(bench: Bench) -> float:
     return (10.0 * tail + table) / settings.force_scale
 
 
-def _radius(bench: Bench, state: State, latest: Pass) -> Quantity:
-    """Radius of a state, with the part of its uncertainty that the state's distance from its place on the curve makes."""
+def _radius(bench: Bench, state: State) -> ContactRadius:
     radius = radius_of(bench.deck.scene, state.profile)
     if radius is None:
         raise UntrustedError(f"no contact radius at displacement {state.displacement:.4g} LU: no particle is in tension")
-    return Quantity(radius.value, radius.uncertainty, LENGTH)
+    return radius

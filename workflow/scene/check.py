@@ -168,7 +168,7 @@ def _problem(data: dict[str, Any], fault: ErrorDetails) -> Problem:
         return Problem(path, "must have at least one item", shown(given))
     allowed = statement(spot.annotation)
     if kind.startswith(("greater_than", "less_than")):
-        allowed = allowed.removeprefix("a number ")
+        allowed = allowed.removeprefix("a number ").removeprefix("of ")
     if kind == "finite_number":
         allowed = allowed.replace("a number", "a finite number", 1)
     return Problem(path, f"must be {allowed}", shown(given), _hint(spot, given))

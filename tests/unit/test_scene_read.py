@@ -1,0 +1,248 @@
+"""Scene files, changes from outside, and scenes written back as TOML."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from workflow.scene import Load, PullOff, SceneError, read_scene, scene_from_dict, scene_to_toml
+
+EVERYTHING = """
+title = "Pull-off of a curved body, R = 1000"
+
+[bodies]
+particles = 200            # per body, or "auto": as many as the contact needs
+spacing = 1.0              # LU
+profile = { kind = "parabola", radius = 1000.0 }   # upper body
+bulk_stiffness = 0.83      # FU/LU per particle
+bulk_stiffness_tangential = 0.83                   # optional; default: the same
+mass = 1.0                 # MU per particle
+lower = "particles"        # or "rigid_plane"
+
+[interaction]              # effect: V(r) = A exp(-r/a) - B exp(-r/b)
+repulsion  = { amplitude = 0.18, range = 0.13 }
+attraction = { amplitude = 0.09, range = 0.26 }    # absent: no adhesion
+cutoff = "auto"            # or LU
+
+[neighbours]
+stiffness = 0.3            # FU/LU
+
+[horizontal]
+
+[damping]
+coefficient = 0.3          # FU·TU/LU, or "auto"
+
+[noise]
+temperature = 0.01         # FU·LU
+seed = 1
+
+[plate]
+mass = 200.0               # MU, or "auto"
+free = ["z"]               # or ["x", "z"]
+damping = "auto"
+
+[cantilever]
+stiffness = 0.5            # FU/LU
+velocity = 0.01            # LU/TU
+
+[accuracy]
+tolerance = 1e-3
+
+[experiment]
+kind = "pull_off"
+method = "quasistatic"
+preload = 1.0              # FU, F_D
+"""
+"""The example of the contract, word for word but for shorter comments: every table, also those that exclude others."""
+
+TIMED = ("damping", "noise", "plate", "cantilever")
+
+
+def written(folder: Path, text: str | bytes) -> Path:
+    """A file in `folder` with this content."""
+    path = folder / "scene.toml"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return path
+
+
+def failure(folder: Path, text: str | bytes) -> str:
+    """What is printed for a scene file with this content, without the name of the file."""
+    path = written(folder, text)
+    with pytest.raises(SceneError) as caught:
+        read_scene(path)
+    return str(caught.value).replace(str(path), "FILE")
+
+
+def test_the_example_without_what_has_time_in_it(tmp_path: Path) -> None:
+    scene = read_scene(written(tmp_path, EVERYTHING), without=TIMED)
+    assert scene.title == "Pull-off of a curved body, R = 1000"
+    assert scene.effects == ("interaction", "neighbours", "horizontal")
+    assert scene.method == "quasistatic"
+    assert scene.experiment == PullOff(kind="pull_off", preload=1.0, method="quasistatic")
+
+
+def test_the_example_as_a_dynamic_pull_off(tmp_path: Path) -> None:
+    path = written(tmp_path, EVERYTHING)
+    scene = read_scene(path, ["experiment.method=dynamic"], ["noise", "cantilever"])
+    assert scene.effects == ("interaction", "neighbours", "horizontal", "damping", "plate")
+    assert scene.method == "dynamic"
+
+
+def test_the_example_as_a_slide_has_every_effect(tmp_path: Path) -> None:
+    overrides = ["experiment={ kind = 'slide', normal_force = 1, distance = 3 }", "plate.free=['x', 'z']"]
+    assert len(read_scene(written(tmp_path, EVERYTHING), overrides).effects) == 7
+
+
+def test_the_whole_example_contradicts_itself_in_four_places(tmp_path: Path) -> None:
+    with pytest.raises(SceneError) as caught:
+        read_scene(str(written(tmp_path, EVERYTHING)))
+    assert tuple(problem.path for problem in caught.value.problems) == TIMED
+
+
+def test_the_effective_scene_reads_back(tmp_path: Path) -> None:
+    scene = read_scene(written(tmp_path, EVERYTHING), without=TIMED)
+    text = scene_to_toml(scene)
+    assert read_scene(written(tmp_path, text)) == scene
+    assert text.startswith('title = "Pull-off of a curved body, R = 1000"\n\n[bodies]\nparticles = 200\n')
+    assert "\n[horizontal]\n" in text
+    assert scene_to_toml(read_scene(written(tmp_path, text))) == text
+
+
+def test_files_that_are_no_scene(tmp_path: Path) -> None:
+    missing = tmp_path / "no.toml"
+    for path, reason in [(missing, "no such file"), (tmp_path, "is a directory; name the scene file in it")]:
+        with pytest.raises(SceneError) as caught:
+            read_scene(path)
+        assert str(caught.value) == f"{path}: {reason}"
+    with pytest.raises(SceneError, match="cannot be read"):
+        read_scene("a\0b")
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        (b"a = 1\nb = '\xe9'\n", "FILE, line 2: not UTF-8 text; save it as UTF-8"),
+        ("a = 1\na = 2\n", "FILE, line 2, column 6: this key is given twice: a = 2"),
+        ("[a]\n[b]\n[a]\n", "FILE, line 3, column 3: this table is given twice: [a]"),
+        ("a = 0,83\n", "FILE, line 1, column 6: there is something behind the value: a = 0,83; one key = value"),
+        ("kind = load\n", "FILE, line 1, column 8: this is no value: kind = load; text stands in quotes"),
+        ("a = { b = 1,\n c = 2 }\n", "FILE, line 1, column 13: an inline table { … } must be closed on the same line"),
+        ("[bodies\n", "FILE, line 1, column 8: the name of a table is not closed with ]: [bodies"),
+        ("a 1\n", "FILE, line 1, column 3: a key needs = and a value: a 1"),
+        ('a = "b\n', "FILE, line 1, column 7: the text is not closed with a quote"),
+        ("a = [1", "FILE, at its end: a list is not closed"),
+        ("a = " + "9" * 5000, "FILE: a whole number has thousands of digits"),
+        ("a = " + "[" * 50000, "FILE: lists or tables are nested too deeply"),
+    ],
+)
+def test_mistakes_in_the_toml_name_their_line(tmp_path: Path, text: str | bytes, line: str) -> None:
+    printed = failure(tmp_path, text)
+    assert printed.startswith(line)
+    assert "\n" not in printed
+
+
+def test_a_byte_order_mark_and_foreign_line_ends_do_no_harm(tmp_path: Path) -> None:
+    text = EVERYTHING.replace("\n", "\r\n").encode("utf-8-sig")
+    assert read_scene(written(tmp_path, text), without=TIMED).bodies.particles == 200
+
+
+def base(**tables: Any) -> dict[str, Any]:
+    """A small good scene as a dict, with other tables."""
+    bodies = {
+        "particles": "auto",
+        "spacing": 1.0,
+        "profile": {"kind": "parabola", "radius": 10.0},
+        "bulk_stiffness": 1.0,
+    }
+    repulsion = {"amplitude": 1.0, "range": 0.5}
+    scene = {"title": "base", "bodies": bodies, "interaction": {"repulsion": repulsion}}
+    return {**scene, "experiment": {"kind": "load", "force": 1.0}, **tables}
+
+
+def refused(*overrides: str, without: tuple[str, ...] = ()) -> list[str]:
+    """Lines printed for the base scene with these changes."""
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict(base(), overrides, without)
+    return str(caught.value).split("\n")
+
+
+def test_overrides_are_applied_in_order_and_leave_the_data_alone() -> None:
+    data = base()
+    overrides = ["bodies.profile.radius=2000", "bodies.spacing=3", "bodies.spacing = 0.5", "title=free text = good"]
+    scene = scene_from_dict(data, overrides)
+    assert (scene.bodies.profile.radius, scene.bodies.spacing, scene.title) == (2000.0, 0.5, "free text = good")
+    assert data == base()
+
+
+def test_an_override_makes_tables_that_are_absent() -> None:
+    scene = scene_from_dict(base(), ["neighbours.stiffness=0.2", "horizontal={}", "accuracy.tolerance=1e-4"])
+    assert scene.effects == ("interaction", "neighbours", "horizontal")
+    assert scene.accuracy.tolerance == 1e-4
+
+
+def test_an_override_value_is_toml_or_else_text() -> None:
+    overrides = ["experiment.method=quasistatic", "title='quoted'"]
+    scene = scene_from_dict(base(), overrides)
+    assert (scene.experiment.method if isinstance(scene.experiment, Load) else None, scene.title) == (
+        "quasistatic",
+        "quoted",
+    )
+    assert refused("bodies.spacing=1\nmass=2")[0].startswith('bodies.spacing = "1\\nmass=2": must be a number')
+
+
+def test_one_override_needs_no_list() -> None:
+    assert scene_from_dict(base(), "title=one").title == "one"
+    assert scene_from_dict(base(neighbours={"stiffness": 1.0}), without="neighbours").neighbours is None
+
+
+FORM = "write table.key=value, for example experiment.method=dynamic"
+
+
+@pytest.mark.parametrize(
+    ("override", "line"),
+    [
+        ("bodies.spacing", f'set "bodies.spacing": no value; {FORM}'),
+        ("bodies.spacing= ", f'set "bodies.spacing= ": no value; {FORM}'),
+        ("=3", f'set "=3": not a path of keys; {FORM}'),
+        ("bodies..spacing=3", f'set "bodies..spacing=3": not a path of keys; {FORM}'),
+        ("a b=3", f'set "a b=3": not a path of keys; {FORM}'),
+        ("title.x=3", 'set "title.x=3": title is not a table; set it as a whole'),
+        ("bodies.spacing.x.y=3", 'set "bodies.spacing.x.y=3": bodies.spacing is not a table; set it as a whole'),
+    ],
+)
+def test_overrides_that_say_nothing(override: str, line: str) -> None:
+    assert refused(override) == [line]
+
+
+def test_a_misspelt_override_is_found_like_a_misspelt_key() -> None:
+    assert refused("bodis.spacing=2")[0].startswith('bodis: unknown table; did you mean "bodies"?')
+    assert refused("bodies.spacign=2")[0].startswith('bodies.spacign: unknown key; did you mean "spacing"?')
+
+
+def test_only_effects_that_are_there_can_be_removed() -> None:
+    effects = "effects: interaction, neighbours, horizontal, damping, noise, plate, cantilever"
+    assert refused(without=("noise", "nosie", "bodies")) == [
+        "without noise: the scene has no such table; effects there: interaction",
+        f'without nosie: not an effect that can be removed; did you mean "noise"? {effects}',
+        f"without bodies: not an effect that can be removed; {effects}",
+    ]
+
+
+def test_problems_of_changes_and_of_the_scene_come_together() -> None:
+    assert [line.partition(":")[0] for line in refused("bodies.mass=0", "experiment.force=0", "title.x=1")] == [
+        'set "title.x=1"',
+        "bodies.mass = 0",
+        "experiment.force = 0",
+    ]
+
+
+def test_what_is_not_a_table_of_tables() -> None:
+    with pytest.raises(SceneError, match="scene: must be a table of tables"):
+        scene_from_dict([1])  # type: ignore[arg-type]
+
+
+def test_a_scene_can_be_changed_as_data() -> None:
+    scene = scene_from_dict(base())
+    assert scene_from_dict(scene) == scene
+    assert scene_from_dict(scene.model_dump(by_alias=True)) == scene
+    assert scene_from_dict(scene, ["bodies.mass=2"]).bodies.mass == 2.0
