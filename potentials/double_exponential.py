@@ -87,7 +87,7 @@ class DoubleExponential:
         return math.log(ratio) / (1.0 / self.repulsion.range - 1.0 / self.attraction.range)
 
     def cutoff_for(self, share: float) -> float:
-        """Distance [LU] beyond which the force stays below `share` of the longest term's force at r₀ (at 0 without attraction).
+        """Distance [LU] beyond which the force stays below `share` of the longest term's at r₀ (without attraction: at 0).
 
         The far force falls as exp(−r/b), so the cutoff is r₀ + b ln(1/share).
         """

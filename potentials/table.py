@@ -61,7 +61,7 @@ class Table:
     def grid(self) -> Array:
         """r_L² [LU²] of every entry, shape (points,)."""
         first = self.plane_offset**2 - INNER_CELLS * self.cell
-        return first + self.cell * np.arange(self.points)
+        return np.asarray(first + self.cell * np.arange(self.points), dtype=np.float64)
 
     def entries(self) -> tuple[Array, Array, Array]:
         """(r_L [LU], energy [FU·LU], F_table [FU]), each of shape (points,)."""
@@ -72,7 +72,10 @@ class Table:
         return distance, energy, self.law.force(r) * distance / r
 
     def force(self, r: Array) -> Array:
-        """The force in the plane [FU] that LAMMPS makes of this table at distances r ≤ r_c [LU]: a cubic spline of F_table/r_L over r_L²."""
+        """The force in the plane [FU] that LAMMPS makes of this table at distances r ≤ r_c [LU].
+
+        It interpolates F_table/r_L by a cubic spline over r_L².
+        """
         distance, _, force = self.entries()
         spline = CubicSpline(self.grid(), force / distance)
         return np.asarray(spline(r**2 + self.plane_offset**2) * r)

@@ -1,10 +1,10 @@
 """From a scene file to a finished run folder.
 
-    from workflow import atoms, read_scene, run
+from workflow import atoms, read_scene, run
 
-    finished = run(read_scene("lammps_inputs/scenes/pull_off.toml"), "runs/pull_off")
-    finished.results["adhesion_force"]          # {"value": …, "uncertainty": …, "unit": "FU"}
-    atoms("runs/pull_off")                      # the last state as ase.Atoms
+finished = run(read_scene("lammps_inputs/scenes/pull_off.toml"), "runs/pull_off")
+finished.results["adhesion_force"]          # {"value": …, "uncertainty": …, "unit": "FU"}
+atoms("runs/pull_off")                      # the last state as ase.Atoms
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from analysis.atoms import atoms
+
     from workflow.campaign import Run, RunError, run, run_many, write_deck
     from workflow.scene import Scene, SceneError, read_scene, scene_from_dict
 

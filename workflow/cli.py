@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
@@ -158,7 +157,7 @@ def _folder(scene: Path, out: Path | None) -> Path:
     return out if out is not None else Path("runs") / scene.stem
 
 
-def _stop(message: str, code: int) -> typer.Exit:
+def _stop(message: str, code: int) -> NoReturn:
     typer.secho(message, err=True, fg="red")
     raise typer.Exit(code)
 
@@ -169,4 +168,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

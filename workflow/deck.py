@@ -13,7 +13,7 @@ from functools import cached_property
 
 from workflow.effects import Contribution, Stage, contributions
 from workflow.effects.base import number
-from workflow.fragments import DeckError, Fragment, fragment, used_variables
+from workflow.fragments import DeckError, Fragment, fragment
 from workflow.scene import Scene
 from workflow.settings import Settings
 
@@ -126,9 +126,7 @@ class Deck:
 
     def _loop(self, phase: Phase) -> str:
         columns = STEP_COLUMNS[phase.step]
-        lists = "".join(
-            _index(name, [row[i] for row in phase.rows]) for i, name in enumerate(columns)
-        )
+        lists = "".join(_index(name, [row[i] for row in phase.rows]) for i, name in enumerate(columns))
         return (
             f"# phase {phase.name}: {len(phase.rows)} rows\n{self.begin(phase.name, phase.begin)}{lists}"
             f"label           {phase.name}\n{self.row(phase.step)}{self.row_end}"
@@ -148,11 +146,14 @@ class Deck:
         needed_later = {name for step in steps for name in fragment(step).needs}
         if needed - set(defined):
             raise DeckError(f"used but not defined: {', '.join(sorted(needed - set(defined)))}")
-        if set(given) - needed - needed_later:
-            raise DeckError(f"defined but not used: {', '.join(sorted(set(given) - needed - needed_later))}")
+        unused = set(given) - needed - needed_later
+        if unused:
+            raise DeckError(f"defined but not used: {', '.join(sorted(unused))}")
 
     def _bodies(self) -> Contribution:
-        coefficient = min(self.settings.bulk_stiffness, self._tangential) if self.settings.far else self.settings.bulk_stiffness
+        coefficient = (
+            min(self.settings.bulk_stiffness, self._tangential) if self.settings.far else self.settings.bulk_stiffness
+        )
         return Contribution("bodies", Stage.BODIES, ("bodies",), {"bulk_bond_coefficient": number(coefficient / 2)})
 
     @property

@@ -1,6 +1,6 @@
 """Is this installation whole? One check per thing that a run needs, each with what to do if it is not there.
 
-    checks() ──▶ [Check(name, ok, detail, advice), …]
+checks() ──▶ [Check(name, ok, detail, advice), …]
 """
 
 from __future__ import annotations

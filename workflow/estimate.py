@@ -94,7 +94,7 @@ class ContactEstimate:
 
 
 def row_force(law: DoubleExponential, r: Array, spacing: float, cutoff: float) -> Array:
-    """Force [FU] of a straight row of opposite particles on one that stands opposite, at distances r [LU], shape (n,)."""
+    """Force [FU] of a straight row of opposite particles on the one facing it, at distances r [LU], shape (n,)."""
     reach = int(cutoff / spacing)
     offsets = spacing * np.arange(-reach, reach + 1)
     distance = np.hypot(r[:, None], offsets[None, :])

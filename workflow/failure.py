@@ -1,6 +1,6 @@
 """A failed run in one sentence: LAMMPS's own words without their wrapping, the command, the phase, the step.
 
-    "ERROR on proc 0: … (src/run.cpp:1)\nLast input line: run 9" ──▶ "LAMMPS stopped: …, at: run 9"
+"ERROR on proc 0: … (src/run.cpp:1)\nLast input line: run 9" ──▶ "LAMMPS stopped: …, at: run 9"
 """
 
 from __future__ import annotations

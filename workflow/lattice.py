@@ -42,7 +42,7 @@ class Body:
 
 def places(count: int, spacing: float) -> Array:
     """x_i = (i − (N−1)/2)·spacing [LU], shape (count,)."""
-    return (np.arange(count) - 0.5 * (count - 1)) * spacing
+    return np.asarray((np.arange(count) - 0.5 * (count - 1)) * spacing, dtype=np.float64)
 
 
 def neighbour_forces(particles: Array, stiffness: float) -> Array:

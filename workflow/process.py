@@ -1,6 +1,6 @@
 """The parent's end of a worker: start it, ask it, notice its death, keep it for the next session.
 
-    ask(request, deadline) ──▶ worker ──▶ answer, or `WorkerLostError` with the cause in one sentence
+ask(request, deadline) ──▶ worker ──▶ answer, or `WorkerLostError` with the cause in one sentence
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Who hears how far a run is: a bar on a terminal, a few plain lines elsewhere, or nobody.
 
-    phase(name, expected_steps) ──▶ advance(steps) … ──▶ close()
+phase(name, expected_steps) ──▶ advance(steps) … ──▶ close()
 """
 
 from __future__ import annotations

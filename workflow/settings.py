@@ -16,9 +16,9 @@ from workflow.estimate import ContactEstimate, particles_estimate, plane_estimat
 from workflow.scene import Scene
 
 CUTOFF_SHARE = 1e-3
-"""Force at an automatic cutoff over the law's own, per unit of tolerance: the tail left out is ten times that at most."""
+"""Force at an automatic cutoff over the law's own, per unit of tolerance; the tail left out is some ten times that."""
 TABLE_SHARE = 0.1
-"""Table error over the law's force at r = 0, per unit of tolerance, at the closest distance that a result may have."""
+"""Table error over the law's force at r = 0, per unit of tolerance, at the closest distance that is looked after."""
 CLOSEST_SHARE = 0.2
 """That distance over the force-free one (with attraction) or over the repulsion's range (without)."""
 RESIDUAL_SHARE = 1e-3
@@ -166,7 +166,7 @@ def _largest_displacement(scene: Scene, estimate: ContactEstimate) -> float:
 
 
 def _chain_length(scene: Scene, estimate: ContactEstimate, largest: float) -> int:
-    """Particles of an automatic chain: up to where the force of a particle is a tenth of the tolerance of the largest."""
+    """Particles of an automatic chain: out to where a particle's force is a tenth of the tolerance of the largest."""
     force = np.abs(estimate.force)
     strongest = float(np.max(force[estimate.gap > estimate.rest - largest], initial=0.0))
     felt = force > 0.1 * scene.accuracy.tolerance * strongest
@@ -223,7 +223,8 @@ def _motion(
         damping = automatic if scene.damping.coefficient == "auto" else scene.damping.coefficient
     plate_damping = 0.0
     if scene.plate is not None:
-        plate_damping = max(0.0, critical - particles * damping) if scene.plate.damping == "auto" else scene.plate.damping
+        given = scene.plate.damping
+        plate_damping = max(0.0, critical - particles * damping) if given == "auto" else given
     slowest = contact / moving if scene.plate is not None else bodies.bulk_stiffness / bodies.mass
     return {
         "time_step": product / math.sqrt(stiffest / bodies.mass),

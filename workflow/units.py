@@ -1,4 +1,4 @@
-"""The one unit system: length LU (the spacing), force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT."""
+"""The one unit system: length LU, force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT in FU·LU."""
 
 LENGTH = "LU"
 FORCE = "FU"

@@ -175,6 +175,7 @@ class Runner:
             log.seek(mark)
             return sum(int(steps) for steps in LOOP.findall(log.read()))
 
+
 def answer(runner: Runner, verb: str, arguments: tuple[Any, ...]) -> tuple[Any, ...]:
     """Run one request and return (outcome, payload, timestep, steps, wall, cpu); outcome: done, refused, lammps."""
     outcome = "done"

@@ -1,4 +1,4 @@
-"""Effects: each is a scene table, a fragment of LAMMPS text and a row of the cost table; an absent table adds nothing."""
+"""Effects: each is a scene table, a fragment of LAMMPS text, a row of the cost table; an absent one adds nothing."""
 
 from collections.abc import Callable
 

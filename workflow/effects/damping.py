@@ -9,6 +9,4 @@ def damping(scene: Scene, settings: Settings) -> Contribution:
     """With noise in the scene the Langevin thermostat does the damping, and this effect has no line of its own."""
     if scene.noise is not None:
         return Contribution("damping", Stage.DRAG, ())
-    return Contribution(
-        "damping", Stage.DRAG, ("damping",), {"damping_coefficient": number(settings.damping)}
-    )
+    return Contribution("damping", Stage.DRAG, ("damping",), {"damping_coefficient": number(settings.damping)})

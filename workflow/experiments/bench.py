@@ -8,13 +8,13 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from potentials.table import write_table
 from workflow.datafile import assemble, write_data
 from workflow.deck import Deck
 from workflow.engine import Engine
 from workflow.experiments.contact import Contact
 from workflow.lattice import bodies
 from workflow.progress import Progress
-from potentials.table import write_table
 
 SIDE_MARGIN = 20.0
 """Free space beside the chains over the spacing, beyond what a slide needs."""
@@ -45,8 +45,10 @@ class Bench:
     timestep: int = field(default=0, init=False)
 
     @contextmanager
-    def contact(self) -> Iterator[Contact]:
-        """A fresh contact at displacement 0, in a LAMMPS instance of its own."""
+    def contact(self, purpose: str = "") -> Iterator[Contact]:
+        """A fresh contact at displacement 0, in a LAMMPS instance of its own; `purpose` is told to the user."""
+        if purpose:
+            self.progress.note(purpose)
         with Engine.session(self.folder, time_limit=self.time_limit, progress=self.progress) as session:
             try:
                 yield Contact(self.deck, session)
@@ -67,6 +69,10 @@ def write_system(deck: Deck, folder: Path) -> None:
         side += scene.experiment.distance
     head = HEAD_MARGIN * max(scene.bodies.spacing, settings.cutoff) + 2 * abs(settings.largest_displacement)
     margin = (math.ceil(side), math.ceil(head))
-    write_data(assemble(both, scene.neighbours is not None, scene.bodies.mass, mass, margin), scene.title, folder / "system.data")
+    write_data(
+        assemble(both, scene.neighbours is not None, scene.bodies.mass, mass, margin),
+        scene.title,
+        folder / "system.data",
+    )
     if settings.table is not None:
         write_table(settings.table, settings.closest, folder / "interaction.table")

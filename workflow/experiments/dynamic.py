@@ -1,4 +1,4 @@
-"""Force control in time, the paper's way: hold a load until plate and particles are at rest, or until the bodies part."""
+"""Force control in time, the paper's way: hold a load until all is at rest, or until the bodies part."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FEWEST_STEPS = 20
 MOST_CHUNKS = 2_000
 """Looks at one load after which it counts as never coming to rest."""
 AT_REST = 0.1
-"""Unbalanced part of the load, and load that the plate would still travel through, over the load scale and tolerance."""
+"""Unbalanced load, and load that the plate would still travel through, over the load scale and the tolerance."""
 LOST = 0.7
 """Tension over the largest one under this load at which a plate that moves off counts as lost."""
 RESTLESS = 1e-3
@@ -76,8 +76,8 @@ def hold(contact: Contact, load: float, load_scale: float) -> Held:
         if _lost(contact, state, largest):
             return Held(load, tuple(states), False, count * steps, unbalance)
     raise UntrustedError(
-        f"the contact did not come to rest under {load:.4g} FU within {MOST_CHUNKS * steps} timesteps (phase {state.phase}): "
-        f"{unbalance:.2g} FU are unbalanced. More [damping] or [plate] damping settles it sooner"
+        f"the contact did not come to rest under {load:.4g} FU within {MOST_CHUNKS * steps} timesteps "
+        f"(phase {state.phase}): {unbalance:.2g} FU are unbalanced. More [damping] or [plate] damping settles it sooner"
     )
 
 

@@ -43,7 +43,9 @@ def load_dynamic(bench: Bench) -> Outcome:
         contact.write_state()
         contact.finish()
     settings = bench.deck.settings
-    stiffness = max(settings.estimate.stiffness, abs(last.load) / max(abs(last.last.displacement), settings.closest, 1e-12))
+    stiffness = max(
+        settings.estimate.stiffness, abs(last.load) / max(abs(last.last.displacement), settings.closest, 1e-12)
+    )
     return load_outcome(bench, tuple(states), contact.phases, last.unbalance, last.unbalance / stiffness)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 from workflow.deck import Phase
 from workflow.experiments.bench import Bench
@@ -53,7 +54,7 @@ def schedule(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     rest = (math.ceil(RELAXATIONS * settings.settle_time / settings.time_step),) if dynamic else ()
     values = scene.experiment.values()
     stretches: list[tuple[str, list[float]]] = [("loading", [values[0]])]
-    for before, value in zip(values, values[1:], strict=False):
+    for before, value in pairwise(values):
         branch = "loading" if value > before else "unloading"
         if stretches[-1][0] != branch:
             stretches.append((branch, []))
@@ -86,7 +87,9 @@ def _adhesion(bench: Bench, branch: list[State]) -> tuple[dict[str, Quantity], d
     warnings: dict[str, str] = {}
     peak = largest_tension(displacement, force)
     if 0 < peak.index < len(branch) - 1 and peak.tension > 0:
-        quantities["adhesion_force"] = Quantity(peak.smooth, peak.uncertainty + _noise(bench, branch[peak.index]), FORCE)
+        quantities["adhesion_force"] = Quantity(
+            peak.smooth, peak.uncertainty + _noise(bench, branch[peak.index]), FORCE
+        )
         radius = radius_of(scene, branch[peak.index].profile)
         if radius is not None:
             step = abs(displacement[peak.index - 1] - displacement[peak.index])
@@ -96,7 +99,7 @@ def _adhesion(bench: Bench, branch: list[State]) -> tuple[dict[str, Quantity], d
     else:
         warnings["no_peak"] = (
             "the largest tension lies at an end of the last branch, so the path gives no adhesion_force: "
-            "go further back, or use kind = \"pull_off\""
+            'go further back, or use kind = "pull_off"'
         )
     zero = _zero_load(bench, branch, displacement, force)
     if zero is None:

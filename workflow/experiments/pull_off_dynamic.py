@@ -84,13 +84,13 @@ def pull_off_dynamic(bench: Bench) -> Outcome:
     Raises:
         UntrustedError: see `hold`; also where the schedule does not repeat what the search found.
     """
-    scene, settings = bench.deck.scene, bench.deck.settings
+    scene = bench.deck.scene
     assert scene.experiment.kind == "pull_off"
     preload = scene.experiment.preload
-    with bench.contact() as contact:
+    with bench.contact("looking for the pull-off force") as contact:
         first, search = _search(contact, preload)
     phases = _schedule(first, search)
-    with bench.contact() as contact:
+    with bench.contact("the tensions that were found, from the start") as contact:
         states = contact.replay(phases)
     return _outcome(bench, search, phases, states)
 
@@ -118,7 +118,9 @@ def _search(contact: Contact, preload: float) -> tuple[Held, Search]:
             contact.run_fragment(fragment("steps/restore").commands)
         if search.done:
             return first, search
-    raise UntrustedError(f"the pull-off force was not bracketed within {MOST_LEVELS} tensions: it is above {search.best:.6g} FU")
+    raise UntrustedError(
+        f"the pull-off force was not bracketed within {MOST_LEVELS} tensions: it is above {search.best:.6g} FU"
+    )
 
 
 def _schedule(first: Held, search: Search) -> tuple[Phase, ...]:
@@ -142,7 +144,9 @@ def _outcome(bench: Bench, search: Search, phases: tuple[Phase, ...], states: li
         require_trust(scene, settings, state)
     critical = held[-1]
     if -lost.force > LOST * search.broken or abs(critical.force + search.best) > 1e-2 * search.best:
-        raise UntrustedError("run from the start, the schedule of the search does not break the contact where the search did")
+        raise UntrustedError(
+            "run from the start, the schedule of the search does not break the contact where the search did"
+        )
     adhesion = 0.5 * (search.best + search.broken)
     half = 0.5 * (search.broken - search.best) + abs(critical.force + search.best)
     radii = {name: radius_of(scene, state.profile) for name, state in (("zero_load", zero), ("critical", critical))}
@@ -162,9 +166,7 @@ def _outcome(bench: Bench, search: Search, phases: tuple[Phase, ...], states: li
     return Outcome(quantities, tuple(states), profiles, values, phases, doubts(scene, settings, (loaded, zero, *held)))
 
 
-def _critical_radius(
-    scene: Scene, held: list[State], adhesion: float, last: float
-) -> tuple[float, float]:
+def _critical_radius(scene: Scene, held: list[State], adhesion: float, last: float) -> tuple[float, float]:
     """Radius at the pull-off itself: near it a falls with √(F_A − F), so the last two held states lead there."""
     if len(held) < 2:
         return last, last

@@ -93,7 +93,7 @@ def pull_off_quasistatic(bench: Bench) -> Outcome:
 
 def _first(bench: Bench, preload: float) -> Pass:
     step = bench.deck.settings.displacement_step
-    with bench.contact() as contact:
+    with bench.contact("looking for the path") as contact:
         contact.begin("loading", "displace")
         loading = approach(contact, preload, 0.0, step)
         contact.begin("unloading", "displace")
@@ -136,7 +136,7 @@ def _displacement_at(states: Sequence[State], force: float) -> float:
 
 
 def _replay(bench: Bench, wanted: float, phases: tuple[Phase, ...]) -> Pass:
-    with bench.contact() as contact:
+    with bench.contact("the whole path again, finer at the largest tension") as contact:
         states = contact.replay(phases)
         for state in states:
             require_trust(contact.scene, contact.settings, state)
@@ -199,5 +199,7 @@ def _law_share(bench: Bench) -> float:
 def _radius(bench: Bench, state: State) -> ContactRadius:
     radius = radius_of(bench.deck.scene, state.profile)
     if radius is None:
-        raise UntrustedError(f"no contact radius at displacement {state.displacement:.4g} LU: no particle is in tension")
+        raise UntrustedError(
+            f"no contact radius at displacement {state.displacement:.4g} LU: no particle is in tension"
+        )
     return radius

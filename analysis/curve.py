@@ -1,0 +1,99 @@
+"""Tables of a run: curve.csv, profile.csv, friction.csv; written whole or not at all, read back to the same doubles."""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import numpy as np
+
+from analysis.pressure import Profile
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Measured states in the order in which they were passed; sequences of equal length.
+
+    displacement [LU], force [FU], compression positive; contact_radius [LU], NaN where there is none;
+    smallest_distance between particles of opposite bodies [LU]; branch: "loading" or "unloading".
+    """
+
+    displacement: Sequence[float]
+    force: Sequence[float]
+    contact_radius: Sequence[float]
+    smallest_distance: Sequence[float]
+    branch: Sequence[str]
+
+    def __post_init__(self) -> None:
+        lengths = {len(getattr(self, field.name)) for field in fields(self)}
+        if len(lengths) != 1:
+            raise ValueError(f"the columns of a curve must be equally long, got lengths {sorted(lengths)}")
+
+
+PROFILE_COLUMNS = ("x", "z_lower", "z_upper", "pressure", "shear")
+
+
+def write_columns(path: Path, columns: Mapping[str, Iterable[float | str]]) -> None:
+    """Write a CSV file with a header; numbers with 17 digits, NaN as an empty cell."""
+    part = path.with_name(path.name + ".part")
+    with part.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows(map(_cells, zip(*columns.values(), strict=True)))
+    os.replace(part, path)
+
+
+def write_curve(path: Path, curve: Curve) -> None:
+    """Write curve.csv."""
+    write_columns(path, {field.name: getattr(curve, field.name) for field in fields(curve)})
+
+
+def read_curve(path: Path) -> Curve:
+    """Read curve.csv.
+
+    Raises:
+        ValueError: if a column is missing or a cell is no number.
+    """
+    columns = _read(path, [field.name for field in fields(Curve)])
+    numbers = {name: [_number(cell) for cell in cells] for name, cells in columns.items() if name != "branch"}
+    return Curve(**numbers, branch=columns["branch"])
+
+
+def write_profiles(path: Path, profiles: Mapping[str, Profile]) -> None:
+    """Write profile.csv: the profiles below each other, the state's name in the last column."""
+    columns: dict[str, list[float | str]] = {name: [] for name in (*PROFILE_COLUMNS, "state")}
+    for state, profile in profiles.items():
+        for name in PROFILE_COLUMNS:
+            columns[name] += getattr(profile, name).tolist()
+        columns["state"] += [state] * len(profile.x)
+    write_columns(path, columns)
+
+
+def read_profiles(path: Path) -> dict[str, Profile]:
+    """Read profile.csv: profiles by the names of their states."""
+    columns = _read(path, [*PROFILE_COLUMNS, "state"])
+    states = list(dict.fromkeys(columns["state"]))
+    chosen = np.asarray(columns["state"])
+    arrays = {name: np.asarray([_number(cell) for cell in columns[name]]) for name in PROFILE_COLUMNS}
+    return {state: Profile(*(arrays[name][chosen == state] for name in PROFILE_COLUMNS)) for state in states}
+
+
+def _cells(row: Iterable[float | str]) -> list[str]:
+    return [cell if isinstance(cell, str) else "" if math.isnan(cell) else f"{cell:.17g}" for cell in row]
+
+
+def _number(cell: str) -> float:
+    return math.nan if cell == "" else float(cell)
+
+
+def _read(path: Path, names: Sequence[str]) -> dict[str, list[str]]:
+    with path.open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    missing = [name for name in names if rows and name not in rows[0]]
+    if missing or not rows:
+        raise ValueError(f"{path}: {'no rows' if not rows else 'no column ' + ', '.join(missing)}")
+    return {name: [row[name] for row in rows] for name in names}
