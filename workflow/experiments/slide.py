@@ -18,13 +18,16 @@ from workflow.units import FORCE
 
 ROWS_PER_SPACING = 50
 """Measured states per spacing of the drive's way."""
+SLIDING = 1.0
+"""Way of the plate over the spacing from which on it slides: one period of the other body."""
 
 
 def slide(bench: Bench) -> Outcome:
     """Static and mean friction of a scene with `[experiment] kind = "slide"`.
 
-    friction is the force of the cantilever. The static one is its largest value; the mean one is taken over the second
-    half of the way.
+    friction is the force of the lower body on the upper one against the sliding. The cantilever's force has the drag of
+    [damping] and of the plate on top of it, which belongs to the bath and not to the contact; friction.csv holds both.
+    The static friction is the largest value; the mean one is taken over the second half of the way.
 
     Raises:
         UntrustedError: see `hold` and `require_trust`; also where the drive never makes the plate slide.
@@ -56,14 +59,14 @@ def slide_rows(scene: Scene, settings: Settings) -> tuple[int, int]:
 def _outcome(bench: Bench, loaded: State, states: list[State], phases: tuple[Phase, ...]) -> Outcome:
     scene, settings = bench.deck.scene, bench.deck.settings
     assert scene.cantilever is not None
-    friction = np.asarray([s.cantilever_force for s in states])
+    friction = np.asarray([-scene.bodies.spacing * float(s.profile.shear.sum()) for s in states])
     time = np.asarray([s.step - loaded.step for s in states]) * settings.time_step
     steady = friction[len(friction) // 2 :]
     top = int(np.argmax(friction))
-    if top == len(friction) - 1:
+    if states[-1].plate_x < SLIDING * scene.bodies.spacing:
         raise UntrustedError(
-            "the plate never slid: the cantilever's force still rises at the end; take a longer experiment.distance "
-            "or a stiffer cantilever"
+            f"the plate moved by {states[-1].plate_x:.3g} LU only, which is no sliding yet: take a longer "
+            "experiment.distance or a stiffer cantilever"
         )
     missed = float(np.max(np.abs(np.diff(friction[max(0, top - 1) : top + 1])), initial=0.0))
     quantities = {
@@ -77,6 +80,7 @@ def _outcome(bench: Bench, loaded: State, states: list[State], phases: tuple[Pha
         "plate_z": tuple(-s.displacement for s in states),
         "friction": tuple(friction.tolist()),
         "normal_force": tuple(s.force for s in states),
+        "cantilever_force": tuple(s.cantilever_force for s in states),
     }
     last = states[-1]
     radius = radius_of(scene, last.profile)

@@ -18,6 +18,7 @@ EXCLUDED = {
     "load": {"cantilever": "only a slide is pulled through a spring"},
     "path": {
         "plate": "a path prescribes the plate's place, so the plate has no motion of its own",
+        "noise": "a path reads its curve off single states, and noise would be part of every one of them",
         "cantilever": "only a slide is pulled through a spring",
     },
     "pull_off": {
@@ -32,7 +33,7 @@ NEEDED = {
     "load": ("damping", "plate"),
     "path": ("damping",),
     "pull_off": ("damping", "plate"),
-    "slide": ("damping", "plate", "cantilever"),
+    "slide": ("horizontal", "damping", "plate", "cantilever"),
 }
 """Effects that a dynamic experiment cannot do without."""
 
@@ -43,6 +44,7 @@ ADD = {
     "damping": '[damping] with coefficient = "auto"',
     "plate": '[plate] with mass = "auto"',
     "cantilever": "[cantilever] with stiffness and velocity",
+    "horizontal": "[horizontal], an empty table: without it particles cannot follow a plate along x",
 }
 """How to add a table that is missing."""
 
@@ -164,10 +166,12 @@ def _missing(name: str, needed_by: str) -> Problem:
 
 
 def _plate_can_slide(draft: Draft) -> Iterator[Problem]:
-    """A slide moves the plate along x."""
+    """A slide moves the plate along x, and particles follow it along x only where they are free to."""
     free = draft.get("plate", "free", default=Plate.model_fields["free"].default)
     if draft.kind == "slide" and draft.has("plate") and free is not None and "x" not in free:
         yield Problem("plate.free", 'must contain "x" in a slide', shown(free), 'write free = ["x", "z"]')
+    if draft.kind != "slide" and draft.has("plate") and "x" in (free or ()) and not draft.has("horizontal"):
+        yield _missing("horizontal", 'plate.free with "x"')
 
 
 def _something_holds(draft: Draft) -> Iterator[Problem]:
