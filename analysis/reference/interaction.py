@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-RAMP_FRACTION = 0.1
+RAMP_FRACTION = 0.01
 """Width of the ramp at a cutoff over (force at the cutoff) / (softest spring)."""
 
 
@@ -153,11 +153,11 @@ class PairInteraction:
         )
 
     def with_ramp(self, stiffness: float) -> PairInteraction:
-        """Return the law with a ramp as narrow as a tenth of f(cutoff)/stiffness; unchanged with attraction.
+        """Return the law with a ramp as narrow as a hundredth of f(cutoff)/stiffness; unchanged with attraction.
 
         Args:
             stiffness: of the springs that hold the particles [FU/LU]. The ramp then moves no particle by more than a
-                tenth of what the force at the cutoff does, which a sensible cutoff makes negligible itself.
+                hundredth of what the force at the cutoff does, which a sensible cutoff makes negligible itself.
         """
         if self.attraction is not None or self.ramp is not None:
             return self

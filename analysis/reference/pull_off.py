@@ -30,6 +30,8 @@ DIVISIONS = 8
 """Sub-steps per round of refinement."""
 FORCE_SPREAD = 1e-9
 """A maximum is located when both neighbours on the path agree with it to this share."""
+CLOSEST = 1e-6
+"""Least distance of a trial from the ends of a bracket, over its width."""
 SMALLEST_STEP = 1e-10
 """Refinement ends here at a fold, where the force jumps beside its maximum [LU]."""
 
@@ -179,7 +181,7 @@ def _crossing(solver: ChainSolver, states: list[State], force: float) -> State:
     near_excess, far_excess = excess[last - 1], excess[last]
     while abs(near.displacement - far.displacement) > SMALLEST_STEP:
         share = near_excess / (near_excess - far_excess) if near_excess != far_excess else 0.5
-        share = min(max(share, 0.01), 0.99)
+        share = min(max(share, CLOSEST), 1.0 - CLOSEST)
         middle = solver.equilibrium(near.displacement + share * (far.displacement - near.displacement), near)
         value = middle.force - force
         if abs(value) <= tolerance:

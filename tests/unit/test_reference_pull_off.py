@@ -1,4 +1,4 @@
-"""The reference's pull-off against the closed form of independent pairs, and against a search by roots under snapping."""
+"""The reference's pull-off against the closed form of independent pairs, and by roots under snapping."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def test_curves_run_from_the_preload_to_separation() -> None:
 
 def test_one_pair_holds_the_largest_tension_of_its_law() -> None:
     for k in (0.83, 0.05):  # without and with a snap
-        model = ChainModel(3, k, PAPERLIKE, heights=np.array([50.0, 0.0, 50.0]))
+        model = ChainModel(3, k, PAPERLIKE, heights=np.array([50.0, 0.0, 50.0]), spacing=12.0)
         strongest = -float(PAPERLIKE.force(np.array(PAPERLIKE.extremum_distance(1))))
         assert pull_off(model, 0.02).adhesion_force == pytest.approx(strongest, rel=SEARCH)
 
@@ -89,11 +89,10 @@ def _held_by_roots(law: PairInteraction, k: float, gaps: np.ndarray) -> float:
 
 
 def test_snapping_pairs_by_root_finding() -> None:
-    k = 0.3
+    k = 0.2
     law = PairInteraction(Exponential(0.18 / 75.0, 0.008), Exponential(0.09 / 75.0, 0.016))
     model = ChainModel(61, k, law, radius=1500.0)
     result = pull_off(model, preload=0.01, step=2e-4)
-    assert np.all(np.abs(model.places()[result.loading.contact_radius[-1] < np.abs(model.places())]) > 0.0)
     around = np.linspace(-3e-3, 3e-3, 2001) + result.critical.displacement
     forces = [_held_by_roots(law, k, model.undeformed_gap(d)) for d in around]
     assert result.adhesion_force >= -min(forces) * (1.0 - FOLD)
@@ -102,7 +101,7 @@ def test_snapping_pairs_by_root_finding() -> None:
 
 
 def test_parabola_is_found_exactly_and_shape_errors_are_refused() -> None:
-    x = np.arange(21) - 10.0
+    x = np.linspace(-10.0, 10.0, 21)
     pressure = np.minimum((x - 4.3) ** 2, (x + 4.1) ** 2) - 2.0
     assert tension_radius(x, pressure) == pytest.approx(4.2, abs=1e-13)
     assert np.isnan(tension_radius(x, np.ones(21)))

@@ -31,6 +31,7 @@ DAMPING = "damping.coefficient=0.3"
 NOISE = "noise={ temperature = 0.01, seed = 1 }"
 PLATE = "plate={}"
 PLATE_XZ = 'plate.free=["x", "z"]'
+HORIZONTAL = "horizontal={}"
 CANTILEVER = "cantilever={ stiffness = 0.5, velocity = 0.01 }"
 REPULSION_ONLY = "interaction={ repulsion = { amplitude = 0.18, range = 0.13 } }"
 DYNAMIC = "experiment.method=dynamic"
@@ -55,17 +56,17 @@ GOOD = [
     [LOAD, REPULSION_ONLY],
     [LOAD, PLATE, DAMPING],
     [LOAD, PLATE, DAMPING, NOISE],
-    [LOAD, PLATE_XZ, DAMPING],
-    [LOAD, PLATE_XZ, DAMPING, "horizontal={}", DYNAMIC],
+    [LOAD, PLATE_XZ, DAMPING, HORIZONTAL],
+    [LOAD, PLATE_XZ, DAMPING, HORIZONTAL, DYNAMIC],
     [PATH],
     [PATH, REPULSION_ONLY],
     [PATH, DAMPING],
-    [PATH, DAMPING, NOISE],
-    [PATH, "horizontal={}", "neighbours.stiffness=0.3"],
+    [PATH, HORIZONTAL, "neighbours.stiffness=0.3"],
     [PLATE, DAMPING],
-    [SLIDE, PLATE_XZ, DAMPING, CANTILEVER],
-    [SLIDE, PLATE_XZ, DAMPING, CANTILEVER, NOISE, "horizontal={}"],
-    [SLIDE, PLATE_XZ, DAMPING, CANTILEVER, REPULSION_ONLY],
+    [PLATE_XZ, DAMPING, HORIZONTAL],
+    [SLIDE, PLATE_XZ, DAMPING, CANTILEVER, HORIZONTAL],
+    [SLIDE, PLATE_XZ, DAMPING, CANTILEVER, HORIZONTAL, NOISE],
+    [SLIDE, PLATE_XZ, DAMPING, CANTILEVER, HORIZONTAL, REPULSION_ONLY],
     ["interaction.cutoff=0.4"],
 ]
 
@@ -84,9 +85,9 @@ def test_scenes_that_fit_on_a_rigid_plane(overrides: list[str]) -> None:
 # Overrides; the problems they make, by path: words that the message (with its hint) must have.
 BAD: list[tuple[list[str], dict[str, str]]] = [
     ([LOAD, PLANE], {"interaction": "not with bodies.lower"}),
-    ([LOAD, PLANE, "horizontal={}"], {"interaction": "remove it", "horizontal": "useless on a rigid plane"}),
+    ([LOAD, PLANE, HORIZONTAL], {"interaction": "remove it", "horizontal": "useless on a rigid plane"}),
     ([PLANE], {"bodies.lower": "cannot hold"}),
-    ([PLANE, SLIDE, PLATE_XZ, DAMPING, CANTILEVER], {"bodies.lower": "cannot drag"}),
+    ([PLANE, SLIDE, PLATE_XZ, DAMPING, CANTILEVER, HORIZONTAL], {"bodies.lower": "cannot drag"}),
     ([REPULSION_ONLY], {"interaction.attraction": "needed by a pull_off"}),
     ([NOISE, DAMPING, PLATE], {"noise": "waiting time"}),
     ([CANTILEVER], {"cantilever": 'use kind = "slide"'}),
@@ -95,7 +96,10 @@ BAD: list[tuple[list[str], dict[str, str]]] = [
     ([PATH, PLATE], {"plate": "prescribes the plate's place"}),
     ([PATH, PLATE, DYNAMIC], {"plate": "prescribes the plate's place", "damping": "a dynamic path"}),
     ([PATH, DYNAMIC], {"damping": "a dynamic path"}),
-    ([PATH, NOISE], {"damping": "made dynamic by [noise]"}),
+    ([PATH, NOISE], {"noise": "reads its curve off single states"}),
+    ([PATH, DAMPING, NOISE], {"noise": 'use kind = "load"'}),
+    ([PATH, DYNAMIC, NOISE], {"noise": "not in a path", "damping": "a dynamic path"}),
+    ([LOAD, NOISE], {"damping": "made dynamic by [noise]", "plate": "made dynamic by [noise]"}),
     ([DYNAMIC], {"damping": "a dynamic pull_off", "plate": 'add [plate] with mass = "auto"'}),
     ([DAMPING], {"plate": "a dynamic pull_off, made dynamic by [damping]"}),
     ([LOAD, PLATE], {"damping": "a dynamic load, made dynamic by [plate]"}),
@@ -107,10 +111,13 @@ BAD: list[tuple[list[str], dict[str, str]]] = [
         [LOAD, QUASISTATIC, DAMPING, NOISE, PLATE, CANTILEVER],
         {"damping": "no time", "noise": "no time", "plate": "no time", "cantilever": "only a slide"},
     ),
-    ([SLIDE], {"damping": "a slide", "plate": "a slide", "cantilever": "a slide"}),
-    ([SLIDE, PLATE, DAMPING, CANTILEVER], {"plate.free": 'must contain "x"'}),
-    ([SLIDE, 'plate.free=["z"]', DAMPING, CANTILEVER], {"plate.free": 'must contain "x"'}),
-    ([SLIDE, PLATE_XZ, DAMPING, CANTILEVER, "experiment.method=quasistatic"], {"experiment.method": "always dynamic"}),
+    ([SLIDE], {"horizontal": "a slide", "damping": "a slide", "plate": "a slide", "cantilever": "a slide"}),
+    ([SLIDE, PLATE_XZ, DAMPING, CANTILEVER], {"horizontal": "needed by a slide; add [horizontal], an empty table"}),
+    ([LOAD, PLATE_XZ, DAMPING], {"horizontal": 'needed by plate.free with "x"; write plate.free = ["z"], or add'}),
+    ([PLATE_XZ, DAMPING], {"horizontal": "particles cannot follow a plate along x"}),
+    ([SLIDE, PLATE, DAMPING, CANTILEVER, HORIZONTAL], {"plate.free": 'must contain "x"'}),
+    ([SLIDE, 'plate.free=["z"]', DAMPING, CANTILEVER, HORIZONTAL], {"plate.free": 'must contain "x"'}),
+    ([SLIDE, PLATE_XZ, DAMPING, CANTILEVER, HORIZONTAL, QUASISTATIC], {"experiment.method": "always dynamic"}),
     ([LOAD, REPULSION_ONLY, "experiment.force=0"], {"experiment.force": "greater than 0 (FU) without attraction"}),
     ([LOAD, REPULSION_ONLY, "experiment.force=-1"], {"experiment.force": "needs interaction.attraction"}),
     (["interaction.attraction.range=0.13"], {"interaction.attraction.range": "greater than the range of the repul"}),

@@ -39,6 +39,7 @@ PLATE = ["plate={}", "damping.coefficient=0.3"]
 SLIDE = [
     'experiment={ kind = "slide", normal_force = 1.0, distance = 5.0 }',
     'plate.free=["x", "z"]',
+    "horizontal={}",
     "damping.coefficient=0.3",
     "cantilever={ stiffness = 0.5, velocity = 0.01 }",
     "noise={ temperature = 0.01, seed = 1 }",

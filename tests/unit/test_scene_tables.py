@@ -32,6 +32,7 @@ DYNAMIC = ["damping.coefficient=auto", "plate={}"]
 SLIDE = [
     *DYNAMIC,
     'plate.free=["z", "x"]',
+    "horizontal={}",
     "cantilever={ stiffness = 0.5, velocity = 0.01 }",
     'experiment={ kind = "slide", normal_force = 1.0, distance = 5.0 }',
 ]
@@ -107,7 +108,7 @@ def test_parabola_has_the_height_of_its_formula() -> None:
 
 
 def test_effects_come_in_deck_order() -> None:
-    names = ["neighbours.stiffness=0.3", "horizontal={}", "noise={ temperature = 0.01, seed = 1 }"]
+    names = ["neighbours.stiffness=0.3", "noise={ temperature = 0.01, seed = 1 }"]
     assert scene_from_dict(BASE, [*names[::-1], *SLIDE]).effects == EFFECTS
     assert scene_from_dict(BASE).effects == ("interaction",)
     plane = scene_from_dict(BASE, ["bodies.lower=rigid_plane", 'experiment={kind="load", force=1}'], ["interaction"])

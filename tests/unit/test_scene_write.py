@@ -43,7 +43,8 @@ all_bodies = st.fixed_dictionaries(
     },
     optional={"bulk_stiffness_tangential": sizes, "mass": sizes},
 )
-always = {"neighbours": st.fixed_dictionaries({"stiffness": sizes}), "horizontal": st.just({})}
+neighbours = {"neighbours": st.fixed_dictionaries({"stiffness": sizes})}
+horizontal = {"horizontal": st.just({})}
 in_time = {
     "damping": st.fixed_dictionaries({"coefficient": auto | sizes}),
     "plate": st.fixed_dictionaries(
@@ -54,14 +55,16 @@ in_time = {
 noises = st.fixed_dictionaries({"temperature": sizes, "seed": st.integers(1, 2**31 - 1)})
 displacements = spans | st.lists(numbers, min_size=1, max_size=20)
 still = st.fixed_dictionaries(
-    {"experiment": st.fixed_dictionaries({"kind": st.just("path"), "displacements": displacements})}, optional=always
+    {"experiment": st.fixed_dictionaries({"kind": st.just("path"), "displacements": displacements})},
+    optional=neighbours | horizontal,
 )
 moving = st.fixed_dictionaries(
     {
         "experiment": st.fixed_dictionaries({"kind": st.just("slide"), "normal_force": sizes, "distance": sizes}),
+        **horizontal,
         **in_time,
     },
-    optional={**always, "noise": noises, "accuracy": st.fixed_dictionaries({"tolerance": st.floats(1e-7, 0.1)})},
+    optional={**neighbours, "noise": noises, "accuracy": st.fixed_dictionaries({"tolerance": st.floats(1e-7, 0.1)})},
 )
 
 

@@ -8,7 +8,7 @@ from analysis.pressure import mean_pressure
 from workflow.deck import Phase
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import State
-from workflow.experiments.outcome import Outcome, Quantity, doubts, radius_of
+from workflow.experiments.outcome import Outcome, Quantity, doubts, law_share, radius_of
 from workflow.experiments.quasistatic import approach
 from workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
@@ -35,6 +35,7 @@ def load_quasistatic(bench: Bench) -> Outcome:
     final = states[-1]
     stiffness = _stiffness(states)
     unbalance = abs(final.force - force) + final.residual * math.sqrt(settings.particles)
+    unbalance += law_share(scene, settings) * abs(final.force)
     return load_outcome(bench, tuple(states), contact.phases, unbalance, unbalance / stiffness)
 
 

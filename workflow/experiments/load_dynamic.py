@@ -13,7 +13,7 @@ from workflow.experiments.bench import Bench
 from workflow.experiments.contact import Contact, State
 from workflow.experiments.dynamic import Held, chunk_steps, hold
 from workflow.experiments.load import load_outcome
-from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, radius_of, require_trust
+from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, law_share, radius_of, require_trust
 from workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
 SETTLING = 40
@@ -46,7 +46,8 @@ def load_dynamic(bench: Bench) -> Outcome:
     stiffness = max(
         settings.estimate.stiffness, abs(last.load) / max(abs(last.last.displacement), settings.closest, 1e-12)
     )
-    return load_outcome(bench, tuple(states), contact.phases, last.unbalance, last.unbalance / stiffness)
+    error = last.unbalance + law_share(scene, settings) * abs(load)
+    return load_outcome(bench, tuple(states), contact.phases, error, error / stiffness)
 
 
 def _settled(bench: Bench, contact: Contact, load: float) -> tuple[list[State], Held]:

@@ -51,6 +51,8 @@ class Outcome:
 
 END_SHARE_LIMIT = 1.0
 """Pressure at a chain's end over the largest one, per unit of tolerance, from which on the chain cuts the contact."""
+TAIL = 10.0
+"""Force of the tail beyond the cutoff, summed over particles, over the force at the cutoff times a particle's share."""
 RESIDUAL_LIMIT = 0.1
 """Largest residual force of a particle over the force scale, per unit of tolerance, for a converged state."""
 
@@ -87,6 +89,15 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
             f"the contact reaches the end of the chain {at}: take more bodies.particles than {settings.particles} "
             '(or "auto"), or a smaller load'
         )
+
+
+def law_share(scene: Scene, settings: Settings) -> float:
+    """Relative error of a force that table and cutoff, or a plane that is not quite rigid, may cause."""
+    if settings.table is None or settings.law is None:
+        neighbours = 0.0 if scene.neighbours is None else scene.neighbours.stiffness
+        return 4.0 * neighbours / settings.plane_stiffness
+    tail = TAIL * abs(float(settings.law.force(settings.cutoff)))
+    return (tail + settings.table.error_beyond(0.5 * settings.rest)) / settings.force_scale
 
 
 def _reaches_end(scene: Scene, profile: Profile) -> bool:

@@ -17,7 +17,7 @@ from workflow.deck import Phase
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import State
 from workflow.experiments.marks import Peak, crossing, largest_tension
-from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, radius_of, require_trust
+from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, law_share, radius_of, require_trust
 from workflow.experiments.quasistatic import approach, separate
 from workflow.units import FORCE, LENGTH
 
@@ -175,7 +175,7 @@ def _outcome(bench: Bench, before: Pass, latest: Pass) -> Outcome:
     critical_radius, zero_radius = _radius(bench, critical), _radius(bench, zero)
     slope = abs(zero_radius.value - critical_radius.value) / peak.tension
     quantities = {
-        "adhesion_force": Quantity(peak.tension, missed + residual + _law_share(bench) * peak.tension, FORCE),
+        "adhesion_force": Quantity(peak.tension, missed + residual + law_share(scene, settings) * peak.tension, FORCE),
         "critical_radius": Quantity(
             critical_radius.value, critical_radius.uncertainty + _critical_spread(bench, latest), LENGTH
         ),
@@ -185,15 +185,6 @@ def _outcome(bench: Bench, before: Pass, latest: Pass) -> Outcome:
     profiles = {"zero_load": zero.profile, "critical": critical.profile}
     radii = {"zero_load": zero_radius.value, "critical": critical_radius.value}
     return Outcome(quantities, states, profiles, radii, latest.phases, doubts(scene, settings, states))
-
-
-def _law_share(bench: Bench) -> float:
-    """Relative error of the force that table and cutoff may cause."""
-    settings = bench.deck.settings
-    assert settings.table is not None and settings.law is not None
-    tail = abs(float(settings.law.force(settings.cutoff)))
-    table = settings.table.error_beyond(0.5 * settings.rest)
-    return (10.0 * tail + table) / settings.force_scale
 
 
 def _radius(bench: Bench, state: State) -> ContactRadius:

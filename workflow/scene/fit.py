@@ -171,7 +171,8 @@ def _plate_can_slide(draft: Draft) -> Iterator[Problem]:
     if draft.kind == "slide" and draft.has("plate") and free is not None and "x" not in free:
         yield Problem("plate.free", 'must contain "x" in a slide', shown(free), 'write free = ["x", "z"]')
     if draft.kind != "slide" and draft.has("plate") and "x" in (free or ()) and not draft.has("horizontal"):
-        yield _missing("horizontal", 'plate.free with "x"')
+        hint = f'write plate.free = ["z"], or add {ADD["horizontal"]}'
+        yield Problem("horizontal", 'missing, needed by plate.free with "x"', hint=hint)
 
 
 def _something_holds(draft: Draft) -> Iterator[Problem]:

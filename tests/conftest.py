@@ -1,0 +1,69 @@
+"""Fixtures that several test files share: small scenes, and LAMMPS sessions in a folder of the test's own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from workflow.deck import Deck
+from workflow.engine import Engine, Session
+from workflow.experiments import write_system
+from workflow.scene import Scene, scene_from_dict
+from workflow.settings import settings_for
+
+SMALL: dict[str, Any] = {
+    "title": "small",
+    "bodies": {
+        "particles": 20,
+        "spacing": 1.0,
+        "profile": {"kind": "parabola", "radius": 100.0},
+        "bulk_stiffness": 0.83,
+    },
+    "interaction": {
+        "repulsion": {"amplitude": 0.18, "range": 0.13},
+        "attraction": {"amplitude": 0.09, "range": 0.26},
+    },
+    "accuracy": {"tolerance": 1e-2},
+    "experiment": {"kind": "path", "displacements": [0.0, 0.05]},
+}
+
+MakeScene = Callable[..., Scene]
+OpenDeck = Callable[[Scene], tuple[Deck, Session]]
+
+
+@pytest.fixture
+def make_scene() -> MakeScene:
+    """`make_scene(table={…})`: SMALL with these tables; keys of bodies are added to its own, None removes a table."""
+
+    def make(**tables: Any) -> Scene:
+        bodies = SMALL["bodies"] | tables.pop("bodies", {})
+        return scene_from_dict(SMALL | {"bodies": bodies} | tables)
+
+    return make
+
+
+@pytest.fixture
+def session(tmp_path: Path) -> Iterator[Session]:
+    """An empty LAMMPS in `tmp_path`."""
+    with Engine.session(tmp_path) as opened:
+        yield opened
+
+
+@pytest.fixture
+def open_deck(tmp_path_factory: pytest.TempPathFactory) -> Iterator[OpenDeck]:
+    """`deck, session = open_deck(scene)`: system.data and table written, the deck's head run, in a folder of its own."""
+    with ExitStack() as stack:
+
+        def opened(scene: Scene) -> tuple[Deck, Session]:
+            folder = tmp_path_factory.mktemp("deck")
+            deck = Deck(scene, settings_for(scene))
+            write_system(deck, folder)
+            session = stack.enter_context(Engine.session(folder))
+            session.execute(deck.head, phase="setting up")
+            return deck, session
+
+        yield opened
