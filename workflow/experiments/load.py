@@ -34,7 +34,7 @@ def load_quasistatic(bench: Bench) -> Outcome:
         contact.finish()
     final = states[-1]
     stiffness = _stiffness(states)
-    unbalance = abs(final.force - force) + final.residual * math.sqrt(settings.particles)
+    unbalance = abs(final.force - force) + final.residual * settings.particles
     unbalance += law_share(scene, settings) * abs(final.force)
     return load_outcome(bench, tuple(states), contact.phases, unbalance, unbalance / stiffness)
 

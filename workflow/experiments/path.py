@@ -127,4 +127,4 @@ def _zero_load(bench: Bench, branch: list[State], displacement: list[float], for
 def _noise(bench: Bench, state: State) -> float:
     """What residual forces on the particles may add up to, and the error of the law [FU]."""
     scene, settings = bench.deck.scene, bench.deck.settings
-    return state.residual * math.sqrt(settings.particles) + law_share(scene, settings) * abs(state.force)
+    return state.residual * settings.particles + law_share(scene, settings) * abs(state.force)

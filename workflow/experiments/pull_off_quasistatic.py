@@ -169,7 +169,7 @@ def _critical_spread(bench: Bench, latest: Pass) -> float:
 def _outcome(bench: Bench, before: Pass, latest: Pass) -> Outcome:
     scene, settings = bench.deck.scene, bench.deck.settings
     zero, critical, peak = latest.zero, latest.critical, latest.peak
-    residual = abs(critical.residual) * float(np.sqrt(settings.particles))
+    residual = critical.residual * settings.particles
     missed = max(abs(peak.tension - before.peak.tension), peak.uncertainty)
     states = (*latest.loading, *latest.unloading)
     critical_radius, zero_radius = _radius(bench, critical), _radius(bench, zero)

@@ -1,0 +1,189 @@
+"""Figures of a run, drawn as the paper's: pressure profile (Fig. 4), force over displacement and over radius (Fig. 8).
+
+References in them: JKR, F̃ = 4ã³ − 4ã^{3/2} (Eq. 8); Barquins' cylinder, F̃ = 2.1165 (ã² − √ã). Both are scaled on the
+run's own F_A and a₀, so that only the shapes are compared. Each drawing function returns its figure; `plot_…` also saves it.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.curve import Curve
+from analysis.pressure import Profile
+from analysis.reference.jkr import jkr_reduced_force
+from analysis.reference.line_adhesion import barquins_reduced_force
+from analysis.reference.winkler import winkler_force
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+COMPRESSION, TENSION, LOADING, UNLOADING, THEORY = "#0072B2", "#D55E00", "#56B4E9", "#0072B2", "#555555"
+"""Okabe and Ito's colours, which the colour-blind can tell apart."""
+SIZE = (6.4, 4.2)
+DPI = 120
+CARRIES = 0.01
+"""Pressure over the largest one that a figure still shows."""
+
+
+def pressure_figure(profiles: Mapping[str, Profile], radii: Mapping[str, float]) -> Figure:
+    """Pressure over x of each state, one panel below the other, with ±a marked (the paper's Fig. 4)."""
+    figure = _figure((SIZE[0], 1.0 + 2.3 * len(profiles)))
+    axes = figure.subplots(len(profiles), 1, sharex=True, squeeze=False)[:, 0]
+    half = max(_half_width(profile) for profile in profiles.values())
+    for axis, (name, profile) in zip(axes, profiles.items(), strict=True):
+        view = np.abs(profile.x) <= half
+        x, pressure = profile.x[view], profile.pressure[view]
+        width = 0.8 * float(np.median(np.diff(profile.x)))
+        axis.bar(x, pressure, width, color=np.where(pressure >= 0.0, Array = NDArray[np.float64]
+COMPRESSION, TENSION), linewidth=0)
+        axis.axhline(0.0, color="black", linewidth=0.8)
+        axis.set_ylabel("pressure (FU/LU)")
+        axis.set_title(f"{name.replace('_', ' ')} state{_mark_radius(axis, radii.get(name, math.nan))}", loc="left")
+        axis.set_ylim(min(1.15 * float(pressure.min()), 0.0), max(1.15 * float(pressure.max()), 0.0) or 1e-12)
+    axes[0].set_xlim(-half, half)
+    axes[-1].set_xlabel("x (LU)")
+    return figure
+
+
+def jkr_curve(adhesion_force: float, zero_load_radius: float, radius: float) -> tuple[Array, Array]:
+    """Displacement [LU] and force [FU] of JKR with this F_A [FU], a₀ and R [LU], up to the radius 1.3 a₀.
+
+    d/d₀ = 3ã² − 2√ã and F/F_A = 4ã³ − 4ã^{3/2}, ã = a/a₀. In the model's own radii d₀ = a₀²/6R: a₀ is twice the radius
+    of the two spheres that it stands for, and their effective radius is R/2 (Section 2 of the paper).
+    """
+    a = np.linspace(0.05, 1.3, 400)
+    return zero_load_radius**2 / (6 * radius) * (3 * a**2 - 2 * np.sqrt(a)), adhesion_force * jkr_reduced_force(a)
+
+
+def hertz_curve(largest: float, radius: float, layer_stiffness: float) -> tuple[Array, Array]:
+    """Displacement [LU] up to `largest` and force [FU] of Hertz, F = (4√2/3) c_n √R d^{3/2}, c_n [FU/LU²]."""
+    displacement = np.linspace(0.0, largest, 200)
+    return displacement, winkler_force(displacement, radius, layer_stiffness)
+
+
+def force_displacement_figure(
+    curve: Curve, marks: Mapping[str, float], theory: tuple[str, Array, Array] | None = None
+) -> Figure:
+    """Force over displacement, loading and unloading; beside it a theory: its name, displacement and force."""
+    figure = _figure(SIZE)
+    axis = figure.subplots()
+    displacement, force = np.asarray(curve.displacement), np.asarray(curve.force)
+    for branch, colour, style in (("loading", LOADING, "-"), ("unloading", UNLOADING, "-")):
+        chosen = np.asarray(curve.branch) == branch
+        if chosen.any():
+            order = np.argsort(displacement[chosen], kind="stable")
+            d, f = displacement[chosen][order], force[chosen][order]
+            wide = 3.2 if branch == "loading" else 1.4
+            axis.plot(d, f, style, color=colour, linewidth=wide, label=branch)
+    if theory is not None:
+        name, d, f = theory
+        shown = (d >= displacement.min()) & (f <= force.max() + 0.05 * np.ptp(force))
+        axis.plot(d[shown], f[shown], "--", color=THEORY, linewidth=1.4, label=name)
+    axis.axhline(0.0, color="black", linewidth=0.8)
+    adhesion = marks.get("adhesion_force")
+    if adhesion:
+        axis.axhline(-adhesion, color=TENSION, linewidth=1.0, linestyle=":")
+        axis.annotate(
+            f"$-F_A$ = {-adhesion:.4g} FU", (0.0, -adhesion), xycoords=("axes fraction", "data"), xytext=(6, 5),
+            textcoords="offset points", ha="left", color=TENSION,
+        )  # fmt: skip
+    axis.set_xlabel("displacement (LU), compression positive")
+    axis.set_ylabel("force (FU), compression positive")
+    axis.legend(frameon=False, loc="upper left")
+    return figure
+
+
+def force_radius_figure(curve: Curve, adhesion_force: float, zero_load_radius: float) -> Figure:
+    """F/F_A over a/a₀ of the unloading branch beside JKR and Barquins (the paper's Fig. 8)."""
+    figure = _figure(SIZE)
+    axis = figure.subplots()
+    radius = np.asarray(curve.contact_radius) / zero_load_radius
+    force = np.asarray(curve.force) / adhesion_force
+    chosen = (np.asarray(curve.branch) == "unloading") & np.isfinite(radius) & (radius > 0.0)
+    top = max(1.3, 1.05 * float(radius[chosen].max(initial=0.0)))
+    a = np.linspace(0.0, top, 400)
+    axis.plot(a, jkr_reduced_force(a), "-", color=THEORY, linewidth=1.6, label="JKR")
+    axis.plot(a, barquins_reduced_force(a), "--", color=THEORY, linewidth=1.2, label="Barquins (2D)")
+    axis.plot(radius[chosen], force[chosen], "o", color=UNLOADING, markersize=3.5, label="this run, unloading")
+    axis.axhline(0.0, color="black", linewidth=0.8)
+    axis.set_xlim(0.0, top)
+    axis.set_ylim(-1.25, max(1.0, 1.1 * float(force[chosen].max(initial=0.0))))
+    axis.set_xlabel(r"contact radius $a/a_0$")
+    axis.set_ylabel(r"force $F/F_A$, compression positive")
+    axis.legend(frameon=False, loc="upper left")
+    return figure
+
+
+def friction_figure(columns: Mapping[str, Sequence[float]]) -> Figure:
+    """Friction over the way of the drive, and the normal force below it."""
+    figure = _figure(SIZE)
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+    upper.plot(columns["drive"], columns["friction"], color=COMPRESSION, linewidth=1.2)
+    upper.axhline(0.0, color="black", linewidth=0.8)
+    upper.set_ylabel("friction (FU)")
+    lower.plot(columns["drive"], columns["normal_force"], color=TENSION, linewidth=1.2)
+    lower.set_ylabel("normal force (FU)")
+    lower.set_xlabel("way of the drive (LU)")
+    return figure
+
+
+def plot_pressure(profiles: Mapping[str, Profile], radii: Mapping[str, float], path: Path) -> None:
+    """Save `pressure_figure`."""
+    _save(pressure_figure(profiles, radii), path)
+
+
+def plot_force_displacement(
+    curve: Curve, marks: Mapping[str, float], path: Path, theory: tuple[str, Array, Array] | None = None
+) -> None:
+    """Save `force_displacement_figure`."""
+    _save(force_displacement_figure(curve, marks, theory), path)
+
+
+def plot_force_radius(curve: Curve, adhesion_force: float, zero_load_radius: float, path: Path) -> None:
+    """Save `force_radius_figure`."""
+    _save(force_radius_figure(curve, adhesion_force, zero_load_radius), path)
+
+
+def plot_friction(columns: Mapping[str, Sequence[float]], path: Path) -> None:
+    """Save `friction_figure`."""
+    _save(friction_figure(columns), path)
+
+
+def _figure(size: tuple[float, float]) -> Figure:
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=size, dpi=DPI, layout="constrained")
+
+
+def _save(figure: Figure, path: Path) -> None:
+    """Save whole or not at all."""
+    for axis in figure.axes:
+        axis.spines[["top", "right"]].set_visible(False)
+    part = path.with_name(path.name + ".part")
+    figure.savefig(part, format="png")
+    os.replace(part, path)
+
+
+def _half_width(profile: Profile) -> float:
+    size = np.abs(profile.pressure)
+    shown = size > CARRIES * float(size.max(initial=0.0))
+    reach = float(np.abs(profile.x[shown]).max()) if shown.any() else float(np.abs(profile.x).max())
+    return min(1.15 * reach + 2.0 * float(np.median(np.diff(profile.x))), float(np.abs(profile.x).max()) + 1.0)
+
+
+def _mark_radius(axis: Axes, radius: float) -> str:
+    """Draw ±a and return what the title says of it."""
+    if not math.isfinite(radius) or radius <= 0.0:
+        return ""
+    for place in (-radius, radius):
+        axis.axvline(place, color="black", linewidth=1.0, linestyle="--")
+    return f", contact radius a = {radius:.2f} LU (dashed)"
