@@ -43,8 +43,7 @@ def pressure_figure(profiles: Mapping[str, Profile], radii: Mapping[str, float])
         view = np.abs(profile.x) <= half
         x, pressure = profile.x[view], profile.pressure[view]
         width = 0.8 * float(np.median(np.diff(profile.x)))
-        axis.bar(x, pressure, width, color=np.where(pressure >= 0.0, Array = NDArray[np.float64]
-COMPRESSION, TENSION), linewidth=0)
+        axis.bar(x, pressure, width, color=np.where(pressure >= 0.0, COMPRESSION, TENSION), linewidth=0)
         axis.axhline(0.0, color="black", linewidth=0.8)
         axis.set_ylabel("pressure (FU/LU)")
         axis.set_title(f"{name.replace('_', ' ')} state{_mark_radius(axis, radii.get(name, math.nan))}", loc="left")
