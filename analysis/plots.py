@@ -35,7 +35,9 @@ CARRIES = 0.01
 
 
 def pressure_figure(profiles: Mapping[str, Profile], radii: Mapping[str, float]) -> Figure:
-    """Pressure over x of each state, one panel below the other, with ±a marked (the paper's Fig. 4)."""
+    """Pressure over x of each state that has any, one panel below the other, with ±a marked (the paper's Fig. 4)."""
+    touching = {name: profile for name, profile in profiles.items() if np.any(profile.pressure)}
+    profiles = touching or dict(list(profiles.items())[:1])
     figure = _figure((SIZE[0], 1.0 + 2.3 * len(profiles)))
     axes = figure.subplots(len(profiles), 1, sharex=True, squeeze=False)[:, 0]
     half = max(_half_width(profile) for profile in profiles.values())
@@ -46,7 +48,7 @@ def pressure_figure(profiles: Mapping[str, Profile], radii: Mapping[str, float])
         axis.bar(x, pressure, width, color=np.where(pressure >= 0.0, COMPRESSION, TENSION), linewidth=0)
         axis.axhline(0.0, color="black", linewidth=0.8)
         axis.set_ylabel("pressure (FU/LU)")
-        axis.set_title(f"{name.replace('_', ' ')} state{_mark_radius(axis, radii.get(name, math.nan))}", loc="left")
+        axis.set_title(f"{name.replace('_', ' ')} state{_mark_radius(axis, radii.get(name, math.nan))}", loc="left", fontsize=10)
         axis.set_ylim(min(1.15 * float(pressure.min()), 0.0), max(1.15 * float(pressure.max()), 0.0) or 1e-12)
     axes[0].set_xlim(-half, half)
     axes[-1].set_xlabel("x (LU)")

@@ -73,7 +73,7 @@ def hold(contact: Contact, load: float, load_scale: float) -> Held:
             require_trust(contact.scene, settings, state)
             return Held(load, tuple(states), True, count * steps, unbalance)
         largest = max(largest, -state.force)
-        if _lost(contact, state, largest):
+        if _lost(contact, state, load, largest):
             return Held(load, tuple(states), False, count * steps, unbalance)
     raise UntrustedError(
         f"the contact did not come to rest under {load:.4g} FU within {MOST_CHUNKS * steps} timesteps "
@@ -81,8 +81,9 @@ def hold(contact: Contact, load: float, load_scale: float) -> Held:
     )
 
 
-def _lost(contact: Contact, state: State, largest: float) -> bool:
-    if state.smallest_distance > max(contact.settings.cutoff, 0.0) and contact.settings.law is not None:
+def _lost(contact: Contact, state: State, load: float, largest: float) -> bool:
+    """Out of reach, or past the largest tension: moving off, and the tension has fallen below what is pulled with."""
+    if contact.settings.law is not None and state.smallest_distance > contact.settings.cutoff:
         return True
-    leaving = state.plate_velocity < 0.0
-    return leaving and largest > 0.0 and -state.force < LOST * largest
+    tension = -state.force
+    return load < 0.0 and state.plate_velocity < 0.0 and tension < LOST * min(largest, -load)

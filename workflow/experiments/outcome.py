@@ -59,9 +59,11 @@ RESIDUAL_LIMIT = 0.1
 
 def radius_of(scene: Scene, profile: Profile) -> ContactRadius | None:
     """The contact radius as the contract defines it; None where the bodies do not touch."""
-    if scene.interaction is not None and scene.interaction.attraction is not None:
-        return tensile_radius(profile)
-    return compressive_radius(profile)
+    adhesive = scene.interaction is not None and scene.interaction.attraction is not None
+    sign = -1.0 if adhesive else 1.0
+    if not (sign * profile.pressure > 0.0).any():
+        return None
+    return tensile_radius(profile) if adhesive else compressive_radius(profile)
 
 
 def require_trust(scene: Scene, settings: Settings, state: State) -> None:

@@ -35,13 +35,13 @@ def path(bench: Bench) -> Outcome:
     adhesive = scene.interaction is not None and scene.interaction.attraction is not None
     branch = [s for s in states if s.phase == phases[-1].name]
     quantities, warnings = _adhesion(bench, branch) if adhesive else (_largest(bench, states), {})
-    last = states[-1].profile
-    radius = radius_of(scene, last)
+    ends = {"deepest": max(states, key=lambda s: s.displacement).profile, "final": states[-1].profile}
+    radii = {name: radius_of(scene, profile) for name, profile in ends.items()}
     return Outcome(
         quantities,
         tuple(states),
-        {"final": last},
-        {"final": math.nan if radius is None else radius.value},
+        ends,
+        {name: math.nan if radius is None else radius.value for name, radius in radii.items()},
         phases,
         warnings | doubts(scene, settings, tuple(states)),
     )
@@ -66,7 +66,7 @@ def schedule(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         counts[branch] = counts.get(branch, 0) + 1
         name = branch if counts[branch] == 1 else f"{branch}_{counts[branch]}"
         kind = "displace_dynamic" if dynamic else "displace"
-        phases.append(Phase(name, kind, tuple((float(d), *rest) for d in rows), state=rows is stretches[-1][1]))
+        phases.append(Phase(name, kind, tuple((float(d), *rest) for d in rows), state=True))
     return tuple(phases)
 
 

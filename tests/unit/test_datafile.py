@@ -1,0 +1,180 @@
+"""system.data: LAMMPS reads back bitwise what was assembled; types, bonds and masses are those of the scene."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import MakeScene, OpenDeck
+from numpy.typing import NDArray
+
+from workflow import datafile
+from workflow.datafile import System, assemble, write_data
+from workflow.engine import Session
+from workflow.experiments import write_system
+from workflow.lattice import Body, bodies
+from workflow.settings import settings_for
+
+READ = """units lj
+dimension 3
+boundary f f f
+atom_style bond
+atom_modify map yes
+read_data system.data
+pair_style zero 1.0
+pair_coeff * *
+bond_style zero
+bond_coeff *
+comm_modify cutoff 1e6
+compute bonds all property/local btype batom1 batom2
+variable all_mass atom mass
+"""
+PARTICLES = 20
+CASES: dict[str, dict[str, Any]] = {
+    "plain": {},
+    "neighbours": {"neighbours": {"stiffness": 0.3}},
+    "far": {"horizontal": {}, "bodies": {"bulk_stiffness_tangential": 0.5}},
+    "all": {
+        "horizontal": {},
+        "neighbours": {"stiffness": 0.3},
+        "bodies": {"bulk_stiffness_tangential": 1.7, "spacing": 0.7, "mass": 0.3},
+    },
+    "plane": {"interaction": None, "bodies": {"lower": "rigid_plane"}, "neighbours": {"stiffness": 0.3}},
+}
+
+
+def system_of(scene: Any) -> System:
+    """What write_system assembles, with a margin of its own."""
+    both = bodies(scene, settings_for(scene))
+    return assemble(both, scene.neighbours is not None, scene.bodies.mass, 2.5, (17.0, 123.0))
+
+
+def bonds_in(session: Session) -> NDArray[np.float64]:
+    """Rows (type, atom, atom) as LAMMPS holds them, in the order of the atoms."""
+    session.execute("run 0\nwrite_dump all local bonds.txt index c_bonds[1] c_bonds[2] c_bonds[3]")
+    rows = (session.folder / "bonds.txt").read_text().split("ITEM: ENTRIES")[1].splitlines()[1:]
+    return np.asarray(sorted(sorted(map(int, row.split()[2:])) + [int(row.split()[1])] for row in rows))
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_lammps_reads_back_what_was_assembled(make_scene: MakeScene, session: Session, case: str) -> None:
+    """Positions bitwise, types, bonds, masses, box."""
+    system = system_of(make_scene(**CASES[case]))
+    write_data(system, "title", session.folder / "system.data")
+    session.execute(READ)
+    read = session.atoms("x", "v_all_mass")
+    assert np.array_equal(read["x"], system.positions)
+    assert np.array_equal(read["type"], system.types)
+    assert read["v_all_mass"].tolist() == [system.masses[t - 1] for t in system.types]
+    wanted = sorted(sorted((a, b)) + [kind] for kind, a, b in system.bonds.tolist())
+    assert bonds_in(session).tolist() == wanted
+    edges = ("xlo", "ylo", "zlo", "xhi", "yhi", "zhi")
+    assert session.values(*edges) == tuple(system.box.ravel())
+    assert [file.name for file in session.folder.glob("*.part")] == []
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_types_and_bonds(make_scene: MakeScene, case: str) -> None:
+    """N of each type; one bulk spring per particle, N − 1 between neighbours of a body, one long bond per particle."""
+    scene = make_scene(**CASES[case])
+    system = system_of(scene)
+    pair, far = scene.interaction is not None, bool(CASES[case].get("bodies", {}).get("bulk_stiffness_tangential"))
+    types = ([1, 2, 3, 4] if pair else [2, 4]) + ([5, 6] if far else [])
+    assert Counter(system.types.tolist()) == dict.fromkeys(types, PARTICLES)
+    assert len(system.masses) == (6 if far else 4)
+    names = ["bulk"] + ["neighbours"] * (scene.neighbours is not None) + ["far"] * far
+    assert list(system.bond_names) == names
+    count = 2 if pair else 1
+    each = {"bulk": count * PARTICLES, "neighbours": count * (PARTICLES - 1), "far": count * PARTICLES}
+    assert Counter(system.bonds[:, 0].tolist()) == {names.index(name) + 1: each[name] for name in names}
+    kinds = {"bulk": {(1, 3), (2, 4)}, "neighbours": {(1, 1), (2, 2)}, "far": {(1, 5), (2, 6)}}
+    for kind, a, b in system.bonds.tolist():
+        assert tuple(sorted(system.types[[a - 1, b - 1]].tolist())) in kinds[names[kind - 1]]
+        if names[kind - 1] == "neighbours":
+            assert b - a == 1
+            gap = system.positions[b - 1, 0] - system.positions[a - 1, 0]
+            assert gap == pytest.approx(scene.bodies.spacing, rel=1e-12)
+
+
+def test_each_particle_hangs_on_its_own_anchor(make_scene: MakeScene) -> None:
+    """Without neighbours an anchor stands where its particle does; with long bonds those are of one length."""
+    scene = make_scene(**CASES["far"])
+    system = system_of(scene)
+    far = settings_for(scene).far
+    lengths = {1: 0.0, 2: far}
+    for kind, a, b in system.bonds.tolist():
+        apart = np.linalg.norm(system.positions[a - 1] - system.positions[b - 1])
+        assert apart == pytest.approx(lengths[kind], rel=1e-12, abs=0.0)
+
+
+def test_the_plate_has_its_mass(make_scene: MakeScene, open_deck: OpenDeck) -> None:
+    """Shared out among the upper anchors, long bonds' ones included; particles have their own."""
+    timed = {"damping": {"coefficient": "auto"}, "plate": {"mass": 37.0}}
+    experiment = {"kind": "load", "force": 0.1}
+    for case in ("plain", "all"):
+        scene = make_scene(**CASES[case], **timed, experiment=experiment)
+        _, session = open_deck(scene)
+        assert session.value("mass(plate)") == pytest.approx(37.0, rel=1e-12)
+        assert session.value("mass(upper)") == pytest.approx(PARTICLES * scene.bodies.mass, rel=1e-12)
+
+
+def test_all_atoms_are_inside_the_box_with_room(make_scene: MakeScene, tmp_path: Path) -> None:
+    """Also on a slide, whose plate moves by the distance along x."""
+    slide = {
+        "damping": {"coefficient": "auto"},
+        "plate": {"free": ["x", "z"]},
+        "horizontal": {},
+        "cantilever": {"stiffness": 0.5, "velocity": 0.01},
+        "experiment": {"kind": "slide", "normal_force": 0.1, "distance": 500.0},
+    }
+    system = system_of(make_scene())
+    low, high = system.box
+    assert (system.positions - low >= [17.0, 1.0, 123.0]).all()
+    assert (high - system.positions >= [17.0, 1.0, 123.0]).all()
+    from workflow.deck import Deck
+
+    scene = make_scene(**slide)
+    write_system(Deck(scene, settings_for(scene)), tmp_path)
+    box = [line.split() for line in (tmp_path / "system.data").read_text().splitlines() if line.endswith("xhi")]
+    assert float(box[0][1]) >= 0.5 * PARTICLES + 500.0
+
+
+TITLES = ["R = 1000 µm", "a # in it", "${undefined} $x", "ends with &", 'three """ quotes', "include nothing", "日本"]
+
+
+@pytest.mark.parametrize("title", TITLES)
+def test_a_title_is_only_a_title(make_scene: MakeScene, open_deck: OpenDeck, title: str) -> None:
+    """Whatever it says, data file and deck are read alike."""
+    _, session = open_deck(make_scene(title=title))
+    assert session.value("count(all)") == 4 * PARTICLES
+    assert (session.folder / "system.data").read_text(encoding="utf-8").splitlines()[0] == f"# {title}"
+
+
+def test_long_files_are_written_in_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The text does not depend on the size of a chunk."""
+    places = np.random.default_rng(2).normal(size=(11, 3))
+    body = Body("upper", places, places + 0.1, np.empty((0, 3)))
+    system = assemble((body,), True, 1.0, 1.0, (1.0, 1.0))
+    write_data(system, "t", tmp_path / "whole")
+    monkeypatch.setattr(datafile, "CHUNK", 4)
+    write_data(system, "t", tmp_path / "chunks")
+    assert (tmp_path / "whole").read_bytes() == (tmp_path / "chunks").read_bytes()
+
+
+def test_a_write_that_fails_leaves_the_old_file(make_scene: MakeScene, tmp_path: Path, monkeypatch: Any) -> None:
+    """Half a data file never has the name of a whole one."""
+    system = system_of(make_scene())
+    path = tmp_path / "system.data"
+    write_data(system, "before", path)
+    before = path.read_bytes()
+
+    def full(*_: object) -> None:
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr(datafile, "_write_rows", full)
+    with pytest.raises(OSError, match="no space"):
+        write_data(system, "after", path)
+    assert path.read_bytes() == before
