@@ -78,7 +78,10 @@ class Deck:
                 blocks.append(_block(name, part.variables if index == 0 else {}))
         blocks.append(_block("output", {}))
         self._check()
-        title = f"# {self.scene.title}\n# effects: {', '.join(self.scene.effects) or 'none'}; {self.scene.method}\n"
+        # LAMMPS looks for triple quotes even in comments.
+        title = "# {}\n# effects: {}; {}\n".format(
+            self.scene.title.replace('"', "'"), ", ".join(self.scene.effects) or "none", self.scene.method
+        )
         return title + "\n" + "\n".join(blocks)
 
     def begin(self, phase: str, fragments: Sequence[str] = ()) -> str:

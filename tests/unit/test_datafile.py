@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import MakeScene, OpenDeck
-from numpy.typing import NDArray
 
 from workflow import datafile
 from workflow.datafile import System, assemble, write_data
+from workflow.deck import Deck
 from workflow.engine import Session
 from workflow.experiments import write_system
 from workflow.lattice import Body, bodies
+from workflow.scene import Scene
 from workflow.settings import settings_for
+
+MakeScene = Callable[..., Scene]
+OpenDeck = Callable[[Scene], tuple[Deck, Session]]
 
 READ = """units lj
 dimension 3
@@ -24,12 +28,7 @@ boundary f f f
 atom_style bond
 atom_modify map yes
 read_data system.data
-pair_style zero 1.0
-pair_coeff * *
-bond_style zero
-bond_coeff *
-comm_modify cutoff 1e6
-compute bonds all property/local btype batom1 batom2
+comm_modify cutoff 5.0
 variable all_mass atom mass
 """
 PARTICLES = 20
@@ -52,11 +51,12 @@ def system_of(scene: Any) -> System:
     return assemble(both, scene.neighbours is not None, scene.bodies.mass, 2.5, (17.0, 123.0))
 
 
-def bonds_in(session: Session) -> NDArray[np.float64]:
-    """Rows (type, atom, atom) as LAMMPS holds them, in the order of the atoms."""
-    session.execute("run 0\nwrite_dump all local bonds.txt index c_bonds[1] c_bonds[2] c_bonds[3]")
-    rows = (session.folder / "bonds.txt").read_text().split("ITEM: ENTRIES")[1].splitlines()[1:]
-    return np.asarray(sorted(sorted(map(int, row.split()[2:])) + [int(row.split()[1])] for row in rows))
+def bonds_in(session: Session) -> list[list[int]]:
+    """[atom, atom, type] of every bond as LAMMPS holds it, sorted."""
+    session.execute("write_data back.data nocoeff")
+    rows = (session.folder / "back.data").read_text().split("\nBonds\n\n")[1].splitlines()
+    bonds = [[int(word) for word in row.split()[1:]] for row in rows]
+    return sorted([*sorted(atoms), kind] for kind, *atoms in bonds)
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -69,8 +69,8 @@ def test_lammps_reads_back_what_was_assembled(make_scene: MakeScene, session: Se
     assert np.array_equal(read["x"], system.positions)
     assert np.array_equal(read["type"], system.types)
     assert read["v_all_mass"].tolist() == [system.masses[t - 1] for t in system.types]
-    wanted = sorted(sorted((a, b)) + [kind] for kind, a, b in system.bonds.tolist())
-    assert bonds_in(session).tolist() == wanted
+    wanted = sorted([*sorted((a, b)), kind] for kind, a, b in system.bonds.tolist())
+    assert bonds_in(session) == wanted
     edges = ("xlo", "ylo", "zlo", "xhi", "yhi", "zhi")
     assert session.values(*edges) == tuple(system.box.ravel())
     assert [file.name for file in session.folder.glob("*.part")] == []
@@ -134,8 +134,6 @@ def test_all_atoms_are_inside_the_box_with_room(make_scene: MakeScene, tmp_path:
     low, high = system.box
     assert (system.positions - low >= [17.0, 1.0, 123.0]).all()
     assert (high - system.positions >= [17.0, 1.0, 123.0]).all()
-    from workflow.deck import Deck
-
     scene = make_scene(**slide)
     write_system(Deck(scene, settings_for(scene)), tmp_path)
     box = [line.split() for line in (tmp_path / "system.data").read_text().splitlines() if line.endswith("xhi")]

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import product
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import MakeScene, OpenDeck
 from numpy.typing import NDArray
 
 from workflow.deck import Deck
 from workflow.engine import Session
 from workflow.lattice import bodies, neighbour_forces, places
+from workflow.scene import Scene
 from workflow.settings import settings_for
 
-Array = NDArray[np.float64]
+MakeScene = Callable[..., Scene]
+OpenDeck = Callable[[Scene], tuple[Deck, Session]]
 
+Array = NDArray[np.float64]
 NORMAL = 0.83
 TANGENTIAL = {"equal": NORMAL, "softer": 0.5, "stiffer": 1.4}
 NEIGHBOURS = 0.3
@@ -131,7 +134,7 @@ def test_anchor_shifts_add_up_to_nothing(make_scene: MakeScene, shape: str, hori
 
 
 def test_shifts_are_those_of_the_continuous_chain(make_scene: MakeScene) -> None:
-    """Inside, the anchor is offset by k_n/k times the second difference, s²/R; along x at the ends by k_n/k spacings."""
+    """Inside, an anchor is offset by k_n/k times the second difference, s²/R; at the ends by k_n/k spacings along x."""
     scene = make_scene(**tables("curved", True, "equal"))
     upper = bodies(scene, settings_for(scene))[1]
     shift = upper.anchors - upper.particles
@@ -146,7 +149,7 @@ def test_forces_of_neighbours_against_a_loop() -> None:
     """r_i = k_n Σ (p_j − p_i), written out."""
     chain = np.random.default_rng(1).normal(size=(7, 3))
     wanted = np.zeros((7, 3))
-    for i, j in [(i, j) for i in range(7) for j in (i - 1, i + 1) if 0 <= j < 7]:
+    for i, j in [(0, 1), *((i, i + d) for i in range(1, 6) for d in (-1, 1)), (6, 5)]:
         wanted[i] += 0.4 * (chain[j] - chain[i])
     assert neighbour_forces(chain, 0.4) == pytest.approx(wanted, abs=1e-15)
 

@@ -1,4 +1,4 @@
-"""The two-exponential law: its force and stiffness are its derivatives, its force-free distance and cutoff are right."""
+"""The two-exponential law: force and stiffness as its derivatives, its force-free distance and its cutoff."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LAWS = [
 ]
 
 DIFFERENCE = 1e-8
-"""Central differences with a step h of the range: truncation h²/6 = 2e-11, round-off 2e-16/h = 2e-11; times a margin."""
+"""Central differences with a step h of the range: truncation h²/6 = 2e-11, round-off 2e-16/h = 2e-11; with margin."""
 STEP = 1e-5
 ROUND_OFF = 1e-13
 QUADRATURE = 1e-9

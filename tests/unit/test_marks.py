@@ -1,0 +1,54 @@
+"""Marks on a sampled curve against functions whose maxima and zeros are known in closed form."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from workflow.experiments.marks import crossing, largest_tension
+
+PARABOLA = 1e-12  # round-off of a polynomial fit in doubles
+CUBIC = 1e-5  # the fit is a parabola: its error is the third derivative times the square of the step
+
+
+def falling(values: np.ndarray) -> list[float]:
+    return np.sort(values)[::-1].tolist()
+
+
+def test_the_vertex_of_a_parabola_is_found_between_samples() -> None:
+    displacement = falling(np.linspace(-1.0, 1.0, 24))
+    peak = largest_tension(displacement, [-(2.0 - (d - 0.123) ** 2) for d in displacement])
+    assert peak.position == pytest.approx(0.123, abs=PARABOLA)
+    assert peak.smooth == pytest.approx(2.0, abs=PARABOLA)
+    assert peak.tension <= peak.smooth
+    assert 2.0 - peak.tension <= peak.uncertainty + PARABOLA
+
+
+def test_uneven_steps_around_a_smooth_maximum_are_no_jump() -> None:
+    displacement = falling(np.concatenate([np.linspace(-1.0, 0.1, 9), np.linspace(0.11, 0.3, 40), [0.5, 0.9]]))
+    peak = largest_tension(displacement, [-np.exp(-((d - 0.2) ** 2)) for d in displacement])
+    assert peak.position == pytest.approx(0.2, abs=CUBIC)
+
+
+def test_a_jump_after_the_maximum_leaves_the_sampled_point_and_the_last_rise_as_uncertainty() -> None:
+    displacement = falling(np.linspace(0.0, 1.0, 11))
+    tension = [1.0 - d if d > 0.45 else 0.1 for d in displacement]
+    peak = largest_tension(displacement, [-t for t in tension])
+    assert displacement[peak.index] == peak.position == pytest.approx(0.5)
+    assert peak.uncertainty == pytest.approx(0.1)  # one increment of a unit slope
+
+
+@pytest.mark.parametrize("force", [[0.0, -1.0, -2.0], [-2.0, -1.0, 0.0]])
+def test_a_maximum_at_an_end_is_as_uncertain_as_it_is_large(force: list[float]) -> None:
+    peak = largest_tension([1.0, 0.5, 0.0], force)
+    assert peak.uncertainty == peak.tension == 2.0
+
+
+def test_a_crossing_lies_where_the_straight_line_passes_the_level() -> None:
+    assert crossing([2.0, 1.0, 0.0], [3.0, 1.0, -1.0], 0.0) == (1, 0.5)
+    assert crossing([2.0, 1.0, 0.0], [3.0, 1.0, -1.0], 1.0) == (0, 1.0)
+
+
+def test_a_level_that_is_never_passed_is_an_error() -> None:
+    with pytest.raises(ValueError, match="never passes 7 FU"):
+        crossing([2.0, 1.0], [3.0, 1.0], 7.0)

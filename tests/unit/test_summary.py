@@ -1,0 +1,48 @@
+"""What a terminal shows."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from analysis.pressure import Profile
+from workflow.summary import pressure_plot, quantities, rounded
+
+
+@pytest.mark.parametrize(
+    ("value", "uncertainty", "text"),
+    [
+        (1.48341, 0.00012, "1.48341 ± 0.00012"),
+        (28.7, 1.04, "28.7 ± 1.0"),
+        (1234.5, 120.0, "1234.5 ± 1.2e+02"),
+        (1.0, 0.0, "1 ± 0"),
+    ],
+)
+def test_the_value_has_as_many_places_as_its_uncertainty(value: float, uncertainty: float, text: str) -> None:
+    assert rounded(value, uncertainty) == text
+
+
+def test_only_quantities_are_listed() -> None:
+    document = {"adhesion_force": {"value": 2.0, "uncertainty": 0.1, "unit": "FU"}, "status": "done", "timing": {}}
+    (line,) = quantities(document)
+    assert "adhesion force" in line
+    assert line.endswith("2.00 ± 0.10 FU")
+
+
+def profile(pressure: np.ndarray) -> Profile:
+    x = np.linspace(-10.0, 10.0, len(pressure))
+    zero = np.zeros_like(x)
+    return Profile(x, zero, zero, pressure, zero)
+
+
+def test_the_plot_shows_compression_above_and_tension_below_the_axis() -> None:
+    x = np.linspace(-10.0, 10.0, 81)
+    lines = pressure_plot(profile(np.where(np.abs(x) < 4.0, 1.0, -0.5) * (np.abs(x) < 8.0)), 6.0)
+    axis = next(i for i, line in enumerate(lines) if "─" in line)
+    assert any("█" in line for line in lines[:axis])
+    assert any("█" in line for line in lines[axis + 1 :])
+    assert next(line for line in lines if "^" in line).count("^") == 2
+
+
+def test_bodies_that_do_not_touch_have_no_plot() -> None:
+    assert pressure_plot(profile(np.zeros(5)), 1.0) == ["  no pressure"]

@@ -1,0 +1,25 @@
+"""What the validation tests share: a scene from its tables, run to the end in a folder of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import count
+from typing import Any
+
+import pytest
+
+from workflow import Run, run, scene_from_dict
+
+RunTables = Callable[[dict[str, Any]], Run]
+
+
+@pytest.fixture(scope="module")
+def run_tables(tmp_path_factory: pytest.TempPathFactory) -> RunTables:
+    """`run_tables(tables)`: the scene's tables, without a title, to a finished run; no figures."""
+    numbers = count()
+
+    def finished(tables: dict[str, Any]) -> Run:
+        scene = scene_from_dict({"title": f"validation {next(numbers)}"} | tables)
+        return run(scene, tmp_path_factory.mktemp("run"), figures=False)
+
+    return finished
