@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from ase import Atoms
@@ -14,6 +15,8 @@ DUMP = "states.lammpstrj"
 BODY = ("", "lower", "upper", "lower", "upper", "lower", "upper")
 ROLE = ("", "particle", "particle", "anchor", "anchor", "far anchor", "far anchor")
 """What a LAMMPS atom type, from 1 on, is part of."""
+COLUMNS = ("id", "type", "x", "y", "z", "opposite_fx", "opposite_fz")
+"""What is read of the dump."""
 
 
 def atoms(folder: str | Path, state: int = -1) -> Atoms:
@@ -32,6 +35,7 @@ def atoms(folder: str | Path, state: int = -1) -> Atoms:
     Raises:
         FileNotFoundError: the folder holds no states: no run, or one that failed.
         IndexError: there is no such state.
+        ValueError: the state is cut short or lacks a column.
     """
     from ase import Atoms
 
@@ -41,12 +45,10 @@ def atoms(folder: str | Path, state: int = -1) -> Atoms:
     frames = path.read_text().split("ITEM: TIMESTEP\n")[1:]
     if not -len(frames) <= state < len(frames):
         raise IndexError(f"{path} holds {len(frames)} states, so there is no state {state}")
-    head, _, body = frames[state].partition("ITEM: ATOMS ")
-    names, _, rows = body.partition("\n")
-    columns = dict(zip(names.split(), np.loadtxt(rows.splitlines(), ndmin=2).T, strict=True))
+    timestep, columns = _frame(frames[state], f"{path}, state {state}")
     kinds = columns["type"].astype(int)
     found = Atoms(f"X{len(kinds)}", positions=np.column_stack([columns[axis] for axis in "xyz"]), pbc=False)
-    found.info["timestep"] = int(head.split("\n", 1)[0])
+    found.info["timestep"] = timestep
     found.arrays["id"] = columns["id"].astype(int)
     found.arrays["type"] = kinds
     found.arrays["body"] = np.asarray(BODY)[kinds]
@@ -54,3 +56,19 @@ def atoms(folder: str | Path, state: int = -1) -> Atoms:
     zero = np.zeros(len(kinds))
     found.arrays["opposite_force"] = np.column_stack([columns["opposite_fx"], zero, columns["opposite_fz"]])
     return found
+
+
+def _frame(text: str, where: str) -> tuple[int, dict[str, NDArray[np.float64]]]:
+    """Timestep and columns of one frame, from the line after ITEM: TIMESTEP on."""
+    head, _, body = text.partition("ITEM: ATOMS ")
+    names, _, rows = body.partition("\n")
+    words, lines = head.split(), rows.splitlines()
+    promised = int(words[words.index("ATOMS") + 1]) if "BOUNDS" in words else None
+    if len(lines) != promised or not rows.endswith("\n"):
+        raise ValueError(f"{where}: the dump is cut short, the run did not finish writing it")
+    missing = [name for name in COLUMNS if name not in names.split()]
+    if missing:
+        raise ValueError(f"{where}: no column {', '.join(missing)}")
+    wanted = [names.split().index(name) for name in COLUMNS]
+    values = np.loadtxt(lines, usecols=wanted, ndmin=2)
+    return int(words[0]), dict(zip(COLUMNS, values[np.argsort(values[:, 0])].T, strict=True))

@@ -29,6 +29,7 @@ class Curve:
     branch: Sequence[str]
 
     def __post_init__(self) -> None:
+        """Check lengths."""
         lengths = {len(getattr(self, field.name)) for field in fields(self)}
         if len(lengths) != 1:
             raise ValueError(f"the columns of a curve must be equally long, got lengths {sorted(lengths)}")

@@ -40,7 +40,7 @@ MEDIAN_TO_SIGMA = 0.6745
 
 @dataclass(frozen=True)
 class Place:
-    """A position with its estimated uncertainty; at_end: it is the first or last sample, so the true one may be beyond."""
+    """A position with its estimated uncertainty; at_end: at the first or last sample, the true one may be beyond."""
 
     position: float
     uncertainty: float
@@ -63,8 +63,8 @@ def place_of_minimum(x: Array, y: Array, candidates: NDArray[np.intp]) -> Place:
     """Return where y(x) is least near the lowest of the candidate samples.
 
     x: positions, ascending, (n,), n >= 3; y: values, (n,); candidates: indices, ascending, in which to look.
-    The uncertainty covers the error in at least 95 % of random closed-form cases (see the module) without noise and with
-    white noise of up to 1 % of the depth; where y jumps, the minimum is anywhere between two samples and so uncertain.
+    The uncertainty covers the error in at least 95 % of random closed-form cases (see the module), without noise and
+    with white noise of up to 1 % of the depth; where y jumps, the minimum is anywhere between two samples.
     """
     last = len(x) - 1
     index = int(candidates[np.argmin(y[candidates])])
@@ -129,7 +129,7 @@ def _polynomial_minimum(x: Array, y: Array, stencil: _Stencil, low: float, high:
 
 
 def _interpolated(x: Array, y: Array, index: int, noise: float) -> Place:
-    """Minimum of the polynomial through the samples about `index`, compared with two others through fewer and others."""
+    """Minimum of the polynomial through the samples about `index`, compared with three through other samples."""
     low, high = float(x[index - 1]), float(x[index + 1])
     trials = [_smoothest(x, y, index, min(size, len(x)))[:2] for size in INTERPOLANT_SIZES]
     best, *others = (

@@ -1,7 +1,8 @@
 """Figures of a run, drawn as the paper's: pressure profile (Fig. 4), force over displacement and over radius (Fig. 8).
 
 References in them: JKR, F̃ = 4ã³ − 4ã^{3/2} (Eq. 8); Barquins' cylinder, F̃ = 2.1165 (ã² − √ã). Both are scaled on the
-run's own F_A and a₀, so that only the shapes are compared. Each drawing function returns its figure; `plot_…` also saves it.
+run's own F_A and a₀, so that only the shapes are compared. Each drawing function returns its figure; `plot_…` also
+saves it.
 """
 
 from __future__ import annotations
@@ -48,8 +49,12 @@ def pressure_figure(profiles: Mapping[str, Profile], radii: Mapping[str, float])
         axis.bar(x, pressure, width, color=np.where(pressure >= 0.0, COMPRESSION, TENSION), linewidth=0)
         axis.axhline(0.0, color="black", linewidth=0.8)
         axis.set_ylabel("pressure (FU/LU)")
-        axis.set_title(f"{name.replace('_', ' ')} state{_mark_radius(axis, radii.get(name, math.nan))}", loc="left", fontsize=10)
+        marked = _mark_radius(axis, radii.get(name, math.nan))
+        axis.set_title(f"{name.replace('_', ' ')} state{marked}", loc="left", fontsize=10)
         axis.set_ylim(min(1.15 * float(pressure.min()), 0.0), max(1.15 * float(pressure.max()), 0.0) or 1e-12)
+        if not np.any(pressure):
+            axis.set_yticks([0.0])
+            axis.text(0.5, 0.5, "no contact", transform=axis.transAxes, ha="center", color=THEORY)
     axes[0].set_xlim(-half, half)
     axes[-1].set_xlabel("x (LU)")
     return figure
@@ -94,7 +99,7 @@ def force_displacement_figure(
     if adhesion:
         axis.axhline(-adhesion, color=TENSION, linewidth=1.0, linestyle=":")
         axis.annotate(
-            f"$-F_A$ = {-adhesion:.4g} FU", (0.0, -adhesion), xycoords=("axes fraction", "data"), xytext=(6, 5),
+            f"$-F_A$ = \N{MINUS SIGN}{adhesion:.4g} FU", (0.0, -adhesion), xycoords=("axes fraction", "data"), xytext=(6, 5),
             textcoords="offset points", ha="left", color=TENSION,
         )  # fmt: skip
     axis.set_xlabel("displacement (LU), compression positive")

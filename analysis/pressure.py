@@ -30,6 +30,7 @@ class Profile:
     shear: Array
 
     def __post_init__(self) -> None:
+        """Check shapes and order."""
         shapes = {array.shape for array in (self.x, self.z_lower, self.z_upper, self.pressure, self.shear)}
         if len(shapes) != 1 or self.x.ndim != 1:
             raise ValueError(f"the arrays of a profile must be 1-D and equally long, got shapes {sorted(shapes)}")
@@ -74,10 +75,10 @@ def normal_force(profile: Profile, spacing: float) -> float:
 def mean_pressure(profile: Profile, spacing: float, radius: float) -> float:
     """Return F / (pi a^2), the mean pressure of the three-dimensional contact that the model stands for [FU/LU^2].
 
-    spacing of the particles [LU]; radius: contact radius a [LU]. F is the whole normal force, tension beyond a included,
-    because that is the force of Eq. (8). This is the paper's mean pressure: R = 1000, a = 35 and the row R = 1000 of
-    Table 1 give F = 1.950 F_A = 2.867 FU, F / (pi a^2) = 7.45e-4 FU/LU^2 = 784 MPa (paper: about 800 MPa), while
-    F / (2 a) has no unit of a pressure. Source: Geike and Popov 2007, Section 4. Valid for one contact.
+    spacing of the particles [LU]; radius: contact radius a [LU]. F is the whole normal force, tension beyond a
+    included, because that is the force of Eq. (8). This is the paper's mean pressure: for R = 1000, a = 35 and the row
+    R = 1000 of Table 1, F = 1.950 F_A = 2.867 FU and F / (pi a^2) = 7.45e-4 FU/LU^2 = 784 MPa (paper: about 800 MPa),
+    while F / (2 a) has no unit of a pressure. Source: Geike and Popov 2007, Section 4. Valid for one contact.
     Raises ValueError for a radius <= 0: a contact of no extent has no mean pressure.
     """
     if not radius > 0.0:

@@ -39,9 +39,10 @@ class ContactRadius:
 def tensile_radius(profile: Profile) -> ContactRadius:
     """Return the radius of maximum tensile stress, between the particles: p(a) = min p on each side of the centre.
 
-    profile: a pressure profile of one contact, n >= 3 particles. The centre is the mean of x weighted with |p|. A contact
-    that has shrunk to one tensile spot has radius 0, both sides finding the same minimum. See `analysis.extremum` for
-    the interpolation and its measured accuracy: a median error of 3e-4 spacings, 0.04 where particles snap.
+    profile: a pressure profile of one contact, n >= 3 particles. The centre is the mean of x weighted with |p|. A
+    contact that has shrunk to one tensile spot has radius 0, both sides finding the same minimum. See
+    `analysis.extremum` for the interpolation and its measured accuracy: a median error of 3e-4 spacings, 0.04 where
+    particles snap.
     Source: Geike and Popov 2007, Section 3.2 and Fig. 4, after Greenwood.
     Raises ValueError where no particle carries tension (use `compressive_radius`), and for fewer than 3 particles.
     """
@@ -59,12 +60,12 @@ def tensile_radius(profile: Profile) -> ContactRadius:
 
 
 def compressive_radius(profile: Profile) -> ContactRadius:
-    """Return where the pressure of a contact without attraction vanishes: p(a) = 0 beyond the outermost loaded particle.
+    """Return where the pressure without attraction vanishes: p(a) = 0 beyond the outermost loaded particle.
 
     profile: a pressure profile of one contact, p >= 0, n >= 3 particles. Springs to a bulk give p = (k/s) (d - x^2/2R),
     a parabola in x, so the parabola through the three outermost loaded particles is extended to p = 0: exact there (to
-    round-off), where a straight line through two overshoots by up to s^2/a with the spacing s. The edge is
-    kept between the outermost loaded particle and the next. Where the parabola has no zero there (few particles, a load
+    round-off), where a straight line through two overshoots by up to s^2/a with the spacing s. The edge is kept between
+    the outermost loaded particle and the next. Where the parabola has no zero there (few particles, a load
     concentrated at the edge, a soft law's tail) it is halfway, give or take half a spacing.
     No load at all: radius 0 at the middle of the chain, uncertain by half a spacing.
     Raises ValueError for fewer than 3 particles, and where a particle carries tension (use `tensile_radius`).

@@ -55,7 +55,7 @@ def session(tmp_path: Path) -> Iterator[Session]:
 
 @pytest.fixture
 def open_deck(tmp_path_factory: pytest.TempPathFactory) -> Iterator[OpenDeck]:
-    """`deck, session = open_deck(scene)`: system.data and table written, the deck's head run, in a folder of its own."""
+    """`deck, session = open_deck(scene)`: what the deck reads is written and its head run, in a folder of its own."""
     with ExitStack() as stack:
 
         def opened(scene: Scene) -> tuple[Deck, Session]:

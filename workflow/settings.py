@@ -166,11 +166,13 @@ def _largest_displacement(scene: Scene, estimate: ContactEstimate) -> float:
 
 
 def _chain_length(scene: Scene, estimate: ContactEstimate, largest: float) -> int:
-    """Particles of an automatic chain: out to where a particle's force is a tenth of the tolerance of the largest."""
+    """Particles of an automatic chain: out to where a force is a tenth of the tolerance of the largest one."""
     force = np.abs(estimate.force)
     strongest = float(np.max(force[estimate.gap > estimate.rest - largest], initial=0.0))
     felt = force > 0.1 * scene.accuracy.tolerance * strongest
     reach = float(estimate.gap[felt][-1]) if strongest > 0 and felt.any() else estimate.rest
+    if scene.interaction is not None and scene.interaction.attraction is None:
+        reach = float(estimate.gap[-1])  # the contact ends where nothing is felt at all
     half = CHAIN_MARGIN * estimate.half_width(max(largest, 0.0), reach)
     return 2 * (math.ceil(half / scene.bodies.spacing) + 2)
 

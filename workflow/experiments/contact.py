@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from analysis.pressure import Profile, interpenetration, pressure_profile, smallest_distance
 from workflow.datafile import PARTICLES
-from workflow.deck import Deck, Phase
+from workflow.deck import STEP_COLUMNS, Deck, Phase
 from workflow.engine import Session
 from workflow.scene import Scene
 
@@ -104,7 +104,9 @@ class Contact:
         """Run a whole schedule."""
         states = []
         for phase in phases:
-            self.begin(phase.name, phase.step, phase.begin)
+            timed = "row_steps" in STEP_COLUMNS[phase.step]
+            steps = int(sum(row[1] for row in phase.rows)) if timed else None
+            self.begin(phase.name, phase.step, phase.begin, steps)
             states += [self.row(*values) for values in phase.rows]
             if phase.state:
                 self.write_state()

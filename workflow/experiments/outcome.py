@@ -108,7 +108,7 @@ def _reaches_end(scene: Scene, profile: Profile) -> bool:
     if scene.interaction is not None and scene.interaction.attraction is not None:
         largest = float(pressure.min())
         return largest < 0.0 and largest in (pressure[0], pressure[-1])
-    return bool(max(pressure[0], pressure[-1]) > 0.0) and scene.interaction is None
+    return bool(max(pressure[0], pressure[-1]) > 0.0)
 
 
 def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:

@@ -1,0 +1,55 @@
+# Every target sets up what it needs in .venv. Wanted beforehand: make, and Python 3.11 or newer with its venv module.
+
+PYTHON ?= python3
+SCENE ?= lammps_inputs/scenes/pull_off.toml
+OUT ?=
+ARGS ?=
+
+VENV := .venv
+BIN := $(VENV)/bin
+LOCKED := $(VENV)/.locked
+READY := $(VENV)/.ready
+
+# An environment that was copied from another folder, or whose Python has gone, is built anew.
+ifneq ($(shell test -x $(BIN)/python && test "$$(cat $(READY) 2>/dev/null)" = "$$PWD" && echo whole),whole)
+$(LOCKED): FORCE
+endif
+
+.DEFAULT_GOAL := help
+.PHONY: help run test lint clean FORCE
+
+help: ## show this list
+	@echo 'make [TARGET] [NAME=value ...]'
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1 \2/p' Makefile | awk '{ printf "  %s %-6s", $$1, $$2; $$1 = $$2 = ""; print }'
+	@echo 'PYTHON=$(PYTHON) is the Python that .venv is made with.'
+
+run: $(READY) ## run a scene: SCENE=file.toml (default pull_off), OUT=folder (default runs/<scene>)
+	@$(BIN)/contact1d run "$(SCENE)" $(if $(OUT),--out "$(OUT)")
+
+test: $(READY) ## run the tests: ARGS='-m slow' the long ones, ARGS=tests/unit one room
+	@$(BIN)/python -m pytest $(ARGS)
+
+lint: $(READY) ## check style, types and the direction of imports
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+clean: ## remove .venv and the caches; runs/ stays
+	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis .benchmarks
+	find workflow analysis potentials lammps_inputs tests -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(LOCKED): requirements.lock
+	@command -v "$(PYTHON)" >/dev/null || { echo 'contact1d needs Python 3.11 or newer; there is no $(PYTHON). \
+	If it has another name: make PYTHON=/path/to/python3' >&2; exit 1; }
+	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "contact1d needs Python 3.11 or newer; \
+	$(PYTHON) is $$("$(PYTHON)" --version 2>&1). If a newer one is there: make PYTHON=python3.12" >&2; exit 1; }
+	@"$(PYTHON)" -c 'import ensurepip, venv' 2>/dev/null || { echo "$(PYTHON) lacks its venv module; \
+	on Debian and Ubuntu: apt-get install python3-venv" >&2; exit 1; }
+	@echo 'Setting up .venv from requirements.lock: about a minute, once.'
+	@"$(PYTHON)" -m venv --clear $(VENV)
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	@touch $@
+
+$(READY): $(LOCKED) pyproject.toml
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	@pwd > $@

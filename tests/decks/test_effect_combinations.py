@@ -1,0 +1,202 @@
+"""Every set of effects: it either runs in LAMMPS, row by row and as a deck with bitwise the same states, or is refused.
+
+There are 2⁷ sets of effects, four experiments with their methods and two lower bodies; all of them are tried, so every
+effect alone (with what it requires) and every pair of effects is among them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from workflow.deck import Deck, Phase
+from workflow.engine import Engine
+from workflow.experiments import write_system
+from workflow.experiments.bench import Bench
+from workflow.progress import Silent
+from workflow.scene import EFFECTS, Scene, SceneError
+from workflow.settings import settings_for
+
+MakeScene = Callable[..., Scene]
+
+TABLES: dict[str, dict[str, Any]] = {
+    "interaction": {
+        "repulsion": {"amplitude": 0.18, "range": 0.13},
+        "attraction": {"amplitude": 0.09, "range": 0.26},
+    },
+    "neighbours": {"stiffness": 0.3},
+    "horizontal": {},
+    "damping": {"coefficient": "auto"},
+    "noise": {"temperature": 1e-3, "seed": 1},
+    "plate": {},
+    "cantilever": {"stiffness": 0.5, "velocity": 0.01},
+}
+EXPERIMENTS: dict[str, dict[str, Any]] = {
+    "load": {"force": 0.1},
+    "path": {"displacements": [0.0, 0.05]},
+    "pull_off": {"preload": 0.1},
+    "slide": {"normal_force": 0.1, "distance": 2.0},
+}
+METHODS = {kind: ("quasistatic", "dynamic") if kind != "slide" else ("dynamic",) for kind in EXPERIMENTS}
+STEPS = 25
+Case = tuple[str, str, str, frozenset[str]]
+
+
+def fits(kind: str, method: str, lower: str, effects: frozenset[str]) -> bool:
+    """What physics allows, told independently of the program's rules.
+
+    Particles act on each other through an interaction; a rigid plane is touched, holds nothing and pulls nothing along
+    x. Damping, noise, plate and cantilever exist in time only. Time needs damping to come to rest; a plate moves where a
+    force is prescribed, and not where its place is. Noise needs an average, which a load and a slide take. A cantilever
+    slides a plate, whose particles have to follow it along x.
+    """
+    timed = effects & {"damping", "noise", "plate", "cantilever"}
+    if lower == "rigid_plane":
+        held = kind in ("load", "path") and not effects & {"interaction", "horizontal"}
+    else:
+        held = "interaction" in effects
+    if method == "quasistatic":
+        return held and not timed
+    forced = kind != "path"
+    averaged = kind in ("load", "slide")
+    return (
+        held
+        and "damping" in effects
+        and ("plate" in effects) == forced
+        and ("cantilever" in effects) == (kind == "slide")
+        and (averaged or "noise" not in effects)
+        and (kind != "slide" or "horizontal" in effects)
+    )
+
+
+def cases() -> Iterator[Case]:
+    for kind, methods in METHODS.items():
+        for method in methods:
+            for lower in ("particles", "rigid_plane"):
+                for count in range(len(EFFECTS) + 1):
+                    for chosen in combinations(EFFECTS, count):
+                        yield kind, method, lower, frozenset(chosen)
+
+
+def label(case: Case) -> str:
+    kind, method, lower, effects = case
+    return "-".join([kind, method, lower, *(name for name in EFFECTS if name in effects)])
+
+
+def scene_of(make_scene: MakeScene, case: Case, **bodies: Any) -> Scene:
+    kind, method, lower, effects = case
+    tables: dict[str, Any] = {name: TABLES[name] if name in effects else None for name in EFFECTS}
+    if kind == "slide" and "plate" in effects:
+        tables["plate"] = {"free": ["x", "z"]}
+    experiment = {"kind": kind} | EXPERIMENTS[kind] | ({"method": method} if kind != "slide" else {})
+    return make_scene(**tables, experiment=experiment, bodies={"lower": lower} | bodies)
+
+
+ALL = list(cases())
+ALLOWED = [case for case in ALL if fits(*case)]
+
+
+def phases_of(kind: str, method: str) -> tuple[Phase, ...]:
+    """A few rows of each kind of step that the experiment uses, forth and back, with a state after each phase."""
+    if method == "quasistatic":
+        return (
+            Phase("loading", "displace", ((0.0,), (0.02,), (0.05,)), state=True),
+            Phase("unloading", "displace", ((0.01,), (-0.02,)), state=True),
+        )
+    if kind == "path":
+        return (
+            Phase("loading", "displace_dynamic", ((0.0, STEPS), (0.03, STEPS)), state=True),
+            Phase("unloading", "displace_dynamic", ((0.01, STEPS),), state=True),
+        )
+    begin = ("steps/drive",) if kind == "slide" else ()
+    name = "sliding" if kind == "slide" else "unloading"
+    return (
+        Phase("loading", "load", ((0.1, STEPS), (0.1, STEPS)), state=True),
+        Phase(name, "load", ((0.05, STEPS), (0.0, STEPS)), state=True, begin=begin),
+    )
+
+
+def prepared(deck: Deck, folder: Path) -> Path:
+    folder.mkdir()
+    write_system(deck, folder)
+    return folder
+
+
+@pytest.mark.parametrize("case", ALLOWED, ids=label)
+def test_allowed_sets_run(make_scene: MakeScene, tmp_path: Path, case: Case) -> None:
+    """Row by row as the program does, and as one deck: the same files, bitwise; every number is finite."""
+    scene = scene_of(make_scene, case)
+    assert set(scene.effects) == case[3]
+    assert scene.method == case[1]
+    deck = Deck(scene, settings_for(scene))
+    phases = phases_of(case[0], case[1])
+    bench = Bench(deck, prepared(deck, tmp_path / "rows"), Silent(), 60.0)
+    with bench.contact() as contact:
+        states = contact.replay(phases)
+    rows = [row for phase in phases for row in phase.rows]
+    assert len(states) == len(rows)
+    for state in states:
+        assert np.isfinite([state.displacement, state.force, state.residual, state.smallest_distance]).all()
+    if case[1] == "quasistatic" or case[0] == "path":
+        assert [state.displacement for state in states] == pytest.approx([row[0] for row in rows], abs=1e-12)
+    folder = prepared(deck, tmp_path / "deck")
+    (folder / "in.lammps").write_text(deck.text(phases), encoding="utf-8")
+    with Engine.session(folder) as session:
+        session.run_file("in.lammps")
+    for name in ("curve.txt", "states.lammpstrj"):
+        assert (folder / name).read_bytes() == (tmp_path / "rows" / name).read_bytes()
+    table = [line.split() for line in (folder / "curve.txt").read_text().splitlines()[1:]]
+    assert [row[0] for row in table] == [state.phase for state in states]
+    assert [float(row[1]) for row in table] == [state.displacement for state in states]
+    measured = [float(row[2]) for row in table]
+    assert measured == pytest.approx([state.force for state in states], rel=SUM, abs=SUM)
+
+
+SUM = 1e-12
+"""The force on the plate is a sum over 20 particles, by LAMMPS and by numpy in their own orders."""
+
+
+@pytest.mark.parametrize("tangential", [0.5, 1.4])
+@pytest.mark.parametrize(
+    "case", [case for case in ALLOWED if "horizontal" in case[3] and case[3] >= {"neighbours"}], ids=label
+)
+def test_sets_with_long_bonds_run(make_scene: MakeScene, tmp_path: Path, case: Case, tangential: float) -> None:
+    """Normal and tangential stiffness differ, either way."""
+    scene = scene_of(make_scene, case, bulk_stiffness_tangential=tangential)
+    deck = Deck(scene, settings_for(scene))
+    assert deck.settings.far > 0
+    bench = Bench(deck, prepared(deck, tmp_path / "rows"), Silent(), 60.0)
+    with bench.contact() as contact:
+        states = contact.replay(phases_of(case[0], case[1]))
+    assert np.isfinite([state.force for state in states]).all()
+
+
+def test_all_other_sets_are_refused(make_scene: MakeScene) -> None:
+    """Each with a SceneError, and none of the allowed ones."""
+    wrong = []
+    for case in ALL:
+        try:
+            scene_of(make_scene, case)
+            accepted = True
+        except SceneError as error:
+            assert error.problems
+            accepted = False
+        if accepted != fits(*case):
+            wrong.append(label(case))
+    assert wrong == []
+
+
+def test_every_effect_and_every_pair_is_among_the_runs() -> None:
+    """All pairs but those of a cantilever with a rigid plane's missing lower body are allowed somewhere."""
+    run = {pair for case in ALLOWED for pair in combinations(EFFECTS, 2) if set(pair) <= case[3]}
+    assert run == set(combinations(EFFECTS, 2))
+    alone = [case[3] for case in ALLOWED]
+    required = {"noise": {"damping", "plate"}, "plate": {"damping"}, "horizontal": {"interaction"}}
+    for name in ("interaction", "neighbours", "horizontal", "damping", "noise", "plate"):
+        assert frozenset({name} | required.get(name, set())) in alone
+    assert frozenset({"interaction", "horizontal", "damping", "plate", "cantilever"}) in alone

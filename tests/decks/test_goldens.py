@@ -1,0 +1,59 @@
+"""Whole decks of the shipped scenes, line by line.
+
+After a wanted change write them anew and read the difference before you commit it:
+
+    WRITE_GOLDENS=1 pytest tests/decks/test_goldens.py && git diff tests/decks/golden
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+
+import pytest
+
+from workflow.deck import Deck
+from workflow.experiments import planned
+from workflow.scene import read_scene
+from workflow.settings import settings_for
+
+ROOT = Path(__file__).parents[2]
+GOLDEN = Path(__file__).parent / "golden"
+SCENES = sorted(path.stem for path in (ROOT / "lammps_inputs" / "scenes").glob("*.toml"))
+NUMBER = re.compile(r"-?\d+\.\d+(?:e[+-]?\d+)?|-?\d+e[+-]?\d+")
+
+SAME = 1e-9
+"""Relative, of a number that is computed: numpy's exp differs in its last bits from one processor to another, and the
+estimate behind a schedule bisects on it."""
+
+
+def deck_of(name: str) -> str:
+    """in.lammps of a shipped scene with the planned schedule."""
+    scene = read_scene(ROOT / "lammps_inputs" / "scenes" / f"{name}.toml")
+    settings = settings_for(scene)
+    return Deck(scene, settings).text(planned(scene, settings))
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_deck_of_a_shipped_scene(name: str) -> None:
+    """All text and whole numbers are the same, other numbers to round-off."""
+    text, path = deck_of(name), GOLDEN / f"{name}.lammps"
+    if os.environ.get("WRITE_GOLDENS"):
+        path.write_text(text, encoding="utf-8")
+    golden = path.read_text(encoding="utf-8")
+    assert NUMBER.sub("…", text) == NUMBER.sub("…", golden)
+    numbers, wanted = ([float(n) for n in NUMBER.findall(t)] for t in (text, golden))
+    assert numbers == pytest.approx(wanted, rel=SAME, abs=SAME)
+
+
+def test_every_scene_has_a_golden_and_every_golden_a_scene() -> None:
+    assert sorted(path.stem for path in GOLDEN.iterdir()) == SCENES
+    required = {"hertz_plane", "load", "pull_off", "pull_off_dynamic", "thermal_load", "path_hysteresis"}
+    assert required <= set(SCENES)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_deck_is_the_same_every_time(name: str) -> None:
+    """Pure text: no clock, no random number, no order of a set in it."""
+    assert deck_of(name) == deck_of(name)

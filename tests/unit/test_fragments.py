@@ -1,0 +1,229 @@
+"""Fragments: each header agrees with its text, and a deck whose parts do not fit together is refused."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import workflow.fragments as fragments_module
+from workflow.deck import STEP_COLUMNS, Deck
+from workflow.effects import EFFECTS, Contribution, neighbours
+from workflow.effects import interaction as interaction_effect
+from workflow.fragments import DeckError, fragment
+from workflow.scene import EFFECTS as SCENE_EFFECTS
+from workflow.scene import Scene
+from workflow.settings import settings_for
+
+MakeScene = Callable[..., Scene]
+
+ROOT = Path(__file__).parents[2] / "lammps_inputs" / "fragments"
+NAMES = sorted(path.relative_to(ROOT).with_suffix("").as_posix() for path in ROOT.rglob("*.lmp"))
+DEFINITION = re.compile(r"^(variable|group|fix|compute)\s+(\w+)\s+(\w+)", re.MULTILINE)
+AGAIN = {"steps/load": {"plate_load"}, "steps/drive": {"cantilever_start"}}
+"""What a step defines anew on purpose; the first definition is the effect's."""
+LOOP_VARIABLES = {"row_phase", "saved_step", "state_append", *(c for columns in STEP_COLUMNS.values() for c in columns)}
+"""Variables that the schedule defines around the steps."""
+
+
+def text_of(name: str) -> str:
+    return (ROOT / f"{name}.lmp").read_text(encoding="utf-8")
+
+
+def commands_of(name: str) -> str:
+    """The text without comments, continued lines joined."""
+    lines = [line for line in text_of(name).splitlines() if not line.lstrip().startswith("#")]
+    return "\n".join(lines).replace("&\n", " ") + "\n"
+
+
+def header_of(name: str, key: str) -> set[str]:
+    """Words of one header line, explanations in brackets left out."""
+    lines = [line for line in text_of(name).splitlines() if line.startswith(f"# {key}: ")]
+    assert len(lines) == 1, f"{name} has {len(lines)} lines {key}"
+    return set(re.sub(r"\(.*?\)", "", lines[0].split(": ", 1)[1]).split()) - {"-"}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_header_has_four_lines_at_the_top(name: str) -> None:
+    keys = [line.split(":")[0].removeprefix("# ") for line in text_of(name).splitlines() if line.startswith("#")]
+    assert [key for key in keys if key in ("Purpose", "Formula", "Needs", "Defines")] == [
+        "Purpose", "Formula", "Needs", "Defines",
+    ]  # fmt: skip
+    assert text_of(name).startswith("# Purpose: ")
+    assert text_of(name).endswith("\n")
+    assert text_of(name).isascii()  # LAMMPS warns of anything else
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_header_agrees_with_the_text(name: str) -> None:
+    """What it needs is used and not defined in it; what it defines is what its commands define."""
+    commands = commands_of(name)
+    read = set(re.findall(r"\$\{(\w+)\}", commands)) | set(re.findall(r"\bv_(\w+)", commands))
+    defined = [found[1] for found in DEFINITION.findall(commands) if found[2] != "delete"]
+    assert header_of(name, "Needs") == read - set(defined) - shared()
+    assert set(defined) - AGAIN.get(name, set()) == header_of(name, "Defines") - AGAIN.get(name, set())
+    assert [word for word, count in Counter(defined).items() if count > 1] == []
+    assert set(fragment(name).needs) == header_of(name, "Needs")
+    assert set(fragment(name).defines) == header_of(name, "Defines")
+
+
+def shared() -> set[str]:
+    """What the bodies and either kind of lower body define for every later fragment."""
+    plane, particles = header_of("rigid_plane", "Defines"), header_of("interaction", "Defines")
+    return {"plate_rest", "plate_displacement"} & header_of("bodies", "Defines") | (plane & particles)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_fixes_and_computes_are_named_after_their_fragment(name: str) -> None:
+    """`<effect>_<role>`; a step may redefine an effect's."""
+    owner = name.split("/")[-1].removesuffix("_opposite")
+    for kind, identity, _ in DEFINITION.findall(commands_of(name)):
+        if kind in ("fix", "compute") and identity not in AGAIN.get(name, set()):
+            assert identity.startswith(f"{owner}_")
+
+
+def test_steps_need_nothing_that_no_part_defines() -> None:
+    """What a step needs is a column of its rows, a loop variable, or of the method that has the step."""
+    of_method = {"force_tolerance", "minimiser_iterations"}
+    for name in NAMES:
+        if name.startswith("steps/"):
+            assert header_of(name, "Needs") <= LOOP_VARIABLES | of_method
+    for step, columns in STEP_COLUMNS.items():
+        assert set(columns) <= header_of(f"steps/{step}", "Needs")
+
+
+def test_no_id_is_defined_by_two_fragments_that_meet() -> None:
+    """Only the two kinds of lower body share names, and a deck has one of them."""
+    owners: dict[str, list[str]] = {}
+    for name in NAMES:
+        for word in header_of(name, "Defines"):
+            owners.setdefault(word, []).append(name)
+    twice = {word: who for word, who in owners.items() if len(who) > 1}
+    assert twice.pop("cantilever_start", None) in (None, ["cantilever", "steps/drive"])
+    assert set(map(tuple, twice.values())) <= {("interaction", "rigid_plane")}
+
+
+def test_every_effect_is_a_table_and_a_fragment() -> None:
+    """Scene table = effect = fragment, in the same order."""
+    assert tuple(EFFECTS) == SCENE_EFFECTS
+    for name in EFFECTS:
+        assert name in NAMES
+
+
+FULL = {
+    "horizontal": {},
+    "neighbours": {"stiffness": 0.3},
+    "damping": {"coefficient": "auto"},
+    "plate": {"free": ["x", "z"]},
+    "cantilever": {"stiffness": 0.5, "velocity": 0.01},
+    "bodies": {"bulk_stiffness_tangential": 0.5},
+    "experiment": {"kind": "slide", "normal_force": 0.1, "distance": 5.0},
+}
+
+
+@pytest.mark.parametrize("noise", [None, {"temperature": 1e-3, "seed": 1}])
+def test_every_contribution_brings_what_its_fragments_need(make_scene: MakeScene, noise: object) -> None:
+    """The effect's own fragment comes first, and its variables are named after it."""
+    scene = make_scene(**FULL, noise=noise)
+    settings = settings_for(scene)
+    for name in scene.effects:
+        part = EFFECTS[name](scene, settings)
+        assert part.name == name
+        assert part.fragments[:1] == ((name,) if (name, noise is None) != ("damping", False) else ())
+        for variable in part.variables:
+            assert variable.startswith((f"{name}_", "far_"))
+
+
+@pytest.fixture
+def fakes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A copy of the fragments which a test may change; the program reads it instead."""
+    folder = tmp_path / "fragments"
+    shutil.copytree(ROOT, folder)
+    monkeypatch.setattr(fragments_module, "files", lambda _: tmp_path)
+    fragment.cache_clear()
+    yield folder
+    fragment.cache_clear()
+
+
+def change(path: Path, old: str, new: str) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new), encoding="utf-8")
+
+
+@pytest.mark.parametrize("key", ["Purpose", "Formula", "Needs", "Defines"])
+def test_a_header_line_that_is_missing_raises(fakes: Path, key: str) -> None:
+    change(fakes / "noise.lmp", f"# {key}: ", "# ")
+    with pytest.raises(DeckError, match=f"fragment noise: the header has no line '# {key}: …'"):
+        fragment("noise")
+
+
+def test_a_fragment_that_uses_what_it_does_not_declare_raises(fakes: Path) -> None:
+    change(fakes / "damping.lmp", "# Needs: damping_coefficient", "# Needs: -")
+    with pytest.raises(DeckError, match="fragment damping: uses damping_coefficient"):
+        fragment("damping")
+
+
+def test_a_fragment_that_reads_an_undeclared_variable_by_v_raises(fakes: Path) -> None:
+    change(fakes / "plate.lmp", "f_plate_body[1][9]", "v_unheard_of*f_plate_body[1][9]")
+    with pytest.raises(DeckError, match="fragment plate: uses unheard_of"):
+        fragment("plate")
+
+
+def test_a_fragment_that_needs_what_it_does_not_use_raises(fakes: Path) -> None:
+    change(fakes / "damping.lmp", "# Needs: damping_coefficient", "# Needs: damping_coefficient time_step")
+    with pytest.raises(DeckError, match="fragment damping: its header needs time_step"):
+        fragment("damping")
+
+
+def with_part(monkeypatch: pytest.MonkeyPatch, part: Callable[[Scene, object], Contribution]) -> None:
+    monkeypatch.setitem(EFFECTS, "neighbours", part)
+
+
+def test_a_variable_used_but_not_defined_raises(make_scene: MakeScene, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = make_scene(neighbours={"stiffness": 0.3})
+    deck = Deck(scene, settings_for(scene))
+    with_part(monkeypatch, lambda s, t: replace(neighbours(s, t), variables={}))  # type: ignore[arg-type]
+    with pytest.raises(DeckError, match="used but not defined: neighbours_bond_coefficient"):
+        deck.head  # noqa: B018
+
+
+def test_a_variable_defined_but_not_used_raises(make_scene: MakeScene, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = make_scene(neighbours={"stiffness": 0.3})
+    deck = Deck(scene, settings_for(scene))
+    more = {"neighbours_bond_coefficient": "0.15", "neighbours_spare": "1"}
+    with_part(monkeypatch, lambda s, t: replace(neighbours(s, t), variables=more))  # type: ignore[arg-type]
+    with pytest.raises(DeckError, match="defined but not used: neighbours_spare"):
+        deck.head  # noqa: B018
+
+
+def test_a_variable_defined_twice_raises(make_scene: MakeScene, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = make_scene(neighbours={"stiffness": 0.3})
+    deck = Deck(scene, settings_for(scene))
+    more = {"neighbours_bond_coefficient": "0.15", "interaction_skin": "1"}
+    with_part(monkeypatch, lambda s, t: replace(neighbours(s, t), variables=more))  # type: ignore[arg-type]
+    with pytest.raises(DeckError, match="defined twice: interaction_skin"):
+        deck.head  # noqa: B018
+
+
+def test_an_id_defined_twice_raises(make_scene: MakeScene, fakes: Path) -> None:
+    """Two fragments that define one group: with the real text, LAMMPS would silently go on."""
+    change(fakes / "neighbours.lmp", "# Defines: -\n", "# Defines: lower (group)\ngroup           lower type 1\n")
+    scene = make_scene(neighbours={"stiffness": 0.3})
+    with pytest.raises(DeckError, match="defined twice: lower"):
+        Deck(scene, settings_for(scene)).head  # noqa: B018
+
+
+def test_one_interaction_and_one_plane_do_not_meet(make_scene: MakeScene, monkeypatch: pytest.MonkeyPatch) -> None:
+    """They define the same two names: a deck with both is refused."""
+    scene = make_scene(interaction=None, bodies={"lower": "rigid_plane"}, neighbours={"stiffness": 0.3})
+    both = make_scene()
+    part = interaction_effect(both, settings_for(both))
+    with_part(monkeypatch, lambda *_: part)
+    with pytest.raises(DeckError, match="defined twice: opposite_x, opposite_z"):
+        Deck(scene, settings_for(scene)).head  # noqa: B018
