@@ -99,8 +99,8 @@ def force_displacement_figure(
     if adhesion:
         axis.axhline(-adhesion, color=TENSION, linewidth=1.0, linestyle=":")
         axis.annotate(
-            f"$-F_A$ = \N{MINUS SIGN}{adhesion:.4g} FU", (0.0, -adhesion), xycoords=("axes fraction", "data"), xytext=(6, 5),
-            textcoords="offset points", ha="left", color=TENSION,
+            f"$-F_A$ = \N{MINUS SIGN}{adhesion:.4g} FU", (0.0, -adhesion), xycoords=("axes fraction", "data"),
+            xytext=(6, 5), textcoords="offset points", ha="left", color=TENSION,
         )  # fmt: skip
     axis.set_xlabel("displacement (LU), compression positive")
     axis.set_ylabel("force (FU), compression positive")

@@ -48,6 +48,7 @@ class DoubleExponential:
     attraction: Exponential | None = None
 
     def __post_init__(self) -> None:
+        """Check that one distance is force-free."""
         if self.attraction is None:
             return
         if self.attraction.range <= self.repulsion.range:
@@ -87,9 +88,9 @@ class DoubleExponential:
         return math.log(ratio) / (1.0 / self.repulsion.range - 1.0 / self.attraction.range)
 
     def cutoff_for(self, share: float) -> float:
-        """Distance [LU] beyond which the force stays below `share` of the longest term's at r₀ (without attraction: at 0).
+        """Distance [LU] beyond which the force is below `share` of that at r₀ (without attraction: at 0).
 
-        The far force falls as exp(−r/b), so the cutoff is r₀ + b ln(1/share).
+        The far force is that of the longest term and falls as exp(−r/b), so the cutoff is r₀ + b ln(1/share).
         """
         start = self.force_free_distance() if self.attraction is not None else 0.0
         return start + self.longest_range * math.log(1.0 / share)

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from analysis.atoms import atoms
-
     from workflow.campaign import Run, RunError, run, run_many, write_deck
     from workflow.scene import Scene, SceneError, read_scene, scene_from_dict
 

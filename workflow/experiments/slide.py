@@ -51,7 +51,8 @@ def slide(bench: Bench) -> Outcome:
 def slide_rows(scene: Scene, settings: Settings) -> tuple[int, int]:
     """(rows, timesteps of each) that bring the drive over the distance of a slide."""
     experiment, cantilever = scene.experiment, scene.cantilever
-    assert experiment.kind == "slide" and cantilever is not None
+    assert experiment.kind == "slide"
+    assert cantilever is not None
     rows = max(20, math.ceil(ROWS_PER_SPACING * experiment.distance / scene.bodies.spacing))
     return rows, max(1, round(experiment.distance / cantilever.velocity / settings.time_step / rows))
 

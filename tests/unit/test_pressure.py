@@ -1,0 +1,126 @@
+"""Pressure and what is read off it, against sums, the paper's own number, and brute force over all pairs."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from analysis.pressure import (
+    Profile,
+    end_pressure_share,
+    gap_to_lower,
+    interpenetration,
+    mean_pressure,
+    normal_force,
+    pressure_profile,
+    smallest_distance,
+)
+
+ROUND_OFF = 1e-14  # relative; a few operations on doubles
+TABLE_DIGITS = 0.5  # MPa; the 784 MPa are given to three digits
+
+
+def profile(x: np.ndarray, pressure: np.ndarray) -> Profile:
+    zero = np.zeros_like(x)
+    return Profile(x, zero, zero, pressure, zero)
+
+
+def test_a_profile_is_sorted_and_per_spacing_and_keeps_signs() -> None:
+    made = pressure_profile([2.0, 0.0, 1.0], [5.0, 3.0, 4.0], [-0.2, -0.0, -0.1], [0.3, 0.1, 0.2], [6.0, -2.0, 4.0], 0.5)
+    np.testing.assert_array_equal(made.x, [0.0, 1.0, 2.0])
+    np.testing.assert_array_equal(made.z_upper, [3.0, 4.0, 5.0])
+    np.testing.assert_array_equal(made.z_lower, [0.0, -0.1, -0.2])
+    np.testing.assert_array_equal(made.pressure, [-4.0, 8.0, 12.0])
+    np.testing.assert_array_equal(made.shear, [0.2, 0.4, 0.6])
+
+
+def test_the_profile_does_not_change_with_the_order_of_the_particles() -> None:
+    rng = np.random.default_rng(1)
+    columns = [np.sort(rng.normal(size=20)), *rng.normal(size=(4, 20))]
+    order = rng.permutation(20)
+    first, second = pressure_profile(*columns, 1.0), pressure_profile(*(c[order] for c in columns), 1.0)
+    for name in ("x", "z_lower", "z_upper", "pressure", "shear"):
+        np.testing.assert_array_equal(getattr(first, name), getattr(second, name))
+
+
+@pytest.mark.parametrize("spacing", [0.0, -1.0, math.nan])
+def test_a_spacing_must_be_positive(spacing: float) -> None:
+    with pytest.raises(ValueError, match="spacing"):
+        pressure_profile([0.0], [0.0], [0.0], [0.0], [0.0], spacing)
+
+
+def test_what_is_not_a_profile_is_refused() -> None:
+    with pytest.raises(ValueError, match="finite"):
+        pressure_profile([0.0, 1.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, math.nan], 1.0)
+    with pytest.raises(ValueError, match="equally long"):
+        pressure_profile([0.0, 1.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0], 1.0)
+    with pytest.raises(ValueError, match="sorted"):
+        profile(np.array([1.0, 0.0]), np.zeros(2))
+
+
+def test_the_normal_force_is_the_sum_of_the_forces() -> None:
+    force = np.array([-0.5, 1.25, 3.0, -0.5])
+    made = pressure_profile(np.arange(4), force, force, force, force, 0.25)
+    assert normal_force(made, 0.25) == pytest.approx(3.25, rel=ROUND_OFF)
+
+
+def test_the_mean_pressure_is_that_of_the_paper() -> None:
+    """R = 1000, a = 35, Table 1's first row: about 800 MPa; the units from W and E* as in Eq. (9)."""
+    radius, zero_load_radius, adhesion_force, a = 1000.0, 28.53, 1.47, 35.0
+    force_over_length = 1.0 * 3.0 * math.pi * radius / adhesion_force  # N/m per FU/LU, from gamma = 1 N/m
+    stress = 200e9 * zero_load_radius**3 / (3.0 * adhesion_force * radius)  # Pa per FU/LU^2, from E* = 200 GPa
+    assert force_over_length / stress == pytest.approx(6.1e-9, rel=0.01)  # Table 1's LU, printed with two digits
+    ratio = a / zero_load_radius
+    load = adhesion_force * (4.0 * ratio**3 - 4.0 * ratio**1.5)
+    x = np.linspace(-20.0, 20.0, 9)
+    made = profile(x, np.full(9, load / 9.0 / 2.0))
+    assert mean_pressure(made, 2.0, a) * stress / 1e6 == pytest.approx(784.0, abs=TABLE_DIGITS)
+
+
+def test_a_contact_without_extent_has_no_mean_pressure() -> None:
+    with pytest.raises(ValueError, match="above 0"):
+        mean_pressure(profile(np.arange(3.0), np.ones(3)), 1.0, 0.0)
+
+
+def test_the_gap_is_exact_over_a_tilted_plane_in_any_order() -> None:
+    rng = np.random.default_rng(2)
+    x_low = rng.permutation(np.linspace(-5.0, 5.0, 11))
+    x, z = rng.uniform(-5.0, 5.0, 30), rng.normal(size=30)
+    gap = gap_to_lower(x, z, x_low, 0.3 * x_low - 1.0)
+    np.testing.assert_allclose(gap, z - (0.3 * x - 1.0), atol=1e-14)
+
+
+def test_a_particle_beyond_the_lower_body_has_no_gap() -> None:
+    gap = gap_to_lower([-1.5, -1.0, 1.0, 1.5], np.ones(4), [-1.0, 1.0], [0.0, 0.0])
+    np.testing.assert_array_equal(gap, [math.nan, 1.0, 1.0, math.nan])
+
+
+def test_the_smallest_distance_is_that_of_all_pairs() -> None:
+    rng = np.random.default_rng(3)
+    upper, lower = rng.uniform(0.0, 10.0, (2, 40)), rng.uniform(0.0, 10.0, (2, 25))
+    every = [math.hypot(xu - xl, zu - zl) for xu, zu in upper.T for xl, zl in lower.T]
+    assert smallest_distance(*upper, *lower) == pytest.approx(min(every), rel=ROUND_OFF)
+
+
+def test_no_distance_to_no_body() -> None:
+    with pytest.raises(ValueError, match="in each"):
+        smallest_distance([0.0], [0.0], [], [])
+
+
+def test_particles_below_the_lower_surface_are_found_with_their_depth() -> None:
+    x_low = np.arange(5.0)
+    found = interpenetration([-3.0, 0.5, 2.5, 9.0], [-7.0, -0.25, 1.0, -7.0], x_low, np.zeros(5))
+    assert (found.occurs, found.depth, found.particles) == (True, 0.25, 1)
+    apart = interpenetration(x_low, x_low + 0.1, x_low, x_low)
+    assert (apart.occurs, apart.depth, apart.particles) == (False, 0.0, 0)
+    beside = interpenetration([7.0], [-1.0], x_low, np.zeros(5))
+    assert (beside.occurs, beside.depth, beside.particles) == (False, 0.0, 0)
+
+
+def test_the_share_at_the_ends_counts_tension_and_compression() -> None:
+    x = np.arange(4.0)
+    assert end_pressure_share(profile(x, np.array([0.1, -4.0, 2.0, -0.2]))) == pytest.approx(0.05, rel=ROUND_OFF)
+    assert end_pressure_share(profile(x, np.array([0.0, 1.0, 2.0, 2.0]))) == 1.0
+    assert end_pressure_share(profile(x, np.zeros(4))) == 0.0

@@ -1,0 +1,256 @@
+"""Contact radii against the closed form of independent pairs, whose radius is known whatever the lattice."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from analysis.pressure import Profile
+from analysis.radius import compressive_radius, tensile_radius
+
+BODY_RADIUS = 1000.0  # LU
+CASES = 200
+COVERED = 0.95  # share of cases in which the uncertainty must cover the error; 0.96 to 1 measured on 300 cases of each kind
+MEDIAN_ERROR = 1e-3  # spacings; 1e-4 measured: the degree of the interpolant limits it
+SNAP_ERROR = 0.1  # spacings; 0.03 measured: a particle's snap is seen on the lattice only
+TYPICAL_ERROR = 0.15  # spacings, 95 % of cases; 0.04 measured: dips of the shortest range are three spacings wide
+ROUND_OFF = 1e-9  # LU: roots of a parabola through three doubles
+
+
+def profile(x: np.ndarray, pressure: np.ndarray) -> Profile:
+    zero = np.zeros_like(x)
+    return Profile(x, zero, zero, pressure, zero)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two exponentials with two springs in series: G = r - 2 f(r)/k, f = A/a exp(-r/a) - B/b exp(-r/b), B = 1."""
+
+    repulsion: float
+    short: float
+    long: float
+    stiffness: float
+
+    def force(self, r: np.ndarray | float) -> np.ndarray | float:
+        return self.repulsion / self.short * np.exp(-r / self.short) - np.exp(-r / self.long) / self.long
+
+    def where(self, order: int) -> float:
+        """Distance at which the first (largest tension) or second derivative (steepest) of the force is zero."""
+        power = 1 + order
+        return math.log(self.repulsion * (self.long / self.short) ** power) * self.short * self.long / (self.long - self.short)
+
+    def undeformed(self, r: np.ndarray | float) -> np.ndarray | float:
+        return r - 2.0 * self.force(r) / self.stiffness
+
+    def tension(self, gap: np.ndarray) -> np.ndarray:
+        """Force at each undeformed gap, when unloading: a particle that can snap stays in contact until it must."""
+        fold = self.where(2)
+        stays = np.linspace(-6.0 * self.long, fold, 4000)
+        stays = stays[: int(np.argmax(self.undeformed(stays))) + 1]
+        leaves = np.linspace(fold, 40.0 * self.long, 8000)
+        leaves = leaves[int(np.argmin(self.undeformed(leaves))) :]
+        inside = gap <= self.undeformed(stays[-1])
+        low = np.where(inside, stays[0], leaves[0])
+        high = np.where(inside, stays[-1], np.maximum(leaves[-1], 1.1 * gap + 1.0))
+        for _ in range(60):  # bisection: G rises with r on both branches
+            middle = 0.5 * (low + high)
+            above = self.undeformed(middle) > gap
+            low, high = np.where(above, low, middle), np.where(above, middle, high)
+        return np.asarray(self.force(0.5 * (low + high)))
+
+
+def random_pair(rng: np.random.Generator, snaps: bool) -> Pair:
+    long = float(np.exp(rng.uniform(math.log(0.2), math.log(2.0))))
+    pair = Pair(rng.uniform(1.0, 3.0), long / rng.uniform(1.5, 4.0), long, 1.0)
+    r = pair.where(2)
+    steepest = -pair.repulsion / pair.short**2 * math.exp(-r / pair.short) + math.exp(-r / long) / long**2
+    share = rng.uniform(1.02, 3.0) if snaps else rng.uniform(0.05, 0.98)
+    return Pair(pair.repulsion, pair.short, long, 2.0 * steepest / share)
+
+
+def random_case(rng: np.random.Generator, snaps: bool) -> tuple[np.ndarray, np.ndarray, float]:
+    """Places, pressures and true radius of a contact whose lattice lies anywhere."""
+    pair = random_pair(rng, snaps)
+    radius = rng.uniform(5.0 if snaps else 0.0, 80.0)
+    apex = float(pair.undeformed(pair.where(1))) - radius**2 / (2.0 * BODY_RADIUS)
+    x = np.arange(-130.0, 131.0) + rng.uniform(-0.5, 0.5)
+    return x, pair.tension(apex + x**2 / (2.0 * BODY_RADIUS)), radius
+
+
+def errors(snaps: bool, noise: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Error and estimated uncertainty over random cases; noise relative to the largest tension."""
+    rng = np.random.default_rng(seed)
+    rows = []
+    for _ in range(CASES):
+        x, pressure, radius = random_case(rng, snaps)
+        found = tensile_radius(profile(x, pressure + noise * pressure.min() * rng.normal(size=x.size)))
+        rows.append((abs(found.value - radius), found.uncertainty))
+    return np.array(rows)[:, 0], np.array(rows)[:, 1]
+
+
+@pytest.mark.parametrize(("snaps", "median"), [(False, MEDIAN_ERROR), (True, SNAP_ERROR)])
+def test_the_tensile_radius_is_that_of_the_closed_form_wherever_the_lattice_lies(snaps: bool, median: float) -> None:
+    error, uncertainty = errors(snaps, 0.0, 11)
+    assert np.median(error) < median
+    assert snaps or np.quantile(error, 0.95) < TYPICAL_ERROR
+    assert np.mean(error <= uncertainty) >= COVERED
+
+
+@pytest.mark.parametrize("noise", [1e-6, 1e-4, 1e-3, 1e-2])
+def test_the_uncertainty_covers_the_error_of_a_noisy_profile(noise: float) -> None:
+    error, uncertainty = errors(False, noise, 12)
+    assert np.mean(error <= uncertainty) >= COVERED
+
+
+def test_the_estimate_is_no_worse_than_a_parabola() -> None:
+    rng = np.random.default_rng(13)
+    ours, parabola = [], []
+    for _ in range(CASES):
+        x, p, radius = random_case(rng, snaps=False)
+        if radius < 5.0:
+            continue
+        ours.append(tensile_radius(profile(x, p)).value - radius)
+        vertices = []
+        for side in (np.flatnonzero(x < 0.0), np.flatnonzero(x > 0.0)):
+            i = int(side[np.argmin(p[side])])
+            vertices.append(x[i] + 0.5 * (p[i - 1] - p[i + 1]) / (p[i - 1] - 2.0 * p[i] + p[i + 1]))
+        parabola.append(0.5 * (vertices[1] - vertices[0]) - radius)
+    assert np.sqrt(np.mean(np.square(ours))) < 0.5 * np.sqrt(np.mean(np.square(parabola)))
+
+
+def smooth(x: np.ndarray, left: float, right: float) -> np.ndarray:
+    """A pressure with its two minima at left and right: dp/dx ~ -(x - left)(x - middle)(x - right), then fading."""
+    middle, half = 0.5 * (left + right), 0.5 * (right - left)
+    t = (x - middle) / half
+    return ((t**2 - 1.0) ** 2 - 1.5) * np.exp(-0.5 * np.maximum(0.0, np.abs(t) - 1.3) ** 2 * 40.0)
+
+
+def test_the_contact_need_not_be_centred() -> None:
+    x = np.arange(-60.0, 61.0)
+    found = tensile_radius(profile(x, smooth(x, -8.3, 17.9)))
+    assert (found.left, found.right) == (pytest.approx(-8.3, abs=1e-6), pytest.approx(17.9, abs=1e-6))
+    assert found.value == pytest.approx(13.1, abs=1e-6)
+    assert not found.reaches_end
+
+
+def test_the_radius_scales_with_length_and_not_with_force() -> None:
+    x = np.arange(-60.0, 61.0)
+    p = smooth(x, -12.3, 12.3)
+    once, scaled = tensile_radius(profile(x, p)), tensile_radius(profile(3.0 * x + 7.0, 1e-9 * p))
+    assert scaled.value == pytest.approx(3.0 * once.value, rel=1e-9)
+    assert scaled.left == pytest.approx(3.0 * once.left + 7.0, rel=1e-9)
+
+
+def test_the_mirror_image_has_the_same_radius() -> None:
+    x, p, _ = random_case(np.random.default_rng(14), snaps=True)
+    found, mirrored = tensile_radius(profile(x, p)), tensile_radius(profile(-x[::-1], p[::-1]))
+    assert mirrored.value == pytest.approx(found.value, rel=1e-9)
+    assert mirrored.left == pytest.approx(-found.right, rel=1e-9)
+
+
+def test_uneven_places_do_not_matter() -> None:
+    rng = np.random.default_rng(15)
+    x = np.arange(-60.0, 61.0) + rng.uniform(-0.2, 0.2, 121)
+    assert tensile_radius(profile(x, smooth(x, -20.0, 20.0))).value == pytest.approx(20.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.02, 0.3, 0.5])
+def test_one_tensile_spot_has_no_radius(offset: float) -> None:
+    x = np.arange(-40.0, 41.0) + offset
+    found = tensile_radius(profile(x, -np.exp(-(x**2) / 200.0)))
+    assert found.value == pytest.approx(0.0, abs=1e-6)
+    assert found.left == pytest.approx(0.0, abs=1e-4)
+
+
+def test_two_equal_particles_share_the_minimum() -> None:
+    x = np.arange(-30.0, 31.0)
+    p = 1.0 - 2.0 * np.exp(-((np.abs(x) - 10.5) ** 2) / 8.0)
+    assert p[40] == p[41]
+    found = tensile_radius(profile(x, p))
+    assert found.value == pytest.approx(10.5, abs=max(found.uncertainty, 1e-3))
+
+
+def test_a_jump_leaves_half_a_spacing_of_doubt() -> None:
+    x = np.arange(-20.0, 21.0)
+    found = tensile_radius(profile(x, np.where(np.abs(x) <= 8.0, 1.0 - 2.0 * np.abs(x) / 8.0, 0.0)))
+    assert found.right == 8.5
+    assert 0.5 <= found.uncertainty <= 1.0
+
+
+def test_a_chain_that_ends_in_the_contact_says_so() -> None:
+    x = np.arange(-10.0, 11.0)
+    found = tensile_radius(profile(x, 1.0 - x**2 / 50.0))
+    assert found.reaches_end
+    assert (found.left, found.right, found.value) == (-10.0, 10.0, 10.0)
+    assert found.uncertainty >= 1.0
+
+
+@pytest.mark.parametrize("pressure", [np.zeros(9), np.ones(9), np.array([1.0, *np.full(8, -1e-14)])])
+def test_no_tension_is_an_error(pressure: np.ndarray) -> None:
+    with pytest.raises(ValueError, match="no particle carries tension"):
+        tensile_radius(profile(np.arange(9.0), pressure))
+
+
+@pytest.mark.parametrize("radius_of", [tensile_radius, compressive_radius])
+def test_a_radius_needs_particles_with_numbers(radius_of: Callable[[Profile], object]) -> None:
+    with pytest.raises(ValueError, match="at least 3"):
+        radius_of(profile(np.arange(2.0), np.ones(2)))
+    with pytest.raises(ValueError, match="finite"):
+        radius_of(profile(np.arange(3.0), np.array([0.0, math.nan, 0.0])))
+
+
+def layer(x: np.ndarray, radius: float, centre: float = 0.0) -> np.ndarray:
+    """Springs under a parabola: p = k/s (d - x²/2R) where positive, d = a²/2R."""
+    return 0.8 * np.maximum(0.0, radius**2 - (x - centre) ** 2) / (2.0 * BODY_RADIUS)
+
+
+def test_the_compressive_radius_of_a_layer_of_springs_is_exact() -> None:
+    rng = np.random.default_rng(16)
+    for radius in rng.uniform(4.0, 60.0, CASES):
+        x = np.arange(-80.0, 81.0) + rng.uniform(-0.5, 0.5)
+        found = compressive_radius(profile(x, layer(x, radius, centre=3.3)))
+        assert found.value == pytest.approx(radius, abs=ROUND_OFF)
+        assert found.left == pytest.approx(3.3 - radius, abs=ROUND_OFF)
+        assert abs(found.value - radius) <= found.uncertainty < 1e-6
+        assert not found.reaches_end
+
+
+@pytest.mark.parametrize("noise", [1e-3, 1e-2])
+def test_the_uncertainty_covers_a_noisy_layer(noise: float) -> None:
+    rng = np.random.default_rng(17)
+    covered = 0
+    for radius in rng.uniform(1.0, 60.0, CASES):
+        x = np.arange(-80.0, 81.0) + rng.uniform(-0.5, 0.5)
+        found = compressive_radius(profile(x, layer(x, radius) * (1.0 + noise * rng.normal(size=x.size))))
+        covered += abs(found.value - radius) <= found.uncertainty
+    assert covered >= COVERED * CASES
+
+
+@pytest.mark.parametrize("loaded", [1, 2])
+def test_few_loaded_particles_leave_half_a_spacing_of_doubt(loaded: int) -> None:
+    x = np.arange(-5.0, 6.0)
+    p = np.where(np.abs(x - 0.5 * (loaded - 1)) <= 0.5 * loaded - 0.25, 1.0, 0.0)
+    found = compressive_radius(profile(x, p))
+    assert np.count_nonzero(p) == loaded
+    assert (found.value, found.uncertainty) == (0.5 * loaded, 0.5)
+
+
+def test_no_load_has_no_radius() -> None:
+    found = compressive_radius(profile(np.arange(-5.0, 6.0), np.zeros(11)))
+    assert (found.value, found.uncertainty, found.reaches_end) == (0.0, 0.5, False)
+
+
+def test_a_chain_loaded_to_its_end_says_so() -> None:
+    x = np.arange(-5.0, 6.0)
+    found = compressive_radius(profile(x, layer(x, 30.0)))
+    assert found.reaches_end
+    assert found.value == 5.0
+
+
+def test_tension_has_no_compressive_radius() -> None:
+    with pytest.raises(ValueError, match="carry tension"):
+        compressive_radius(profile(np.arange(3.0), np.array([-0.1, 1.0, -0.1])))
