@@ -11,7 +11,7 @@ LOCKED := $(VENV)/.locked
 READY := $(VENV)/.ready
 
 # An environment that was copied from another folder, or whose Python has gone, is built anew.
-ifneq ($(shell test -x $(BIN)/python && test "$$(cat $(READY) 2>/dev/null)" = "$$PWD" && echo whole),whole)
+ifneq ($(shell test -x $(BIN)/python && test "$$(cat $(LOCKED) 2>/dev/null)" = "$$(pwd -P)" && echo whole),whole)
 $(LOCKED): FORCE
 endif
 
@@ -39,8 +39,8 @@ clean: ## remove .venv and the caches; runs/ stays
 	find workflow analysis potentials lammps_inputs tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(LOCKED): requirements.lock
-	@command -v "$(PYTHON)" >/dev/null || { echo 'contact1d needs Python 3.11 or newer; there is no $(PYTHON). \
-	If it has another name: make PYTHON=/path/to/python3' >&2; exit 1; }
+	@command -v "$(PYTHON)" >/dev/null || { echo "contact1d needs Python 3.11 or newer; \
+	there is no $(PYTHON). If it has another name: make PYTHON=/path/to/python3" >&2; exit 1; }
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "contact1d needs Python 3.11 or newer; \
 	$(PYTHON) is $$("$(PYTHON)" --version 2>&1). If a newer one is there: make PYTHON=python3.12" >&2; exit 1; }
 	@"$(PYTHON)" -c 'import ensurepip, venv' 2>/dev/null || { echo "$(PYTHON) lacks its venv module; \
@@ -48,8 +48,8 @@ $(LOCKED): requirements.lock
 	@echo 'Setting up .venv from requirements.lock: about a minute, once.'
 	@"$(PYTHON)" -m venv --clear $(VENV)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
-	@touch $@
+	@pwd -P > $@
 
 $(READY): $(LOCKED) pyproject.toml
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
-	@pwd > $@
+	@touch $@

@@ -73,7 +73,7 @@ class WorkerProcess:
     def __init__(self) -> None:
         """Start a worker; LAMMPS is loaded at its first session."""
         self._connection, theirs = Pipe()
-        self._output = tempfile.TemporaryFile()
+        self._output = tempfile.TemporaryFile()  # noqa: SIM115 (open as long as the worker lives)
         with tempfile.TemporaryFile() as file:
             file.truncate(16)
             self._board_map = mmap.mmap(file.fileno(), 16)

@@ -102,7 +102,8 @@ class ChainSolver:
     def _relax(self, u: Floats, displacement: float) -> Floats:
         """Return the minimum downhill from u at this displacement, shape (dofs,)."""
         surface, law = self.surface, self.model.interaction
-        assert surface is not None and law is not None
+        assert surface is not None
+        assert law is not None
         return minimise(
             lambda v: surface.energy_gradient(v, displacement),
             lambda v: surface.hessian(v, displacement),

@@ -63,3 +63,31 @@ def test_what_is_not_there_is_said(folder: Path, tmp_path: Path) -> None:
         atoms(tmp_path)
     with pytest.raises(IndexError, match="holds 2 states"):
         atoms(folder, 2)
+
+
+@pytest.mark.parametrize("kept", [0.1, 0.5, 0.999])
+def test_a_dump_that_is_cut_short_gives_no_atoms(folder: Path, tmp_path: Path, kept: float) -> None:
+    text = (folder / "states.lammpstrj").read_text()
+    first = text[: text.index("ITEM: TIMESTEP", 1)]
+    (tmp_path / "states.lammpstrj").write_text(first[: int(kept * len(first))])
+    with pytest.raises(ValueError, match="cut short"):
+        atoms(tmp_path)
+
+
+def test_a_dump_without_the_forces_is_refused_by_their_names(folder: Path, tmp_path: Path) -> None:
+    text = (folder / "states.lammpstrj").read_text()
+    (tmp_path / "states.lammpstrj").write_text(text.replace("opposite_fx opposite_fz", "fx fz"))
+    with pytest.raises(ValueError, match="no column opposite_fx, opposite_fz"):
+        atoms(tmp_path)
+
+
+def test_atoms_come_in_the_order_of_their_ids_and_have_no_energy(folder: Path, tmp_path: Path) -> None:
+    lines = (folder / "states.lammpstrj").read_text().splitlines()
+    second = lines.index("ITEM: TIMESTEP", 1)
+    lines = lines[:9] + lines[9:second][::-1]
+    (tmp_path / "states.lammpstrj").write_text("\n".join([*lines, ""]))
+    state, reference = atoms(tmp_path), atoms(folder, 0)
+    assert state.calc is None
+    assert set(state.get_chemical_symbols()) == {"X"}
+    for name, values in reference.arrays.items():
+        np.testing.assert_array_equal(state.arrays[name], values)

@@ -12,7 +12,9 @@ import workflow
 from workflow.campaign import FolderError, RunError, prepare, run, run_many, write_deck
 from workflow.scene import Scene, scene_from_dict
 
-ALWAYS = set(["results.json", "curve.csv", "profile.csv", "scene.toml", "system.data", "in.lammps", "log.lammps", "curve.txt"])
+ALWAYS = {
+    "results.json", "curve.csv", "profile.csv", "scene.toml", "system.data", "in.lammps", "log.lammps", "curve.txt",
+}  # fmt: skip
 
 
 def plane(**experiment: object) -> Scene:

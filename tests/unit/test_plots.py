@@ -1,0 +1,162 @@
+"""Figures: what is drawn is what was measured, beside theories written out here; every file is whole."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from analysis import plots
+from analysis.curve import Curve
+from analysis.pressure import Profile
+
+ROUND_OFF = 1e-12  # relative; closed forms of a few operations
+GRID = 2e-3  # of F_A; the theory is drawn with 400 points
+PNG = b"\x89PNG\r\n\x1a\n"
+
+BODY_RADIUS, ADHESION, ZERO_LOAD = 1000.0, 1.5, 28.0
+MARKS = {"adhesion_force": ADHESION, "zero_load_radius": ZERO_LOAD}
+
+
+def profile(depth: float) -> Profile:
+    x = np.arange(-60.0, 61.0)
+    pressure = depth * np.exp(-(x**2) / 200.0) - 0.02 * np.exp(-((np.abs(x) - 28.0) ** 2) / 50.0)
+    return Profile(x, 0.0 * x, 0.0 * x, pressure, 0.0 * x)
+
+
+@pytest.fixture
+def curve() -> Curve:
+    down, up = np.linspace(-0.1, 0.3, 30), np.linspace(0.3, -0.3, 40)
+    displacement = np.concatenate([down, up])
+    radius = np.concatenate([100.0 * np.sqrt(down + 0.1), 60.0 * np.sqrt(up + 0.3)])
+    radius[-1] = math.nan
+    force = np.concatenate([4.0 * down - 0.5, 5.0 * up])
+    branch = ["loading"] * 30 + ["unloading"] * 40
+    return Curve(displacement.tolist(), force.tolist(), radius.tolist(), [0.2] * 70, branch)
+
+
+def lines(axis: object) -> dict[str, np.ndarray]:
+    """Points of each line with a label."""
+    drawn = {line.get_label(): np.asarray(line.get_xydata()) for line in axis.get_lines()}  # type: ignore[attr-defined]
+    return {label: points for label, points in drawn.items() if not label.startswith("_")}
+
+
+def test_every_particle_that_carries_pressure_is_a_bar_of_its_sign() -> None:
+    shown = profile(0.05)
+    (axis,) = plots.pressure_figure({"zero_load": shown}, {"zero_load": 28.0}).axes
+    bars = {round(bar.get_x() + 0.5 * bar.get_width()): bar for bar in axis.patches}
+    for x, p in zip(shown.x, shown.pressure, strict=True):
+        if abs(p) > 0.01 * shown.pressure.max():
+            assert bars[round(x)].get_height() == p
+            assert (bars[round(x)].get_facecolor() == bars[0].get_facecolor()) == (p > 0.0)
+    assert axis.get_ylabel() == "pressure (FU/LU)"
+    assert axis.get_xlabel() == "x (LU)"
+
+
+def test_the_contact_radius_is_marked_on_both_sides_and_named() -> None:
+    radii = {"zero_load": 28.25, "critical": 15.5}
+    figure = plots.pressure_figure({"zero_load": profile(0.05), "critical": profile(-0.01)}, radii)
+    for axis, (name, radius) in zip(figure.axes, radii.items(), strict=True):
+        places = sorted(line.get_xdata()[0] for line in axis.get_lines() if len(set(line.get_xdata())) == 1)
+        assert places == [-radius, radius]
+        assert name.replace("_", " ") in axis.get_title(loc="left")
+        assert f"{radius:.2f} LU" in axis.get_title(loc="left")
+
+
+@pytest.mark.parametrize("radii", [{}, {"final": math.nan}])
+def test_a_state_without_contact_says_so(radii: dict[str, float]) -> None:
+    x = np.arange(5.0)
+    (axis,) = plots.pressure_figure({"final": Profile(x, x, x, 0.0 * x, x)}, radii).axes
+    assert [text.get_text() for text in axis.texts] == ["no contact"]
+
+
+def test_the_branches_are_drawn_as_measured(curve: Curve) -> None:
+    (axis,) = plots.force_displacement_figure(curve, {}).axes
+    drawn = lines(axis)
+    assert set(drawn) == {"loading", "unloading"}
+    points = np.column_stack([curve.displacement, curve.force])
+    np.testing.assert_array_equal(drawn["loading"], points[:30])
+    np.testing.assert_array_equal(drawn["unloading"], points[30:][::-1])
+    assert "(LU)" in axis.get_xlabel()
+    assert "(FU)" in axis.get_ylabel()
+
+
+def test_the_adhesion_force_is_marked_where_there_is_one(curve: Curve) -> None:
+    (axis,) = plots.force_displacement_figure(curve, MARKS).axes
+    assert "1.5 FU" in axis.texts[0].get_text()
+    assert [*axis.get_lines()[-1].get_ydata()] == [-ADHESION, -ADHESION]
+    assert not plots.force_displacement_figure(curve, {}).axes[0].texts
+
+
+def test_jkr_over_displacement_obeys_its_own_equations() -> None:
+    """Two spheres of R, effective R/2 and radii a/2, with E* and W from F_A and a₀: Johnson, Kendall and Roberts 1971."""
+    displacement, force = plots.jkr_curve(ADHESION, ZERO_LOAD, BODY_RADIUS)
+    effective, radius = BODY_RADIUS / 2.0, ZERO_LOAD / 2.0
+    work = ADHESION / (1.5 * math.pi * effective)
+    modulus = 4.5 * math.pi * work * effective**2 / radius**3
+    a = np.linspace(0.05, 1.3, 400) * radius
+    np.testing.assert_allclose(displacement, a**2 / effective - np.sqrt(2.0 * math.pi * a * work / modulus), atol=1e-15)
+    expected = 4.0 * modulus * a**3 / (3.0 * effective) - np.sqrt(8.0 * math.pi * modulus * work * a**3)
+    np.testing.assert_allclose(force, expected, atol=ROUND_OFF)
+    assert force.min() == pytest.approx(-ADHESION, abs=GRID * ADHESION)
+
+
+def test_hertz_is_that_of_two_spheres() -> None:
+    """c_n = G/2(1−ν), Eq. (3); two equal spheres: effective radius R/2, E* = G/(1−ν) = 2 c_n."""
+    displacement, force = plots.hertz_curve(2.0, BODY_RADIUS, 0.83)
+    assert displacement[-1] == 2.0
+    expected = 4.0 / 3.0 * (2.0 * 0.83) * np.sqrt(BODY_RADIUS / 2.0) * displacement**1.5
+    np.testing.assert_allclose(force, expected, rtol=ROUND_OFF)
+
+
+def test_a_theory_is_shown_beside_the_curve_and_within_its_range(curve: Curve) -> None:
+    theory = ("JKR", *plots.jkr_curve(ADHESION, ZERO_LOAD, BODY_RADIUS))
+    drawn = lines(plots.force_displacement_figure(curve, MARKS, theory).axes[0])
+    assert drawn["JKR"][:, 1].max() <= max(curve.force) + 0.05 * np.ptp(curve.force)
+    assert drawn["JKR"][:, 0].min() >= min(curve.displacement)
+
+
+def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(curve: Curve) -> None:
+    (axis,) = plots.force_radius_figure(curve, ADHESION, ZERO_LOAD).axes
+    drawn = lines(axis)
+    run = drawn.pop("this run, unloading")
+    assert len(run) == 39
+    np.testing.assert_allclose(run[:, 0] * ZERO_LOAD, curve.contact_radius[30:69], rtol=ROUND_OFF)
+    np.testing.assert_allclose(run[:, 1] * ADHESION, curve.force[30:69], rtol=ROUND_OFF)
+    jkr, barquins = drawn["JKR"], drawn["Barquins (2D)"]
+    np.testing.assert_allclose(jkr[:, 1], 4.0 * jkr[:, 0] ** 3 - 4.0 * jkr[:, 0] ** 1.5, atol=ROUND_OFF)
+    assert jkr[:, 1].min() == pytest.approx(-1.0, abs=GRID)
+    assert barquins[:, 1].min() == pytest.approx(-1.0, abs=GRID)
+    assert barquins[np.argmin(barquins[:, 1]), 0] == pytest.approx(0.397, abs=0.01)  # (1/4)^(2/3), grid of 400
+
+
+def test_friction_is_over_the_way_of_the_drive_with_the_normal_force_below() -> None:
+    columns = {"drive": [0.0, 0.5, 1.0], "friction": [0.0, 0.2, 0.1], "normal_force": [1.0, 1.1, 0.9]}
+    upper, lower = plots.friction_figure(columns).axes
+    np.testing.assert_array_equal(upper.get_lines()[0].get_ydata(), columns["friction"])
+    np.testing.assert_array_equal(lower.get_lines()[0].get_xdata(), columns["drive"])
+    assert [upper.get_ylabel(), lower.get_ylabel()] == ["friction (FU)", "normal force (FU)"]
+
+
+def test_every_figure_is_a_whole_file(curve: Curve, tmp_path: Path) -> None:
+    plots.plot_pressure({"final": profile(0.05)}, {"final": 28.0}, tmp_path / "pressure.png")
+    plots.plot_force_displacement(curve, MARKS, tmp_path / "force_displacement.png")
+    plots.plot_force_radius(curve, ADHESION, ZERO_LOAD, tmp_path / "force_radius.png")
+    columns = {"drive": [0.0, 1.0], "friction": [0.0, 1.0], "normal_force": [1.0, 1.0]}
+    plots.plot_friction(columns, tmp_path / "friction.png")
+    files = sorted(tmp_path.iterdir())
+    assert [f.name for f in files] == ["force_displacement.png", "force_radius.png", "friction.png", "pressure.png"]
+    for file in files:
+        data = file.read_bytes()
+        assert data.startswith(PNG)
+        assert data[-8:-4] == b"IEND"
+
+
+def test_figures_leave_no_global_state() -> None:
+    code = "import sys; from analysis import plots; assert 'matplotlib' not in sys.modules;" \
+        "plots._figure((1, 1)); assert 'matplotlib.pyplot' not in sys.modules"
+    subprocess.run([sys.executable, "-W", "error", "-c", code], check=True)
