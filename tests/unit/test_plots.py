@@ -48,11 +48,13 @@ def lines(axis: object) -> dict[str, np.ndarray]:
 def test_every_particle_that_carries_pressure_is_a_bar_of_its_sign() -> None:
     shown = profile(0.05)
     (axis,) = plots.pressure_figure({"zero_load": shown}, {"zero_load": 28.0}).axes
-    bars = {round(bar.get_x() + 0.5 * bar.get_width()): bar for bar in axis.patches}
+    (bars,) = axis.collections
+    corners = {round(path.vertices[:4, 0].mean()): path.vertices[:4, 1] for path in bars.get_paths()}
+    colours = dict(zip(corners, map(tuple, bars.get_facecolors()), strict=True))
     for x, p in zip(shown.x, shown.pressure, strict=True):
         if abs(p) > 0.01 * shown.pressure.max():
-            assert bars[round(x)].get_height() == p
-            assert (bars[round(x)].get_facecolor() == bars[0].get_facecolor()) == (p > 0.0)
+            assert sorted(corners[round(x)]) == sorted([0.0, 0.0, p, p])
+            assert (colours[round(x)] == colours[0]) == (p > 0.0)
     assert axis.get_ylabel() == "pressure (FU/LU)"
     assert axis.get_xlabel() == "x (LU)"
 
@@ -93,7 +95,7 @@ def test_the_adhesion_force_is_marked_where_there_is_one(curve: Curve) -> None:
 
 
 def test_jkr_over_displacement_obeys_its_own_equations() -> None:
-    """Two spheres of R, effective R/2 and radii a/2, with E* and W from F_A and a₀: Johnson, Kendall and Roberts 1971."""
+    """Two spheres of R: effective radius R/2, radii a/2, E* and W from F_A and a₀ (Johnson, Kendall, Roberts 1971)."""
     displacement, force = plots.jkr_curve(ADHESION, ZERO_LOAD, BODY_RADIUS)
     effective, radius = BODY_RADIUS / 2.0, ZERO_LOAD / 2.0
     work = ADHESION / (1.5 * math.pi * effective)
@@ -157,6 +159,8 @@ def test_every_figure_is_a_whole_file(curve: Curve, tmp_path: Path) -> None:
 
 
 def test_figures_leave_no_global_state() -> None:
-    code = "import sys; from analysis import plots; assert 'matplotlib' not in sys.modules;" \
+    code = (
+        "import sys; from analysis import plots; assert 'matplotlib' not in sys.modules;"
         "plots._figure((1, 1)); assert 'matplotlib.pyplot' not in sys.modules"
+    )
     subprocess.run([sys.executable, "-W", "error", "-c", code], check=True)

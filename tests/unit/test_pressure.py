@@ -28,7 +28,8 @@ def profile(x: np.ndarray, pressure: np.ndarray) -> Profile:
 
 
 def test_a_profile_is_sorted_and_per_spacing_and_keeps_signs() -> None:
-    made = pressure_profile([2.0, 0.0, 1.0], [5.0, 3.0, 4.0], [-0.2, -0.0, -0.1], [0.3, 0.1, 0.2], [6.0, -2.0, 4.0], 0.5)
+    x, z_upper, z_lower = [2.0, 0.0, 1.0], [5.0, 3.0, 4.0], [-0.2, -0.0, -0.1]
+    made = pressure_profile(x, z_upper, z_lower, [0.3, 0.1, 0.2], [6.0, -2.0, 4.0], 0.5)
     np.testing.assert_array_equal(made.x, [0.0, 1.0, 2.0])
     np.testing.assert_array_equal(made.z_upper, [3.0, 4.0, 5.0])
     np.testing.assert_array_equal(made.z_lower, [0.0, -0.1, -0.2])

@@ -14,7 +14,7 @@ from analysis.radius import compressive_radius, tensile_radius
 
 BODY_RADIUS = 1000.0  # LU
 CASES = 200
-COVERED = 0.95  # share of cases in which the uncertainty must cover the error; 0.96 to 1 measured on 300 cases of each kind
+COVERED = 0.95  # share of cases whose error the uncertainty must cover; 0.96 to 1 measured on 300 cases of each kind
 MEDIAN_ERROR = 1e-3  # spacings; 1e-4 measured: the degree of the interpolant limits it
 SNAP_ERROR = 0.1  # spacings; 0.03 measured: a particle's snap is seen on the lattice only
 TYPICAL_ERROR = 0.15  # spacings, 95 % of cases; 0.04 measured: dips of the shortest range are three spacings wide
@@ -40,8 +40,8 @@ class Pair:
 
     def where(self, order: int) -> float:
         """Distance at which the first (largest tension) or second derivative (steepest) of the force is zero."""
-        power = 1 + order
-        return math.log(self.repulsion * (self.long / self.short) ** power) * self.short * self.long / (self.long - self.short)
+        ratio = self.repulsion * (self.long / self.short) ** (1 + order)
+        return math.log(ratio) * self.short * self.long / (self.long - self.short)
 
     def undeformed(self, r: np.ndarray | float) -> np.ndarray | float:
         return r - 2.0 * self.force(r) / self.stiffness

@@ -81,10 +81,11 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
             "stronger repulsion, a range nearer to the spacing, or stiffer neighbour springs"
         )
     limit = RESIDUAL_LIMIT * scene.accuracy.tolerance * settings.force_scale
-    if scene.method == "quasistatic" and state.residual > limit:
+    prescribed = scene.method == "quasistatic" or scene.experiment.kind == "path"
+    if prescribed and state.residual > limit:
         raise UntrustedError(
             f"not converged {at}: a particle is left with a force of {state.residual:.2g} FU, above {limit:.2g} FU. "
-            "Loosen [accuracy] tolerance, or take smaller steps"
+            "Loosen [accuracy] tolerance, take smaller steps, or in time more [damping]"
         )
     if _reaches_end(scene, state.profile):
         raise UntrustedError(

@@ -14,8 +14,8 @@ from workflow.scene import Scene
 from workflow.settings import Settings
 from workflow.units import FORCE, LENGTH
 
-RELAXATIONS = 3.0
-"""Time that a dynamic path gives the particles at each displacement, over their settling time."""
+RELAXATIONS = 14.0
+"""Time that a dynamic path gives the particles at each displacement, over the time constant of their slowest decay."""
 
 
 def path(bench: Bench) -> Outcome:
@@ -51,7 +51,7 @@ def schedule(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     """One phase for each stretch of rising ("loading") or falling ("unloading") displacement."""
     assert scene.experiment.kind == "path"
     dynamic = scene.method == "dynamic"
-    rest = (math.ceil(RELAXATIONS * settings.settle_time / settings.time_step),) if dynamic else ()
+    rest = (math.ceil(RELAXATIONS * _decay(scene, settings) / settings.time_step),) if dynamic else ()
     values = scene.experiment.values()
     stretches: list[tuple[str, list[float]]] = [("loading", [values[0]])]
     for before, value in pairwise(values):
@@ -68,6 +68,12 @@ def schedule(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         kind = "displace_dynamic" if dynamic else "displace"
         phases.append(Phase(name, kind, tuple((float(d), *rest) for d in rows), state=True))
     return tuple(phases)
+
+
+def _decay(scene: Scene, settings: Settings) -> float:
+    """Time constant [TU] with which a particle on its bulk spring comes to rest: 2m/γ, overdamped γ/k."""
+    mass, stiffness = scene.bodies.mass, scene.bodies.bulk_stiffness
+    return max(2.0 * mass / settings.damping, settings.damping / stiffness)
 
 
 def _largest(bench: Bench, states: list[State]) -> dict[str, Quantity]:
