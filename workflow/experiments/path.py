@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
+import numpy as np
+
 from workflow.deck import Phase
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import State
-from workflow.experiments.marks import crossing, largest_tension
+from workflow.experiments.marks import Peak, crossing, largest_tension
 from workflow.experiments.outcome import Outcome, Quantity, doubts, law_share, radius_of, require_trust
 from workflow.scene import Scene
 from workflow.settings import Settings
@@ -16,6 +18,8 @@ from workflow.units import FORCE, LENGTH
 
 RELAXATIONS = 14.0
 """Time that a dynamic path gives the particles at each displacement, over the time constant of their slowest decay."""
+PLACE = 0.1
+"""How well a parabola places a maximum, over the increment of the displacement."""
 
 
 def path(bench: Bench) -> Outcome:
@@ -96,12 +100,9 @@ def _adhesion(bench: Bench, branch: list[State]) -> tuple[dict[str, Quantity], d
         quantities["adhesion_force"] = Quantity(
             peak.smooth, peak.uncertainty + _noise(bench, branch[peak.index]), FORCE
         )
-        radius = radius_of(scene, branch[peak.index].profile)
-        if radius is not None:
-            step = abs(displacement[peak.index - 1] - displacement[peak.index])
-            other = radius_of(scene, branch[peak.index - 1].profile)
-            spread = abs(other.value - radius.value) if other is not None and step > 0 else 0.0
-            quantities["critical_radius"] = Quantity(radius.value, radius.uncertainty + spread, LENGTH)
+        critical = _critical_radius(scene, branch, peak)
+        if critical is not None:
+            quantities["critical_radius"] = critical
     else:
         warnings["no_peak"] = (
             "the largest tension lies at an end of the last branch, so the path gives no adhesion_force: "
@@ -113,6 +114,23 @@ def _adhesion(bench: Bench, branch: list[State]) -> tuple[dict[str, Quantity], d
     else:
         quantities["zero_load_radius"] = zero
     return quantities, warnings
+
+
+def _critical_radius(scene: Scene, branch: list[State], peak: Peak) -> Quantity | None:
+    """a at the vertex of a smooth maximum, linear between the rows beside it; at the last row before a snap."""
+    rows = branch[peak.index - 1 : peak.index + 2]
+    radii = [radius_of(scene, row.profile) for row in rows]
+    if radii[1] is None:
+        return None
+    if radii[0] is None or radii[2] is None:
+        return Quantity(radii[1].value, radii[1].value, LENGTH)
+    values = [radius.value for radius in radii if radius is not None]
+    if peak.position == rows[1].displacement:
+        return Quantity(values[1], radii[1].uncertainty + abs(values[0] - values[1]), LENGTH)
+    places = [row.displacement for row in rows]
+    value = float(np.interp(peak.position, places[::-1], values[::-1]))
+    bend = abs(values[1] - 0.5 * (values[0] + values[2]))
+    return Quantity(value, radii[1].uncertainty + bend + PLACE * abs(values[0] - values[2]), LENGTH)
 
 
 def _zero_load(bench: Bench, branch: list[State], displacement: list[float], force: list[float]) -> Quantity | None:

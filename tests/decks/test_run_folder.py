@@ -1,0 +1,206 @@
+"""A run folder is complete: `lmp -in in.lammps` in it gives bitwise the curve and the states that the program gave."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from typer.testing import CliRunner
+
+from workflow.campaign import Run, run, write_deck
+from workflow.cli import app
+from workflow.scene import Scene, scene_from_dict
+
+Array = NDArray[np.float64]
+MakeScene = Callable[..., Scene]
+
+ROOT = Path(__file__).parents[2]
+LMP = Path(sys.executable).with_name("lmp")
+READ = ("in.lammps", "system.data", "interaction.table")
+"""What a deck may read; everything else in a folder is a result."""
+
+SUM = 1e-12
+"""A sum over the particles, by LAMMPS and by numpy in their own orders; relative."""
+NEAREST = 1.0
+"""The interpolated radius lies within a spacing of the particle under the largest tension."""
+
+BODY = {"particles": 40, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 100.0}, "bulk_stiffness": 0.83}
+PAIR = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
+STICKY: dict[str, Any] = {"bodies": BODY, "interaction": PAIR, "neighbours": {"stiffness": 0.3}}
+PLANE: dict[str, Any] = {"bodies": BODY | {"lower": "rigid_plane"}}
+TIMED: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
+COARSE: dict[str, Any] = {"accuracy": {"tolerance": 2e-2}}
+SCENES: dict[str, dict[str, Any]] = {
+    "load": STICKY | {"experiment": {"kind": "load", "force": 0.5}},
+    "load_tension": STICKY | {"horizontal": {}, "experiment": {"kind": "load", "force": -0.2}},
+    "load_dynamic": STICKY | TIMED | COARSE | {"experiment": {"kind": "load", "force": 0.5}},
+    "load_thermal": STICKY
+    | TIMED
+    | COARSE
+    | {"noise": {"temperature": 1e-4, "seed": 7}, "experiment": {"kind": "load", "force": 0.5}},
+    "path": STICKY
+    | {"horizontal": {}, "experiment": {"kind": "path", "displacements": {"from": -0.6, "to": 0.3, "steps": 30}}},
+    "path_dynamic": STICKY
+    | {"damping": {"coefficient": "auto"}, "experiment": {"kind": "path", "displacements": [0.0, 0.2, -0.1, 0.1]}},
+    "pull_off": STICKY | {"experiment": {"kind": "pull_off", "preload": 0.5}},
+    "pull_off_dynamic": STICKY | TIMED | COARSE | {"experiment": {"kind": "pull_off", "preload": 0.5}},
+    "plane": PLANE | {"experiment": {"kind": "path", "displacements": {"from": 0.0, "to": 0.5, "steps": 5}}},
+    "plane_load": PLANE | {"neighbours": {"stiffness": 0.2}, "experiment": {"kind": "load", "force": 0.5}},
+    "slide": {
+        "bodies": BODY | {"particles": 24, "bulk_stiffness": 2.0},
+        "interaction": {
+            "repulsion": {"amplitude": 2.0, "range": 0.5},
+            "attraction": {"amplitude": 1.5, "range": 1.0},
+        },
+        "horizontal": {},
+        "damping": {"coefficient": "auto"},
+        "plate": {"free": ["x", "z"]},
+        "cantilever": {"stiffness": 2.0, "velocity": 0.05},
+        "experiment": {"kind": "slide", "normal_force": 1.0, "distance": 4.0},
+    }
+    | COARSE,
+}
+
+
+@pytest.fixture(scope="module", params=SCENES)
+def finished(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Run]:
+    """One run of each kind, shared by the tests of this file."""
+    scene = scene_from_dict({"title": request.param} | SCENES[request.param])
+    yield run(scene, tmp_path_factory.mktemp(request.param), figures=False)
+
+
+def lmp(folder: Path) -> subprocess.CompletedProcess[str]:
+    """`cd folder && lmp -in in.lammps`; UCX_TLS leaves no network listener open."""
+    environment = os.environ | {"UCX_TLS": "self,sm", "OMP_NUM_THREADS": "1"}
+    command = [str(LMP), "-in", "in.lammps"]
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=300, check=False)
+
+
+def curve(folder: Path) -> tuple[list[str], Array]:
+    """Phases, and (displacement, force) of every line of curve.txt."""
+    rows = [line.split() for line in (folder / "curve.txt").read_text().splitlines()]
+    assert rows[0] == ["#", "phase", "displacement[LU]", "force[FU]"]
+    return [row[0] for row in rows[1:]], np.asarray([row[1:] for row in rows[1:]], dtype=float)
+
+
+def test_lmp_repeats_the_run_bitwise(finished: Run, tmp_path: Path) -> None:
+    """In a copy that has only what a deck reads."""
+    for name in READ:
+        if (finished.folder / name).exists():
+            shutil.copy(finished.folder / name, tmp_path / name)
+    done = lmp(tmp_path)
+    assert done.returncode == 0, done.stdout[-2000:]
+    assert "WARNING" not in done.stdout
+    for name in ("curve.txt", "states.lammpstrj"):
+        assert (tmp_path / name).read_bytes() == (finished.folder / name).read_bytes(), name
+
+
+def test_curve_txt_holds_the_states_of_the_results(finished: Run) -> None:
+    """Row by row what the program measured, and what curve.csv has."""
+    phases, rows = curve(finished.folder)
+    states = finished.outcome.states
+    states = states[-len(rows) :] if finished.results["experiment"] == "slide" else states
+    skipped = len(rows) - len(states)  # looks of a load on its way to rest are rows, of which a slide keeps the last
+    assert skipped >= 0
+    assert phases[skipped:] == [state.phase for state in states]
+    assert rows[skipped:, 0].tolist() == [state.displacement for state in states]
+    assert rows[skipped:, 1] == pytest.approx([state.force for state in states], rel=SUM, abs=SUM)
+
+
+def value(finished: Run, name: str) -> tuple[float, float]:
+    quantity = finished.results[name]
+    return quantity["value"], quantity["uncertainty"]
+
+
+def test_numbers_can_be_read_off_the_curve(finished: Run) -> None:
+    """By eye, so to say: the largest tension, the last state, the mean of the samples."""
+    phases, rows = curve(finished.folder)
+    kind = finished.results["experiment"]
+    samples = rows[[phase == "sampling" for phase in phases]]
+    if kind == "load":
+        wanted = samples.mean(axis=0) if len(samples) else rows[-1]
+        assert [value(finished, name)[0] for name in ("displacement", "force")] == pytest.approx(wanted, rel=SUM)
+    if kind == "slide":
+        assert rows[-1, 1] == pytest.approx(1.0, abs=1.0)
+    if "adhesion_force" in finished.results:
+        adhesion, uncertainty = value(finished, "adhesion_force")
+        held = rows[[phase in ("unloading", "pulling") for phase in phases], 1]
+        assert -held.min() == pytest.approx(adhesion, abs=uncertainty + SUM)
+    if "preload" in finished.results:
+        loaded = rows[[phase == "loading" for phase in phases], 1]
+        assert loaded[-1] == pytest.approx(value(finished, "preload")[0], rel=SUM)
+    if "largest_force" in finished.results:
+        assert rows[:, 1].max() == pytest.approx(value(finished, "largest_force")[0], rel=SUM)
+
+
+def frames(folder: Path) -> list[Array]:
+    """Atoms of every dump frame, columns id type x y z fx fz."""
+    found = []
+    for text in (folder / "states.lammpstrj").read_text().split("ITEM: TIMESTEP")[1:]:
+        title, rows = text.split("ITEM: ATOMS ")[1].split("\n", 1)
+        assert title.split() == ["id", "type", "x", "y", "z", "opposite_fx", "opposite_fz"]
+        found.append(np.asarray([row.split() for row in rows.splitlines()], dtype=float))
+    return found
+
+
+def test_radii_can_be_read_off_the_dump(finished: Run) -> None:
+    """The first frame of a pull-off is the zero-load state, the second the critical one; a load has its last."""
+    found = frames(finished.folder)
+    names = {"pull_off": ("zero_load_radius", "critical_radius"), "load": ("contact_radius",)}
+    if finished.results["scene"]["bodies"]["lower"] == "rigid_plane" or "noise" in finished.results["effects"]:
+        return
+    for frame, name in zip(found, names.get(finished.results["experiment"], ()), strict=False):
+        upper = frame[frame[:, 1] == 2]
+        place = abs(upper[upper[:, 6].argmin(), 2])
+        assert value(finished, name)[0] == pytest.approx(place, abs=NEAREST)
+
+
+def test_the_folder_has_nothing_left_over(finished: Run) -> None:
+    """No search's saved state, no half-written file; results.json is what was returned."""
+    names = {path.name for path in finished.folder.iterdir()}
+    assert not [name for name in names if name.endswith(".part") or name.startswith("saved")]
+    assert {"in.lammps", "system.data", "curve.txt", "states.lammpstrj", "curve.csv", "results.json"} <= names
+    assert ("interaction.table" in names) == ("interaction" in finished.results["effects"])
+    assert json.loads((finished.folder / "results.json").read_text()) == finished.results
+
+
+QUICK = {
+    "hertz_plane": ["experiment.displacements.steps=4", "bodies.particles=160"],
+    "load": ["bodies.particles=60"],
+    "path_hysteresis": ["experiment.displacements.steps=10", "bodies.particles=60"],
+    "pull_off": ["bodies.particles=60"],
+    "pull_off_dynamic": ["bodies.particles=20"],
+    "thermal_load": ["bodies.particles=20"],
+}
+SHIPPED = sorted(path.stem for path in (ROOT / "lammps_inputs" / "scenes").glob("*.toml"))
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_deck_of_a_shipped_scene_runs_under_lmp(name: str, tmp_path: Path) -> None:
+    """`contact1d deck SCENE --out DIR`, then `lmp -in in.lammps` there: no error, every row measured and finite."""
+    scene = ROOT / "lammps_inputs" / "scenes" / f"{name}.toml"
+    small = [word for change in QUICK.get(name, []) for word in ("--set", change)]
+    written = CliRunner().invoke(app, ["deck", str(scene), "--out", str(tmp_path / "deck"), *small])
+    assert written.exit_code == 0, written.output
+    done = lmp(tmp_path / "deck")
+    assert done.returncode == 0, done.stdout[-2000:]
+    assert "WARNING" not in done.stdout
+    _, rows = curve(tmp_path / "deck")
+    assert len(rows) == (tmp_path / "deck" / "log.lammps").read_text().count("Loop time") - extra(tmp_path / "deck")
+    assert np.isfinite(rows).all()
+    assert (tmp_path / "deck" / "states.lammpstrj").stat().st_size > 0
+
+
+def extra(folder: Path) -> int:
+    """Loops of LAMMPS that measure nothing: a row has one or two of them."""
+    text = (folder / "log.lammps").read_text()
+    return text.count("Loop time") - len((folder / "curve.txt").read_text().splitlines()) + 1
