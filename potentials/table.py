@@ -68,8 +68,10 @@ class Table:
         squared = self.grid()
         distance = np.sqrt(squared)
         r = np.sqrt(np.maximum(squared - self.plane_offset**2, self.cell))
-        energy = self.law.energy(r) - self.law.energy(self.cutoff)
-        return distance, energy, self.law.force(r) * distance / r
+        slope = self.law.force(r) / r
+        # Where g is held, the energy goes on with the force −dE/dr_L = g r_L that belongs to it.
+        held = 0.5 * slope * np.maximum(self.cell - (squared - self.plane_offset**2), 0.0)
+        return distance, self.law.energy(r) - self.law.energy(self.cutoff) + held, slope * distance
 
     def force(self, r: Array) -> Array:
         """The force in the plane [FU] that LAMMPS makes of this table at distances r ≤ r_c [LU].

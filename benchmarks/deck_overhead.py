@@ -1,0 +1,88 @@
+"""Time per step of generated decks over decks written by hand for just their scene (asked: within 5 %).
+
+    python benchmarks/deck_overhead.py
+
+Both decks of a scene read the same system.data and table and run turn by turn; the ratio is that of the medians of LAMMPS's own
+loop times. Exit code 1 where a ratio is above LIMIT.
+"""
+
+from __future__ import annotations
+
+import re
+import statistics
+import sys
+import tempfile
+from pathlib import Path
+
+from workflow.campaign import write_deck
+from workflow.deck import Deck
+from workflow.engine import Engine, Session
+from workflow.scene import scene_from_dict
+from workflow.settings import settings_for
+
+HAND = Path(__file__).parent / "hand"
+STEPS = 4_000
+ROUNDS = 15
+LIMIT = 1.05
+BODIES = {
+    "particles": 200,
+    "spacing": 1.0,
+    "profile": {"kind": "parabola", "radius": 1000.0},
+    "bulk_stiffness": 0.83,
+}
+LAW = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
+TIMED = {"damping": {"coefficient": 0.3}, "plate": {"mass": 200.0, "damping": 100.0}}
+LOAD = {"experiment": {"kind": "load", "method": "dynamic", "force": 1.0}}
+SCENES = {
+    "plate": {"bodies": BODIES, "interaction": LAW} | TIMED | LOAD,
+    "plate_neighbours_horizontal": {
+        "bodies": BODIES, "interaction": LAW, "neighbours": {"stiffness": 0.3}, "horizontal": {},
+    } | TIMED | LOAD,
+    "plate_noise": {"bodies": BODIES, "interaction": LAW, "noise": {"temperature": 1e-4, "seed": 1}} | TIMED | LOAD,
+    "plane": {"bodies": BODIES | {"lower": "rigid_plane"}} | TIMED | LOAD,
+}  # fmt: skip
+
+
+def loop_time(session: Session, folder: Path) -> float:
+    """Seconds that LAMMPS reports for STEPS steps."""
+    session.execute(f"log loop.log\nrun {STEPS}\nlog none")
+    return float(re.findall(r"Loop time of (\S+)", (folder / "loop.log").read_text())[-1])
+
+
+def ratio(name: str, folder: Path) -> tuple[float, float, float]:
+    """(generated, by hand) in µs per step and the median of the ratios of each turn."""
+    scene = scene_from_dict({"title": name} | SCENES[name])
+    settings = settings_for(scene)
+    deck = Deck(scene, settings)
+    write_deck(scene, folder)
+    points = settings.table.points if settings.table is not None else 0
+    variables = f"variable points index {points}\nvariable dt index {settings.time_step!r}\n"
+    load = "fix plate_load plate addforce 0.0 0.0 -0.005\n"
+    texts = (deck.head + load, variables + (HAND / f"{name}.lmp").read_text())
+    times: tuple[list[float], list[float]] = ([], [])
+    with Engine.session(folder) as first, Engine.session(folder) as second:
+        for session, text in zip((first, second), texts, strict=True):
+            session.execute(text)
+            loop_time(session, folder)  # settles into the contact; not counted
+        for turn in range(ROUNDS):
+            for index in (0, 1) if turn % 2 == 0 else (1, 0):
+                times[index].append(loop_time((first, second)[index], folder))
+    pairs = [a / b for a, b in zip(*times, strict=True)]
+    generated, hand = (1e6 * statistics.median(series) / STEPS for series in times)
+    return generated, hand, statistics.median(pairs)
+
+
+def main() -> int:
+    """Print the table; 1 where a generated deck is too slow."""
+    print(f"{'scene':<30}{'generated':>12}{'by hand':>12}{'ratio':>8}   (µs per step)")
+    worst = 0.0
+    for name in SCENES:
+        with tempfile.TemporaryDirectory() as folder:
+            generated, hand, share = ratio(name, Path(folder))
+        worst = max(worst, share)
+        print(f"{name:<30}{generated:>12.2f}{hand:>12.2f}{share:>8.3f}", flush=True)
+    return int(worst > LIMIT)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
