@@ -2,8 +2,8 @@
 
     python benchmarks/deck_overhead.py
 
-Both decks of a scene read the same system.data and table and run turn by turn; the ratio is that of the medians of LAMMPS's own
-loop times. Exit code 1 where a ratio is above LIMIT.
+Both decks of a scene read the same system.data and table and run turn by turn; the ratio is the median over the turns
+of LAMMPS's own loop times. Exit code 1 where a ratio is above LIMIT.
 """
 
 from __future__ import annotations

@@ -23,6 +23,8 @@ CLOSEST_SHARE = 0.2
 """That distance over the force-free one (with attraction) or over the repulsion's range (without)."""
 RESIDUAL_SHARE = 1e-3
 """Norm of the forces left on the particles over the force scale, per unit of tolerance."""
+MOVE_SHARE = 0.25
+"""Longest move of a body between two states at rest, over that distance: so particles stay in order down to r near 0."""
 FAR_SHARE = 10.0
 """Length of a long bond over the spacing, per 1/tolerance: a sideways move u bends its force by u/2L."""
 STILL_STEP = 0.2
@@ -57,6 +59,8 @@ class Settings:
         damping: coefficient of a particle [FU·TU/LU].
         plate_mass, plate_damping: [MU], [FU·TU/LU].
         settle_time: about one period of the plate on its contact [TU].
+        longest_move: of a body between two states at rest [LU], inf on a rigid plane: a body that is moved by more than
+            its particles' distance from the opposite ones is put behind them.
         largest_displacement: what the estimate expects [LU].
     """
 
@@ -72,6 +76,7 @@ class Settings:
     force_scale: float
     force_tolerance: float
     displacement_step: float
+    longest_move: float
     time_step: float
     damping: float
     plate_mass: float
@@ -123,7 +128,8 @@ def settings_for(scene: Scene) -> Settings:
         far=FAR_SHARE / tolerance * bodies.spacing if different else 0.0,
         force_scale=force_scale,
         force_tolerance=RESIDUAL_SHARE * tolerance * force_scale,
-        displacement_step=_displacement_step(law, estimate, largest),
+        displacement_step=_displacement_step(law, estimate, largest, closest),
+        longest_move=MOVE_SHARE * closest if law is not None else math.inf,
         largest_displacement=largest,
         estimate=estimate,
         **motion,
@@ -185,12 +191,12 @@ def _force_scale(scene: Scene, law: DoubleExponential | None, largest: float) ->
     return max(largest, 1e-3 * scene.bodies.spacing) * scene.bodies.bulk_stiffness / 2
 
 
-def _displacement_step(law: DoubleExponential | None, estimate: ContactEstimate, largest: float) -> float:
-    """A part of the way to the preload, and never more than a quarter of the range over which the force changes."""
+def _displacement_step(
+    law: DoubleExponential | None, estimate: ContactEstimate, largest: float, closest: float
+) -> float:
+    """A part of the way to the preload, never more than a quarter of the longest range or than the longest move."""
     step = max(largest, 0.0) / LOADING_STEPS
-    if law is None or law.attraction is None:
-        return step if step > 0 else 0.1 * estimate.spacing
-    limit = 0.25 * law.longest_range
+    limit = min(0.25 * law.longest_range, MOVE_SHARE * closest) if law is not None else 0.1 * estimate.spacing
     return min(step, limit) if step > 0 else limit
 
 

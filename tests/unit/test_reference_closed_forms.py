@@ -88,7 +88,7 @@ def test_reduced_curves() -> None:
         assert lowest.fun == pytest.approx(-1.0, abs=1e-9)
         assert lowest.x == pytest.approx(place, abs=5e-4)  # printed with three digits
         assert float(curve(1.0)) == pytest.approx(0.0, abs=ROUND_OFF)
-    assert line_adhesion.BARQUINS_FACTOR == pytest.approx(2.1165, abs=5e-5)
+    assert pytest.approx(2.1165, abs=5e-5) == line_adhesion.BARQUINS_FACTOR
     assert jkr.work_of_adhesion(0.1) == 0.2
 
 

@@ -77,8 +77,8 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
     if state.depth > 0.0:
         raise UntrustedError(
             f"the bodies went through each other {at}: a particle lies {state.depth:.3g} LU below the opposite "
-            "surface. One layer of particles cannot carry this load: lower the load or the displacement, or take a "
-            "stronger repulsion, a range nearer to the spacing, or stiffer neighbour springs"
+            "surface. One layer of particles cannot carry this load: lower the load or the displacement, take smaller "
+            "steps, a stronger repulsion, a range nearer to the spacing, or stiffer neighbour springs"
         )
     limit = RESIDUAL_LIMIT * scene.accuracy.tolerance * settings.force_scale
     prescribed = scene.method == "quasistatic" or scene.experiment.kind == "path"

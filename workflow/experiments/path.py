@@ -18,6 +18,7 @@ from workflow.units import FORCE, LENGTH
 
 RELAXATIONS = 14.0
 """Time that a dynamic path gives the particles at each displacement, over the time constant of their slowest decay."""
+ROUND_OFF = 1e-9
 PLACE = 0.1
 """How well a parabola places a maximum, over the increment of the displacement."""
 
@@ -33,9 +34,11 @@ def path(bench: Bench) -> Outcome:
     scene, settings = bench.deck.scene, bench.deck.settings
     phases = schedule(scene, settings)
     with bench.contact() as contact:
-        states = contact.replay(phases)
-    for state in states:
+        passed = contact.replay(phases)
+    for state in passed:
         require_trust(scene, settings, state)
+    asked = [wanted for _, wanted in _places(scene, settings)]
+    states = [state for state, wanted in zip(passed, asked, strict=True) if wanted]
     adhesive = scene.interaction is not None and scene.interaction.attraction is not None
     branch = [s for s in states if s.phase == phases[-1].name]
     quantities, warnings = _adhesion(bench, branch) if adhesive else (_largest(bench, states), {})
@@ -53,10 +56,9 @@ def path(bench: Bench) -> Outcome:
 
 def schedule(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     """One phase for each stretch of rising ("loading") or falling ("unloading") displacement."""
-    assert scene.experiment.kind == "path"
     dynamic = scene.method == "dynamic"
     rest = (math.ceil(RELAXATIONS * _decay(scene, settings) / settings.time_step),) if dynamic else ()
-    values = scene.experiment.values()
+    values = [value for value, _ in _places(scene, settings)]
     stretches: list[tuple[str, list[float]]] = [("loading", [values[0]])]
     for before, value in pairwise(values):
         branch = "loading" if value > before else "unloading"
@@ -72,6 +74,22 @@ def schedule(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         kind = "displace_dynamic" if dynamic else "displace"
         phases.append(Phase(name, kind, tuple((float(d), *rest) for d in rows), state=True))
     return tuple(phases)
+
+
+def _places(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
+    """Displacements [LU] of all rows, and whether the scene asks for them or they lie on the way between two of those.
+
+    The way starts at 0, where the bodies stand in system.data, unless the first displacement draws them apart.
+    """
+    assert scene.experiment.kind == "path"
+    places: list[tuple[float, bool]] = []
+    before = 0.0
+    for value in scene.experiment.values():
+        moves = max(1, math.ceil((value - before) / settings.longest_move - ROUND_OFF))
+        places += [(before + (value - before) * i / moves, False) for i in range(1, moves)]
+        places.append((value, True))
+        before = value
+    return places
 
 
 def _decay(scene: Scene, settings: Settings) -> float:

@@ -1,0 +1,109 @@
+"""Hard cases: what can't be trusted is not reported. Each run ends in words, with status "failed" and no number."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from workflow import RunError, run, scene_from_dict
+
+LAW = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
+
+
+def tables(experiment: dict[str, Any], bodies: dict[str, Any] | None = None, **more: Any) -> dict[str, Any]:
+    return {
+        "title": "hard",
+        "bodies": {
+            "particles": 60,
+            "spacing": 1.0,
+            "profile": {"kind": "parabola", "radius": 100.0},
+            "bulk_stiffness": 0.83,
+        }
+        | (bodies or {}),
+        "interaction": LAW,
+        "experiment": experiment,
+    } | more
+
+
+PULL = {"kind": "pull_off", "preload": 0.3}
+UNTRUSTED = {
+    "through each other: buckled chains": (
+        tables(
+            {"kind": "pull_off", "preload": 0.5},
+            {"particles": 120, "profile": {"kind": "parabola", "radius": 500.0}, "bulk_stiffness": 0.4,
+             "bulk_stiffness_tangential": 0.2},
+            neighbours={"stiffness": 0.3}, horizontal={},
+        ),
+        "went through each other",
+    ),
+    "through each other: too deep": (
+        tables({"kind": "path", "displacements": {"from": 0.0, "to": 6.0, "steps": 40}}), "went through each other",
+    ),
+    "end of the chain": (tables({"kind": "load", "force": 2.0}, {"particles": 13}), "end of the chain"),
+    "more tension than adhesion": (tables({"kind": "load", "force": -5.0}), "never reached"),
+    "lost in time": (
+        tables({"kind": "load", "force": -5.0, "method": "dynamic"}, plate={}, damping={"coefficient": "auto"}),
+        "cannot hold -5 FU",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", UNTRUSTED)
+def test_no_number_comes_out(name: str, tmp_path: Path) -> None:
+    scene, words = UNTRUSTED[name]
+    with pytest.raises(RunError, match=words):
+        run(scene_from_dict(scene), tmp_path / "run", figures=False)
+    document = json.loads((tmp_path / "run" / "results.json").read_text())
+    assert document["status"] == "failed"
+    assert words in document["error"]["message"]
+    assert not any(isinstance(entry, dict) and "value" in entry for entry in document.values())
+    assert {"in.lammps", "system.data", "log.lammps"} <= {path.name for path in (tmp_path / "run").iterdir()}
+
+
+def spoil(monkeypatch: pytest.MonkeyPatch, **numbers: float) -> None:
+    """Give a run settings that no scene can ask for."""
+    from dataclasses import replace
+
+    from workflow import campaign
+
+    choose: Callable[..., Any] = campaign.settings_for
+    monkeypatch.setattr(campaign, "settings_for", lambda scene: replace(choose(scene), **numbers))
+
+
+def test_a_time_step_that_explodes_is_no_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    spoil(monkeypatch, time_step=50.0)
+    scene = tables({"kind": "load", "force": 0.3, "method": "dynamic"}, plate={}, damping={"coefficient": "auto"})
+    with pytest.raises(RunError, match=r"finite|left the box|went through|LAMMPS stopped"):
+        run(scene_from_dict(scene), tmp_path / "run", figures=False)
+    assert json.loads((tmp_path / "run" / "results.json").read_text())["status"] == "failed"
+
+
+def test_a_run_that_takes_too_long_is_stopped(tmp_path: Path) -> None:
+    scene = tables(
+        {"kind": "load", "force": 0.3, "method": "dynamic"}, {"particles": 4000}, plate={},
+        damping={"coefficient": "auto"}, accuracy={"tolerance": 1e-6},
+    )  # fmt: skip
+    with pytest.raises(RunError, match="time limit"):
+        run(scene_from_dict(scene), tmp_path / "run", figures=False, time_limit=0.5)
+    assert json.loads((tmp_path / "run" / "results.json").read_text())["status"] == "failed"
+
+
+def test_a_chain_that_cuts_the_tail_of_the_contact_gets_a_warning(tmp_path: Path) -> None:
+    results = run(scene_from_dict(tables(PULL, {"particles": 34})), tmp_path / "run", figures=False).results
+    assert results["status"] == "done"
+    assert [warning["name"] for warning in results["warnings"]] == ["chain_end"]
+
+
+def test_particles_closer_than_the_table_was_chosen_for_get_a_warning(tmp_path: Path) -> None:
+    scene = tables({"kind": "path", "displacements": [0.0, 1.5]})  # one leap: the rows between are the program's
+    results = run(scene_from_dict(scene), tmp_path / "run", figures=False).results
+    assert "table_core" in [warning["name"] for warning in results["warnings"]]
+
+
+def test_automatic_chains_need_no_warning(tmp_path: Path) -> None:
+    results = run(scene_from_dict(tables(PULL, {"particles": "auto"})), tmp_path / "run", figures=False).results
+    assert results["warnings"] == []
