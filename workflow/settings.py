@@ -24,7 +24,7 @@ CLOSEST_SHARE = 0.2
 RESIDUAL_SHARE = 1e-3
 """Norm of the forces left on the particles over the force scale, per unit of tolerance."""
 MOVE_SHARE = 0.25
-"""Longest move of a body between two states at rest, over that distance: so particles stay in order down to r near 0."""
+"""Longest move of a body between two states at rest, over that distance: particles stay in order, down to r near 0."""
 FAR_SHARE = 10.0
 """Length of a long bond over the spacing, per 1/tolerance: a sideways move u bends its force by u/2L."""
 STILL_STEP = 0.2

@@ -99,7 +99,7 @@ def test_a_chain_that_cuts_the_tail_of_the_contact_gets_a_warning(tmp_path: Path
 
 
 def test_particles_closer_than_the_table_was_chosen_for_get_a_warning(tmp_path: Path) -> None:
-    scene = tables({"kind": "path", "displacements": [0.0, 1.5]})  # one leap: the rows between are the program's
+    scene = tables({"kind": "path", "displacements": [0.0, 1.7]})  # one leap: the rows between are the program's
     results = run(scene_from_dict(scene), tmp_path / "run", figures=False).results
     assert "table_core" in [warning["name"] for warning in results["warnings"]]
 

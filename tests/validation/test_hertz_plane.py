@@ -1,8 +1,8 @@
 """Claim: on a rigid plane the program gives the discrete sum of one-sided springs, which converges to Hertz as s².
 
-References: F = Σ k max(0, d − x_i²/2R), written out here; F = (4√2/3) c_n √R d^{3/2}, c_n = k/s (Section 2 of the paper);
-for neighbour springs the exact complementarity solver of `analysis.reference`. Limits: the minimiser's threshold; the
-lattice; with neighbour springs the stiffness of the plane, which is finite then.
+References: F = Σ k max(0, d − x_i²/2R), written out here; F = (4√2/3) c_n √R d^{3/2}, c_n = k/s (Section 2 of the
+paper); for neighbour springs the exact complementarity solver of `analysis.reference`. Limits: the minimiser's
+threshold; the lattice; with neighbour springs the stiffness of the plane, which is finite then.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from tests.validation.conftest import RunTables
 
 EXACT = 1e-6  # asked by the issue; reached: about 1e-8, the threshold of the minimiser
 RATE = 2.0  # Euler and Maclaurin: a sum over a lattice misses s²/12 times the jump of slope at each edge of the contact
-RATE_ERROR = 0.25  # where an edge lies between its particles changes the constant, the envelope of few depths only nearly
+RATE_ERROR = 0.25  # the constant changes with the edge's place between two particles; few depths give its envelope
 PLANE_SHARE = 1e-3  # tolerance of the scene, at which the plane is 1/tolerance times stiffer than the chain
 
 
@@ -58,7 +58,7 @@ def test_the_force_is_the_exact_discrete_sum(
 
 def test_the_force_converges_to_hertz_with_the_square_of_the_spacing(run_tables: RunTables) -> None:
     radius, layer, spacings = 200.0, 1.0, [4.0, 2.0, 1.0, 0.5]
-    depths = np.linspace(1.0, 1.4, 41).tolist()  # edges in many places between two particles: the envelope of the error
+    depths = np.linspace(1.0, 1.4, 41).tolist()  # edges in many places between two particles
     errors = []
     for spacing in spacings:
         displacement, force, _ = measured(run_tables, radius, spacing, layer, depths)
