@@ -20,6 +20,8 @@ from workflow.lattice import Body
 
 Integers = NDArray[np.int64]
 CHUNK = 100_000
+FAR_MASS = 1e-12
+"""Mass of a far anchor over an anchor's: it moves with the plate and adds nothing to its inertia."""
 PARTICLES = {"lower": 1, "upper": 2}
 ANCHORS = {"lower": 3, "upper": 4}
 FAR_ANCHORS = {"lower": 5, "upper": 6}
@@ -47,7 +49,11 @@ class System:
 
 
 def assemble(
-    bodies: Sequence[Body], neighbours: bool, particle_mass: float, anchor_mass: float, margin: tuple[float, float]
+    bodies: Sequence[Body],
+    neighbours: bool,
+    particle_mass: float,
+    anchor_mass: float,
+    margin: tuple[float, float, float],
 ) -> System:
     """Number the atoms (particles first, lower body first) and bond them.
 
@@ -56,7 +62,7 @@ def assemble(
         neighbours: whether neighbouring particles are bonded.
         particle_mass: [MU].
         anchor_mass: [MU]; the plate's mass over its number of anchors.
-        margin: free space (along x, along z) [LU] between atoms and the walls of the box.
+        margin: free space along x, y and z [LU] between atoms and the walls of the box.
     """
     count = len(bodies[0].particles)
     far = len(bodies[0].far_anchors) > 0
@@ -75,8 +81,8 @@ def assemble(
     if far:
         names.append("far")
         bonds.append(_bonds(len(names), particle, particle + 2 * len(particle)))
-    masses = (particle_mass, particle_mass, anchor_mass, anchor_mass, anchor_mass, anchor_mass)[: 6 if far else 4]
-    space = np.asarray([margin[0], 1.0, margin[1]])
+    masses = (particle_mass, particle_mass, anchor_mass, anchor_mass, *(2 * (FAR_MASS * anchor_mass,) if far else ()))
+    space = np.asarray(margin)
     box = np.stack([positions.min(axis=0) - space, positions.max(axis=0) + space])
     return System(types, positions, np.concatenate(bonds), tuple(names), masses, box)
 

@@ -6,8 +6,8 @@ the paper's z is z and the plane of motion is y = const: y = 0 for the lower bod
 
 An anchor is a particle's place in its bulk. Neighbour springs of zero rest length, k_n (p_{i+1} − p_i), pull a chain's
 ends inward and a curved chain straight. Their force on the undeformed chain, r_i = k_n Σ_j (p_j − p_i) over the
-neighbours j of i, is cancelled exactly by moving each anchor by −r_i/k: since a bulk spring is linear and of zero rest
-length too, that is a constant force −r_i on particle i, and Σ r_i = 0 leaves the force on the plate as it is.
+neighbours j of i, is cancelled exactly by moving each anchor by −r_i/k, k its bulk spring's: since that is linear and
+of zero rest length too, it is a constant force −r_i on particle i, and Σ r_i = 0 leaves the plate's force as it is.
 """
 
 from __future__ import annotations
@@ -21,6 +21,11 @@ from workflow.scene import Scene
 from workflow.settings import Settings
 
 Array = NDArray[np.float64]
+STAGGER = 0.01
+"""Shift of a plate's anchors out of the plane, to and fro, over the chain's length.
+
+No force acts in that direction, but `fix rigid` refuses a body that is nearly a line ("Bad principal moments").
+"""
 
 
 @dataclass(frozen=True)
@@ -67,18 +72,21 @@ def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
 
 
 def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body:
+    tangential = scene.bodies.tangential_stiffness
+    softer = min(settings.bulk_stiffness, tangential) if settings.far else settings.bulk_stiffness
     shift = np.zeros_like(particles)
     if scene.neighbours is not None:
-        rest = neighbour_forces(particles, scene.neighbours.stiffness)
-        shift[:, 2] = -rest[:, 2] / settings.bulk_stiffness
-        if scene.horizontal is not None:
-            shift[:, 0] = -rest[:, 0] / scene.bodies.tangential_stiffness
+        shift = -neighbour_forces(particles, scene.neighbours.stiffness) / softer
+        if scene.horizontal is None:
+            shift[:, 0] = 0.0
+    if scene.plate is not None and name == "upper":
+        shift[:, 1] = STAGGER * len(particles) * scene.bodies.spacing * (-1.0) ** np.arange(len(particles))
     anchors = particles + shift
     if settings.far == 0.0:
         return Body(name, particles, anchors, np.empty((0, 3)))
     away = np.zeros(3)
-    if scene.bodies.tangential_stiffness > settings.bulk_stiffness:
+    if tangential > settings.bulk_stiffness:
         away[0] = -settings.far
     else:
         away[2] = settings.far if name == "upper" else -settings.far
-    return Body(name, particles, anchors, anchors + away)
+    return Body(name, particles, anchors, particles + away)

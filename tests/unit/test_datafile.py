@@ -48,7 +48,7 @@ CASES: dict[str, dict[str, Any]] = {
 def system_of(scene: Any) -> System:
     """What write_system assembles, with a margin of its own."""
     both = bodies(scene, settings_for(scene))
-    return assemble(both, scene.neighbours is not None, scene.bodies.mass, 2.5, (17.0, 123.0))
+    return assemble(both, scene.neighbours is not None, scene.bodies.mass, 2.5, (17.0, 11.0, 123.0))
 
 
 def bonds_in(session: Session) -> list[list[int]]:
@@ -155,7 +155,7 @@ def test_long_files_are_written_in_chunks(tmp_path: Path, monkeypatch: pytest.Mo
     """The text does not depend on the size of a chunk."""
     places = np.random.default_rng(2).normal(size=(11, 3))
     body = Body("upper", places, places + 0.1, np.empty((0, 3)))
-    system = assemble((body,), True, 1.0, 1.0, (1.0, 1.0))
+    system = assemble((body,), True, 1.0, 1.0, (1.0, 1.0, 1.0))
     write_data(system, "t", tmp_path / "whole")
     monkeypatch.setattr(datafile, "CHUNK", 4)
     write_data(system, "t", tmp_path / "chunks")

@@ -21,6 +21,9 @@ SIDE_MARGIN = 20.0
 HEAD_MARGIN = 100.0
 """Free space above and below the bodies over the spacing and over the cutoff."""
 
+BIN_MARGIN = 1e-3
+"""Least free space over the length of a long bond: LAMMPS wants no box much thinner than its bins."""
+
 
 @dataclass
 class Bench:
@@ -62,13 +65,14 @@ def write_system(deck: Deck, folder: Path) -> None:
     """Write what a deck reads: system.data, and the table if it has one."""
     scene, settings = deck.scene, deck.settings
     both = bodies(scene, settings)
-    anchors = len(both[-1].anchors) + len(both[-1].far_anchors)
+    anchors = len(both[-1].anchors)
     mass = settings.plate_mass / anchors if scene.plate is not None else scene.bodies.mass
     side = SIDE_MARGIN * scene.bodies.spacing
     if scene.experiment.kind == "slide":
         side += scene.experiment.distance
     head = HEAD_MARGIN * max(scene.bodies.spacing, settings.cutoff) + 2 * abs(settings.largest_displacement)
-    margin = (math.ceil(side), math.ceil(head))
+    least = BIN_MARGIN * settings.far
+    margin = (math.ceil(max(side, least)), math.ceil(max(1.0, least)), math.ceil(max(head, least)))
     write_data(
         assemble(both, scene.neighbours is not None, scene.bodies.mass, mass, margin),
         scene.title,
