@@ -124,6 +124,7 @@ def prepare(folder: Path) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
         for name in FILES:
             (folder / name).unlink(missing_ok=True)
+            (folder / f"{name}.part").unlink(missing_ok=True)
     except OSError as error:
         raise FolderError(f"{folder} cannot be written: {error.strerror}") from None
     return folder.resolve()

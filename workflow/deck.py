@@ -138,7 +138,11 @@ class Deck:
         )
 
     def _check(self) -> None:
-        """Every variable is defined once, and used; every ID is defined once."""
+        """Every variable is defined once, and used; every ID is defined once; no group has two integrators."""
+        moved = [part.integrates for part in self.parts if part.integrates]
+        doubly = sorted({group for group in moved if moved.count(group) > 1})
+        if doubly:
+            raise DeckError(f"integrated twice: {', '.join(doubly)}")
         used: list[Fragment] = [fragment(name) for part in self.parts for name in part.fragments]
         given = [name for part in self.parts for name in part.variables]
         defined = given + [name for piece in used for name in piece.defines]
@@ -185,7 +189,8 @@ class Deck:
                 "minimiser_iterations": str(MINIMISER_ITERATIONS),
             }
             return Contribution("quasistatic", Stage.MOTION, ("quasistatic",), variables)
-        return Contribution("dynamic", Stage.MOTION, ("dynamic",), {"time_step": number(self.settings.time_step)})
+        variables = {"time_step": number(self.settings.time_step)}
+        return Contribution("dynamic", Stage.MOTION, ("dynamic",), variables, integrates="particles")
 
 
 def _block(name: str, variables: dict[str, str]) -> str:

@@ -29,7 +29,7 @@ class Contribution:
         variables: LAMMPS variables that the fragments need, name to value.
         pair_style: its part of the shared slot `pair_style`, or "".
         step_begin, step_end: fragments around every measurement.
-        files: further files that the deck reads.
+        integrates: the atom group whose motion its fragment integrates, or "": a group has one integrator at most.
     """
 
     name: str
@@ -39,6 +39,7 @@ class Contribution:
     pair_style: str = ""
     step_begin: tuple[str, ...] = ()
     step_end: tuple[str, ...] = ()
+    integrates: str = ""
 
 
 def number(value: float) -> str:

@@ -13,4 +13,4 @@ def plate(scene: Scene, settings: Settings) -> Contribution:
         "plate_damping_per_anchor": number(settings.plate_damping / anchors),
         "plate_free_x": "on" if "x" in scene.plate.free else "off",
     }
-    return Contribution("plate", Stage.PLATE, ("plate",), variables)
+    return Contribution("plate", Stage.PLATE, ("plate",), variables, integrates="plate")
