@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import fcntl
 import time
 from collections.abc import Iterable, Iterator
 from concurrent.futures import Executor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,6 +19,7 @@ from workflow.report import FILES, curve_of, draw, failure, results, write_resul
 from workflow.scene import Scene, scene_to_toml
 from workflow.settings import settings_for
 
+LOCK = ".running"
 TIME_LIMIT = 3600.0
 """Wall time after which LAMMPS is stopped, for each pass of a search [s]."""
 
@@ -74,13 +77,24 @@ def run(
         time_limit: wall time for LAMMPS [s].
 
     Raises:
-        FolderError: the folder holds something else.
+        SettingsError: the scene's numbers lead to no computable system; nothing is written.
+        FolderError: the folder holds something else, or another run is at work in it.
         RunError: LAMMPS failed, or the result can't be trusted.
     """
     started = time.perf_counter()
+    deck = Deck(scene, settings_for(scene))
     folder = prepare(Path(folder))
-    deck = _write(scene, folder)
-    bench = Bench(deck, folder, progress or Silent(), time_limit)
+    with _alone(folder):
+        return _run(deck, folder, started, figures, progress or Silent(), time_limit)
+
+
+def _run(deck: Deck, folder: Path, started: float, figures: bool, progress: Progress, time_limit: float) -> Run:
+    scene = deck.scene
+    for name in FILES:
+        (folder / name).unlink(missing_ok=True)
+        (folder / f"{name}.part").unlink(missing_ok=True)
+    _write(deck, folder)
+    bench = Bench(deck, folder, progress, time_limit)
 
     def timing() -> dict[str, float]:
         total = time.perf_counter() - started
@@ -91,7 +105,8 @@ def run(
     except (EngineError, UntrustedError) as error:
         facts = {"message": getattr(error, "message", str(error)), "phase": bench.phase, "step": bench.timestep}
         write_results(folder, failure(scene, facts, timing()))
-        raise RunError(str(facts["message"]) + f" [phase {bench.phase}, step {bench.timestep}]", folder) from error
+        where = f" [phase {bench.phase}, step {bench.timestep}]"
+        raise RunError(f"{facts['message']}{_hint(str(facts['message']))}{where}", folder) from error
     write_whole(folder / "in.lammps", deck.text(outcome.phases))
     (folder / "saved.lammpstrj").unlink(missing_ok=True)
     curve = curve_of(scene, outcome)
@@ -103,40 +118,60 @@ def run(
     return Run(folder, document, outcome)
 
 
+def _hint(message: str) -> str:
+    """What to do about LAMMPS errors whose own words don't say it."""
+    if "atoms" in message and ("missing" in message or "left the box" in message):
+        return ". Particles flew apart: bring stiffnesses, masses, damping and ranges nearer to each other"
+    return ""
+
+
 def write_deck(scene: Scene, folder: Path | str) -> Path:
     """Write system.data, the table and in.lammps with the planned schedule; nothing runs. Returns the folder."""
+    deck = Deck(scene, settings_for(scene))
     folder = prepare(Path(folder))
-    _write(scene, folder)
+    with _alone(folder):
+        for name in FILES:
+            (folder / name).unlink(missing_ok=True)
+        _write(deck, folder)
     return folder
 
 
 def prepare(folder: Path) -> Path:
-    """Make the folder, or clear an earlier run out of it.
+    """Make the folder, or see that it holds nothing but an earlier run.
 
     Raises:
         FolderError: it is a file, or holds files and none of a run.
     """
     if folder.exists() and not folder.is_dir():
         raise FolderError(f"{folder} is a file; a run needs a folder")
-    if folder.is_dir() and any(folder.iterdir()) and not (folder / "in.lammps").exists():
+    if folder.is_dir() and any(folder.iterdir()) and not any((folder / name).exists() for name in ("in.lammps", LOCK)):
         raise FolderError(f"{folder} holds files that are not of a run; choose another folder with --out")
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for name in FILES:
-            (folder / name).unlink(missing_ok=True)
-            (folder / f"{name}.part").unlink(missing_ok=True)
+        (folder / LOCK).touch()
     except OSError as error:
         raise FolderError(f"{folder} cannot be written: {error.strerror}") from None
     return folder.resolve()
 
 
-def _write(scene: Scene, folder: Path) -> Deck:
-    settings = settings_for(scene)
-    deck = Deck(scene, settings)
-    write_whole(folder / "in.lammps", deck.text(planned(scene, settings)))
-    write_whole(folder / "scene.toml", scene_to_toml(scene))
+@contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Hold the folder against other runs; the system lets go of it whatever happens to this process."""
+    with (folder / LOCK).open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise FolderError(f"another run is at work in {folder}; choose another folder with --out") from None
+        try:
+            yield
+        finally:
+            (folder / LOCK).unlink(missing_ok=True)
+
+
+def _write(deck: Deck, folder: Path) -> None:
+    write_whole(folder / "in.lammps", deck.text(planned(deck.scene, deck.settings)))
+    write_whole(folder / "scene.toml", scene_to_toml(deck.scene))
     write_system(deck, folder)
-    return deck
 
 
 def run_many(scenes: Iterable[tuple[Scene, Path]], executor: Executor) -> Iterator[Run | RunError]:

@@ -80,11 +80,12 @@ def run(
     from workflow.campaign import FolderError, RunError
     from workflow.campaign import run as run_scene
     from workflow.progress import Silent, choose_progress
+    from workflow.settings import SettingsError
 
     progress = Silent() if quiet else choose_progress()
     try:
         finished = run_scene(checked, _folder(scene, out), figures, progress, time_limit)
-    except FolderError as error:
+    except (FolderError, SettingsError) as error:
         _stop(str(error), SCENE_IS_WRONG)
     except RunError as error:
         progress.close()
@@ -119,10 +120,11 @@ def deck(
     """
     checked = _read(scene, set_, without)
     from workflow.campaign import FolderError, write_deck
+    from workflow.settings import SettingsError
 
     try:
         folder = write_deck(checked, out)
-    except FolderError as error:
+    except (FolderError, SettingsError) as error:
         _stop(str(error), SCENE_IS_WRONG)
     typer.echo(f"{folder}: run it there with lmp -in in.lammps")
 

@@ -29,14 +29,21 @@ FAR_SHARE = 10.0
 """Length of a long bond over the spacing, per 1/tolerance: a sideways move u bends its force by u/2L."""
 STILL_STEP = 0.2
 """ω_max·Δt without noise: a tenth of the Verlet integrator's limit, since equilibria do not depend on it."""
+DRAG_STEP = 0.2
+"""Time step over the time m/γ in which drag stops a particle, or the plate: explicit integration needs it below 1."""
 NOISE_BIAS = 0.4
 """Relative error of ⟨u²⟩ over (ω Δt)² with `fix langevin` and `fix nve`, measured at ω Δt = 0.1: 0.4 %."""
 SOFTENING = 0.6
 """Stiffness of the contact under tension over that under the preload: automatic damping is critical for the former."""
+MOST_PARTICLES = 10_000_000
 CHAIN_MARGIN = 1.1
 """Length of an automatic chain over what the estimate asks for."""
 LOADING_STEPS = 24
 """Increments from first touch to the preload on the first pass of a search."""
+
+
+class SettingsError(ValueError):
+    """A scene whose numbers, each allowed, lead to no computable system; the message says which and what to change."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +103,28 @@ def interaction_law(scene: Scene) -> DoubleExponential | None:
 
 
 def settings_for(scene: Scene) -> Settings:
-    """Choose every open number of a scene."""
+    """Choose every open number of a scene.
+
+    Raises:
+        SettingsError: the numbers are so far apart that no chain, table or time step comes out of them.
+    """
+    try:
+        with np.errstate(over="raise", invalid="raise", divide="raise"):
+            chosen = _chosen(scene)
+    except (OverflowError, FloatingPointError, ZeroDivisionError, MemoryError) as error:
+        raise SettingsError(
+            f"the scene's numbers are too far apart to compute with ({error}): compare its lengths (spacing, ranges, "
+            "radius), its energies (amplitudes) and its stiffnesses with each other"
+        ) from None
+    if chosen.particles > MOST_PARTICLES:
+        raise SettingsError(
+            f"the contact would need {chosen.particles:.3g} particles per body, more than {MOST_PARTICLES:.0e}: a "
+            "wider bodies.spacing, a smaller radius, load or displacement needs fewer"
+        )
+    return chosen
+
+
+def _chosen(scene: Scene) -> Settings:
     tolerance = scene.accuracy.tolerance
     bodies = scene.bodies
     law = interaction_law(scene)
@@ -234,8 +262,14 @@ def _motion(
         given = scene.plate.damping
         plate_damping = max(0.0, critical - particles * damping) if given == "auto" else given
     slowest = contact / moving if scene.plate is not None else bodies.bulk_stiffness / bodies.mass
+    step = product / math.sqrt(stiffest / bodies.mass)
+    if damping > 0.0:
+        step = min(step, DRAG_STEP * bodies.mass / damping)
+    if plate_mass > 0.0:
+        step = min(step, product / math.sqrt(particles * bodies.bulk_stiffness / plate_mass))
+        step = min(step, DRAG_STEP * plate_mass / max(plate_damping, 1e-300))
     return {
-        "time_step": product / math.sqrt(stiffest / bodies.mass),
+        "time_step": step,
         "damping": damping,
         "plate_mass": plate_mass,
         "plate_damping": plate_damping,

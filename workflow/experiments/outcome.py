@@ -121,6 +121,13 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
             f"the outermost particles carry up to {share:.2g} of the largest pressure, so the chain of "
             f'{settings.particles} particles cuts the contact: take more bodies.particles, or "auto"'
         )
+    share = law_share(scene, settings)
+    if share > scene.accuracy.tolerance:
+        found["cutoff"] = (
+            f"what is left out of the law (beyond a cutoff of {settings.cutoff:.3g} LU, or of a plane not quite rigid) "
+            f"changes a force by a share of up to {share:.1g}, and the radii with it: take a longer "
+            'interaction.cutoff, or "auto"'
+        )
     closest = min(state.smallest_distance for state in states)
     if settings.table is not None and closest < settings.closest:
         found["table_core"] = (

@@ -164,7 +164,8 @@ def _outcome(bench: Bench, search: Search, phases: tuple[Phase, ...], states: li
     }
     profiles = {"zero_load": zero.profile, "critical": critical.profile}
     values = {"zero_load": zero_radius.value, "critical": critical_radius.value}
-    return Outcome(quantities, tuple(states), profiles, values, phases, doubts(scene, settings, (loaded, zero, *held)))
+    rest = (loaded, zero, *held)
+    return Outcome(quantities, rest, profiles, values, phases, doubts(scene, settings, rest))
 
 
 def _critical_radius(scene: Scene, held: list[State], adhesion: float, last: float) -> tuple[float, float]:

@@ -20,6 +20,8 @@ ROWS_PER_SPACING = 50
 """Measured states per spacing of the drive's way."""
 SLIDING = 1.0
 """Way of the plate over the spacing from which on it slides: one period of the other body."""
+STEADY = 0.1
+"""Mean velocities of plate and drive may differ by this share where sliding counts as steady."""
 
 
 def slide(bench: Bench) -> Outcome:
@@ -27,7 +29,8 @@ def slide(bench: Bench) -> Outcome:
 
     friction is the force of the lower body on the upper one against the sliding. The cantilever's force has the drag of
     [damping] and of the plate on top of it, which belongs to the bath and not to the contact; friction.csv holds both.
-    The static friction is the largest value; the mean one is taken over the second half of the way.
+    The static friction is the largest value until the plate has moved by one spacing; the mean one is taken over the
+    second half of the way, in which the plate must keep up with the drive.
 
     Raises:
         UntrustedError: see `hold` and `require_trust`; also where the drive never makes the plate slide.
@@ -63,7 +66,15 @@ def _outcome(bench: Bench, loaded: State, states: list[State], phases: tuple[Pha
     friction = np.asarray([-scene.bodies.spacing * float(s.profile.shear.sum()) for s in states])
     time = np.asarray([s.step - loaded.step for s in states]) * settings.time_step
     steady = friction[len(friction) // 2 :]
-    top = int(np.argmax(friction))
+    place = np.asarray([s.plate_x for s in states])
+    top = int(np.argmax(np.where(place < SLIDING * scene.bodies.spacing, friction, -np.inf)))
+    half = len(states) // 2
+    speed = float((place[-1] - place[half]) / (time[-1] - time[half]))
+    if abs(speed / scene.cantilever.velocity - 1.0) > STEADY:
+        raise UntrustedError(
+            f"no steady sliding yet: over the second half of the way the plate moves at {speed:.3g} LU/TU and the "
+            f"drive at {scene.cantilever.velocity:.3g}: take a longer experiment.distance or a stiffer cantilever"
+        )
     if states[-1].plate_x < SLIDING * scene.bodies.spacing:
         raise UntrustedError(
             f"the plate moved by {states[-1].plate_x:.3g} LU only, which is no sliding yet: take a longer "
