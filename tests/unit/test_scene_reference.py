@@ -1,0 +1,62 @@
+"""docs/scene.md lists every key of a scene: it is made from the tables themselves, so it cannot drift.
+
+Renew it with WRITE_DOCS=1 pytest tests/unit/test_scene_reference.py.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from workflow import scene as scenes
+from workflow.scene.quantities import Table, annotation_of, keys_of
+from workflow.scene.wording import statement
+
+PAGE = Path(__file__).parents[2] / "docs" / "scene.md"
+HEAD = """# Every key of a scene
+
+Made from the tables of `workflow/scene`. Units: LU length, FU force, MU mass, TU = √(MU·LU/FU), k_BT in FU·LU.
+A table that is absent adds nothing to the deck; tables that do not fit together are reported with what to do.
+"""
+TABLES = {
+    "bodies": scenes.Bodies,
+    "bodies.profile, kind parabola": scenes.Parabola,
+    "interaction": scenes.Interaction,
+    "interaction.repulsion, interaction.attraction": scenes.Exponential,
+    "neighbours": scenes.Neighbours,
+    "horizontal": scenes.Horizontal,
+    "damping": scenes.Damping,
+    "noise": scenes.Noise,
+    "plate": scenes.Plate,
+    "cantilever": scenes.Cantilever,
+    "accuracy": scenes.Accuracy,
+    "experiment, kind load": scenes.Load,
+    "experiment, kind path": scenes.Path,
+    "experiment.displacements, as a table": scenes.Span,
+    "experiment, kind pull_off": scenes.PullOff,
+    "experiment, kind slide": scenes.Slide,
+}
+
+
+def section(name: str, table: type[Table]) -> str:
+    lines = [f"\n## [{name}]\n", (table.__doc__ or "").strip().splitlines()[0] + "\n"]
+    keys = keys_of(table)
+    if keys:
+        lines.append("| key | what | must be | absent |\n| --- | --- | --- | --- |")
+    for key, field in keys.items():
+        info = table.model_fields[field]
+        default = "required" if info.is_required() else "none" if info.default is None else f"`{info.default}`"
+        lines.append(f"| `{key}` | {info.description} | {statement(annotation_of(table, key))} | {default} |")
+    return "\n".join(lines) + "\n"
+
+
+def test_the_page_of_all_keys_is_what_the_tables_say() -> None:
+    page = HEAD + "".join(section(name, table) for name, table in TABLES.items())
+    if os.environ.get("WRITE_DOCS"):
+        PAGE.write_text(page, encoding="utf-8")
+    assert PAGE.read_text(encoding="utf-8") == page
+
+
+def test_every_table_of_a_scene_is_on_the_page() -> None:
+    named = {name.split(",")[0].split(".")[0] for name in TABLES}
+    assert named | {"title"} == set(keys_of(scenes.Scene))
