@@ -31,13 +31,15 @@ COMPRESSION, TENSION, LOADING, UNLOADING, THEORY = "#0072B2", "#D55E00", "#56B4E
 """Okabe and Ito's colours, which the colour-blind can tell apart."""
 SIZE = (6.4, 4.2)
 DPI = 120
+SEPARATED = 1e-3
+"""Largest pressure over that of the other states below which a state is not drawn: the bodies are apart."""
 CARRIES = 0.01
 """Pressure over the largest one that a figure still shows."""
 
 
 def pressure_figure(profiles: Mapping[str, Profile], radii: Mapping[str, float]) -> Figure:
     """Pressure over x of each state that has any, one panel below the other, with ±a marked (the paper's Fig. 4)."""
-    touching = {name: profile for name, profile in profiles.items() if np.any(profile.pressure)}
+    touching = {name: profile for name, profile in profiles.items() if _touches(profile, profiles)}
     profiles = touching or dict(list(profiles.items())[:1])
     figure = _figure((SIZE[0], 1.0 + 2.3 * len(profiles)))
     axes = figure.subplots(len(profiles), 1, sharex=True, squeeze=False)[:, 0]
@@ -187,6 +189,12 @@ def _draw_bars(axis: Axes, x: Array, height: Array, width: float) -> None:
     corners = np.stack([np.stack([left, left, right, right]), np.stack([zero, height, height, zero])]).T
     colours = np.where(height >= 0.0, COMPRESSION, TENSION).tolist()
     axis.add_collection(PolyCollection(list(corners), facecolors=colours, linewidths=0.0))
+
+
+def _touches(profile: Profile, profiles: Mapping[str, Profile]) -> bool:
+    """Whether a state's pressure is more than the far tail of a separated pair, beside the other states'."""
+    largest = max(float(np.abs(other.pressure).max(initial=0.0)) for other in profiles.values())
+    return float(np.abs(profile.pressure).max(initial=0.0)) > SEPARATED * largest
 
 
 def _half_width(profile: Profile) -> float:

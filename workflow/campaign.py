@@ -90,9 +90,6 @@ def run(
 
 def _run(deck: Deck, folder: Path, started: float, figures: bool, progress: Progress, time_limit: float) -> Run:
     scene = deck.scene
-    for name in FILES:
-        (folder / name).unlink(missing_ok=True)
-        (folder / f"{name}.part").unlink(missing_ok=True)
     _write(deck, folder)
     bench = Bench(deck, folder, progress, time_limit)
 
@@ -130,8 +127,6 @@ def write_deck(scene: Scene, folder: Path | str) -> Path:
     deck = Deck(scene, settings_for(scene))
     folder = prepare(Path(folder))
     with _alone(folder):
-        for name in FILES:
-            (folder / name).unlink(missing_ok=True)
         _write(deck, folder)
     return folder
 
@@ -169,6 +164,10 @@ def _alone(folder: Path) -> Iterator[None]:
 
 
 def _write(deck: Deck, folder: Path) -> None:
+    """Replace whatever an earlier run left by what the deck needs."""
+    for name in FILES:
+        (folder / name).unlink(missing_ok=True)
+        (folder / f"{name}.part").unlink(missing_ok=True)
     write_whole(folder / "in.lammps", deck.text(planned(deck.scene, deck.settings)))
     write_whole(folder / "scene.toml", scene_to_toml(deck.scene))
     write_system(deck, folder)
