@@ -20,6 +20,8 @@ from workflow.settings import Settings
 PLANE_DEPTH = 1e3
 """Distance of the wall's origin below the plane over the deepest expected displacement."""
 MINIMISER_ITERATIONS = 20_000
+RELAXATION = 0.25
+"""First step of a relaxation over the time step of a run in time: ten times as much is 0.5/ω_max."""
 STEP_COLUMNS = {
     "displace": ("row_displacement",),
     "displace_dynamic": ("row_displacement", "row_steps"),
@@ -187,6 +189,7 @@ class Deck:
             variables = {
                 "force_tolerance": number(self.settings.force_tolerance),
                 "minimiser_iterations": str(MINIMISER_ITERATIONS),
+                "relaxation_step": number(RELAXATION * self.settings.time_step),
             }
             return Contribution("quasistatic", Stage.MOTION, ("quasistatic",), variables)
         variables = {"time_step": number(self.settings.time_step)}

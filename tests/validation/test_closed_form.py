@@ -1,11 +1,13 @@
 """Claim: where pairs are independent, a pull-off follows the closed form, and F_A, a_0 and a_cr grow as √R exactly.
 
-Reference: `analysis.reference.independent_pairs`, F(G₀) = (√(2R)/s) ∫ f(G) (G − G₀)^(−1/2) dG with G = r − 2 f(r)/k, and
-a = √(2R (G_m − G₀)): one integral, no chain and no minimisation (physics.md). It holds without neighbour springs and
+Reference: `analysis.reference.independent_pairs`, F(G₀) = (√(2R)/s) ∫ f(G) (G − G₀)^(−1/2) dG with G = r − 2 f(r)/k,
+and a = √(2R (G_m − G₀)): one integral, no chain and no minimisation (physics.md). It holds without neighbour
+springs and
 horizontal freedom, for interactions that end well within one spacing, and edges that are several particles wide.
 
-What limits the tolerance. The force: the sum over particles is the trapezoidal rule of a smooth integrand, so the lattice
-costs nothing once the edge is a few particles wide; left are the rows around the largest tension. The radii: the
+What limits the tolerance. The force: the sum over particles is the trapezoidal rule of a smooth integrand, so the
+lattice costs nothing once the edge is a few particles wide; left are the rows around the largest tension. The
+radii: the
 interpolation of the pressure between particles, about 1e-3 spacings, which shrinks against the contact as R grows.
 """
 
@@ -52,7 +54,11 @@ def tables(radius: float) -> dict[str, Any]:
             "repulsion": {"amplitude": REPULSION[0], "range": REPULSION[1]},
             "attraction": {"amplitude": ATTRACTION[0], "range": ATTRACTION[1]},
         },
-        "experiment": {"kind": "pull_off", "method": "quasistatic", "preload": 0.05 * float(np.sqrt(radius / RADII[0]))},
+        "experiment": {
+            "kind": "pull_off",
+            "method": "quasistatic",
+            "preload": 0.05 * float(np.sqrt(radius / RADII[0])),
+        },
     }
 
 

@@ -1,7 +1,7 @@
 """Claim: on the rigid plane the force is the exact sum over the particles, and goes to the closed form as spacing².
 
-Reference. Without neighbour springs every particle is a one-sided spring: F = Σ_i k max(0, d − x_i²/2R). Its limit for a
-fixed layer c_n = k/s is F_c = (4√2/3) c_n √R d^{3/2} = (2/3) c_n a³/R, a = √(2Rd) (Eqs. 1–3 of the paper).
+Reference. Without neighbour springs every particle is a one-sided spring: F = Σ_i k max(0, d − x_i²/2R). Its limit
+for a fixed layer c_n = k/s is F_c = (4√2/3) c_n √R d^{3/2} = (2/3) c_n a³/R, a = √(2Rd) (Eqs. 1–3 of the paper).
 
 The rate (derived here). The sum is s Σ g(x_i), x_i = (i + θ)s, of g(x) = (c_n/2R)(a² − x²) cut at ±a: smooth but for a
 kink at either edge. By Poisson's sum formula its error is Σ_{m≠0} ĝ(2πm/s) exp(2πimθ) with
@@ -46,12 +46,17 @@ SPREAD = 5e-3
 """Relative, of the constant (3/2)/√180; measured 1e-3: OFFSETS points of a period with two kinks."""
 OFFSETS = 64
 PENALTY = 1e-3
-"""Relative: the tolerance of the scene, and the softness of the plane over that of the chain. Measured 2e-6 for forces."""
+"""Relative: the tolerance of the scene, and the plane's softness over the chain's. Measured 2e-6 for forces."""
 STIFFNESS = 0.5
 
 
 def on_plane(
-    run_tables: RunTables, radius: float, spacing: float, stiffness: float, displacements: Array, neighbours: float = 0.0
+    run_tables: RunTables,
+    radius: float,
+    spacing: float,
+    stiffness: float,
+    displacements: Array,
+    neighbours: float = 0.0,
 ) -> tuple[State, ...]:
     """States of one chain on the plane at these displacements [LU], in that order."""
     scene: dict[str, Any] = {

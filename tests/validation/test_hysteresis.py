@@ -1,12 +1,12 @@
 """Claim: particles snap, and loading and unloading differ, where the springs are softer than the contact.
 
-Reference (physics.md): a pair's undeformed gap is G(r) = r − 2 f(r)/k. Where f′ exceeds k/2 somewhere, G(r) falls back on
-itself, a particle jumps, and the curve depends on the way; below, r(G) is unique, and so is F(d). The largest f′ of
-V(r) = A exp(−r/a) − B exp(−r/b) lies at exp(−r/a + r/b) = (B a³)/(A b³) and is known in closed form. Between the branches
-lies an energy ∮F dd: for independent pairs n particles lose n times the area between the fold's two jumps.
+Reference (physics.md): a pair's undeformed gap is G(r) = r − 2 f(r)/k. Where f′ exceeds k/2 somewhere, G(r) falls back
+on itself, a particle jumps, and the curve depends on the way; below, r(G) is unique, and so is F(d). The largest f′ of
+V(r) = A exp(−r/a) − B exp(−r/b) lies at exp(−r/a + r/b) = (B a³)/(A b³) and is known in closed form. Between the
+branches lies an energy ∮F dd: for independent pairs n particles lose n times the area between the fold's two jumps.
 
-What limits the tolerance: for stiff springs the residual force at which a minimisation stops. For soft ones the area is a
-sum of trapezia over rows between which particles jump; a jump is missed by half an increment on average.
+What limits the tolerance: for stiff springs the residual force at which a minimisation stops. For soft ones the area is
+a sum of trapezia over rows between which particles jump; a jump is missed by half an increment on average.
 """
 
 from __future__ import annotations

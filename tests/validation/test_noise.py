@@ -1,15 +1,16 @@
 """Claim: with [noise] every free coordinate has its thermal variance, and a held one does not move at all.
 
 Reference (equipartition; exact for linear springs). Without neighbour springs ⟨u_z²⟩ = k_BT/k and ⟨u_x²⟩ = k_BT/k_t for
-every particle away from the contact, u counted from the particle's place in its bulk, and ⟨v²⟩ = k_BT/m along every free
-direction. With them the normal modes of a chain of N particles with free ends, of stiffness k + 4 k_n sin²(πq/2N) and
-shape φ_q(i) ∝ cos(πq(i + 1/2)/N), give
+every particle away from the contact, u counted from the particle's place in its bulk, and ⟨v²⟩ = k_BT/m along every
+free direction. With them the normal modes of a chain of N particles with free ends, of stiffness k + 4 k_n
+sin²(πq/2N) and shape φ_q(i) ∝ cos(πq(i + 1/2)/N), give
 
     ⟨u_i²⟩ = k_BT Σ_q φ_q(i)² / (k + 4 k_n sin²(πq/2N)),        inside a long chain k_BT / √(k (k + 4 k_n)),
     ⟨u_i u_(i+1)⟩ = k_BT Σ_q φ_q(i) φ_q(i+1) / (k + 4 k_n sin²(πq/2N)).
 
-What limits the tolerance: statistics. Each number must lie within 4 of its own sample's standard errors, from time blocks
-long against the relaxation (and, for independent particles, from the spread between particles). The integrator's bias,
+What limits the tolerance: statistics. Each number must lie within 4 of its own sample's standard errors, from time
+blocks long against the relaxation (and, for independent particles, from the spread between particles). The
+integrator's bias,
 0.4 (ωΔt)² = the scene's tolerance of 1e-3, is below half a standard error. Seeds are fixed: a failure is no bad luck.
 """
 
@@ -36,7 +37,7 @@ Array = NDArray[np.float64]
 SIGMAS = 4.0
 """Standard errors: one test in 16 000 would fail by chance, and the seeds are fixed."""
 LARGEST_ERROR = 0.02
-"""Relative standard error that a sample must reach: a test that could not tell 10 % would be none. Measured: 0.3–1.7 %."""
+"""Relative standard error that a sample must reach: a test that could not tell 10 % is none. Measured: 0.3–1.7 %."""
 INTEGRATOR = 1e-3
 """Relative bias of a variance: the tolerance of the scene, from which the time step follows."""
 TEMPERATURE, STIFFNESS, TANGENTIAL, MASS, DAMPING = 0.01, 0.83, 0.5, 1.0, 1.5

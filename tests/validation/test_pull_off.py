@@ -7,7 +7,8 @@ What limits the agreement. The adhesion force: the rows of the last pass around 
 are chosen so that a parabola through them misses no more than 0.3·tolerance = 3e-4, and the tail beyond the cutoff. The
 radii: the interpolation of the pressure between particles, a few 1e-3 spacings, and at the critical state also the
 displacement, since a_cr changes with it while the force, at its maximum, does not. The reference is exact to 1e-9 in
-the force and takes a polynomial through nine particles for a radius, good to some 1e-6 where a dip is many spacings wide.
+the force and takes a polynomial through nine particles for a radius, good to some 1e-6 where a dip is many spacings
+wide.
 """
 
 from __future__ import annotations
@@ -85,7 +86,10 @@ RANGES = (
 )
 """Repulsion, attraction, radius and preload: the longer the range, the smaller the radius, and contacts stay alike."""
 CASES = [
-    Case(*values, neighbours, horizontal) for values in RANGES for neighbours in (0.0, 0.3) for horizontal in (False, True)
+    Case(*values, neighbours, horizontal)
+    for values in RANGES
+    for neighbours in (0.0, 0.3)
+    for horizontal in (False, True)
 ] + [
     Case(*RANGES[2], 0.0, True, 1.2),
     Case(*RANGES[3], 0.3, True, 1.5),
