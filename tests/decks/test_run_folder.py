@@ -121,7 +121,7 @@ def test_lmp_repeats_the_run_bitwise(finished: Run, tmp_path: Path) -> None:
 
 
 PASSING = ("path", "slide", "pull_off")
-"""Experiments whose deck may have rows that are no results: between two places asked for, loading, or after the loss."""
+"""Experiments whose deck may have rows that are no results: between two places, while loading, after the loss."""
 
 
 def test_curve_txt_holds_the_states_of_the_results(finished: Run) -> None:
