@@ -9,6 +9,9 @@ from typing import Any
 
 import pytest
 
+from analysis.reference.interaction import Exponential, PairInteraction
+from analysis.reference.model import ChainModel
+from analysis.reference.pull_off import pull_off
 from workflow import RunError, run, scene_from_dict
 
 LAW = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
@@ -42,6 +45,9 @@ UNTRUSTED = {
     ),
     "through each other: too deep": (
         tables({"kind": "path", "displacements": {"from": 0.0, "to": 6.0, "steps": 40}}), "went through each other",
+    ),
+    "through each other: a preload beyond what particles carry": (
+        tables({"kind": "pull_off", "preload": 100.0}), "went through each other",
     ),
     "end of the chain": (tables({"kind": "load", "force": 2.0}, {"particles": 13}), "end of the chain"),
     "more tension than adhesion": (tables({"kind": "load", "force": -5.0}), "never reached"),
@@ -107,3 +113,52 @@ def test_particles_closer_than_the_table_was_chosen_for_get_a_warning(tmp_path: 
 def test_automatic_chains_need_no_warning(tmp_path: Path) -> None:
     results = run(scene_from_dict(tables(PULL, {"particles": "auto"})), tmp_path / "run", figures=False).results
     assert results["warnings"] == []
+
+
+def test_atoms_that_fly_apart_are_no_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    spoil(monkeypatch, damping=1e4)  # over the time step it takes away many times the momentum that there is
+    scene = tables({"kind": "load", "force": 0.3, "method": "dynamic"}, plate={}, damping={"coefficient": "auto"})
+    with pytest.raises(RunError, match=r"left the box|missing"):
+        run(scene_from_dict(scene), tmp_path / "run", figures=False)
+    assert json.loads((tmp_path / "run" / "results.json").read_text())["status"] == "failed"
+
+
+def test_a_minimisation_that_is_cut_short_is_no_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("workflow.deck.MINIMISER_ITERATIONS", 1)
+    with pytest.raises(RunError, match="not converged"):
+        run(scene_from_dict(tables({"kind": "path", "displacements": [0.3]})), tmp_path / "run", figures=False)
+    assert json.loads((tmp_path / "run" / "results.json").read_text())["status"] == "failed"
+
+
+def test_a_failed_run_leaves_nothing_of_the_run_before(tmp_path: Path) -> None:
+    """Numbers of an older run beside a failure would be taken for its results."""
+    scene = scene_from_dict(tables({"kind": "load", "force": 0.3}))
+    run(scene, tmp_path / "run", figures=False)
+    assert {"curve.csv", "profile.csv"} <= {path.name for path in (tmp_path / "run").iterdir()}
+    with pytest.raises(RunError):
+        run(scene_from_dict(tables({"kind": "load", "force": -5.0})), tmp_path / "run", figures=False)
+    left = {path.name for path in (tmp_path / "run").iterdir()}
+    assert not left & {"curve.csv", "profile.csv", "pressure.png"}
+    assert json.loads((tmp_path / "run" / "results.json").read_text())["status"] == "failed"
+
+
+TIMED = {"damping": {"coefficient": "auto"}, "plate": {}}
+NEAR = {"quasistatic": 0.002, "dynamic": 0.01}
+"""Distance from the pull-off force, relative: what was asked of it is 0.3 % and 1 %."""
+
+
+@pytest.mark.parametrize("method", NEAR)
+def test_a_tension_is_held_up_to_the_adhesion_force_and_no_further(tmp_path: Path, method: str) -> None:
+    """The adhesion force is that of the reference solver, which shares nothing with the program."""
+    terms = [Exponential(LAW[name]["amplitude"], LAW[name]["range"]) for name in ("repulsion", "attraction")]
+    adhesion = pull_off(ChainModel(60, 0.83, PairInteraction(*terms), radius=100.0), 0.1).adhesion_force
+    more = TIMED if method == "dynamic" else {}
+
+    def held(tension: float) -> float:
+        scene = tables({"kind": "load", "method": method, "force": -tension}, **more)
+        return float(run(scene_from_dict(scene), tmp_path / "run", figures=False).results["force"]["value"])
+
+    below, above = (1.0 - NEAR[method]) * adhesion, (1.0 + NEAR[method]) * adhesion
+    assert held(below) == pytest.approx(-below, rel=1e-3)  # the tolerance of the scene
+    with pytest.raises(RunError, match=r"never reached|cannot hold"):
+        held(above)

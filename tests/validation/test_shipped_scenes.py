@@ -7,9 +7,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
+from scipy.optimize import brentq
 
-from workflow import read_scene, run
+from analysis.reference.interaction import Exponential, PairInteraction
+from analysis.reference.model import ChainModel
+from analysis.reference.pull_off import pull_off
+from analysis.reference.solver import ChainSolver, trace
+from analysis.reference.winkler import rigid_plane_sum
+from workflow import Scene, read_scene, run
+from workflow.settings import settings_for
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 
@@ -36,3 +44,50 @@ def test_a_shipped_scene_gives_its_number(name: str, tmp_path: Path) -> None:
     assert results["warnings"] == []
     assert results[quantity]["value"] == pytest.approx(value, abs=tolerance)
     assert abs(results[quantity]["value"] - value) <= max(3 * results[quantity]["uncertainty"], 0.2 * tolerance)
+
+
+DIGITS = 1e-6  # those that PINNED has
+
+
+def test_the_pinned_numbers_are_those_of_the_references() -> None:
+    assert independent("hertz_plane") == pytest.approx(PINNED["hertz_plane"][1], abs=DIGITS)
+    assert independent("load") == pytest.approx(PINNED["load"][1], abs=DIGITS)
+    assert independent("pull_off") == pytest.approx(PINNED["pull_off"][1], abs=DIGITS)
+    assert independent("path_hysteresis") == pytest.approx(PINNED["path_hysteresis"][1], abs=DIGITS)
+    assert PINNED["pull_off_dynamic"][1] == PINNED["pull_off"][1]
+
+
+def independent(name: str) -> float:
+    """The number of a shipped scene by the exact sum, or by the solver that shares nothing with the program."""
+    scene = read_scene(SCENES / f"{name}.toml")
+    model = model_of(scene)
+    experiment = scene.experiment
+    match experiment.kind:
+        case "load":
+            start, solver = trace(model, np.arange(-1.5, 0.31, 0.1))[-1], ChainSolver(model)
+            return float(brentq(lambda d: solver.equilibrium(d, start).force - experiment.force, 0.3, 0.5, xtol=1e-10))
+        case "pull_off":
+            return pull_off(model, experiment.preload).adhesion_force
+        case _ if model.rigid_plane:
+            deepest = max(experiment.values())
+            return rigid_plane_sum(deepest, model.places(), scene.bodies.profile.radius, model.bulk_stiffness)
+        case _:
+            return pull_off(model, 0.2).adhesion_force  # a path that turns deeper unloads along the same branch
+
+
+def model_of(scene: Scene) -> ChainModel:
+    """The chains of a scene for the reference."""
+    law = None
+    if scene.interaction is not None:
+        repulsion, attraction = scene.interaction.repulsion, scene.interaction.attraction
+        terms = [Exponential(term.amplitude, term.range) for term in (repulsion, attraction)]
+        law = PairInteraction(*terms)
+    return ChainModel(
+        settings_for(scene).particles,
+        scene.bodies.bulk_stiffness,
+        law,
+        radius=scene.bodies.profile.radius,
+        neighbour_stiffness=0.0 if scene.neighbours is None else scene.neighbours.stiffness,
+        horizontal=scene.horizontal is not None,
+        rigid_plane=law is None,
+    )
