@@ -18,8 +18,6 @@ AT_REST = 0.1
 """Unbalanced load, and load that the plate would still travel through, over the load scale and the tolerance."""
 LOST = 0.7
 """Tension over the largest one under this load at which a plate that moves off counts as lost."""
-RESTLESS = 1e-3
-"""Smallest tolerance to which a state in time is brought to rest."""
 
 
 @dataclass(frozen=True)
