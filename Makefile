@@ -27,7 +27,7 @@ run: $(READY) ## run a scene: SCENE=file.toml (default pull_off), OUT=folder (de
 	@$(BIN)/contact1d run "$(SCENE)" $(if $(OUT),--out "$(OUT)")
 
 test: $(READY) ## run the tests: ARGS='-m slow' the long ones, ARGS=tests/unit one room
-	@$(BIN)/python -m pytest $(ARGS)
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest $(ARGS) # small matrices: threads only get in each other's way
 
 lint: $(READY) ## check style, types and the direction of imports
 	$(BIN)/ruff check .

@@ -69,12 +69,12 @@ def _thermal(bench: Bench, contact: Contact, load: float) -> Outcome:
     scene, settings = bench.deck.scene, bench.deck.settings
     steps = chunk_steps(settings)
     contact.begin("settling", "load", expected_steps=SETTLING * steps)
-    settling = [contact.row(load, steps) for _ in range(SETTLING)]
+    settling = [_joined(contact, contact.row(load, steps)) for _ in range(SETTLING)]
     contact.begin("sampling", "load", expected_steps=SAMPLES * steps)
     samples: list[State] = []
     goal = scene.accuracy.tolerance * max(settings.rest, abs(settings.largest_displacement))
     while len(samples) < MOST_SAMPLES:
-        samples += [contact.row(load, steps) for _ in range(SAMPLES)]
+        samples += [_joined(contact, contact.row(load, steps)) for _ in range(SAMPLES)]
         if standard_error([s.displacement for s in samples]) <= goal:
             break
     contact.write_state()
@@ -88,6 +88,16 @@ def _thermal(bench: Bench, contact: Contact, load: float) -> Outcome:
             f"{abs(mean_force - load) / force_error:.1f} standard errors"
         )
     return _thermal_outcome(bench, contact, (*settling, *samples), samples, (mean_force, force_error), goal)
+
+
+def _joined(contact: Contact, state: State) -> State:
+    """The state, if the bodies still reach each other."""
+    if contact.settings.law is not None and state.smallest_distance > contact.settings.cutoff:
+        raise UntrustedError(
+            "the bodies parted under the load and the noise: take a more compressive experiment.force or a lower "
+            "noise.temperature"
+        )
+    return state
 
 
 def _thermal_outcome(
