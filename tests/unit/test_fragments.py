@@ -188,27 +188,27 @@ def with_part(monkeypatch: pytest.MonkeyPatch, part: Callable[[Scene, object], C
 def test_a_variable_used_but_not_defined_raises(make_scene: MakeScene, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = make_scene(neighbours={"stiffness": 0.3})
     deck = Deck(scene, settings_for(scene))
-    with_part(monkeypatch, lambda s, t: replace(neighbours(s, t), variables={}))  # type: ignore[arg-type]
+    with_part(monkeypatch, lambda s, t: replace(neighbours(s, t), variables={}))
     with pytest.raises(DeckError, match="used but not defined: neighbours_bond_coefficient"):
-        deck.head  # noqa: B018
+        deck.head  # noqa: B018 (rendering it is the test)
 
 
 def test_a_variable_defined_but_not_used_raises(make_scene: MakeScene, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = make_scene(neighbours={"stiffness": 0.3})
     deck = Deck(scene, settings_for(scene))
     more = {"neighbours_bond_coefficient": "0.15", "neighbours_spare": "1"}
-    with_part(monkeypatch, lambda s, t: replace(neighbours(s, t), variables=more))  # type: ignore[arg-type]
+    with_part(monkeypatch, lambda s, t: replace(neighbours(s, t), variables=more))
     with pytest.raises(DeckError, match="defined but not used: neighbours_spare"):
-        deck.head  # noqa: B018
+        deck.head  # noqa: B018 (rendering it is the test)
 
 
 def test_a_variable_defined_twice_raises(make_scene: MakeScene, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = make_scene(neighbours={"stiffness": 0.3})
     deck = Deck(scene, settings_for(scene))
     more = {"neighbours_bond_coefficient": "0.15", "interaction_skin": "1"}
-    with_part(monkeypatch, lambda s, t: replace(neighbours(s, t), variables=more))  # type: ignore[arg-type]
+    with_part(monkeypatch, lambda s, t: replace(neighbours(s, t), variables=more))
     with pytest.raises(DeckError, match="defined twice: interaction_skin"):
-        deck.head  # noqa: B018
+        deck.head  # noqa: B018 (rendering it is the test)
 
 
 def test_an_id_defined_twice_raises(make_scene: MakeScene, fakes: Path) -> None:
@@ -216,7 +216,7 @@ def test_an_id_defined_twice_raises(make_scene: MakeScene, fakes: Path) -> None:
     change(fakes / "neighbours.lmp", "# Defines: -\n", "# Defines: lower (group)\ngroup           lower type 1\n")
     scene = make_scene(neighbours={"stiffness": 0.3})
     with pytest.raises(DeckError, match="defined twice: lower"):
-        Deck(scene, settings_for(scene)).head  # noqa: B018
+        Deck(scene, settings_for(scene)).head  # noqa: B018 (rendering it is the test)
 
 
 def test_one_interaction_and_one_plane_do_not_meet(make_scene: MakeScene, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -226,4 +226,4 @@ def test_one_interaction_and_one_plane_do_not_meet(make_scene: MakeScene, monkey
     part = interaction_effect(both, settings_for(both))
     with_part(monkeypatch, lambda *_: part)
     with pytest.raises(DeckError, match="defined twice: opposite_x, opposite_z"):
-        Deck(scene, settings_for(scene)).head  # noqa: B018
+        Deck(scene, settings_for(scene)).head  # noqa: B018 (rendering it is the test)

@@ -41,7 +41,7 @@ def curve() -> Curve:
 
 def lines(axis: object) -> dict[str, np.ndarray]:
     """Points of each line with a label."""
-    drawn = {line.get_label(): np.asarray(line.get_xydata()) for line in axis.get_lines()}  # type: ignore[attr-defined]
+    drawn = {line.get_label(): np.asarray(line.get_xydata()) for line in axis.get_lines()}
     return {label: points for label, points in drawn.items() if not label.startswith("_")}
 
 

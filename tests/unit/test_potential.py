@@ -31,7 +31,7 @@ QUADRATURE = 1e-9
 def slope(function: object, r: float, scale: float) -> float:
     """Central difference of a function of one distance."""
     h = STEP * scale
-    return float((function(r + h) - function(r - h)) / (2 * h))  # type: ignore[operator]
+    return float((function(r + h) - function(r - h)) / (2 * h))
 
 
 @pytest.mark.parametrize("law", LAWS)
