@@ -33,6 +33,8 @@ SIZE = (6.4, 4.2)
 DPI = 120
 SEPARATED = 1e-3
 """Largest pressure over that of the other states below which a state is not drawn: the bodies are apart."""
+FEW_ROWS = 20
+"""Below this many rows a branch also shows where they are: a line through one row would be invisible."""
 CARRIES = 0.01
 """Pressure over the largest one that a figure still shows."""
 
@@ -91,7 +93,8 @@ def force_displacement_figure(
             order = np.argsort(displacement[chosen], kind="stable")
             d, f = displacement[chosen][order], force[chosen][order]
             wide = 3.2 if branch == "loading" else 1.4
-            axis.plot(d, f, style, color=colour, linewidth=wide, label=branch)
+            marker = "o" if len(d) < FEW_ROWS else ""
+            axis.plot(d, f, style, marker=marker, markersize=4, color=colour, linewidth=wide, label=branch)
     if theory is not None:
         name, d, f = theory
         shown = (d >= displacement.min()) & (f <= force.max() + 0.05 * np.ptp(force))
@@ -102,9 +105,10 @@ def force_displacement_figure(
         axis.axhline(-adhesion, color=TENSION, linewidth=1.0, linestyle=":")
         axis.annotate(
             f"$-F_A$ = \N{MINUS SIGN}{adhesion:.4g} FU", (0.0, -adhesion), xycoords=("axes fraction", "data"),
-            xytext=(6, 5), textcoords="offset points", ha="left", color=TENSION,
+            xytext=(6, -4), textcoords="offset points", ha="left", va="top", color=TENSION,
         )  # fmt: skip
     axis.set_xlabel("displacement (LU), compression positive")
+    axis.margins(y=0.09)
     axis.set_ylabel("force (FU), compression positive")
     axis.legend(frameon=False, loc="upper left")
     return figure
