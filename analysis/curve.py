@@ -48,9 +48,9 @@ def write_columns(path: Path, columns: Mapping[str, Iterable[float | str]]) -> N
     os.replace(part, path)
 
 
-def write_curve(path: Path, curve: Curve) -> None:
-    """Write curve.csv."""
-    write_columns(path, {field.name: getattr(curve, field.name) for field in fields(curve)})
+def curve_columns(curve: Curve) -> dict[str, Sequence[float | str]]:
+    """Return the columns of curve.csv by name."""
+    return {field.name: getattr(curve, field.name) for field in fields(curve)}
 
 
 def read_curve(path: Path) -> Curve:
@@ -64,14 +64,14 @@ def read_curve(path: Path) -> Curve:
     return Curve(**numbers, branch=columns["branch"])
 
 
-def write_profiles(path: Path, profiles: Mapping[str, Profile]) -> None:
-    """Write profile.csv: the profiles below each other, the state's name in the last column."""
+def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Sequence[float | str]]:
+    """Return the columns of profile.csv: the profiles below each other, the state's name in the last column."""
     columns: dict[str, list[float | str]] = {name: [] for name in (*PROFILE_COLUMNS, "state")}
     for state, profile in profiles.items():
         for name in PROFILE_COLUMNS:
             columns[name] += getattr(profile, name).tolist()
         columns["state"] += [state] * len(profile.x)
-    write_columns(path, columns)
+    return dict(columns)
 
 
 def read_profiles(path: Path) -> dict[str, Profile]:

@@ -107,7 +107,7 @@ def _run(deck: Deck, folder: Path, started: float, figures: bool, progress: Prog
     write_whole(folder / "in.lammps", deck.text(outcome.phases))
     (folder / "saved.lammpstrj").unlink(missing_ok=True)
     curve = curve_of(scene, outcome)
-    write_tables(folder, outcome, curve)
+    write_tables(folder, scene, outcome, curve)
     if figures:
         draw(folder, scene, outcome, curve)
     document = results(scene, outcome, timing())

@@ -168,7 +168,7 @@ class Deck:
 
     @property
     def _tangential(self) -> float:
-        return self.scene.bodies.tangential_stiffness
+        return self.scene.tangential_stiffness
 
     def _plane(self) -> Contribution:
         depth = PLANE_DEPTH * max(self.settings.largest_displacement, self.scene.bodies.spacing)

@@ -29,6 +29,10 @@ class Profile(Protocol):
     def height(self, x: Array) -> Array:
         """Height [LU] at x [LU]."""
 
+    @property
+    def reach(self) -> float:
+        """Half-width [LU] of the body."""
+
 
 @dataclass(frozen=True)
 class ContactEstimate:
@@ -58,13 +62,19 @@ class ContactEstimate:
         return float(np.trapezoid(per_particle, x)) / self.spacing
 
     def half_width(self, displacement: float, gap: float) -> float:
-        """Half-width [LU] within which the undeformed gap is below `gap` [LU] at this displacement [LU]."""
+        """Half-width [LU] within which the undeformed gap is below `gap` [LU] at this displacement [LU].
+
+        At most the body's own.
+        """
         height = gap - self.rest + displacement
         if height <= 0:
             return self.spacing
-        inner, outer = 0.0, self.spacing
-        while float(self.profile.height(np.asarray([outer]))[0]) < height:
-            inner, outer = outer, 2 * outer
+        reach = self.profile.reach
+        if reach < np.inf and float(self.profile.height(np.asarray([reach]))[0]) < height:
+            return reach
+        inner, outer = 0.0, min(self.spacing, reach)
+        while outer < reach and float(self.profile.height(np.asarray([outer]))[0]) < height:
+            inner, outer = outer, min(2 * outer, reach)
         for _ in range(60):
             middle = 0.5 * (inner + outer)
             if float(self.profile.height(np.asarray([middle]))[0]) < height:

@@ -64,7 +64,7 @@ def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
     x = places(settings.particles, scene.bodies.spacing)
     flat = np.zeros_like(x)
     offset = settings.table.plane_offset if settings.table is not None else 0.0
-    upper = np.column_stack([x, flat + offset, settings.rest + scene.bodies.profile.height(x)])
+    upper = np.column_stack([x, flat + offset, settings.rest + scene.bodies.height(x)])
     if scene.bodies.lower == "rigid_plane":
         return (_body("upper", upper, scene, settings),)
     lower = np.column_stack([x, flat, flat])
@@ -72,7 +72,7 @@ def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
 
 
 def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body:
-    tangential = scene.bodies.tangential_stiffness
+    tangential = scene.tangential_stiffness
     softer = min(settings.bulk_stiffness, tangential) if settings.far else settings.bulk_stiffness
     shift = np.zeros_like(particles)
     if scene.neighbours is not None:

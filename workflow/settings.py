@@ -13,7 +13,7 @@ import numpy as np
 from potentials import DoubleExponential, Exponential
 from potentials.table import Table, table_for
 from workflow.estimate import ContactEstimate, particles_estimate, plane_estimate
-from workflow.scene import Scene
+from workflow.scene import Bodies, FlatPunch, Scene
 
 CUTOFF_SHARE = 1e-3
 """Force at an automatic cutoff over the law's own, per unit of tolerance; the tail left out is some ten times that."""
@@ -40,6 +40,10 @@ CHAIN_MARGIN = 1.1
 """Length of an automatic chain over what the estimate asks for."""
 LOADING_STEPS = 24
 """Increments from first touch to the preload on the first pass of a search."""
+
+
+FALL = 1e-9
+"""A profile counts as falling where it does by more than this share of its height."""
 
 
 class SettingsError(ValueError):
@@ -129,21 +133,22 @@ def _chosen(scene: Scene) -> Settings:
     bodies = scene.bodies
     law = interaction_law(scene)
     plane = _plane_stiffness(scene)
-    bond = bodies.bulk_stiffness if law is not None else 1.0 / (1.0 / bodies.bulk_stiffness - 1.0 / plane)
+    bond = scene.bulk_stiffness if law is not None else 1.0 / (1.0 / scene.bulk_stiffness - 1.0 / plane)
     cutoff, rest, closest, table = 0.0, 0.0, 0.0, None
     if law is None:
-        estimate = plane_estimate(bodies.profile, bodies.spacing, bodies.bulk_stiffness)
+        estimate = plane_estimate(bodies, bodies.spacing, scene.bulk_stiffness)
     else:
         cutoff = _cutoff(scene, law)
         rest = law.force_free_distance() if law.attraction is not None else cutoff
         closest = CLOSEST_SHARE * (rest if law.attraction is not None else law.repulsion.range)
         table = table_for(law, cutoff, closest, TABLE_SHARE * tolerance * float(law.force(0.0)))
-        estimate = particles_estimate(law, bodies.profile, bodies.spacing, bodies.bulk_stiffness, cutoff, rest)
+        estimate = particles_estimate(law, bodies, bodies.spacing, scene.bulk_stiffness, cutoff, rest)
     largest = _largest_displacement(scene, estimate)
-    particles = bodies.particles if bodies.particles != "auto" else _chain_length(scene, estimate, largest)
+    particles = _chain_length(scene, estimate, largest) if bodies.particles == "auto" else bodies.particles
+    _require_body(scene, estimate, largest, particles)
     force_scale = _force_scale(scene, law, largest)
     motion = _motion(scene, law, closest, plane, estimate, largest, particles)
-    different = scene.horizontal is not None and bodies.tangential_stiffness != bodies.bulk_stiffness
+    different = scene.horizontal is not None and scene.tangential_stiffness != scene.bulk_stiffness
     return Settings(
         particles=particles,
         rest=rest,
@@ -172,7 +177,7 @@ def _plane_stiffness(scene: Scene) -> float:
     """
     if scene.bodies.lower != "rigid_plane":
         return 0.0
-    stiffness = scene.bodies.bulk_stiffness
+    stiffness = scene.bulk_stiffness
     if scene.neighbours is None and scene.noise is None:
         return 2.0 * stiffness
     neighbours = 0.0 if scene.neighbours is None else scene.neighbours.stiffness
@@ -199,8 +204,50 @@ def _largest_displacement(scene: Scene, estimate: ContactEstimate) -> float:
             return max(experiment.values())
 
 
+def _require_body(scene: Scene, estimate: ContactEstimate, largest: float, particles: int) -> None:
+    """Refuse a chain or a contact that is wider than its profile, and a profile whose contact is no single one.
+
+    Raises:
+        SettingsError: with the nearest value that is possible.
+    """
+    bodies = scene.bodies
+    if isinstance(bodies.profile, FlatPunch):
+        return
+    half = 0.5 * (particles - 1) * bodies.spacing
+    if half > bodies.reach:
+        raise SettingsError(
+            f"the chain of {particles} particles is {half:.6g} LU wide to each side, and the profile ends at "
+            f"{bodies.reach:.6g} LU: at most {_most_particles(bodies)} particles"
+        )
+    if bodies.reach < math.inf:
+        deepest = float(bodies.height(np.asarray([half]))[0])
+        if largest >= deepest:
+            raise SettingsError(
+                f"the contact would spread over the whole profile, which ends at {bodies.reach:.6g} LU: the experiment "
+                f"needs a displacement of about {largest:.4g} LU, at most {deepest:.4g} LU is possible"
+            )
+    heights = bodies.height(np.linspace(0.0, half, 2001))
+    falls = np.diff(heights) < -FALL * float(np.ptp(heights))
+    if falls.any():
+        at = half * float(np.argmax(falls)) / 2000.0
+        raise SettingsError(
+            f"the profile, as the reduction {bodies.reduction} has it, falls beyond x = {at:.4g} LU, so that the "
+            "contact would not be one piece: smooth it, or end it there"
+        )
+
+
+def _most_particles(bodies: Bodies) -> int:
+    """The longest chain, with an even number of particles, that the profile is wide enough for."""
+    return 2 * math.floor(bodies.reach / bodies.spacing + 0.5 - 1e-9)
+
+
 def _chain_length(scene: Scene, estimate: ContactEstimate, largest: float) -> int:
-    """Particles of an automatic chain: out to where a force is a tenth of the tolerance of the largest one."""
+    """Particles of an automatic chain: out to where a force is a tenth of the tolerance of the largest one.
+
+    A flat punch has its own length; no chain is longer than its profile is wide.
+    """
+    if isinstance(scene.bodies.profile, FlatPunch):
+        return round(2.0 * scene.bodies.reach / scene.bodies.spacing)
     force = np.abs(estimate.force)
     strongest = float(np.max(force[estimate.gap > estimate.rest - largest], initial=0.0))
     felt = force > 0.1 * scene.accuracy.tolerance * strongest
@@ -208,7 +255,8 @@ def _chain_length(scene: Scene, estimate: ContactEstimate, largest: float) -> in
     if scene.interaction is not None and scene.interaction.attraction is None:
         reach = float(estimate.gap[-1])  # the contact ends where nothing is felt at all
     half = CHAIN_MARGIN * estimate.half_width(max(largest, 0.0), reach)
-    return 2 * (math.ceil(half / scene.bodies.spacing) + 2)
+    wanted = 2 * (math.ceil(half / scene.bodies.spacing) + 2)
+    return wanted if scene.bodies.reach == math.inf else min(wanted, _most_particles(scene.bodies))
 
 
 def _force_scale(scene: Scene, law: DoubleExponential | None, largest: float) -> float:
@@ -216,7 +264,7 @@ def _force_scale(scene: Scene, law: DoubleExponential | None, largest: float) ->
     if law is not None and law.attraction is not None:
         r = law.force_free_distance() + law.longest_range * np.linspace(0.0, 5.0, 2001)
         return float(-law.force(r).min())
-    return max(largest, 1e-3 * scene.bodies.spacing) * scene.bodies.bulk_stiffness / 2
+    return max(largest, 1e-3 * scene.bodies.spacing) * scene.bulk_stiffness / 2
 
 
 def _displacement_step(
@@ -239,7 +287,7 @@ def _motion(
 ) -> dict[str, float]:
     """Time step, damping, plate mass and settling time from the stiffest and the softest motion of the scene."""
     bodies = scene.bodies
-    stiffest = max(bodies.bulk_stiffness, bodies.tangential_stiffness) + plane
+    stiffest = max(scene.bulk_stiffness, scene.tangential_stiffness) + plane
     if law is not None:
         rows = 1.0 + 2.0 * law.repulsion.range / bodies.spacing
         stiffest += 2.0 * rows * float(law.stiffness(closest))
@@ -255,18 +303,18 @@ def _motion(
     critical = 2.0 * math.sqrt(SOFTENING * contact * moving)
     damping = 0.0
     if scene.damping is not None:
-        automatic = critical / particles if scene.plate is not None else math.sqrt(bodies.bulk_stiffness * bodies.mass)
+        automatic = critical / particles if scene.plate is not None else math.sqrt(scene.bulk_stiffness * bodies.mass)
         damping = automatic if scene.damping.coefficient == "auto" else scene.damping.coefficient
     plate_damping = 0.0
     if scene.plate is not None:
         given = scene.plate.damping
         plate_damping = max(0.0, critical - particles * damping) if given == "auto" else given
-    slowest = contact / moving if scene.plate is not None else bodies.bulk_stiffness / bodies.mass
+    slowest = contact / moving if scene.plate is not None else scene.bulk_stiffness / bodies.mass
     step = product / math.sqrt(stiffest / bodies.mass)
     if damping > 0.0:
         step = min(step, DRAG_STEP * bodies.mass / damping)
     if plate_mass > 0.0:
-        step = min(step, product / math.sqrt(particles * bodies.bulk_stiffness / plate_mass))
+        step = min(step, product / math.sqrt(particles * scene.bulk_stiffness / plate_mass))
         step = min(step, DRAG_STEP * plate_mass / max(plate_damping, 1e-300))
     return {
         "time_step": step,

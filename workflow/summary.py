@@ -17,19 +17,34 @@ NAMES = {
     "contact_radius": "contact radius a",
     "mean_pressure": "mean pressure F/(pi a^2)",
 }
+PREFIXES = {-5: "f", -4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G", 4: "T"}
+"""Of SI units, by powers of 1000."""
 COLUMNS = 64
 ROWS = 9
 BLOCK, EMPTY, AXIS = "█", " ", "─"
 
 
 def quantities(results: Mapping[str, Any]) -> list[str]:
-    """One line for each quantity: name, value ± uncertainty, unit."""
+    """One line for each quantity: name, value ± uncertainty, unit; with a [material] also in SI, and the units."""
     lines = []
     for name, entry in results.items():
-        if isinstance(entry, dict) and entry.keys() == {"value", "uncertainty", "unit"}:
+        if isinstance(entry, dict) and {"value", "uncertainty", "unit"} <= entry.keys():
             label = NAMES.get(name, name.replace("_", " "))
-            lines.append(f"  {label:<28} {rounded(entry['value'], entry['uncertainty'])} {entry['unit']}")
+            si = f"  = {_in_si(entry['si'])}" if "si" in entry else ""
+            lines.append(f"  {label:<28} {rounded(entry['value'], entry['uncertainty'])} {entry['unit']}{si}")
+    if "units" in results:
+        lines += [f"  {'1 ' + unit:<28} {_in_si(entry)}" for unit, entry in results["units"].items()]
     return lines
+
+
+def _in_si(entry: Mapping[str, Any]) -> str:
+    """`39.0 µN ± 1.2e-04`: with a prefix, and the uncertainty as a share."""
+    value, unit = float(entry["value"]), entry["unit"]
+    share = f" ± {entry['uncertainty'] / abs(value):.1e}" if value and entry["uncertainty"] else ""
+    power = math.floor(math.log10(abs(value)) / 3) if value else 0
+    if unit in ("N", "m", "Pa") and min(PREFIXES) <= power <= max(PREFIXES):
+        return f"{value / 1000.0**power:.5g} {PREFIXES[power]}{unit}{share}"
+    return f"{value:.5g} {unit}{share}"
 
 
 def rounded(value: float, uncertainty: float) -> str:

@@ -1,5 +1,44 @@
-"""The one unit system: length LU, force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT in FU·LU."""
+"""The one unit system: length LU, force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT in FU·LU.
+
+`Scales` is what LU and FU stand for in SI, where a scene says so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
 
 LENGTH = "LU"
 FORCE = "FU"
 MEAN_PRESSURE = "FU/LU²"
+LINE_PRESSURE = "FU/LU"
+
+SI = {LENGTH: (1, 0, "m"), FORCE: (0, 1, "N"), MEAN_PRESSURE: (-2, 1, "Pa"), LINE_PRESSURE: (-1, 1, "N/m")}
+"""For each model unit: powers of LU and FU in it, and its name in SI."""
+
+
+@dataclass(frozen=True)
+class Scales:
+    """What the model units stand for.
+
+    Attributes:
+        length, force: one LU [m], one FU [N].
+        length_uncertainty, force_uncertainty: of these; 0 where they are given.
+    """
+
+    length: float
+    force: float
+    length_uncertainty: float = 0.0
+    force_uncertainty: float = 0.0
+
+    def factor(self, unit: str) -> float:
+        """SI value of one `unit`. Raises KeyError for a unit that LU and FU don't make, as those of time."""
+        lengths, forces, _ = SI[unit]
+        return self.length**lengths * self.force**forces
+
+    def in_si(self, value: float, uncertainty: float, unit: str) -> dict[str, float | str]:
+        """The quantity in SI: value, uncertainty, unit. Relative uncertainties of the scales are added to its own."""
+        lengths, forces, name = SI[unit]
+        factor = self.factor(unit)
+        scales = abs(lengths) * self.length_uncertainty / self.length + forces * self.force_uncertainty / self.force
+        spread = uncertainty * factor + abs(value * factor) * scales
+        return {"value": value * factor, "uncertainty": spread, "unit": name}

@@ -25,7 +25,6 @@ BASE: dict[str, Any] = {
 POSITIVE = [
     ("bodies.spacing", "LU"),
     ("bodies.profile.radius", "LU"),
-    ("bodies.bulk_stiffness", "FU/LU"),
     ("bodies.bulk_stiffness_tangential", "FU/LU"),
     ("bodies.mass", "MU"),
     ("interaction.repulsion.amplitude", "FU·LU"),
@@ -76,9 +75,11 @@ def test_a_number_must_be_finite(value: str) -> None:
 
 QUOTED = "a number stands without quotes and without its unit"
 SCENE_TABLES = (
-    "title, bodies, interaction, neighbours, horizontal, damping, noise, plate, cantilever, accuracy, experiment"
+    "title, bodies, interaction, neighbours, horizontal, damping, noise, plate, cantilever, material, accuracy, "
+    "experiment"
 )
-BODIES = "particles, spacing, profile, bulk_stiffness, bulk_stiffness_tangential, mass, lower"
+SHAPES = '"parabola", "circle", "cone", "flat_punch", "power" or "table"'
+BODIES = "particles, spacing, profile, reduction, bulk_stiffness, bulk_stiffness_tangential, mass, lower"
 COUNT = 'must be a whole number from 3 to 10000000, or "auto"'
 KINDS = '"load", "path", "pull_off" or "slide"'
 DISPLACEMENTS = "must be a list, each item a number (LU), or a table with from, to, steps, return"
@@ -137,10 +138,18 @@ ONE_LINE_EACH: list[tuple[list[str], str]] = [
         ["experiment={ kind = 'path', displacements = { from_ = 0, to = 1, steps = 5 } }"],
         'experiment.displacements.from_: unknown key; did you mean "from"? allowed here: from, to, steps, return',
     ),
-    (["bodies.profile.kind=sphere"], 'bodies.profile.kind = "sphere": must be "parabola"'),
-    (["bodies.profile.kind=parabolic"], 'bodies.profile.kind = "parabolic": must be "parabola"'),
-    (["bodies.profile={ radius = 3.0 }"], 'bodies.profile.kind: missing; must be "parabola"'),
-    (["bodies.profile=parabola"], 'bodies.profile = "parabola": must be a table with kind, radius'),
+    (["bodies.profile.kind=sphere"], f'bodies.profile.kind = "sphere": must be {SHAPES}'),
+    (
+        ["bodies.profile.kind=parabolic"],
+        f'bodies.profile.kind = "parabolic": must be {SHAPES}; did you mean "parabola"?',
+    ),
+    (["bodies.bulk_stiffness=0"], 'bodies.bulk_stiffness = 0: must be greater than 0 (FU/LU), or "auto"'),
+    (
+        ["bodies.bulk_stiffness=true"],
+        'bodies.bulk_stiffness = true: must be a number greater than 0 (FU/LU), or "auto"',
+    ),
+    (["bodies.profile={ radius = 3.0 }"], f"bodies.profile.kind: missing; must be {SHAPES}"),
+    (["bodies.profile=parabola"], f'bodies.profile = "parabola": must be a table with kind = {SHAPES}'),
     (
         ["bodies.lower=particle"],
         'bodies.lower = "particle": must be "particles" or "rigid_plane"; did you mean "particles"?',
@@ -197,7 +206,7 @@ def test_missing_tables_and_keys() -> None:
         "experiment: missing; required table",
     ]
     assert lines("bodies={ particles = 5, spacing = 1.0, bulk_stiffness = 1.0 }") == [
-        "bodies.profile: missing; must be a table with kind, radius"
+        f"bodies.profile: missing; must be a table with kind = {SHAPES}"
     ]
     assert lines("interaction.repulsion={ range = 0.1 }") == [
         "interaction.repulsion.amplitude: missing; must be a number greater than 0 (FU·LU)"
@@ -235,7 +244,7 @@ def test_six_mistakes_are_six_lines_in_the_order_of_the_scene() -> None:
         "experiment.preload=-1",
     ) == [
         f"bodies.particles = 2: {COUNT}",
-        f'bodies.bulk_stiffness = "0.83": must be a number greater than 0 (FU/LU); {QUOTED}',
+        f'bodies.bulk_stiffness = "0.83": must be a number greater than 0 (FU/LU), or "auto"; {QUOTED}',
         "interaction.attraction.range = 0.1: must be greater than the range of the repulsion, 0.13 (LU); "
         "the bodies would never attract each other",
         'cantilever: not in a pull_off: only a slide is pulled through a spring; remove it, or use kind = "slide"',

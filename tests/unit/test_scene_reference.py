@@ -21,6 +21,11 @@ A table that is absent adds nothing to the deck; tables that do not fit together
 TABLES = {
     "bodies": scenes.Bodies,
     "bodies.profile, kind parabola": scenes.Parabola,
+    "bodies.profile, kind circle": scenes.Circle,
+    "bodies.profile, kind cone": scenes.Cone,
+    "bodies.profile, kind flat_punch": scenes.FlatPunch,
+    "bodies.profile, kind power": scenes.Power,
+    "bodies.profile, kind table": scenes.Measured,
     "interaction": scenes.Interaction,
     "interaction.repulsion, interaction.attraction": scenes.Exponential,
     "neighbours": scenes.Neighbours,
@@ -29,6 +34,8 @@ TABLES = {
     "noise": scenes.Noise,
     "plate": scenes.Plate,
     "cantilever": scenes.Cantilever,
+    "material": scenes.Material,
+    "material.upper, material.lower": scenes.Elastic,
     "accuracy": scenes.Accuracy,
     "experiment, kind load": scenes.Load,
     "experiment, kind path": scenes.Path,
@@ -46,7 +53,8 @@ def section(name: str, table: type[Table]) -> str:
     for key, field in keys.items():
         info = table.model_fields[field]
         default = "required" if info.is_required() else "none" if info.default is None else f"`{info.default}`"
-        lines.append(f"| `{key}` | {info.description} | {statement(annotation_of(table, key))} | {default} |")
+        what = str(info.description).replace("|", "\\|")
+        lines.append(f"| `{key}` | {what} | {statement(annotation_of(table, key))} | {default} |")
     return "\n".join(lines) + "\n"
 
 

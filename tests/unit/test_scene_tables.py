@@ -95,8 +95,8 @@ def test_a_scene_cannot_be_changed_and_can_be_hashed() -> None:
 
 
 def test_tangential_stiffness_is_the_normal_one_unless_given() -> None:
-    assert scene_from_dict(BASE).bodies.tangential_stiffness == 0.83
-    given = scene_from_dict(BASE, ["bodies.bulk_stiffness_tangential=0.5"]).bodies
+    assert scene_from_dict(BASE).tangential_stiffness == 0.83
+    given = scene_from_dict(BASE, ["bodies.bulk_stiffness_tangential=0.5"])
     assert (given.tangential_stiffness, given.bulk_stiffness) == (0.5, 0.83)
 
 

@@ -9,7 +9,7 @@ def horizontal(scene: Scene, settings: Settings) -> Contribution:
     """Shared slots: the guide's direction x; with k_t ≠ k_n the far anchors and their bond type in system.data."""
     if settings.far == 0.0:
         return Contribution("horizontal", Stage.SPRINGS, ("horizontal",))
-    difference = abs(scene.bodies.tangential_stiffness - settings.bulk_stiffness)
+    difference = abs(scene.tangential_stiffness - settings.bulk_stiffness)
     variables = {
         "far_bond_type": "2" if scene.neighbours is None else "3",
         "far_bond_coefficient": number(difference / 2),

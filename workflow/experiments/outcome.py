@@ -9,7 +9,7 @@ from analysis.pressure import Profile, end_pressure_share
 from analysis.radius import ContactRadius, compressive_radius, tensile_radius
 from workflow.deck import Phase
 from workflow.experiments.contact import State
-from workflow.scene import Scene
+from workflow.scene import FlatPunch, Scene
 from workflow.settings import Settings
 
 
@@ -61,8 +61,12 @@ def radius_of(scene: Scene, profile: Profile) -> ContactRadius | None:
     """The contact radius as the contract defines it; None where the bodies do not touch."""
     adhesive = scene.interaction is not None and scene.interaction.attraction is not None
     sign = -1.0 if adhesive else 1.0
-    if not (sign * profile.pressure > 0.0).any():
+    punch = isinstance(scene.bodies.profile, FlatPunch)
+    if not (sign * profile.pressure > 0.0).any() and not (punch and profile.pressure.any()):
         return None
+    if punch:
+        edge = scene.bodies.reach
+        return ContactRadius(edge, 0.0, -edge, edge, reaches_end=False)
     return tensile_radius(profile) if adhesive else compressive_radius(profile)
 
 
@@ -104,7 +108,12 @@ def law_share(scene: Scene, settings: Settings) -> float:
 
 
 def _reaches_end(scene: Scene, profile: Profile) -> bool:
-    """Whether the contact's edge, the largest tension or else the last loaded particle, is a chain's last particle."""
+    """Whether the contact's edge, the largest tension or else the last loaded particle, is a chain's last particle.
+
+    That of a flat punch is meant to be.
+    """
+    if isinstance(scene.bodies.profile, FlatPunch):
+        return False
     pressure = profile.pressure
     if scene.interaction is not None and scene.interaction.attraction is not None:
         largest = float(pressure.min())
@@ -116,7 +125,7 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
     """Named warnings about states that are results, but limited ones."""
     found = {}
     share = max(end_pressure_share(state.profile) for state in states)
-    if share > END_SHARE_LIMIT * scene.accuracy.tolerance:
+    if not isinstance(scene.bodies.profile, FlatPunch) and share > END_SHARE_LIMIT * scene.accuracy.tolerance:
         found["chain_end"] = (
             f"the outermost particles carry up to {share:.2g} of the largest pressure, so the chain of "
             f'{settings.particles} particles cuts the contact: take more bodies.particles, or "auto"'

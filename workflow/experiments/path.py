@@ -94,7 +94,7 @@ def _places(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
 
 def _decay(scene: Scene, settings: Settings) -> float:
     """Time constant [TU] with which a particle on its bulk spring comes to rest: 2m/γ, overdamped γ/k."""
-    mass, stiffness = scene.bodies.mass, scene.bodies.bulk_stiffness
+    mass, stiffness = scene.bodies.mass, scene.bulk_stiffness
     return max(2.0 * mass / settings.damping, settings.damping / stiffness)
 
 

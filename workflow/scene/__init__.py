@@ -1,7 +1,9 @@
 """The typed scene: TOML in, either a `Scene` whose tables fit together or every problem at once."""
 
 from workflow.scene.experiments import Experiment, Load, Method, Path, PullOff, Slide, Span
+from workflow.scene.material import Elastic, Material, Reduction
 from workflow.scene.problems import Problem, SceneError
+from workflow.scene.profiles import Circle, Cone, FlatPunch, Measured, Parabola, Power, Profile
 from workflow.scene.quantities import Table, Unit
 from workflow.scene.read import read_scene, scene_from_dict
 from workflow.scene.tables import (
@@ -15,9 +17,7 @@ from workflow.scene.tables import (
     Interaction,
     Neighbours,
     Noise,
-    Parabola,
     Plate,
-    Profile,
     Scene,
 )
 from workflow.scene.write import scene_to_toml
@@ -27,21 +27,29 @@ __all__ = [
     "Accuracy",
     "Bodies",
     "Cantilever",
+    "Circle",
+    "Cone",
     "Damping",
+    "Elastic",
     "Experiment",
     "Exponential",
+    "FlatPunch",
     "Horizontal",
     "Interaction",
     "Load",
+    "Material",
+    "Measured",
     "Method",
     "Neighbours",
     "Noise",
     "Parabola",
     "Path",
     "Plate",
+    "Power",
     "Problem",
     "Profile",
     "PullOff",
+    "Reduction",
     "Scene",
     "SceneError",
     "Slide",

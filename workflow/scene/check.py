@@ -156,7 +156,7 @@ def _problem(data: dict[str, Any], fault: ErrorDetails) -> Problem:
     path, kind = path_of(spot.keys), fault["type"]
     if kind == MISSING:
         top = (spot.table is not None and len(spot.keys) == 1) or spot.keys == ("experiment",)
-        return Problem(path, "missing", hint="required table" if top else f"must be {_allowed(spot)}")
+        return Problem(path, "missing", hint="required table" if top else f"must be {statement(spot.annotation)}")
     if kind == NO_KIND:
         return Problem(f"{path}.kind", "missing", hint=f"must be {_allowed(spot)}")
     if kind == WRONG_KIND:

@@ -188,12 +188,84 @@ def _something_holds(draft: Draft) -> Iterator[Problem]:
         yield Problem("experiment.force", "must be greater than 0 (FU) without attraction", shown(force), hint)
 
 
+def _punch(draft: Draft) -> Iterator[Problem]:
+    """A flat punch is its chain: so many particles that half a spacing beyond the last one is its edge."""
+    if draft.get("bodies", "profile", "kind") != "flat_punch":
+        return
+    radius, spacing = draft.get("bodies", "profile", "radius"), draft.get("bodies", "spacing")
+    if radius is None or spacing is None:
+        return
+    wanted = 2.0 * radius / spacing
+    count = max(3, round(wanted))
+    if abs(wanted - count) > WHOLE * count:
+        must = f"must be at least 3 and a whole number of half spacings: the nearest is {0.5 * count * spacing:g} (LU)"
+        yield Problem("bodies.profile.radius", must, shown(radius))
+        return
+    given = draft.get("bodies", "particles")
+    if given not in (None, "auto", count):
+        must = f"must be {count}, the radius times 2 over the spacing"
+        yield Problem("bodies.particles", must, shown(given), 'change it, or use "auto"')
+
+
+def _material(draft: Draft) -> Iterator[Problem]:
+    """A material has one elasticity, and one way to the units."""
+    automatic = draft.get("bodies", "bulk_stiffness") == "auto"
+    if not draft.has("material"):
+        if automatic:
+            hint = "add [material] with both bodies, length_unit and force_unit, or give the stiffness"
+            yield Problem("bodies.bulk_stiffness", "nothing to take it from", shown("auto"), hint)
+        return
+    has = {name: draft.has("material", name) for name in ("upper", "lower", "contact_modulus", *UNIT_KEYS)}
+    if has["contact_modulus"] and (has["upper"] or has["lower"]):
+        hint = "give E*, or E and ν of both bodies"
+        yield Problem("material.contact_modulus", "not together with upper or lower", hint=hint)
+    elif not has["contact_modulus"] and not (has["upper"] and has["lower"]):
+        absent = "lower" if has["upper"] else "upper"
+        hint = "write upper and lower, each with youngs_modulus and poisson_ratio, or contact_modulus"
+        yield Problem(f"material.{absent}", "missing", hint=hint)
+    if has["surface_energy"]:
+        yield from _jkr_units(draft, has)
+        return
+    if not has["length_unit"]:
+        hint = "give one LU in metres, or surface_energy, from which a pull_off finds both units"
+        yield Problem("material.length_unit", "missing", hint=hint)
+    if has["force_unit"] and not automatic and draft.has("bodies", "bulk_stiffness"):
+        hint = 'write bodies.bulk_stiffness = "auto", or leave out force_unit, which then follows from the stiffness'
+        yield Problem("material.force_unit", "not together with a given bulk_stiffness", hint=hint)
+    if automatic and not has["force_unit"]:
+        message = 'missing, needed by bulk_stiffness = "auto"'
+        yield Problem("material.force_unit", message, hint="give one FU in newtons")
+
+
+def _jkr_units(draft: Draft, has: Mapping[str, bool]) -> Iterator[Problem]:
+    """γ and E* fix both units by F_A and a₀ of the run, so it must have these, and nothing else may fix them."""
+    for name in ("length_unit", "force_unit"):
+        if has[name]:
+            hint = "remove one of the two: with surface_energy both units follow from F_A and a₀ of the run"
+            yield Problem(f"material.{name}", "not together with surface_energy", hint=hint)
+    if draft.get("bodies", "bulk_stiffness") == "auto":
+        hint = "give the stiffness, or length_unit and force_unit in place of surface_energy"
+        yield Problem("bodies.bulk_stiffness", "no units to take it by before the run", shown("auto"), hint)
+    if draft.kind in ("load", "slide"):
+        hint = 'use kind = "pull_off", whose results give length_unit and force_unit'
+        yield Problem("material.surface_energy", f"not in a {draft.kind}, which finds no F_A and a₀", hint=hint)
+    if draft.get("bodies", "profile", "kind") not in (None, "parabola", "circle"):
+        hint = "JKR is for a sphere: use a parabola or a circle, or length_unit"
+        yield Problem("material.surface_energy", "not with this profile", hint=hint)
+
+
+UNIT_KEYS = ("length_unit", "force_unit", "surface_energy")
+WHOLE = 1e-9
+"""Relative error up to which a number counts as whole."""
+
 RULES: tuple[Callable[[Draft], Iterator[Problem]], ...] = (
     _lower_body,
     _law,
     _tables_of_experiment,
     _plate_can_slide,
     _something_holds,
+    _punch,
+    _material,
 )
 
 

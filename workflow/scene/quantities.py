@@ -26,6 +26,8 @@ class Table(BaseModel):
 
 
 Length = Annotated[float, Gt(0), Unit("LU")]
+Height = Annotated[float, Unit("LU")]
+Ratio = Annotated[float, Gt(0), Unit("1")]
 Stiffness = Annotated[float, Gt(0), Unit("FU/LU")]
 Mass = Annotated[float, Gt(0), Unit("MU")]
 Energy = Annotated[float, Gt(0), Unit("FU·LU")]
@@ -49,6 +51,7 @@ def _number_or_auto(value: object) -> str:
 _Either = Discriminator(_number_or_auto)
 _Auto = Annotated[Literal["auto"], Tag("auto")]
 AutoLength = Annotated[Annotated[Length, Tag("number")] | _Auto, _Either]
+AutoStiffness = Annotated[Annotated[Stiffness, Tag("number")] | _Auto, _Either]
 AutoMass = Annotated[Annotated[Mass, Tag("number")] | _Auto, _Either]
 AutoDamping = Annotated[Annotated[DampingCoefficient, Tag("number")] | _Auto, _Either]
 AutoDampingOrZero = Annotated[Annotated[DampingCoefficientOrZero, Tag("number")] | _Auto, _Either]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
@@ -12,7 +13,8 @@ from typing import Any
 from workflow.scene.check import check_tables
 from workflow.scene.fit import check_fit
 from workflow.scene.overrides import apply_overrides, remove_effects
-from workflow.scene.problems import Problem, SceneError
+from workflow.scene.problems import Problem, SceneError, shown
+from workflow.scene.profile_file import ProfileFileError, read_profile
 from workflow.scene.quantities import Table
 from workflow.scene.tables import Scene
 
@@ -44,27 +46,54 @@ def read_scene(path: str | PathLike[str], overrides: Iterable[str] = (), without
 
     Raises SceneError with every problem: also for a file that is missing, unreadable, not UTF-8 or not TOML.
     """
-    return scene_from_dict(_parsed(fspath(path)), overrides, without)
+    return scene_from_dict(_parsed(fspath(path)), overrides, without, FilePath(path).parent)
 
 
 def scene_from_dict(
-    data: Mapping[str, Any] | Scene, overrides: Iterable[str] = (), without: Iterable[str] = ()
+    data: Mapping[str, Any] | Scene,
+    overrides: Iterable[str] = (),
+    without: Iterable[str] = (),
+    folder: str | PathLike[str] = ".",
 ) -> Scene:
     """The scene that `data` (keys as in a scene file; None counts as absent) describes. `data` is left as it is.
 
-    `overrides` are strings "table.key=value", applied in order, the value read as TOML or else as bare text; `without`
-    has names of effects whose tables are then removed. Raises SceneError with every problem at once.
+    A profile's file is looked for in `folder` and read into the scene, which then needs it no more. `overrides` are
+    strings "table.key=value", applied in order, the value read as TOML or else as bare text; `without` has names of
+    effects whose tables are then removed. Raises SceneError with every problem at once.
     """
     plain = _plain(data)
     if not isinstance(plain, dict):
         raise SceneError([Problem("scene", "must be a table of tables")])
     problems = apply_overrides(plain, _listed(overrides)) + remove_effects(plain, _listed(without))
+    problems += _with_points(plain, FilePath(folder))
     checked = check_tables(plain)
     problems += checked.problems
     problems += check_fit(checked.data, checked.unsound)
     if problems or checked.scene is None:
         raise SceneError(sorted(problems, key=_rank))
     return checked.scene
+
+
+def _with_points(data: dict[str, Any], folder: FilePath) -> list[Problem]:
+    """Put the points of a profile's file, if it names one, in its place in `data`."""
+    bodies = data.get("bodies")
+    profile = bodies.get("profile") if isinstance(bodies, dict) else None
+    if not isinstance(profile, dict) or profile.get("kind") != "table" or not isinstance(profile.get("file"), str):
+        return []
+    if "r" in profile or "z" in profile:
+        both = "not together with the lists r and z"
+        return [Problem("bodies.profile.file", both, shown(profile.pop("file")), "give the one or the other")]
+    file, scale = profile.pop("file"), profile.pop("scale", 1.0)
+    stand_in = {"r": [0.0, 1.0, 2.0, 3.0], "z": [0.0, 1.0, 4.0, 9.0]}  # so that the rest of the scene is still checked
+    if isinstance(scale, bool) or not isinstance(scale, int | float) or not 0.0 < scale < math.inf:
+        profile |= stand_in
+        return [Problem("bodies.profile.scale", "must be a number greater than 0", shown(scale))]
+    try:
+        profile["r"], profile["z"] = read_profile(folder / file, scale)
+    except ProfileFileError as error:
+        profile |= stand_in
+        return [Problem("bodies.profile.file", str(error), shown(file))]
+    return []
 
 
 def _listed(words: Iterable[str]) -> list[str]:

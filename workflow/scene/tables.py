@@ -13,12 +13,15 @@ from pydantic import AfterValidator, Field
 from pydantic_core import PydanticCustomError
 
 from workflow.scene.experiments import Experiment, Method, Slide
+from workflow.scene.material import Material, Reduction
+from workflow.scene.profiles import Profile
 from workflow.scene.quantities import (
     AutoDamping,
     AutoDampingOrZero,
     AutoLength,
     AutoMass,
     AutoParticleCount,
+    AutoStiffness,
     Energy,
     Length,
     Mass,
@@ -40,42 +43,37 @@ TIMED = ("damping", "noise", "plate", "cantilever")
 """Effects that exist in time only, so that a quasistatic run cannot have them."""
 
 
-class Parabola(Table):
-    """Profile of the upper body: z = x²/2R."""
-
-    kind: Literal["parabola"] = Field(description="z = x²/2R, the paper's circle")
-    radius: Length = Field(description="radius of curvature R at the apex")
-
-    def height(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Height z = x²/2R [LU] of the profile above its apex at the places `x` [LU]; same shape as `x`."""
-        return x**2 / (2 * self.radius)
-
-
-# One member so far. With a second: Annotated[Parabola | Other, Discriminator("kind")], as in experiments.py; the
-# messages about `kind` work for both.
-Profile = Parabola
-
-
 class Bodies(Table):
     """The two bodies: chains of particles, each particle held to its own bulk by a spring."""
 
     particles: AutoParticleCount = Field(description='particles per body, or "auto": as many as the contact needs')
     spacing: Length = Field(description="distance of neighbouring particles")
     profile: Profile = Field(description="shape of the upper body")
-    bulk_stiffness: Stiffness = Field(description="stiffness of each particle to its bulk, normal direction")
+    reduction: Reduction = Field(
+        default="geike_popov",
+        description='how the plane model stands for a 3D one: "geike_popov" (profile as drawn) or "mdr" (transformed)',
+    )
+    bulk_stiffness: AutoStiffness = Field(
+        description='stiffness of each particle to its bulk, normal direction, or "auto": from the material'
+    )
     bulk_stiffness_tangential: Stiffness | None = Field(
-        default=None, description="stiffness of each particle to its bulk, along x; absent: as in normal direction"
+        default=None,
+        description="stiffness of each particle to its bulk, along x; absent: as in normal direction, or with E and ν of "
+        "both bodies G*/E* of that",
     )
     mass: Mass = Field(default=1.0, description="mass of a particle; matters only where something moves in time")
     lower: Literal["particles", "rigid_plane"] = Field(
         default="particles", description='lower body: "particles" like the upper one, or a "rigid_plane"'
     )
 
+    def height(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Height [LU] of the upper chain above its apex at the places `x` [LU], as its reduction has it."""
+        return self.profile.transformed(x) if self.reduction == "mdr" else self.profile.height(x)
+
     @property
-    def tangential_stiffness(self) -> float:
-        """Stiffness [FU/LU] of each particle to its bulk along x: the given one, else `bulk_stiffness`."""
-        given = self.bulk_stiffness_tangential
-        return self.bulk_stiffness if given is None else given
+    def reach(self) -> float:
+        """Half-width [LU] within which the profile is a body at all."""
+        return self.profile.reach
 
 
 class Exponential(Table):
@@ -168,6 +166,7 @@ class Scene(Table):
     noise: Noise | None = Field(default=None, description="thermal forces")
     plate: Plate | None = Field(default=None, description="the upper plate moves under a force")
     cantilever: Cantilever | None = Field(default=None, description="the plate is pulled through a spring")
+    material: Material | None = Field(default=None, description="what the model stands for in SI")
     accuracy: Accuracy = Field(default=Accuracy(), description="how exact")
     experiment: Experiment = Field(description="what is done")
 
@@ -175,6 +174,34 @@ class Scene(Table):
     def effects(self) -> tuple[str, ...]:
         """Names of the effects that this scene has, in deck order."""
         return tuple(name for name in EFFECTS if getattr(self, name) is not None)
+
+    @property
+    def bulk_stiffness(self) -> float:
+        """Stiffness k [FU/LU] of each particle to its bulk: the given one, else the material's.
+
+        Two chains in series, or one on a rigid plane, make the layer c: k = 2 c h or c h, with the spacing h.
+        """
+        given = self.bodies.bulk_stiffness
+        if given != "auto":
+            return given
+        assert self.material is not None
+        assert self.material.length_unit is not None
+        assert self.material.force_unit is not None
+        layer = self.material.layer_stiffness(self.bodies.reduction) * self.material.length_unit**2
+        return self.chains * layer * self.bodies.spacing / self.material.force_unit
+
+    @property
+    def tangential_stiffness(self) -> float:
+        """Stiffness [FU/LU] of each particle to its bulk along x: the given one, else G*/E* of the normal one."""
+        given = self.bodies.bulk_stiffness_tangential
+        if given is not None:
+            return given
+        return self.bulk_stiffness * (1.0 if self.material is None else self.material.tangential_share())
+
+    @property
+    def chains(self) -> int:
+        """How many chains share the deformation: two, or one on a rigid plane."""
+        return 1 if self.bodies.lower == "rigid_plane" else 2
 
     @property
     def method(self) -> Method:

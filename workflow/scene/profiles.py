@@ -1,0 +1,255 @@
+"""Shapes of the upper body, each as drawn, z(x), and as the method of dimensionality reduction (MDR) transforms it.
+
+The MDR takes the axisymmetric body z = f(r) to the plane one
+
+    g(x) = |x| ∫₀^|x| f′(r) / √(x² − r²) dr
+
+which with springs E* per length has the body's force, displacement and contact radius (Popov and Heß, Method of
+Dimensionality Reduction in Contact Mechanics and Friction, 2015, chapter 3). Powers: g = κ_n f, κ_n =
+(√π/2) n Γ(n/2)/Γ((n+1)/2), κ₁ = π/2, κ₂ = 2. Circle: g = x artanh(x/R).
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+from functools import lru_cache
+from itertools import pairwise
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+
+from annotated_types import Ge, MinLen
+from pydantic import Discriminator, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from workflow.scene.quantities import Height, Length, Ratio, Table, Unit
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+Exponent = Annotated[float, Ge(1.0), Unit("1")]
+NODES = 96
+"""Gauss nodes of the transform of a measured profile: its slope has kinks, which leave some 1e-6 of the height."""
+LAST_SHARE = 1.0 - 1e-12
+"""The transform of a circle grows without end at its edge, and is taken up to this share of the radius."""
+CHUNK = 4096
+"""Places that are transformed at once, to bound the memory."""
+
+class Shape(Table):
+    """What all profiles can do; a kind overrides what differs."""
+
+    def height(self, x: Array) -> Array:
+        """Height z(x) = f(|x|) [LU] above the apex as drawn, at the places `x` [LU]; same shape."""
+        raise NotImplementedError
+
+    def transformed(self, x: Array) -> Array:
+        """Height g(x) [LU] above the apex after the MDR's transform, at the places `x` [LU]; same shape."""
+        raise NotImplementedError
+
+    @property
+    def reach(self) -> float:
+        """Half-width [LU] within which there is a body at all."""
+        return math.inf
+
+    @property
+    def curvature_radius(self) -> float | None:
+        """Radius of curvature R at the apex [LU], None where there is none."""
+        return None
+
+
+class Parabola(Shape):
+    """Profile of the upper body: z = x²/2R."""
+
+    kind: Literal["parabola"] = Field(description="z = x²/2R, the paper's circle")
+    radius: Length = Field(description="radius of curvature R at the apex")
+
+    def height(self, x: Array) -> Array:
+        """z = x²/2R."""
+        return x**2 / (2 * self.radius)
+
+    def transformed(self, x: Array) -> Array:
+        """g = x²/R."""
+        return x**2 / self.radius
+
+    @property
+    def curvature_radius(self) -> float:
+        """R."""
+        return self.radius
+
+
+class Circle(Shape):
+    """Profile of the upper body: an exact circle, z = R − √(R² − x²)."""
+
+    kind: Literal["circle"] = Field(description="z = R − √(R² − x²), an exact circle")
+    radius: Length = Field(description="radius R")
+
+    def height(self, x: Array) -> Array:
+        """z = R − √(R² − x²), written without the difference of large numbers."""
+        return x**2 / (self.radius + ((self.radius - x) * (self.radius + x)) ** 0.5)
+
+    def transformed(self, x: Array) -> Array:
+        """g = x artanh(x/R)."""
+        import numpy as np
+
+        share = np.clip(x / self.radius, -LAST_SHARE, LAST_SHARE)
+        return np.asarray(x * np.arctanh(share))
+
+    @property
+    def reach(self) -> float:
+        """R."""
+        return self.radius
+
+    @property
+    def curvature_radius(self) -> float:
+        """R."""
+        return self.radius
+
+
+class Cone(Shape):
+    """Profile of the upper body: z = s |x|."""
+
+    kind: Literal["cone"] = Field(description="z = s |x|")
+    slope: Ratio = Field(description="slope s, the tangent of the angle between flank and plane")
+
+    def height(self, x: Array) -> Array:
+        """z = s |x|."""
+        return self.slope * abs(x)
+
+    def transformed(self, x: Array) -> Array:
+        """g = (π/2) s |x|."""
+        return 0.5 * math.pi * self.slope * abs(x)
+
+
+class FlatPunch(Shape):
+    """Profile of the upper body: z = 0 out to the edge, and no body beyond it."""
+
+    kind: Literal["flat_punch"] = Field(description="z = 0 within the radius, no body beyond it")
+    radius: Length = Field(description="radius, a whole number of half spacings")
+
+    def height(self, x: Array) -> Array:
+        """z = 0."""
+        return 0.0 * abs(x)
+
+    def transformed(self, x: Array) -> Array:
+        """g = 0."""
+        return 0.0 * abs(x)
+
+    @property
+    def reach(self) -> float:
+        """The radius."""
+        return self.radius
+
+
+class Power(Shape):
+    """Profile of the upper body: z = h (|x|/a)ⁿ."""
+
+    kind: Literal["power"] = Field(description="z = h (|x|/a)ⁿ")
+    exponent: Exponent = Field(description="exponent n")
+    radius: Length = Field(description="radius a at which the height is given")
+    height_there: Length = Field(alias="height", description="height h at that radius")
+
+    def height(self, x: Array) -> Array:
+        """z = h (|x|/a)ⁿ."""
+        return self.height_there * abs(x / self.radius) ** self.exponent
+
+    def transformed(self, x: Array) -> Array:
+        """g = κ_n z."""
+        n = self.exponent
+        factor = 0.5 * math.sqrt(math.pi) * n * math.exp(math.lgamma(0.5 * n) - math.lgamma(0.5 * (n + 1)))
+        return factor * self.height(x)
+
+
+Radii = Annotated[tuple[Annotated[float, Ge(0.0), Unit("LU")], ...], Field(strict=False), MinLen(4)]
+Heights = Annotated[tuple[Height, ...], Field(strict=False), MinLen(4)]
+
+
+class Measured(Shape):
+    """Profile of the upper body: a measured axisymmetric one, from a file or from two lists.
+
+    Between its points it is a monotone cubic (PCHIP): no overshoot, a continuous slope.
+    """
+
+    kind: Literal["table"] = Field(description="measured points, monotone cubics between them")
+    file: str | None = Field(
+        default=None, description="CSV file with the columns r and z; it is read into the keys r and z"
+    )
+    scale: Ratio = Field(default=1.0, description="length of one unit of the file's numbers, in LU")
+    r: Radii | None = Field(default=None, description="radii of the points, from 0, rising")
+    z: Heights | None = Field(default=None, description="heights at these radii; the first one counts as 0")
+
+    @model_validator(mode="after")
+    def _is_a_profile(self) -> Self:
+        if self.r is None or self.z is None:
+            raise PydanticCustomError("scene", "must have a file, or the lists r and z")
+        if problem := fault_of(self.r, self.z):
+            raise PydanticCustomError("scene", "{problem}", {"problem": problem})
+        return self
+
+    def height(self, x: Array) -> Array:
+        """z(|x|) − z(0)."""
+        import numpy as np
+
+        return np.asarray(self._spline()(np.minimum(np.abs(x), self.reach)))
+
+    def transformed(self, x: Array) -> Array:
+        """g = |x| ∫₀^{π/2} f′(|x| sin φ) dφ, Gauss's rule."""
+        import numpy as np
+
+        slope = self._spline().derivative()
+        nodes, weights = np.polynomial.legendre.leggauss(NODES)
+        sine, weights = np.sin(0.25 * math.pi * (nodes + 1.0)), 0.25 * math.pi * weights
+        flat = np.minimum(np.abs(np.ravel(x)), self.reach)
+        parts = [flat[i : i + CHUNK] for i in range(0, flat.size, CHUNK)]
+        g = [part * (slope(part[:, None] * sine) @ weights) for part in parts]
+        return np.concatenate(g).reshape(np.shape(x)) if g else np.zeros_like(x)
+
+    @property
+    def reach(self) -> float:
+        """The last radius."""
+        assert self.r is not None
+        return self.r[-1]
+
+    def _spline(self) -> Any:
+        return _spline(self.r or (), self.z or ())
+
+
+@lru_cache(maxsize=8)
+def _spline(r: tuple[float, ...], z: tuple[float, ...]) -> Any:
+    """Monotone cubics through the points, z(0) = 0; kept, since a chain's length is found by asking many times."""
+    import numpy as np
+    from scipy.interpolate import PchipInterpolator
+
+    return PchipInterpolator(np.asarray(r), np.asarray(z) - z[0], extrapolate=False)
+
+
+GAP = 10.0
+"""A step of the radii counts as a gap beyond this many times the median step."""
+
+
+def fault_of(r: tuple[float, ...], z: tuple[float, ...]) -> str | None:
+    """What keeps the points (r, z) from being a profile, with what would do; None where nothing does."""
+    if len(r) != len(z):
+        return f"must have as many radii as heights, not {len(r)} and {len(z)}"
+    if r[0] != 0.0:
+        return f"must begin at the radius 0, not {r[0]:.6g}: the transform needs the slope from the axis on"
+    steps = [after - before for before, after in pairwise(r)]
+    middle = statistics.median(steps)
+    for at, step in enumerate(steps):
+        if step <= 0.0:
+            return f"must have rising radii; {r[at + 1]:.6g} follows on {r[at]:.6g}"
+        if step > GAP * middle:
+            return (
+                f"has a gap from r = {r[at]:.6g} to {r[at + 1]:.6g}: beside a median step of {middle:.4g}, the longest "
+                f"that is read over is {GAP * middle:.4g}; measure there, or interpolate"
+            )
+    lowest = z.index(min(z))
+    if z[lowest] < z[0]:
+        return f"must have its apex at r = 0; at r = {r[lowest]:.6g} it is lower by {z[0] - z[lowest]:.4g}"
+    if max(z) == z[0]:
+        return 'is flat: write kind = "flat_punch"'
+    return None
+
+
+Profile = Annotated[Parabola | Circle | Cone | FlatPunch | Power | Measured, Discriminator("kind")]
