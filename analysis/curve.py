@@ -18,8 +18,8 @@ from analysis.pressure import Profile
 class Curve:
     """Measured states in the order in which they were passed; sequences of equal length.
 
-    displacement [LU], force [FU], compression positive; contact_radius [LU], NaN where there is none;
-    smallest_distance between particles of opposite bodies [LU]; branch: "loading" or "unloading".
+    displacement [LU], force [FU], compression positive; contact_radius [LU] and its uncertainty, NaN where there is
+    none; smallest_distance between particles of opposite bodies [LU]; branch: "loading" or "unloading".
     """
 
     displacement: Sequence[float]
@@ -27,6 +27,7 @@ class Curve:
     contact_radius: Sequence[float]
     smallest_distance: Sequence[float]
     branch: Sequence[str]
+    contact_radius_uncertainty: Sequence[float]
 
     def __post_init__(self) -> None:
         """Check lengths."""

@@ -38,6 +38,8 @@ REACHABLE = 0.95 * BRITTLE
 """Beyond this the range would be so short that each pair snaps by itself."""
 SLOPE_STEP = 0.03
 """Step of the finite differences of the estimate, in both logarithms: well above the grain of its grid."""
+APPROACHES = 8
+"""Steps by which the amplitudes alone are brought near F_A, before both factors are sought."""
 RESOLUTION = 28.5
 """Particles in a₀, unless the length unit is given: as in the first row of the paper's Table 1."""
 COARSEST = 8.0
@@ -128,8 +130,8 @@ def require_reachable(scene: Scene, target: Target) -> None:
         largest = REACHABLE * layer * a_0**3 / radius
         raise IdentifyError(
             f"an adhesion force of {force:.6g} FU with a zero-load radius of {a_0:.6g} LU is more than springs of this "
-            f"stiffness hold, whatever the interaction. Nearest: the same force with a radius of at least {smallest:.6g} "
-            f"LU, or the same radius with a force of at most {largest:.6g} FU"
+            f"stiffness hold, whatever the interaction. Nearest: the same force with a radius of at least "
+            f"{smallest:.6g} LU, or the same radius with a force of at most {largest:.6g} FU"
         )
 
 
@@ -155,8 +157,8 @@ def material_scene(
     unit = target.zero_load_radius / RESOLUTION if length_unit is None else length_unit
     if unit > coarsest:
         raise IdentifyError(
-            f"a length unit of {unit:.4g} m leaves {target.zero_load_radius / unit:.2g} particles in the zero-load radius "
-            f"of {target.zero_load_radius:.4g} m: at most {coarsest:.4g} m leaves {COARSEST:g}"
+            f"a length unit of {unit:.4g} m leaves {target.zero_load_radius / unit:.2g} particles in the zero-load "
+            f"radius of {target.zero_load_radius:.4g} m: at most {coarsest:.4g} m leaves {COARSEST:g}"
         )
     force_unit = 2.0 * contact_modulus * unit**2
     wanted = Target(target.adhesion_force / force_unit, target.zero_load_radius / unit)
@@ -210,7 +212,10 @@ def _start(scene: Scene, target: Target) -> Array:
     def deviations(at: Array) -> Array:
         return _deviations(_estimated(_scaled(scene, at)), target)
 
-    fit = least_squares(deviations, np.zeros(2), diff_step=SLOPE_STEP, x_scale=1.0, bounds=(-12.0, 12.0), xtol=1e-6)
+    first = np.zeros(2)
+    for _ in range(APPROACHES):  # F_A grows a little faster than the amplitudes
+        first[0] -= 0.7 * float(deviations(first)[0])
+    fit = least_squares(deviations, first, diff_step=SLOPE_STEP, x_scale=1.0, bounds=(-12.0, 12.0), xtol=1e-6)
     if np.abs(fit.fun).max() > 0.05:
         force, radius = (
             target.adhesion_force * math.exp(fit.fun[0]),

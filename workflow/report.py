@@ -86,13 +86,15 @@ def curve_of(scene: Scene, outcome: Outcome) -> Curve:
         contact_radius=[math.nan if r is None else r.value for r in radii],
         smallest_distance=[s.smallest_distance for s in states],
         branch=["loading" if s.phase.startswith(("loading", "settling")) else "unloading" for s in states],
+        contact_radius_uncertainty=[math.nan if r is None else r.uncertainty for r in radii],
     )
 
 
 COLUMN_UNITS = {
-    "displacement": LENGTH, "force": FORCE, "contact_radius": LENGTH, "smallest_distance": LENGTH,
-    "x": LENGTH, "z_lower": LENGTH, "z_upper": LENGTH, "pressure": LINE_PRESSURE, "shear": LINE_PRESSURE,
-    "drive": LENGTH, "plate_x": LENGTH, "plate_z": LENGTH, "friction": FORCE, "normal_force": FORCE,
+    "displacement": LENGTH, "force": FORCE, "contact_radius": LENGTH, "contact_radius_uncertainty": LENGTH,
+    "smallest_distance": LENGTH, "x": LENGTH, "z_lower": LENGTH, "z_upper": LENGTH, "pressure": LINE_PRESSURE,
+    "shear": LINE_PRESSURE, "drive": LENGTH, "plate_x": LENGTH, "plate_z": LENGTH, "friction": FORCE,
+    "normal_force": FORCE,
 }  # fmt: skip
 """Unit of each column of the CSV files that has one made of LU and FU."""
 

@@ -82,6 +82,30 @@ class Jkr:
             a**2 / self.radius - np.sqrt(2.0 * math.pi * self.work_of_adhesion * a / self.contact_modulus)
         )
 
+    def stress(self, place: Floats | float, contact_radius: float) -> Floats:
+        """Return p = (2E*a/pi R) sqrt(1 - r^2/a^2) - sqrt(2E*W/pi a)/sqrt(1 - r^2/a^2) [stress], > 0 in compression.
+
+        Hertz's pressure of this a and a flat punch's tension; its integral over the circle is F(a).
+
+        Args:
+            place: r, any shape [length].
+            contact_radius: a > 0 [length].
+
+        Raises:
+            ValueError: outside 0 <= r < a: the tension has no bound at the edge.
+        """
+        r, a, e = np.asarray(place, dtype=np.float64), contact_radius, self.contact_modulus
+        if np.any((r < 0.0) | (r >= a)):
+            raise ValueError(f"the stress is asked for outside 0 <= r < a = {a}")
+        root = np.sqrt(1.0 - (r / a) ** 2)
+        tension = math.sqrt(2.0 * e * self.work_of_adhesion / (math.pi * a))
+        return np.asarray(2.0 * e * a / (math.pi * self.radius) * root - tension / root)
+
+    def mean_pressure(self, contact_radius: Floats | float) -> Floats:
+        """Return F(a)/(pi a^2) [stress], positive in compression; shape of `contact_radius` a > 0 [length]."""
+        a = np.asarray(contact_radius, dtype=np.float64)
+        return np.asarray(self.force(a) / (math.pi * a**2))
+
     def zero_load_radius(self) -> float:
         """Return a_0 = (9 pi W R^2 / 2 E*)^(1/3) [length]."""
         return math.cbrt(4.5 * math.pi * self.work_of_adhesion * self.radius**2 / self.contact_modulus)
@@ -93,6 +117,40 @@ class Jkr:
     def critical_radius_fixed_grips(self) -> float:
         """Return a where a prescribed displacement pulls off, (pi W R^2 / 8 E*)^(1/3) [length]: dd/da = 0."""
         return FIXED_GRIPS_RADIUS_RATIO * self.zero_load_radius()
+
+
+def identified_surface_energy(adhesion_force: float, radius: float) -> float:
+    """Return gamma = F_A/(3 pi R) [force/length]: Eq. (9) of Geike and Popov (2007), the law of JKR read backwards.
+
+    Args:
+        adhesion_force: F_A, a positive magnitude [force].
+        radius: R [length].
+
+    Raises:
+        ValueError: if one of them is not positive.
+    """
+    if not (adhesion_force > 0.0 and radius > 0.0):
+        raise ValueError(f"adhesion_force and radius must be positive, got {adhesion_force} and {radius}")
+    return adhesion_force / (3.0 * math.pi * radius)
+
+
+def identified_contact_modulus(adhesion_force: float, radius: float, zero_load_radius: float) -> float:
+    """Return E* = 3 F_A R/a_0^3 [stress]: Eq. (9) of Geike and Popov (2007); other arguments as above.
+
+    Args:
+        adhesion_force: F_A, a positive magnitude [force].
+        radius: R [length].
+        zero_load_radius: a_0 [length].
+
+    Raises:
+        ValueError: if one of them is not positive.
+    """
+    if not (adhesion_force > 0.0 and radius > 0.0 and zero_load_radius > 0.0):
+        raise ValueError(
+            "adhesion_force, radius and zero_load_radius must be positive, "
+            f"got {adhesion_force}, {radius} and {zero_load_radius}"
+        )
+    return 3.0 * adhesion_force * radius / zero_load_radius**3
 
 
 def jkr_reduced_force(reduced_radius: Floats | float) -> Floats:

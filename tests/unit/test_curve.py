@@ -13,6 +13,8 @@ import pytest
 from analysis.curve import Curve, curve_columns, profile_columns, read_curve, read_profiles, write_columns
 from analysis.pressure import Profile
 
+COLUMNS = "displacement,force,contact_radius,smallest_distance,branch,contact_radius_uncertainty"
+
 
 def awkward(rng: np.random.Generator, size: int) -> np.ndarray:
     """Doubles of every size that need all 17 digits."""
@@ -26,7 +28,8 @@ def curve() -> Curve:
     radius = awkward(rng, 6).tolist()
     radius[2] = math.nan
     branch = ["loading"] * 3 + ["unloading"] * 3
-    return Curve(*(awkward(rng, 6).tolist() for _ in range(2)), radius, awkward(rng, 6).tolist(), branch)
+    displacement, force, distance, spread = (awkward(rng, 6).tolist() for _ in range(4))
+    return Curve(displacement, force, radius, distance, branch, spread)
 
 
 def test_a_curve_comes_back_to_the_last_bit(curve: Curve, tmp_path: Path) -> None:
@@ -39,7 +42,7 @@ def test_a_curve_comes_back_to_the_last_bit(curve: Curve, tmp_path: Path) -> Non
 def test_the_columns_are_those_of_the_contract(curve: Curve, tmp_path: Path) -> None:
     write_columns(tmp_path / "curve.csv", curve_columns(curve))
     header, *rows = (tmp_path / "curve.csv").read_text(encoding="utf-8").splitlines()
-    assert header == "displacement,force,contact_radius,smallest_distance,branch"
+    assert header == COLUMNS
     assert len(rows) == 6
     assert rows[2].split(",")[2] == ""
 
@@ -76,15 +79,15 @@ def test_a_finished_write_leaves_one_file(curve: Curve, tmp_path: Path) -> None:
 
 def test_columns_of_a_curve_are_equally_long() -> None:
     with pytest.raises(ValueError, match="equally long"):
-        Curve([0.0, 1.0], [0.0], [0.0], [0.0], ["loading"])
+        Curve([0.0, 1.0], [0.0], [0.0], [0.0], ["loading"], [0.0])
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
         ("displacement,force\n0,1\n", "no column contact_radius, smallest_distance, branch"),
-        ("displacement,force,contact_radius,smallest_distance,branch\n", "no rows"),
-        ("displacement,force,contact_radius,smallest_distance,branch\n0,many,1,1,loading\n", "many"),
+        (f"{COLUMNS}\n", "no rows"),
+        (f"{COLUMNS}\n0,many,1,1,loading,0\n", "many"),
     ],
 )
 def test_what_is_no_curve_is_refused(text: str, message: str, tmp_path: Path) -> None:

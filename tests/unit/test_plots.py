@@ -36,7 +36,7 @@ def curve() -> Curve:
     radius[-1] = math.nan
     force = np.concatenate([4.0 * down - 0.5, 5.0 * up])
     branch = ["loading"] * 30 + ["unloading"] * 40
-    return Curve(displacement.tolist(), force.tolist(), radius.tolist(), [0.2] * 70, branch)
+    return Curve(displacement.tolist(), force.tolist(), radius.tolist(), [0.2] * 70, branch, [0.0] * 70)
 
 
 def lines(axis: object) -> dict[str, np.ndarray]:

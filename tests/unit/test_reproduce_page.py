@@ -24,7 +24,6 @@ from workflow.reproduce.page import (
     ratio,
     share,
     symbols,
-    tier,
     tolerance,
 )
 from workflow.reproduce.record import RECORD, Record, StudyRecord, read_record
@@ -41,13 +40,15 @@ FORCE = Check(
     unit="FU",
     reference=1.47,
     source="Table 1 of the paper",
+    evidence="printed value",
     tolerance=0.015,
     limited_by="print: three digits",
     paper=1.47,
 )
 BOUND = replace(
     FORCE, study="fig8a", name="distance |ours − JKR| <all N>", value=0.1, uncertainty=0.0, unit="1", reference=0.08,
-    source="bound that was asked for", comparison="at most", limited_by="range & lattice", paper=None,
+    source="bound that was asked for", evidence="set bound", comparison="at most", limited_by="range & lattice",
+    paper=None,
 )  # fmt: skip
 NOTHING = replace(FORCE, name="zero-load radius", value=math.nan, uncertainty=math.nan, unit="LU", reference=28.53)
 
@@ -194,25 +195,12 @@ def test_a_ratio_shows_how_far_from_one_it_is() -> None:
     assert ratio(replace(FORCE, reference=0.0)) == "–"
 
 
-@pytest.mark.parametrize(
-    ("source", "name"),
-    [
-        ("Table 1 of the paper", "printed value"),
-        ("read off Fig. 6", "printed value"),
-        ("closed form: Hertz with Eq. (3) of the paper", "closed form"),
-        ("JKR, Eq. (8)", "closed form"),
-        ("energy minimiser in scipy", "independent solver"),
-        ("bound that was asked for on the distance to JKR", "set bound"),
-        ("bound set by the solver's stop", "set bound"),
-        ("the boundary of a drawing", "other"),
-    ],
-)
-def test_a_source_tells_the_kind_of_evidence(source: str, name: str) -> None:
-    assert tier(replace(FORCE, source=source)) == name
-
-
-def test_at_most_is_a_bound_where_the_source_says_nothing_else() -> None:
-    assert tier(replace(BOUND, source="round-off")) == "set bound"
+def test_a_row_refuses_what_no_record_can_hold() -> None:
+    with pytest.raises(ValueError, match="reference must be finite"):
+        replace(FORCE, reference=math.inf)
+    with pytest.raises(ValueError, match="needs an uncertainty"):
+        replace(FORCE, uncertainty=math.nan)
+    assert replace(BOUND, value=-math.inf).verdict == "FAIL"
 
 
 def test_symbols_get_their_index_and_exponent_and_nothing_else() -> None:

@@ -84,7 +84,7 @@ def model_of(scene: Scene) -> ChainModel:
         law = PairInteraction(*terms)
     return ChainModel(
         settings_for(scene).particles,
-        scene.bodies.bulk_stiffness,
+        scene.bulk_stiffness,
         law,
         radius=scene.bodies.profile.radius,
         neighbour_stiffness=0.0 if scene.neighbours is None else scene.neighbours.stiffness,

@@ -58,8 +58,8 @@ class Bodies(Table):
     )
     bulk_stiffness_tangential: Stiffness | None = Field(
         default=None,
-        description="stiffness of each particle to its bulk, along x; absent: as in normal direction, or with E and ν of "
-        "both bodies G*/E* of that",
+        description="stiffness of each particle to its bulk, along x; absent: as in normal direction, or with E and ν "
+        "of both bodies G*/E* of that",
     )
     mass: Mass = Field(default=1.0, description="mass of a particle; matters only where something moves in time")
     lower: Literal["particles", "rigid_plane"] = Field(

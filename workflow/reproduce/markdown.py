@@ -1,0 +1,138 @@
+"""What a record says as Markdown: the text of VALIDATION.md, and the short table of the README."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Sequence
+
+from workflow.reproduce.check import Check
+from workflow.reproduce.page import (
+    EVIDENCE,
+    failures,
+    ours,
+    paragraphs,
+    passed,
+    reference,
+    share,
+    tolerance,
+)
+from workflow.reproduce.record import Record, StudyRecord
+
+HEAD = """# Validation
+
+Written by `contact1d reproduce`, which makes every quantitative statement of Geike and Popov, *Reduction of
+three-dimensional contact problems to one-dimensional ones*, Tribology International 40 (2007), anew and judges each
+by a rule that stands in its row. The same numbers with figures are in `reproduce.html`, and for programs in
+`reproduce.json`. Nobody edits this file by hand; a row that fails stays in it."""
+
+READING = """Ours is value ± uncertainty, the uncertainty being the run's own estimate. LU and FU are the model's
+units of length and force. A tolerance is relative to the reference unless it has a unit."""
+
+NOT_VALIDATED = """## Not validated
+
+Nothing above speaks for the following, and no number of this program should be trusted there without a check of its
+own.
+
+- **Random self-affine roughness.** The one-dimensional mapping is known to fail here even qualitatively (Lyashenko,
+  Pastewka and Persson, *Tribology Letters* 52, 2013), so a run that agrees with the model says nothing about the
+  surface.
+- **Roughness of any kind within one contact.** All checks have one smooth profile; what a chain makes of several
+  summits that share an elastic half-space has not been compared with anything.
+- **Sliding friction and the tangential problem.** Slides run, but no force along x has been held against Cattaneo and
+  Mindlin yet, so neither the stiffness in that direction nor a friction force has a known scale.
+- **Absolute time scales of dynamic runs.** Masses are free numbers, and the damping is chosen so that a run settles
+  soon; the states of rest that it reaches are checked, how long it takes is not.
+- **Thermal pull-off.** The variances around a state of rest are checked by the tests; the mean force at which
+  fluctuations part a contact depends on the loading rate, and with it on the time scale that the point above leaves
+  open.
+- **Units of time and mass in SI.** Two macroscopic numbers, work of adhesion and elastic modulus, fix the units of
+  length and force only; a third, such as a density or a relaxation time, is not part of the identification.
+- **Rate-dependent adhesion.** Bulk and interaction are elastic, and the drag is there to reach equilibrium, so
+  whatever depends on the pulling speed belongs to the model and to no material.
+- **Two bodies of different bulk stiffness.** Both bodies get the same springs and only the combined modulus is
+  identified; how it would have to be shared between unlike bodies has not been looked at.
+"""
+
+
+def validation_markdown(record: Record) -> str:
+    """Return the text of VALIDATION.md: how it was made, kinds of evidence, every row, and what is not validated."""
+    parts = [HEAD, _made(record), _outcome(record), _evidence(record.checks), "## Results", READING]
+    for study in record.studies:
+        parts += _study(study)
+    return "\n\n".join([*parts, NOT_VALIDATED])
+
+
+def readme_table(record: Record) -> str:
+    """Return one row for each study: its name, what was asked, the result in words, PASS or FAIL."""
+    rows = [(f"`{study.name}`", study.title, _result(study), _verdict(study.checks)) for study in record.studies]
+    return table(("study", "asked", "result", "verdict"), rows)
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a Markdown table; what would break a cell is escaped."""
+    lines: list[Sequence[str]] = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(cell(text) for text in line) + " |" for line in lines) + "\n"
+
+
+def cell(text: str) -> str:
+    """Return `text` on one line, with nothing in it that ends a cell or opens a tag."""
+    return re.sub(r"\s+", " ", prose(text.replace("\\", "\\\\").replace("|", "\\|"))).strip()
+
+
+def prose(text: str) -> str:
+    """Return `text` with no tag in it, and `R^{2/3}` as R^(2/3)."""
+    return re.sub(r"\^\{([^{}]+)\}", r"^(\1)", text.replace("<", "&lt;"))
+
+
+def _made(record: Record) -> str:
+    versions = ", ".join(f"{name} {version}" for name, version in record.versions.items())
+    runs = sum(study.runs for study in record.studies)
+    return f"To make it again: `contact1d reproduce`. This text is from {runs} runs with {versions}."
+
+
+def _outcome(record: Record) -> str:
+    failed = failures(record)
+    head = f"**{record.passed} of {len(record.checks)} rows pass.**"
+    if not failed:
+        return head
+    rows = [(f"`{f.study.name}`", f.check.name, ours(f.check), reference(f.check), tolerance(f.check)) for f in failed]
+    return f"{head} These fail:\n\n{table(('study', 'checked', 'ours', 'reference', 'tolerance'), rows).rstrip()}"
+
+
+def _evidence(checks: Sequence[Check]) -> str:
+    rows = []
+    for name, meaning in EVIDENCE.items():
+        held = [check for check in checks if check.evidence == name]
+        if held:
+            rows.append((name, meaning, str(len(held)), str(passed(held))))
+    return "## Evidence\n\n" + table(("held against", "which is", "rows", "pass"), rows).rstrip()
+
+
+def _study(study: StudyRecord) -> list[str]:
+    head = f"### {prose(study.title)} (`{study.name}`)"
+    said = [*paragraphs(f"The paper: {study.statement}"), *paragraphs(f"Found: {study.finding}")]
+    rows = [
+        (c.name, c.source, c.evidence, ours(c), reference(c), tolerance(c), c.limited_by, _badge(c.verdict))
+        for c in study.checks
+    ]
+    names = ("checked", "against", "evidence", "ours", "reference", "tolerance", "limited by", "verdict")
+    return [head, *map(prose, said), *([table(names, rows).rstrip()] if rows else [])]
+
+
+def _result(study: StudyRecord) -> str:
+    checks = study.checks
+    words = f"{passed(checks)} of {len(checks)} rows pass"
+    deviations = [abs(c.ratio - 1.0) for c in checks if c.comparison == "relative" and c.ratio is not None]
+    worst = max(filter(math.isfinite, deviations), default=None)
+    return words if worst is None else f"{words}, worst deviation {share(worst)}"
+
+
+def _verdict(checks: Sequence[Check]) -> str:
+    if not checks:
+        return "–"
+    return _badge("PASS" if passed(checks) == len(checks) else "FAIL")
+
+
+def _badge(verdict: str) -> str:
+    return "**FAIL**" if verdict == "FAIL" else verdict
