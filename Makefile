@@ -16,11 +16,11 @@ $(LOCKED): FORCE
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help run test lint clean FORCE
+.PHONY: help run test lint validation clean FORCE
 
 help: ## show this list
 	@echo 'make [TARGET] [NAME=value ...]'
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1 \2/p' Makefile | awk '{ printf "  %s %-6s", $$1, $$2; $$1 = $$2 = ""; print }'
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1 \2/p' Makefile | awk '{ printf "  %s %-10s", $$1, $$2; $$1 = $$2 = ""; print }'
 	@echo 'PYTHON=$(PYTHON) is the Python that .venv is made with.'
 
 run: $(READY) ## run a scene: SCENE=file.toml (default pull_off), OUT=folder (default runs/<scene>)
@@ -33,6 +33,11 @@ lint: $(READY) ## check style, types and the direction of imports
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+validation: $(READY) ## reproduce the paper anew: VALIDATION.md, docs/reproduced and the README's table
+	@$(BIN)/contact1d reproduce --out reproduced
+	@mkdir -p docs/reproduced && cp reproduced/reproduce.json reproduced/*.png docs/reproduced/
+	@WRITE_DOCS=1 $(BIN)/python -m pytest -q tests/unit/test_validation_page.py
 
 clean: ## remove .venv and the caches; runs/ stays
 	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis .benchmarks

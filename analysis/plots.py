@@ -43,7 +43,7 @@ def pressure_figure(profiles: Mapping[str, Profile], radii: Mapping[str, float])
     """Pressure over x of each state that has any, one panel below the other, with ±a marked (the paper's Fig. 4)."""
     touching = {name: profile for name, profile in profiles.items() if _touches(profile, profiles)}
     profiles = touching or dict(list(profiles.items())[:1])
-    figure = _figure((SIZE[0], 1.0 + 2.3 * len(profiles)))
+    figure = new_figure((SIZE[0], 1.0 + 2.3 * len(profiles)))
     axes = figure.subplots(len(profiles), 1, sharex=True, squeeze=False)[:, 0]
     half = max(_half_width(profile) for profile in profiles.values())
     for axis, (name, profile) in zip(axes, profiles.items(), strict=True):
@@ -84,7 +84,7 @@ def force_displacement_figure(
     curve: Curve, marks: Mapping[str, float], theory: tuple[str, Array, Array] | None = None
 ) -> Figure:
     """Force over displacement, loading and unloading; beside it a theory: its name, displacement and force."""
-    figure = _figure(SIZE)
+    figure = new_figure(SIZE)
     axis = figure.subplots()
     displacement, force = np.asarray(curve.displacement), np.asarray(curve.force)
     for branch, colour, style in (("loading", LOADING, "-"), ("unloading", UNLOADING, "-")):
@@ -116,7 +116,7 @@ def force_displacement_figure(
 
 def force_radius_figure(curve: Curve, adhesion_force: float, zero_load_radius: float) -> Figure:
     """F/F_A over a/a₀ of the unloading branch beside JKR and Barquins (the paper's Fig. 8)."""
-    figure = _figure(SIZE)
+    figure = new_figure(SIZE)
     axis = figure.subplots()
     radius = np.asarray(curve.contact_radius) / zero_load_radius
     force = np.asarray(curve.force) / adhesion_force
@@ -137,7 +137,7 @@ def force_radius_figure(curve: Curve, adhesion_force: float, zero_load_radius: f
 
 def friction_figure(columns: Mapping[str, Sequence[float]]) -> Figure:
     """Friction over the way of the drive, and the normal force below it."""
-    figure = _figure(SIZE)
+    figure = new_figure(SIZE)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
     upper.plot(columns["drive"], columns["friction"], color=COMPRESSION, linewidth=1.2)
     upper.axhline(0.0, color="black", linewidth=0.8)
@@ -150,33 +150,34 @@ def friction_figure(columns: Mapping[str, Sequence[float]]) -> Figure:
 
 def plot_pressure(profiles: Mapping[str, Profile], radii: Mapping[str, float], path: Path) -> None:
     """Save `pressure_figure`."""
-    _save(pressure_figure(profiles, radii), path)
+    save_figure(pressure_figure(profiles, radii), path)
 
 
 def plot_force_displacement(
     curve: Curve, marks: Mapping[str, float], path: Path, theory: tuple[str, Array, Array] | None = None
 ) -> None:
     """Save `force_displacement_figure`."""
-    _save(force_displacement_figure(curve, marks, theory), path)
+    save_figure(force_displacement_figure(curve, marks, theory), path)
 
 
 def plot_force_radius(curve: Curve, adhesion_force: float, zero_load_radius: float, path: Path) -> None:
     """Save `force_radius_figure`."""
-    _save(force_radius_figure(curve, adhesion_force, zero_load_radius), path)
+    save_figure(force_radius_figure(curve, adhesion_force, zero_load_radius), path)
 
 
 def plot_friction(columns: Mapping[str, Sequence[float]], path: Path) -> None:
     """Save `friction_figure`."""
-    _save(friction_figure(columns), path)
+    save_figure(friction_figure(columns), path)
 
 
-def _figure(size: tuple[float, float]) -> Figure:
+def new_figure(size: tuple[float, float]) -> Figure:
+    """Return an empty figure of that size [inch], without the state that pyplot keeps."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=size, dpi=DPI, layout="constrained")
 
 
-def _save(figure: Figure, path: Path) -> None:
+def save_figure(figure: Figure, path: Path) -> None:
     """Save whole or not at all."""
     for axis in figure.axes:
         axis.spines[["top", "right"]].set_visible(False)

@@ -59,7 +59,7 @@ def tensile_radius(profile: Profile) -> ContactRadius:
     return _between(left, right)
 
 
-def compressive_radius(profile: Profile) -> ContactRadius:
+def compressive_radius(profile: Profile, residual: float = 0.0) -> ContactRadius:
     """Return where the pressure without attraction vanishes: p(a) = 0 beyond the outermost loaded particle.
 
     profile: a pressure profile of one contact, p >= 0, n >= 3 particles. Springs to a bulk give p = (k/s) (d - x^2/2R),
@@ -67,6 +67,8 @@ def compressive_radius(profile: Profile) -> ContactRadius:
     round-off), where a straight line through two overshoots by up to s^2/a with the spacing s. The edge is kept between
     the outermost loaded particle and the next. Where the parabola has no zero there (few particles, a load
     concentrated at the edge, a soft law's tail) it is halfway, give or take half a spacing.
+    residual: error of each pressure, as a minimiser leaves it, over the largest one; it moves the edge by itself over
+    the slope dp/dx there, in the same unit.
     No load at all: radius 0 at the middle of the chain, uncertain by half a spacing.
     Raises ValueError for fewer than 3 particles, and where a particle carries tension (use `tensile_radius`).
     """
@@ -79,8 +81,8 @@ def compressive_radius(profile: Profile) -> ContactRadius:
     if loaded.size == 0:
         middle, half_spacing = 0.5 * float(x[0] + x[-1]), 0.5 * float(x[-1] - x[0]) / (len(x) - 1)
         return ContactRadius(0.0, half_spacing, middle, middle, False)
-    right = _zero(x, p, int(loaded[0]), int(loaded[-1]))
-    mirrored = _zero(-x[::-1], p[::-1], len(x) - 1 - int(loaded[-1]), len(x) - 1 - int(loaded[0]))
+    right = _zero(x, p, int(loaded[0]), int(loaded[-1]), residual)
+    mirrored = _zero(-x[::-1], p[::-1], len(x) - 1 - int(loaded[-1]), len(x) - 1 - int(loaded[0]), residual)
     return _between(Place(-mirrored.position, mirrored.uncertainty, mirrored.at_end), right)
 
 
@@ -97,33 +99,37 @@ def _between(left: Place, right: Place) -> ContactRadius:
     return ContactRadius(value, uncertainty, left.position, right.position, left.at_end or right.at_end)
 
 
-def _zero(x: Array, p: Array, first: int, last: int) -> Place:
+def _zero(x: Array, p: Array, first: int, last: int, residual: float) -> Place:
     """Right edge of a contact whose loaded particles are first … last."""
     if last == len(x) - 1:
         return Place(float(x[last]), float(x[last] - x[0]) / last, True)
     inner, outer = float(x[last]), float(x[last + 1])
-    halfway = Place(0.5 * (inner + outer), 0.5 * (outer - inner))
-    if last - first + 1 < CURVED:
-        return halfway
-    zeros = [
-        _parabola_zero(x[end - CURVED : end], p[end - CURVED : end], inner, outer)
-        for end in (last + 1, last)
-        if end - CURVED >= first
-    ]
-    if math.isnan(zeros[0]):
-        return halfway
-    if len(zeros) == 1 or math.isnan(zeros[1]):
-        return Place(zeros[0], max(outer - zeros[0], zeros[0] - inner))
-    round_off = NEGLIGIBLE * (abs(inner) + abs(outer - inner))
-    return Place(zeros[0], min(abs(zeros[0] - zeros[1]) + round_off, outer - inner))
+    zero, other = (
+        _parabola_zero(x[: end + 1], p[: end + 1], inner, outer, residual) if end - CURVED >= first - 1 else None
+        for end in (last, last - 1)
+    )
+    if zero is None:
+        return Place(0.5 * (inner + outer), 0.5 * (outer - inner))
+    if other is None:
+        return Place(zero.position, max(outer - zero.position, zero.position - inner))
+    return Place(zero.position, min(abs(zero.position - other.position) + zero.uncertainty, outer - inner))
 
 
-def _parabola_zero(x: Array, p: Array, inner: float, outer: float) -> float:
-    """Falling zero, between inner and outer, of the parabola through three particles; NaN if there is none."""
-    width = outer - inner
-    coefficients = polynomial.polyfit((x - inner) / width, p / np.max(p), 2)
-    roots = polynomial.polyroots(coefficients)
-    real = np.real(roots[np.abs(np.imag(roots)) < 1e-9])
-    falling = real[polynomial.polyval(real, polynomial.polyder(coefficients)) < 0.0]
-    inside = falling[(falling >= -NEGLIGIBLE) & (falling <= 1.0 + NEGLIGIBLE)]
-    return float(inner + width * inside[0]) if inside.size else math.nan
+def _parabola_zero(x: Array, p: Array, inner: float, outer: float, residual: float) -> Place | None:
+    """Falling zero, between inner and outer, of the parabola through the last three particles; None if there is none.
+
+    c + b t + a t^2 falls with the slope -sqrt(D), D = b^2 - 4ac, at t = c/q for b < 0 and else at q/a, where
+    q = -(b + sign(b) sqrt(D))/2: no difference of near numbers, so that a straight line (a cone's pressure) is no
+    special case.
+    """
+    width, largest = outer - inner, float(np.max(p))
+    c, b, a = polynomial.polyfit((x[-CURVED:] - inner) / width, p[-CURVED:] / largest, 2)
+    square = b**2 - 4.0 * a * c
+    if square <= 0.0 or (b >= 0.0 and a >= 0.0):
+        return None
+    slope = math.sqrt(square)
+    q = -0.5 * (b + math.copysign(slope, b))
+    place = float(c / q if b < 0.0 else q / a)
+    if not -NEGLIGIBLE <= place <= 1.0 + NEGLIGIBLE:
+        return None
+    return Place(inner + width * place, NEGLIGIBLE * (abs(inner) + width) + width * residual / slope)

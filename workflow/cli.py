@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from workflow.cli_paper import INTERRUPTED, RUN_FAILED, SCENE_IS_WRONG, identify, reproduce, stop
+
 if TYPE_CHECKING:
     from workflow.scene import Scene
-
-SCENE_IS_WRONG = 2
-RUN_FAILED = 3
-INTERRUPTED = 130
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -86,13 +84,13 @@ def run(
     try:
         finished = run_scene(checked, _folder(scene, out), figures, progress, time_limit)
     except (FolderError, SettingsError) as error:
-        _stop(str(error), SCENE_IS_WRONG)
+        stop(str(error), SCENE_IS_WRONG)
     except RunError as error:
         progress.close()
-        _stop(f"the run failed: {error}", RUN_FAILED)
+        stop(f"the run failed: {error}", RUN_FAILED)
     except KeyboardInterrupt:
         progress.close()
-        _stop("interrupted; no numbers were written", INTERRUPTED)
+        stop("interrupted; no numbers were written", INTERRUPTED)
     progress.close()
     from workflow.summary import pressure_plot, quantities
 
@@ -125,7 +123,7 @@ def deck(
     try:
         folder = write_deck(checked, out)
     except (FolderError, SettingsError) as error:
-        _stop(str(error), SCENE_IS_WRONG)
+        stop(str(error), SCENE_IS_WRONG)
     typer.echo(f"{folder}: run it there with lmp -in in.lammps")
 
 
@@ -144,6 +142,10 @@ def doctor() -> None:
         raise typer.Exit(1)
 
 
+app.command()(identify)
+app.command()(reproduce)
+
+
 def _read(path: Path, overrides: list[str] | None, without: list[str] | None) -> Scene:
     from workflow.scene import SceneError, read_scene
 
@@ -152,16 +154,11 @@ def _read(path: Path, overrides: list[str] | None, without: list[str] | None) ->
     except SceneError as error:
         count = len(error.problems)
         lines = [f"{path}: {count} problem{'s' if count > 1 else ''}", *(f"  {problem}" for problem in error.problems)]
-        _stop("\n".join(lines), SCENE_IS_WRONG)
+        stop("\n".join(lines), SCENE_IS_WRONG)
 
 
 def _folder(scene: Path, out: Path | None) -> Path:
     return out if out is not None else Path("runs") / scene.stem
-
-
-def _stop(message: str, code: int) -> NoReturn:
-    typer.secho(message, err=True, fg="red")
-    raise typer.Exit(code)
 
 
 def main() -> None:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from analysis.curve import Curve, curve_columns, profile_columns, write_columns
 from workflow.experiments import Outcome
 from workflow.experiments.outcome import radius_of
-from workflow.scales import scales_of
+from workflow.scales import scales_of, unfound
 from workflow.scene import Parabola, Scene
 from workflow.units import FORCE, LENGTH, LINE_PRESSURE, SI, Scales
 
@@ -48,7 +48,13 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
         for entry in quantities.values():
             entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
         quantities["units"] = {unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE)}
-    warnings = [{"name": name, "message": message} for name, message in outcome.warnings.items()]
+    doubts = dict(outcome.warnings)
+    if missing := unfound(scene, outcome.quantities):
+        doubts["no_units"] = (
+            f"the run found no {' and no '.join(missing)} above 0, from which surface_energy would fix both units, so "
+            'nothing is in SI: use kind = "pull_off", and a radius that makes the contact many spacings wide'
+        )
+    warnings = [{"name": name, "message": message} for name, message in doubts.items()]
     return quantities | _frame(scene, "done", warnings, timing)
 
 
@@ -67,8 +73,13 @@ def _frame(scene: Scene, status: str, warnings: list[dict[str, str]], timing: Ma
         "status": status,
         "warnings": warnings,
         "timing": dict(timing),
-        "versions": {name: version(name) for name in PACKAGES} | {"python": platform.python_version()},
+        "versions": versions(),
     }
+
+
+def versions() -> dict[str, str]:
+    """Versions of what a result depends on."""
+    return {name: version(name) for name in PACKAGES} | {"python": platform.python_version()}
 
 
 def write_results(folder: Path, document: Mapping[str, Any]) -> None:
@@ -120,6 +131,11 @@ def _in_si(columns: Mapping[str, Sequence[float | str]], scales: Scales) -> dict
     }
 
 
+def _adheres_over_a_width(marks: Mapping[str, float]) -> bool:
+    """Whether the run has F_A and an a₀ that is not 0, by which a reduced curve can be divided."""
+    return "adhesion_force" in marks and marks.get("zero_load_radius", 0.0) > 0.0
+
+
 def _theory(scene: Scene, marks: Mapping[str, float]) -> tuple[str, Array, Array] | None:
     """JKR with the run's own F_A and a₀; Hertz, with nothing fitted, for a parabola on a rigid plane; else none."""
     from analysis import plots
@@ -128,7 +144,7 @@ def _theory(scene: Scene, marks: Mapping[str, float]) -> tuple[str, Array, Array
     if not isinstance(bodies.profile, Parabola):
         return None
     radius = bodies.profile.radius * (0.5 if bodies.reduction == "mdr" else 1.0)
-    if {"adhesion_force", "zero_load_radius"} <= marks.keys():
+    if _adheres_over_a_width(marks):
         curve = plots.jkr_curve(marks["adhesion_force"], marks["zero_load_radius"], radius)
         return "JKR, same $F_A$ and $a_0$", *curve
     if scene.interaction is None and scene.experiment.kind == "path":
@@ -149,5 +165,5 @@ def draw(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> None:
     if scene.noise is not None:
         return
     plots.plot_force_displacement(curve, marks, folder / "force_displacement.png", _theory(scene, marks))
-    if {"adhesion_force", "zero_load_radius"} <= marks.keys():
+    if _adheres_over_a_width(marks):
         plots.plot_force_radius(curve, marks["adhesion_force"], marks["zero_load_radius"], folder / "force_radius.png")

@@ -15,17 +15,19 @@ from workflow.experiments import Quantity
 from workflow.scene import Scene
 from workflow.units import Scales
 
+FIXING = ("adhesion_force", "zero_load_radius")
+"""What a run must have found, and not as 0, for `surface_energy` to fix its units."""
+
 
 def scales_of(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales | None:
-    """The scales of a run; None without a [material], and where a path found no F_A or no a₀."""
+    """The scales of a run; None without a [material], and where `unfound` names what keeps them from being known."""
     material = scene.material
-    if material is None:
+    if material is None or unfound(scene, quantities):
         return None
     if material.surface_energy is not None:
-        force, radius = quantities.get("adhesion_force"), quantities.get("zero_load_radius")
+        force, radius = (quantities[name] for name in FIXING)
         curvature = scene.bodies.profile.curvature_radius
-        if force is None or radius is None or curvature is None:
-            return None
+        assert curvature is not None
         return jkr_scales(force, radius, curvature, material.effective_modulus(), material.surface_energy)
     length = material.length_unit
     assert length is not None
@@ -33,6 +35,13 @@ def scales_of(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales | None
         return Scales(length, material.force_unit)
     layer = material.layer_stiffness(scene.bodies.reduction)
     return Scales(length, scene.chains * layer * scene.bodies.spacing * length**2 / scene.bulk_stiffness)
+
+
+def unfound(scene: Scene, quantities: Mapping[str, Quantity]) -> tuple[str, ...]:
+    """Those of F_A and a₀ that the scene's units need and that the run did not find, or found to be 0."""
+    if scene.material is None or scene.material.surface_energy is None:
+        return ()
+    return tuple(name for name in FIXING if name not in quantities or not quantities[name].value > 0.0)
 
 
 def jkr_scales(

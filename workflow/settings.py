@@ -12,8 +12,8 @@ import numpy as np
 
 from potentials import DoubleExponential, Exponential
 from potentials.table import Table, table_for
-from workflow.estimate import ContactEstimate, particles_estimate, plane_estimate
-from workflow.scene import Bodies, FlatPunch, Scene
+from workflow.estimate import ContactEstimate, particles_estimate, plane_estimate, tabulated
+from workflow.scene import Bodies, FlatPunch, Measured, Scene
 
 CUTOFF_SHARE = 1e-3
 """Force at an automatic cutoff over the law's own, per unit of tolerance; the tail left out is some ten times that."""
@@ -44,6 +44,8 @@ LOADING_STEPS = 24
 
 FALL = 1e-9
 """A profile counts as falling where it does by more than this share of its height."""
+ROUND_OFF = 1e-9
+"""Relative, of a length that a chain only just fits into."""
 
 
 class SettingsError(ValueError):
@@ -131,21 +133,23 @@ def settings_for(scene: Scene) -> Settings:
 def _chosen(scene: Scene) -> Settings:
     tolerance = scene.accuracy.tolerance
     bodies = scene.bodies
+    _require_room(bodies)
+    shape = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
     law = interaction_law(scene)
     plane = _plane_stiffness(scene)
     bond = scene.bulk_stiffness if law is not None else 1.0 / (1.0 / scene.bulk_stiffness - 1.0 / plane)
     cutoff, rest, closest, table = 0.0, 0.0, 0.0, None
     if law is None:
-        estimate = plane_estimate(bodies, bodies.spacing, scene.bulk_stiffness)
+        estimate = plane_estimate(shape, bodies.spacing, scene.bulk_stiffness)
     else:
         cutoff = _cutoff(scene, law)
         rest = law.force_free_distance() if law.attraction is not None else cutoff
         closest = CLOSEST_SHARE * (rest if law.attraction is not None else law.repulsion.range)
         table = table_for(law, cutoff, closest, TABLE_SHARE * tolerance * float(law.force(0.0)))
-        estimate = particles_estimate(law, bodies, bodies.spacing, scene.bulk_stiffness, cutoff, rest)
+        estimate = particles_estimate(law, shape, bodies.spacing, scene.bulk_stiffness, cutoff, rest)
     largest = _largest_displacement(scene, estimate)
     particles = _chain_length(scene, estimate, largest) if bodies.particles == "auto" else bodies.particles
-    _require_body(scene, estimate, largest, particles)
+    _require_body(bodies, largest, particles)
     force_scale = _force_scale(scene, law, largest)
     motion = _motion(scene, law, closest, plane, estimate, largest, particles)
     different = scene.horizontal is not None and scene.tangential_stiffness != scene.bulk_stiffness
@@ -204,13 +208,29 @@ def _largest_displacement(scene: Scene, estimate: ContactEstimate) -> float:
             return max(experiment.values())
 
 
-def _require_body(scene: Scene, estimate: ContactEstimate, largest: float, particles: int) -> None:
+def _require_room(bodies: Bodies) -> None:
+    """Refuse a profile that is too narrow for the fewest particles: 3, or 4 of an automatic chain, which is even.
+
+    Raises:
+        SettingsError: with the widest spacing that is possible.
+    """
+    fewest = 4 if bodies.particles == "auto" else 3
+    widest = 2.0 * bodies.reach / (fewest - 1)
+    if not isinstance(bodies.profile, FlatPunch) and bodies.spacing > (1.0 - ROUND_OFF) * widest:
+        raise SettingsError(
+            f"the profile ends at {bodies.reach:.6g} LU, which is too narrow for {fewest} particles, the fewest"
+            f"{' of an automatic chain' if fewest == 4 else ''}: take a bodies.spacing below {widest:.6g} LU"
+        )
+
+
+def _require_body(bodies: Bodies, largest: float, particles: int) -> None:
     """Refuse a chain or a contact that is wider than its profile, and a profile whose contact is no single one.
+
+    A contact that is wider than its chain alone is left to the run, which knows how wide it is.
 
     Raises:
         SettingsError: with the nearest value that is possible.
     """
-    bodies = scene.bodies
     if isinstance(bodies.profile, FlatPunch):
         return
     half = 0.5 * (particles - 1) * bodies.spacing
@@ -220,7 +240,8 @@ def _require_body(scene: Scene, estimate: ContactEstimate, largest: float, parti
             f"{bodies.reach:.6g} LU: at most {_most_particles(bodies)} particles"
         )
     if bodies.reach < math.inf:
-        deepest = float(bodies.height(np.asarray([half]))[0])
+        longest = 0.5 * (max(particles, _most_particles(bodies)) - 1) * bodies.spacing
+        deepest = float(bodies.height(np.asarray([longest]))[0])
         if largest >= deepest:
             raise SettingsError(
                 f"the contact would spread over the whole profile, which ends at {bodies.reach:.6g} LU: the experiment "
@@ -237,8 +258,8 @@ def _require_body(scene: Scene, estimate: ContactEstimate, largest: float, parti
 
 
 def _most_particles(bodies: Bodies) -> int:
-    """The longest chain, with an even number of particles, that the profile is wide enough for."""
-    return 2 * math.floor(bodies.reach / bodies.spacing + 0.5 - 1e-9)
+    """The longest chain, with 3 or an even number of particles, that the profile is wide enough for."""
+    return max(3, 2 * math.floor(bodies.reach / bodies.spacing * (1.0 - ROUND_OFF) + 0.5))
 
 
 def _chain_length(scene: Scene, estimate: ContactEstimate, largest: float) -> int:

@@ -30,15 +30,15 @@ def quantities(results: Mapping[str, Any]) -> list[str]:
     for name, entry in results.items():
         if isinstance(entry, dict) and {"value", "uncertainty", "unit"} <= entry.keys():
             label = NAMES.get(name, name.replace("_", " "))
-            si = f"  = {_in_si(entry['si'])}" if "si" in entry else ""
+            si = f"  = {in_si(entry['si'])}" if "si" in entry else ""
             lines.append(f"  {label:<28} {rounded(entry['value'], entry['uncertainty'])} {entry['unit']}{si}")
     if "units" in results:
-        lines += [f"  {'1 ' + unit:<28} {_in_si(entry)}" for unit, entry in results["units"].items()]
+        lines += [f"  {'1 ' + unit:<28} {in_si(entry)}" for unit, entry in results["units"].items()]
     return lines
 
 
-def _in_si(entry: Mapping[str, Any]) -> str:
-    """`39.0 µN ± 1.2e-04`: with a prefix, and the uncertainty as a share."""
+def in_si(entry: Mapping[str, Any]) -> str:
+    """Value, unit with a prefix, and the uncertainty as a share: `39.028 µN ± 1.2e-04`."""
     value, unit = float(entry["value"]), entry["unit"]
     share = f" ± {entry['uncertainty'] / abs(value):.1e}" if value and entry["uncertainty"] else ""
     power = math.floor(math.log10(abs(value)) / 3) if value else 0

@@ -94,7 +94,6 @@ def test_error_names_the_nearest_values_and_these_are_accepted() -> None:
             require_reachable(scene, target)
 
 
-@pytest.mark.xfail(strict=True, reason="the nearest values are rounded to nearest, half of them to the wrong side")
 def test_nearest_values_are_accepted_as_they_are_printed() -> None:
     scene = scene_of()
     for hundredths in range(1200, 1220):

@@ -161,6 +161,6 @@ def test_every_figure_is_a_whole_file(curve: Curve, tmp_path: Path) -> None:
 def test_figures_leave_no_global_state() -> None:
     code = (
         "import sys; from analysis import plots; assert 'matplotlib' not in sys.modules;"
-        "plots._figure((1, 1)); assert 'matplotlib.pyplot' not in sys.modules"
+        "plots.new_figure((1, 1)); assert 'matplotlib.pyplot' not in sys.modules"
     )
     subprocess.run([sys.executable, "-W", "error", "-c", code], check=True)

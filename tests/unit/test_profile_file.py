@@ -133,7 +133,6 @@ def test_binary_file_is_no_text(content: bytes, tmp_path: Path) -> None:
     assert "is no text (UTF-8)" in printed[0]
 
 
-@pytest.mark.xfail(strict=True, raises=ValueError, reason="a traceback: embedded null byte")
 def test_name_that_no_file_can_have_is_a_problem_of_the_scene(tmp_path: Path) -> None:
     assert len(lines(tables(file="a\0b"), tmp_path)) == 1
 
@@ -143,7 +142,6 @@ def test_points_that_are_no_profile_are_told_as_those_of_lists_are(tmp_path: Pat
     assert "must begin at the radius 0, not 1" in lines(tables(file="p.csv"), tmp_path)[0]
 
 
-@pytest.mark.xfail(strict=True, reason='says of r and z, which the scene does not have, "must have at least one item"')
 def test_file_with_too_few_points_says_so(tmp_path: Path) -> None:
     (tmp_path / "p.csv").write_text("0,0\n1,1\n")
     assert not any("at least one item" in line for line in lines(tables(file="p.csv"), tmp_path))
@@ -169,7 +167,6 @@ def test_scale_is_a_positive_number(scale: object, tmp_path: Path) -> None:
     assert "must be a number greater than 0" in printed[0]
 
 
-@pytest.mark.xfail(strict=True, raises=OverflowError, reason="a traceback: int too large to convert to float")
 def test_scale_of_hundreds_of_digits_is_a_problem_of_the_scene(tmp_path: Path) -> None:
     (tmp_path / "p.csv").write_text(PLAIN)
     assert len(lines(tables(file="p.csv", scale=10**400), tmp_path)) == 1
@@ -220,13 +217,11 @@ def test_file_and_lists_exclude_each_other(lists: dict[str, Any], tmp_path: Path
     )
 
 
-@pytest.mark.xfail(strict=True, reason="says besides that there must be a file, or the lists r and z")
 def test_file_beside_one_list_is_one_problem(tmp_path: Path) -> None:
     (tmp_path / "p.csv").write_text(PLAIN)
     assert len(lines(tables(file="p.csv", r=RADII), tmp_path)) == 1
 
 
-@pytest.mark.xfail(strict=True, reason="a mended word comes too late for the file: besides, a file is asked for")
 @pytest.mark.parametrize("misspelt", [{"kind": "tabel", "file": "p.csv"}, {"kind": "table", "fiel": "p.csv"}])
 def test_misspelt_word_is_one_problem(misspelt: dict[str, Any], tmp_path: Path) -> None:
     (tmp_path / "p.csv").write_text(PLAIN)
@@ -237,11 +232,11 @@ def test_other_mistakes_are_told_together_with_that_of_the_file(tmp_path: Path) 
     data = tables(file="p.csv")
     data["bodies"] = data["bodies"] | {"bulk_stiffness": -1.0}
     data["experiment"] = {"kind": "path", "displacements": []}
-    assert [line.partition(" ")[0] for line in lines(data, tmp_path)] == [
+    assert sorted(line.partition(" ")[0] for line in lines(data, tmp_path)) == [
         "bodies.bulk_stiffness",
         "bodies.profile.file",
         "experiment.displacements",
-    ] or len(lines(data, tmp_path)) == 3
+    ]
 
 
 def test_scene_of_a_run_folder_reads_back_without_the_file(tmp_path: Path) -> None:

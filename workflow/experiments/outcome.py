@@ -10,7 +10,7 @@ from analysis.radius import ContactRadius, compressive_radius, tensile_radius
 from workflow.deck import Phase
 from workflow.experiments.contact import State
 from workflow.scene import FlatPunch, Scene
-from workflow.settings import Settings
+from workflow.settings import RESIDUAL_SHARE, Settings
 
 
 class UntrustedError(RuntimeError):
@@ -67,7 +67,9 @@ def radius_of(scene: Scene, profile: Profile) -> ContactRadius | None:
     if punch:
         edge = scene.bodies.reach
         return ContactRadius(edge, 0.0, -edge, edge, reaches_end=False)
-    return tensile_radius(profile) if adhesive else compressive_radius(profile)
+    if adhesive:
+        return tensile_radius(profile)
+    return compressive_radius(profile, RESIDUAL_SHARE * scene.accuracy.tolerance)
 
 
 def require_trust(scene: Scene, settings: Settings, state: State) -> None:

@@ -34,6 +34,8 @@ EVIDENCE: dict[Evidence, str] = {
 NO_NUMBER = "no number"
 SMALL, WIDE = 1e-3, 100.0
 """Below SMALL a number and its uncertainty share a power of ten, and so they do where the uncertainty is WIDE."""
+FINE = 1e-7
+"""A relative uncertainty below it is written apart, beside seven digits of the value."""
 SHARE_OF_PERCENT = 1e-4
 """A relative tolerance or deviation below it is not written in percent."""
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -56,6 +58,8 @@ def measured(value: float, uncertainty: float, unit: str) -> str:
         return NO_NUMBER
     if not math.isfinite(uncertainty) or uncertainty <= 0.0:
         return _with_unit(number(value), unit)
+    if uncertainty < FINE * abs(value):  # more digits than anybody reads
+        return _with_unit(f"{number(value, 7)} ± {number(uncertainty, 1)}", unit)
     size = max(abs(value), uncertainty)
     if size >= SMALL and uncertainty < WIDE:
         return _with_unit(rounded(value, uncertainty).replace("-", "−"), unit)
@@ -71,7 +75,7 @@ def ours(check: Check) -> str:
 
 def printed(check: Check) -> str:
     """The value that the paper prints, or a dash."""
-    return "–" if check.paper is None else _with_unit(number(check.paper, 10), check.unit)
+    return "–" if check.paper is None else _with_unit(number(check.paper, 6), check.unit)
 
 
 def reference(check: Check) -> str:

@@ -27,11 +27,10 @@ UNKNOWN, MISSING, NO_KIND, WRONG_KIND = "extra_forbidden", "missing", "union_tag
 class Checked:
     """A scene's tables after the check: `scene` if all are right, the `problems`, and what the rules may rely on.
 
-    `data` has misspelt words replaced by what was meant; `unsound` holds the keys at which a value is still wrong.
+    `unsound` holds the keys at which a value is wrong.
     """
 
     scene: Scene | None
-    data: dict[str, Any]
     problems: tuple[Problem, ...]
     unsound: frozenset[Keys]
 
@@ -45,18 +44,19 @@ class _Spot:
     table: type[Table] | None
 
 
-def check_tables(data: dict[str, Any]) -> Checked:
-    """Check every table of `data` (a plain dict, changed in place where words are misspelt)."""
+def mend_words(data: dict[str, Any]) -> list[Problem]:
+    """Report and mend, in `data` (a plain dict), every word that is misspelt or unknown."""
     problems: list[Problem] = []
-    while True:
-        scene, faults = _validated(data)
-        mended = [problem for fault in faults if (problem := _mend(data, fault))]
-        if not mended:
-            break
+    while mended := [problem for fault in _validated(data)[1] if (problem := _mend(data, fault))]:
         problems += mended
-    problems += [_problem(data, fault) for fault in faults]
-    unsound = frozenset(_spot(fault["loc"]).keys for fault in faults)
-    return Checked(None if problems else scene, data, tuple(problems), unsound)
+    return problems
+
+
+def check_tables(data: dict[str, Any]) -> Checked:
+    """Check every table of `data`, a plain dict whose words were mended."""
+    scene, faults = _validated(data)
+    problems = tuple(_problem(data, fault) for fault in faults if not _follows(data, fault))
+    return Checked(scene, problems, frozenset(_spot(fault["loc"]).keys for fault in faults))
 
 
 def _validated(data: dict[str, Any]) -> tuple[Scene | None, list[ErrorDetails]]:
@@ -64,6 +64,11 @@ def _validated(data: dict[str, Any]) -> tuple[Scene | None, list[ErrorDetails]]:
         return Scene.model_validate(data), []
     except ValidationError as error:
         return None, error.errors(include_url=False)
+
+
+def _follows(data: dict[str, Any], fault: ErrorDetails) -> bool:
+    """Whether a list is told to be too short for its wrong items only, which are told themselves."""
+    return fault["type"] == "too_short" and len(_value(data, _spot(fault["loc"]).keys)) >= fault["ctx"]["min_length"]
 
 
 def _spot(location: tuple[int | str, ...]) -> _Spot:
@@ -165,7 +170,8 @@ def _problem(data: dict[str, Any], fault: ErrorDetails) -> Problem:
     if kind == "scene":
         return Problem(path, fault["msg"], shown(given))
     if kind == "too_short":
-        return Problem(path, "must have at least one item", shown(given))
+        least = fault["ctx"]["min_length"]
+        return Problem(path, f"must have at least {'one item' if least == 1 else f'{least} items'}", shown(given))
     allowed = statement(spot.annotation)
     if kind.startswith(("greater_than", "less_than")):
         allowed = allowed.removeprefix("a number ").removeprefix("of ")

@@ -195,10 +195,15 @@ def _punch(draft: Draft) -> Iterator[Problem]:
     radius, spacing = draft.get("bodies", "profile", "radius"), draft.get("bodies", "spacing")
     if radius is None or spacing is None:
         return
-    wanted = 2.0 * radius / spacing
+    wanted = 2.0 * (radius / spacing)
+    if wanted == math.inf:
+        hint = "make it smaller, or bodies.spacing wider"
+        yield Problem("bodies.profile.radius", "more spacings than a number holds", shown(radius), hint)
+        return
     count = max(3, round(wanted))
     if abs(wanted - count) > WHOLE * count:
-        must = f"must be at least 3 and a whole number of half spacings: the nearest is {0.5 * count * spacing:g} (LU)"
+        must = "must be at least 1.5 spacings and a whole number of half spacings"
+        must += f": the nearest is {0.5 * count * spacing:g} (LU)"
         yield Problem("bodies.profile.radius", must, shown(radius))
         return
     given = draft.get("bodies", "particles")
@@ -249,6 +254,9 @@ def _jkr_units(draft: Draft, has: Mapping[str, bool]) -> Iterator[Problem]:
     if draft.kind in ("load", "slide"):
         hint = 'use kind = "pull_off", whose results give length_unit and force_unit'
         yield Problem("material.surface_energy", f"not in a {draft.kind}, which finds no F_A and a₀", hint=hint)
+    elif draft.lower == "rigid_plane" or (draft.has("interaction") and not draft.has("interaction", "attraction")):
+        hint = 'use length_unit, or lower = "particles" with an interaction.attraction'
+        yield Problem("material.surface_energy", "useless: nothing attracts, so there is no F_A and no a₀", hint=hint)
     if draft.get("bodies", "profile", "kind") not in (None, "parabola", "circle"):
         hint = "JKR is for a sphere: use a parabola or a circle, or length_unit"
         yield Problem("material.surface_energy", "not with this profile", hint=hint)

@@ -6,6 +6,8 @@ import math
 import re
 from pathlib import Path
 
+from workflow.scene.profiles import FEWEST
+
 
 class ProfileFileError(ValueError):
     """A file that is no profile; the message says in which line and what is wrong."""
@@ -17,7 +19,8 @@ def read_profile(path: Path, scale: float) -> tuple[list[float], list[float]]:
     Lines that begin with # and empty ones are skipped; the first other line may be names. Further columns are ignored.
 
     Raises:
-        ProfileFileError: if there is no such file, a cell is empty or no number, or a line has one column.
+        ProfileFileError: if there is no such file, a cell is empty or no number, a line has one column, there are
+            fewer than FEWEST points, or a number times `scale` is none that a computer holds.
     """
     try:
         lines = path.read_bytes().decode("utf-8-sig").splitlines()
@@ -27,13 +30,20 @@ def read_profile(path: Path, scale: float) -> tuple[list[float], list[float]]:
         raise ProfileFileError(f"{path} is no text (UTF-8)") from None
     except OSError as error:
         raise ProfileFileError(f"{path} cannot be read: {error.strerror}") from None
+    except ValueError:
+        raise ProfileFileError("is no name that a file can have") from None
     rows = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
     if rows and not any(_number(cell) is not None for cell in _cells(rows[0][1])):
         rows = rows[1:]
     if not rows:
         raise ProfileFileError(f"{path} has no points")
     points = [_point(path, place, line) for place, line in rows]
-    return [scale * r for r, _ in points], [scale * z for _, z in points]
+    if len(points) < FEWEST:
+        raise ProfileFileError(f"{path} must have at least {FEWEST} points, not {len(points)}")
+    radii, heights = [scale * r for r, _ in points], [scale * z for _, z in points]
+    if not all(map(math.isfinite, radii + heights)):
+        raise ProfileFileError(f"{path} has numbers that are too large for the scale {scale:g}")
+    return radii, heights
 
 
 def _point(path: Path, place: int, line: str) -> tuple[float, float]:

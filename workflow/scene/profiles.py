@@ -35,6 +35,7 @@ LAST_SHARE = 1.0 - 1e-12
 CELLS = 1_000_000
 """Places times points of a measured profile that are transformed at once, to bound the memory."""
 
+
 class Shape(Table):
     """What all profiles can do; a kind overrides what differs."""
 
@@ -159,8 +160,10 @@ class Power(Shape):
         return factor * self.height(x)
 
 
-Radii = Annotated[tuple[Annotated[float, Ge(0.0), Unit("LU")], ...], Field(strict=False), MinLen(4)]
-Heights = Annotated[tuple[Height, ...], Field(strict=False), MinLen(4)]
+FEWEST = 4
+"""Points of a measured profile."""
+Radii = Annotated[tuple[Annotated[float, Ge(0.0), Unit("LU")], ...], Field(strict=False), MinLen(FEWEST)]
+Heights = Annotated[tuple[Height, ...], Field(strict=False), MinLen(FEWEST)]
 
 
 class Measured(Shape):
@@ -173,7 +176,7 @@ class Measured(Shape):
     file: str | None = Field(
         default=None, description="CSV file with the columns r and z; it is read into the keys r and z"
     )
-    scale: Ratio = Field(default=1.0, description="length of one unit of the file's numbers, in LU")
+    scale: Ratio | None = Field(default=None, description="length of one unit of the file's numbers, in LU; absent: 1")
     r: Radii | None = Field(default=None, description="radii of the points, from 0, rising")
     z: Heights | None = Field(default=None, description="heights at these radii; the first one counts as 0")
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
 import re
+import sys
 import tomllib
 from collections.abc import Iterable, Mapping
 from os import PathLike, fspath
 from pathlib import Path as FilePath
 from typing import Any
 
-from workflow.scene.check import check_tables
+from workflow.scene.check import check_tables, mend_words
 from workflow.scene.fit import check_fit
 from workflow.scene.overrides import apply_overrides, remove_effects
 from workflow.scene.problems import Problem, SceneError, shown
@@ -65,10 +65,11 @@ def scene_from_dict(
     if not isinstance(plain, dict):
         raise SceneError([Problem("scene", "must be a table of tables")])
     problems = apply_overrides(plain, _listed(overrides)) + remove_effects(plain, _listed(without))
+    problems += mend_words(plain)
     problems += _with_points(plain, FilePath(folder))
     checked = check_tables(plain)
     problems += checked.problems
-    problems += check_fit(checked.data, checked.unsound)
+    problems += check_fit(plain, checked.unsound)
     if problems or checked.scene is None:
         raise SceneError(sorted(problems, key=_rank))
     return checked.scene
@@ -78,14 +79,21 @@ def _with_points(data: dict[str, Any], folder: FilePath) -> list[Problem]:
     """Put the points of a profile's file, if it names one, in its place in `data`."""
     bodies = data.get("bodies")
     profile = bodies.get("profile") if isinstance(bodies, dict) else None
-    if not isinstance(profile, dict) or profile.get("kind") != "table" or not isinstance(profile.get("file"), str):
+    if not isinstance(profile, dict) or profile.get("kind") != "table":
         return []
-    if "r" in profile or "z" in profile:
-        both = "not together with the lists r and z"
-        return [Problem("bodies.profile.file", both, shown(profile.pop("file")), "give the one or the other")]
+    lists = "r" in profile or "z" in profile
+    if "file" not in profile and lists and "scale" in profile:
+        beside = "not together with the lists r and z, which are in LU"
+        return [Problem("bodies.profile.scale", beside, shown(profile.pop("scale")), "it belongs to a file: remove it")]
+    if not isinstance(profile.get("file"), str):
+        return []
     file, scale = profile.pop("file"), profile.pop("scale", 1.0)
     stand_in = {"r": [0.0, 1.0, 2.0, 3.0], "z": [0.0, 1.0, 4.0, 9.0]}  # so that the rest of the scene is still checked
-    if isinstance(scale, bool) or not isinstance(scale, int | float) or not 0.0 < scale < math.inf:
+    if lists:
+        profile |= stand_in
+        both = "not together with the lists r and z"
+        return [Problem("bodies.profile.file", both, shown(file), "give the one or the other")]
+    if isinstance(scale, bool) or not isinstance(scale, int | float) or not 0.0 < scale <= sys.float_info.max:
         profile |= stand_in
         return [Problem("bodies.profile.scale", "must be a number greater than 0", shown(scale))]
     try:

@@ -94,12 +94,14 @@ def _either(words: tuple[str, ...]) -> str:
 
 
 def _range(marks: tuple[Any, ...]) -> str:
-    above = [f" greater than {mark.gt:g}" for mark in marks if isinstance(mark, Gt)]
+    above = [f"{mark.gt:g}" for mark in marks if isinstance(mark, Gt)]
     least = [f"{mark.ge:.10g}" for mark in marks if isinstance(mark, Ge)]
     most = [f"{mark.le:.10g}" for mark in marks if isinstance(mark, Le)]
     if least and most:
         return f" from {least[0]} to {most[0]}"
-    return "".join(above + [f" of at least {bound}" for bound in least] + [f" of at most {bound}" for bound in most])
+    if above:
+        return f" greater than {above[0]}" + "".join(f" and at most {bound}" for bound in most)
+    return "".join([f" of at least {bound}" for bound in least] + [f" of at most {bound}" for bound in most])
 
 
 def _unit(marks: tuple[Any, ...]) -> str:

@@ -1,0 +1,100 @@
+"""`contact1d identify` and `contact1d reproduce` as a person uses them."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROUGH = 2e-2
+"""Of the loose runs here, and of the two printed digits of the paper's units."""
+PULL_OFF = Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "pull_off.toml"
+
+
+def contact1d(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "workflow.cli", *map(str, arguments)]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=300, check=False)
+
+
+def test_a_sphere_gets_a_scene_whose_run_is_jkrs(tmp_path: Path) -> None:
+    done = contact1d(
+        "identify", "--contact-modulus", "200e9", "--surface-energy", "1", "--radius", "6.1e-6", "--tolerance", "0.01",
+        "--out", "sphere", cwd=tmp_path,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert "wanted 57.491 µN" in done.stdout
+    results = json.loads((tmp_path / "sphere" / "results.json").read_text(encoding="utf-8"))
+    assert results["adhesion_force"]["si"]["value"] == pytest.approx(57.491e-6, rel=ROUGH)
+    assert results["zero_load_radius"]["si"]["value"] == pytest.approx(173.9e-9, rel=ROUGH)
+    again = contact1d("run", "sphere/scene.toml", "--out", "again", "--no-figures", "-q", cwd=tmp_path)
+    assert again.returncode == 0, again.stderr
+    assert "µN" in again.stdout
+
+
+def test_a_finished_run_gets_the_units_of_table_1(tmp_path: Path) -> None:
+    done = contact1d("run", PULL_OFF, "--out", "run", "--no-figures", "-q", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    found = contact1d("identify", "--contact-modulus", "200e9", "--surface-energy", "1", "--run", "run", cwd=tmp_path)
+    assert found.returncode == 0, found.stderr
+    units = dict(line.split(maxsplit=2)[1:] for line in found.stdout.splitlines() if line.startswith("  1 "))
+    assert float(units["LU"].split()[0]) == pytest.approx(6.1, rel=ROUGH)  # nm
+    assert float(units["FU"].split()[0]) == pytest.approx(39.0, rel=0.03)  # µN; this scene's F_A is 1 % above the paper's
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--surface-energy", "1"], "give either --run"),
+        (["--surface-energy", "1", "--radius", "1e-6", "--run", "x"], "give either --run"),
+        (["--radius", "1e-6"], "give --surface-energy, or --adhesion-force together"),
+        (["--radius", "1e-6", "--adhesion-force", "1e-6"], "go together"),
+        (["--radius", "-1", "--surface-energy", "1"], "--radius must be greater than 0, not -1"),
+        (["--radius", "nan", "--surface-energy", "1"], "--radius must be greater than 0, not nan"),
+        (["--run", "nowhere", "--surface-energy", "1"], "give the folder of a finished run"),
+        (["--run", "nowhere", "--surface-energy", "1", "--length-unit", "1e-9"], "the rest is in the run"),
+        (["--radius", "1e-6", "--surface-energy", "1", "--length-unit", "1e-6"], "at most 6.5"),
+        (
+            ["--radius", "6.1e-6", "--adhesion-force", "1e-4", "--zero-load-radius", "170e-9"],
+            "Nearest: the same force with a radius of at least",
+        ),
+    ],
+)
+def test_what_cannot_be_identified_is_told_with_exit_code_2(options: list[str], words: str, tmp_path: Path) -> None:
+    done = contact1d("identify", "--contact-modulus", "200e9", *options, cwd=tmp_path)
+    assert done.returncode == 2, done.stdout
+    assert words in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_run_without_adhesion_is_no_material(tmp_path: Path) -> None:
+    scene = PULL_OFF.with_name("hertz_plane.toml")
+    assert contact1d("run", scene, "--out", "run", "--no-figures", "-q", cwd=tmp_path).returncode == 0
+    done = contact1d("identify", "--contact-modulus", "1e9", "--surface-energy", "1", "--run", "run", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "no adhesion_force and no zero_load_radius" in done.stderr
+
+
+def test_one_study_leaves_record_page_and_figure_and_resumes(tmp_path: Path) -> None:
+    done = contact1d("reproduce", "--only", "fig4", "--out", "here", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "6 of   6 pass" in done.stdout
+    record = json.loads((tmp_path / "here" / "reproduce.json").read_text(encoding="utf-8"))
+    assert {row["study"] for row in record["rows"]} == {"fig4"}
+    assert {row["verdict"] for row in record["rows"]} == {"PASS"}
+    for name in ("reproduce.html", "VALIDATION.md", "fig4.png"):
+        assert (tmp_path / "here" / name).stat().st_size > 1000
+    kept = (tmp_path / "here" / "runs" / "pull_off_R1000" / "results.json").stat().st_mtime_ns
+    assert contact1d("reproduce", "--only", "fig4", "--out", "here", cwd=tmp_path).returncode == 0
+    assert (tmp_path / "here" / "runs" / "pull_off_R1000" / "results.json").stat().st_mtime_ns == kept
+
+
+def test_an_unknown_study_is_told_with_the_known_ones(tmp_path: Path) -> None:
+    done = contact1d("reproduce", "--only", "fig_4", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "did you mean fig4?" in done.stderr
+    assert "jkr_or_barquins" in done.stderr
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,182 @@
+"""Figures of the studies, drawn as the paper's where it has one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.plots import THEORY, new_figure, save_figure
+from analysis.reference.jkr import jkr_reduced_force
+from analysis.reference.line_adhesion import barquins_reduced_force, brittle_reduced_force
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999933")
+"""Okabe and Ito's colours, and one more."""
+MARKERS = "osD^vP*Xh"
+WIDE = (9.2, 4.0)
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Save whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    save_figure(figure, path)
+
+
+@dataclass(frozen=True)
+class ReductionPanel:
+    """What the figure of Section 2 shows of one reduction: F(d) with Hertz's in SI, error over spacing/half-width."""
+
+    name: str
+    displacement: Array
+    force: Array
+    hertz: Array
+    spacing: Array
+    error: Array
+
+
+def reductions_figure(panels: Sequence[ReductionPanel]) -> Figure:
+    """Force over displacement, and its error over the spacing."""
+    figure = new_figure(WIDE)
+    left, right = figure.subplots(1, 2)
+    for panel, colour, marker in zip(panels, COLOURS, MARKERS, strict=False):
+        left.loglog(1e9 * panel.displacement, 1e6 * panel.hertz, "-", color=colour, linewidth=1.2)
+        left.loglog(1e9 * panel.displacement, 1e6 * panel.force, marker, color=colour, label=panel.name)
+        right.loglog(panel.spacing, panel.error, marker + "-", color=colour, label=panel.name, linewidth=0.8)
+    ends = np.array([panels[0].spacing.min(), panels[0].spacing.max()])
+    right.loglog(ends, 0.5 * ends**2, "--", color=THEORY, label="square of the spacing")
+    left.set_xlabel("displacement (nm)")
+    left.set_ylabel("force (µN); lines: Hertz")
+    right.set_xticks(panels[0].spacing, [f"1/{1.0 / spacing:.0f}" for spacing in panels[0].spacing])
+    right.minorticks_off()
+    right.set_xlabel("spacing over half-width")
+    right.set_ylabel("error of the force")
+    for axis in (left, right):
+        axis.legend(frameon=False)
+    return figure
+
+
+@dataclass(frozen=True)
+class Series:
+    """Points with a name; `spread` their uncertainty or None."""
+
+    name: str
+    x: Array
+    y: Array
+    spread: Array | None = None
+
+
+def history_figure(force: Sequence[Series], radius: Sequence[Series], limit: float) -> Figure:
+    """F_A and a_cr over the preload, each over its mean (Fig. 6); `limit`: preload at which chains slip past."""
+    figure = new_figure(WIDE)
+    axes = figure.subplots(1, 2)
+    for axis, series, name in zip(axes, (force, radius), (r"$F_A/\bar F_A$", r"$a_{cr}/\bar a_{cr}$"), strict=True):
+        for one, colour, marker in zip(series, COLOURS, MARKERS, strict=False):
+            axis.plot(one.x, one.y, marker, color=colour, label=one.name, markersize=6, fillstyle="none")
+        axis.axvline(limit, color=THEORY, linewidth=1.0, linestyle=":")
+        axis.set_xlabel("preload $F_D$ (FU)")
+        axis.set_ylabel(name)
+        axis.set_ylim(0.9, 1.1)
+    axes[0].legend(frameon=False, loc="lower left", fontsize=9)
+    axes[1].text(limit, 1.09, " chains slip past\n each other ", ha="right", va="top", fontsize=9, color=THEORY)
+    return figure
+
+
+def scaling_figure(force: Sequence[Series], radius: Sequence[Series]) -> Figure:
+    """F_A and a₀ over R, log-log (Fig. 7), with lines of the exponents of JKR, Barquins and of the model."""
+    figure = new_figure(WIDE)
+    axes = figure.subplots(1, 2)
+    slopes = ({"JKR, 1": 1.0, "Barquins, 1/3": 1.0 / 3.0}, {"JKR and Barquins, 2/3": 2.0 / 3.0})
+    for axis, series, lines, name in zip(
+        axes, (force, radius), slopes, ("adhesion force $F_A$ (FU)", "zero-load radius $a_0$ (LU)"), strict=True
+    ):
+        for one, colour, marker in zip(series, COLOURS, MARKERS, strict=False):
+            axis.loglog(one.x, one.y, marker, color=colour, label=one.name, fillstyle="none")
+            axis.loglog(one.x, one.y[0] * np.sqrt(one.x / one.x[0]), "-", color=colour, linewidth=0.8)
+        first = series[0]
+        for (label, slope), style in zip(lines.items(), ("--", ":"), strict=False):
+            axis.loglog(first.x, first.y[0] * (first.x / first.x[0]) ** slope, style, color=THEORY, label=label)
+        axis.set_xlabel("radius of curvature $R$ (LU)")
+        axis.set_ylabel(name)
+        axis.legend(frameon=False, fontsize=9)
+    return figure
+
+
+def reduced_figure(series: Sequence[Series], brittle: bool = False) -> Figure:
+    """F/F_A over a/a₀ of many curves beside JKR and Barquins (Fig. 8)."""
+    figure = new_figure((6.4, 4.6))
+    axis = figure.subplots()
+    a = np.linspace(0.0, 1.25, 400)
+    axis.plot(a, jkr_reduced_force(a), "-", color=THEORY, linewidth=1.8, label="JKR")
+    axis.plot(a, barquins_reduced_force(a), "--", color=THEORY, linewidth=1.2, label="Barquins (2D)")
+    if brittle:
+        axis.plot(a, brittle_reduced_force(a), ":", color=THEORY, linewidth=1.2, label="range → 0")
+    _points(axis, series)
+    axis.axhline(0.0, color="black", linewidth=0.8)
+    axis.set_xlim(0.0, 1.25)
+    axis.set_ylim(-1.15, 1.6)
+    axis.set_xlabel(r"contact radius $\tilde a = a/a_0$")
+    axis.set_ylabel(r"force $\tilde F = F/F_A$")
+    axis.legend(frameon=False, fontsize=9, loc="upper left")
+    return figure
+
+
+def closed_form_figure(series: Sequence[Series], laws: Sequence[Series]) -> Figure:
+    """F/F_A over a/a₀ of runs (points) and of the model's closed form (lines)."""
+    figure = new_figure((6.4, 4.6))
+    axis = figure.subplots()
+    for law, colour in zip(laws, COLOURS, strict=False):
+        axis.plot(law.x, law.y, "-", color=colour, linewidth=1.0)
+    _points(axis, series)
+    axis.axhline(0.0, color="black", linewidth=0.8)
+    axis.set_xlabel("contact radius $a$ (LU)")
+    axis.set_ylabel("force $F$ (FU); lines: closed form")
+    axis.legend(frameon=False, fontsize=9, loc="upper left")
+    return figure
+
+
+def pressure_compared_figure(x: Array, ours: Array, places: Array, solver: Array, radius: float) -> Figure:
+    """Pressure of the zero-load state, the solver's as a line, the contact radius marked (Fig. 4)."""
+    figure = new_figure((6.4, 4.0))
+    axis = figure.subplots()
+    view = 1.8 * radius if math.isfinite(radius) else float(np.abs(x).max())
+    axis.bar(x, ours, width=0.8 * float(np.median(np.diff(x))), color=np.where(ours >= 0.0, COLOURS[0], COLOURS[1]))
+    axis.plot(places, solver, "-", color="black", linewidth=1.0, label="independent solver")
+    for place in (-radius, radius):
+        axis.axvline(place, color="black", linestyle="--", linewidth=1.0)
+    axis.annotate("$a_0$", (radius, 0.0), xytext=(radius + 1.0, 0.6 * float(ours.max())))
+    axis.set_xlim(-view, view)
+    axis.axhline(0.0, color="black", linewidth=0.8)
+    axis.set_xlabel("x (LU)")
+    axis.set_ylabel("pressure (FU/LU)")
+    axis.legend(frameon=False)
+    return figure
+
+
+def pressure_radius_figure(radius: Array, pressure: Array, jkr: Array, marked: tuple[float, float]) -> Figure:
+    """Mean pressure in MPa over a, with JKR's and the paper's place marked."""
+    figure = new_figure((6.4, 4.0))
+    axis = figure.subplots()
+    axis.plot(radius, jkr, "-", color=THEORY, label="JKR, Eq. (8), with the same $F_A$ and $a_0$")
+    axis.plot(radius, pressure, "o", color=COLOURS[0], markersize=4, fillstyle="none", label="this program")
+    axis.plot(*marked, "*", color=COLOURS[1], markersize=13, label="the paper, about 800 MPa")
+    axis.axhline(0.0, color="black", linewidth=0.8)
+    axis.set_xlabel("contact radius $a$ (LU)")
+    axis.set_ylabel(r"mean pressure $F/\pi a^2$ (MPa)")
+    axis.legend(frameon=False, loc="lower right")
+    return figure
+
+
+def _points(axis: Axes, series: Sequence[Series]) -> None:
+    for i, one in enumerate(series):
+        colour, marker = COLOURS[i % len(COLOURS)], MARKERS[i % len(MARKERS)]
+        axis.plot(one.x, one.y, marker, color=colour, markersize=4, fillstyle="none", label=one.name, linestyle="none")

@@ -1,0 +1,102 @@
+"""All studies in the paper's order. Their runs come first, all together, then one judgement after the other."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from workflow.progress import Progress, Silent
+from workflow.report import versions, write_whole
+from workflow.reproduce import eq3, fig4, fig6, fig7, fig8, table1
+from workflow.reproduce.markdown import validation_markdown
+from workflow.reproduce.page import html_page
+from workflow.reproduce.paper import calibrated
+from workflow.reproduce.record import RECORD, Record, StudyRecord
+from workflow.reproduce.runs import Finished, finish
+from workflow.reproduce.study import Scenes, Study
+from workflow.scene import Scene
+
+STUDIES: tuple[Study, ...] = (
+    eq3.STUDY_EQ3,
+    fig4.STUDY,
+    fig6.STUDY,
+    fig7.FIG7,
+    fig7.EXPONENTS,
+    fig8.FIG8A,
+    fig8.FIG8B,
+    fig8.JKR_OR_BARQUINS,
+    table1.TABLE1,
+    table1.MEAN_PRESSURE_STUDY,
+)
+NAMES = tuple(study.name for study in STUDIES)
+PAGE, VALIDATION = "reproduce.html", "VALIDATION.md"
+
+
+def cores() -> int:
+    """How many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def reproduce(
+    folder: Path,
+    only: Sequence[str] = (),
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> Record:
+    """Do studies and write reproduce.json, reproduce.html, VALIDATION.md and the figures into `folder`.
+
+    Runs that `folder` has already, of the same scenes and versions, are not made again.
+
+    Args:
+        folder: made if it does not exist; runs go to `folder`/runs.
+        only: names of studies; empty: all.
+        workers: runs at a time; None: as many as there are processors.
+        progress: is told what begins, and of each run that ends.
+
+    Raises:
+        KeyError: a name that no study has.
+        IdentifyError, RunError: the paper's scene could not be identified.
+    """
+    started = time.perf_counter()
+    progress = progress or Silent()
+    chosen = [study for study in STUDIES if study.name in (only or NAMES)]
+    if unknown := set(only) - set(NAMES):
+        raise KeyError(", ".join(sorted(unknown)))
+    folder.mkdir(parents=True, exist_ok=True)
+    progress.phase("identifying the interaction")
+    paper = calibrated(folder / "runs" / "identification")
+    needed: Scenes = {}
+    for study in _longest_first(chosen):
+        needed |= study.scenes(paper)
+    progress.phase("runs", len(needed))
+    done = finish(needed, folder / "runs", workers or cores(), progress)
+    progress.phase("judging")
+    records = tuple(_judged(study, paper, done, folder) for study in chosen)
+    record = Record(records, versions(), time.perf_counter() - started)
+    write_whole(folder / RECORD, record.to_json())
+    write_whole(folder / PAGE, html_page(record, folder))
+    write_whole(folder / VALIDATION, validation_markdown(record))
+    return record
+
+
+def _longest_first(studies: Sequence[Study]) -> list[Study]:
+    """Fig. 8a and Fig. 6 have the longest runs: begun first, they don't leave a processor idle at the end."""
+    order = {"fig8a": 0, "jkr_or_barquins": 1, "fig6": 2, "fig8b": 3}
+    return sorted(studies, key=lambda study: order.get(study.name, len(order)))
+
+
+def _judged(study: Study, paper: Scene, done: dict[str, Finished], folder: Path) -> StudyRecord:
+    names = list(study.scenes(paper))
+    found = study.judge(paper, done, folder)
+    return StudyRecord(
+        study.name,
+        study.title,
+        study.statement,
+        found.finding,
+        tuple(found.checks),
+        found.figures,
+        len(names),
+        sum(done[name].lammps_seconds for name in names),
+    )
