@@ -24,6 +24,8 @@ FORCE = 1e-6
 """Relative, on the plane: the minimiser stops at 1e-6 of the deepest particle's force."""
 ADHESION = 1e-4
 """Relative: what the tolerance 1e-3 leaves of a maximum; measured 2e-5 against either reference."""
+ESTIMATE = 1e-3
+"""Relative, with a tabulated profile: straight lines between 1000 places, and cubics between the table's points."""
 LAST_FIGURE = 1e-3
 """Relative: the four figures of a displacement in a message."""
 
@@ -118,8 +120,10 @@ def test_chain_too_short_for_a_circle_is_not_blamed_on_the_profile(tmp_path: Pat
 @pytest.mark.parametrize("reach", [0.3, 0.6, 1.2])
 def test_profile_narrower_than_three_particles_is_refused(reach: float, tmp_path: Path) -> None:
     narrow = {"kind": "table", "r": [reach * i / 3 for i in range(4)], "z": [0, 1, 4, 9]}
-    with pytest.raises(SettingsError):
+    with pytest.raises(SettingsError, match=f"ends at {reach:g} LU, .* a bodies.spacing below {reach / 1.5:g} LU"):
         done(tmp_path, tables(narrow, path(0.1)))
+    assert settings_for(scene_from_dict(tables(narrow, path(0.1), spacing=0.999 * reach / 1.5))).particles == 4
+    assert settings_for(scene_from_dict(tables(narrow, path(0.1), spacing=0.999 * reach, particles=3))).particles == 3
 
 
 def test_circle_narrower_than_a_spacing_is_refused_for_its_size() -> None:
@@ -254,6 +258,20 @@ def test_table_of_5000_points_pulls_off(tmp_path: Path) -> None:
     ]
     forces = [finished.results["adhesion_force"]["value"] for finished in found]
     assert forces[0] == pytest.approx(forces[1], rel=ADHESION)
+
+
+@pytest.mark.parametrize("reach", [20.0, 100.0, 1e4])
+def test_estimate_under_a_long_table_is_that_of_its_parabola(reach: float) -> None:
+    """The estimate asks a tabulated profile, whatever is far outside the contact."""
+    r = np.linspace(0.0, reach, round(4.0 * reach) + 1)
+    measured = {"kind": "table", "r": r.tolist(), "z": (r**2 / 100.0).tolist()}
+    found = [
+        settings_for(scene_from_dict(tables(profile, {"kind": "pull_off", "preload": 0.3}, LAW, reduction="mdr")))
+        for profile in (measured, {"kind": "parabola", "radius": 50.0})
+    ]
+    assert found[0].particles == found[1].particles
+    assert found[0].largest_displacement == pytest.approx(found[1].largest_displacement, rel=ESTIMATE)
+    assert found[0].estimate.pull_off_force() == pytest.approx(found[1].estimate.pull_off_force(), rel=ESTIMATE)
 
 
 @pytest.mark.parametrize("lower", ["rigid_plane", "particles"])

@@ -271,6 +271,14 @@ BAD: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
         tables(JKR, profile={"kind": "cone", "slope": 0.1}),
         {"material.surface_energy": "JKR is for a sphere"},
     ),
+    "surface energy on a plane": (
+        tables(BOTH | {"surface_energy": 1.0}, PATH, lower="rigid_plane"),
+        {"material.surface_energy": "nothing attracts, so there is no F_A and no a₀; use length_unit"},
+    ),
+    "surface energy without attraction": (
+        tables(JKR, PATH) | {"interaction": {"repulsion": {"amplitude": 1.0, "range": 0.1}}},
+        {"material.surface_energy": "nothing attracts"},
+    ),
     "surface energy of nothing else": (tables({"surface_energy": 1.0}), {"material.upper": "missing"}),
     "an empty table": (tables({}), {"material.upper": "missing", "material.length_unit": "missing"}),
     "a punch between two counts": (
@@ -458,6 +466,9 @@ def test_contact_of_one_pair_has_no_units_by_jkr(tmp_path: Path) -> None:
     sharp = tables(JKR, {"kind": "pull_off", "preload": 0.01}, profile={"kind": "parabola", "radius": 0.05})
     results = run(scene_from_dict(sharp), tmp_path / "run", figures=False).results
     assert "units" not in results
+    (doubt,) = results["warnings"]
+    assert doubt["name"] == "no_units"
+    assert doubt["message"].startswith("the run found no zero_load_radius above 0")
 
 
 def test_path_that_finds_no_units_runs_and_has_none(tmp_path: Path) -> None:
@@ -465,4 +476,5 @@ def test_path_that_finds_no_units_runs_and_has_none(tmp_path: Path) -> None:
     results = document(done)
     assert results["status"] == "done"
     assert "units" not in results
+    assert results["warnings"][-1]["name"] == "no_units"
     assert not any("si" in entry for entry in results.values() if isinstance(entry, dict))

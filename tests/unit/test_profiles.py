@@ -365,11 +365,14 @@ def test_radii_are_not_negative_and_heights_are_finite() -> None:
 
 
 def test_fewer_than_four_points_are_too_few() -> None:
-    assert "at least one item" not in message({"kind": "table", "r": [0, 1], "z": [0, 1]})
+    printed = message({"kind": "table", "r": [0, 1], "z": [0, 1]})
+    assert "at least one item" not in printed
+    assert printed.count("must have at least 4 items") == 2
 
 
 def test_a_point_that_is_no_number_is_one_problem() -> None:
-    assert message({"kind": "table", "r": [0, 1, 2, 3], "z": [0, math.nan, 2, 3]}).count("\n") == 0
+    printed = message({"kind": "table", "r": [0, 1, 2, 3], "z": [0, math.nan, 2, 3]})
+    assert printed == "bodies.profile.z[1] = nan: must be a finite number (LU)"
 
 
 def test_scale_belongs_to_a_file() -> None:

@@ -230,6 +230,16 @@ def test_the_uncertainty_covers_a_noisy_layer(noise: float) -> None:
     assert covered >= COVERED * CASES
 
 
+def test_what_a_minimiser_leaves_widens_the_uncertainty() -> None:
+    """Largest pressure 20, slope 1 at the edge: 1e-6 of the one is 2e-5 LU of the other."""
+    x = np.arange(-40.0, 41.0) + 0.2
+    cone = profile(x, np.maximum(0.0, 20.0 - np.abs(x)))
+    exact, found = compressive_radius(cone), compressive_radius(cone, residual=1e-6)
+    assert found.value == exact.value == pytest.approx(20.0, abs=ROUND_OFF)
+    assert exact.uncertainty < ROUND_OFF
+    assert found.uncertainty == pytest.approx(2e-5, rel=0.02)
+
+
 @pytest.mark.parametrize("loaded", [1, 2])
 def test_few_loaded_particles_leave_half_a_spacing_of_doubt(loaded: int) -> None:
     x = np.arange(-5.0, 6.0)

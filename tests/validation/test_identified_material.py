@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 from workflow import run, scene_from_dict
-from workflow.identify import Identified, IdentifyError, identify, jkr_target, material_scene
+from workflow.identify import Identified, identify, jkr_target, material_scene
 from workflow.scene import scene_to_toml
 
 ROUND_OFF = 1e-12

@@ -83,7 +83,7 @@ def _spot(location: tuple[int | str, ...]) -> _Spot:
             continue
         table = None if branch is None else table_of(branch)
         if isinstance(step, int):
-            annotation = get_args(unwrapped(branch)[0])[0]
+            annotation = get_args(unwrapped(members(branch)[0])[0])[0]
         else:
             annotation = annotation_of(table, step) if table and step in keys_of(table) else None
         branch = annotation

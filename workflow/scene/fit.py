@@ -254,7 +254,9 @@ def _jkr_units(draft: Draft, has: Mapping[str, bool]) -> Iterator[Problem]:
     if draft.kind in ("load", "slide"):
         hint = 'use kind = "pull_off", whose results give length_unit and force_unit'
         yield Problem("material.surface_energy", f"not in a {draft.kind}, which finds no F_A and a₀", hint=hint)
-    elif draft.lower == "rigid_plane" or (draft.has("interaction") and not draft.has("interaction", "attraction")):
+    elif draft.kind == "path" and (
+        draft.lower == "rigid_plane" or (draft.has("interaction") and not draft.has("interaction", "attraction"))
+    ):
         hint = 'use length_unit, or lower = "particles" with an interaction.attraction'
         yield Problem("material.surface_energy", "useless: nothing attracts, so there is no F_A and no a₀", hint=hint)
     if draft.get("bodies", "profile", "kind") not in (None, "parabola", "circle"):
