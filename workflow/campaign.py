@@ -95,7 +95,8 @@ def _run(deck: Deck, folder: Path, started: float, figures: bool, progress: Prog
 
     def timing() -> dict[str, float]:
         total = time.perf_counter() - started
-        return {"total_s": total, "lammps_s": bench.lammps_seconds, "steps": bench.steps}
+        lammps = {"lammps_s": bench.lammps_seconds, "lammps_cpu_s": bench.lammps_cpu_seconds}
+        return {"total_s": total, **lammps, "steps": bench.steps}
 
     try:
         outcome = perform(bench)

@@ -76,6 +76,7 @@ class ContactEstimate:
         profile: the upper body's shape.
         spacing: [LU].
         stiffness: contact stiffness of one particle [FU/LU], both springs in series.
+        snaps: whether pairs snap: G(r) falls somewhere, so that loading and unloading differ.
     """
 
     gap: Array
@@ -84,6 +85,7 @@ class ContactEstimate:
     profile: Profile
     spacing: float
     stiffness: float
+    snaps: bool = False
 
     def contact_force(self, displacement: float) -> float:
         """F(d) [FU], compression positive."""
@@ -155,9 +157,11 @@ def particles_estimate(
     """The estimate for two chains whose particles are held by springs `stiffness` [FU/LU] each."""
     r = np.linspace(cutoff / points, cutoff, points)
     force = row_force(law, r, spacing, cutoff)
-    gap = np.maximum.accumulate(r - 2 * force / stiffness)
+    undeformed = r - 2 * force / stiffness
+    gap = np.maximum.accumulate(undeformed)
     gap += np.arange(points) * 1e-12 * cutoff
-    return ContactEstimate(gap, force, rest, profile, spacing, stiffness / 2)
+    snaps = bool((np.diff(undeformed) < 0.0).any())
+    return ContactEstimate(gap, force, rest, profile, spacing, stiffness / 2, snaps)
 
 
 def plane_estimate(profile: Profile, spacing: float, stiffness: float) -> ContactEstimate:

@@ -23,6 +23,8 @@ CLOSEST_SHARE = 0.2
 """That distance over the force-free one (with attraction) or over the repulsion's range (without)."""
 RESIDUAL_SHARE = 1e-3
 """Norm of the forces left on the particles over the force scale, per unit of tolerance."""
+SMOOTH_SHARE = 0.25
+"""Increment of a smooth search over the longest range, the width of the curve's largest tension."""
 MOVE_SHARE = 0.25
 """Longest move of a body between two states at rest, over that distance: particles stay in order, down to r near 0."""
 FAR_SHARE = 10.0
@@ -67,7 +69,8 @@ class Settings:
         far: length of the long bond that makes normal and tangential stiffness differ [LU]; 0 where they do not.
         force_scale: force of one particle [FU] against which residuals are judged.
         force_tolerance: norm of the residual forces at which a minimisation stops [FU].
-        displacement_step: first increment of a search [LU].
+        displacement_step: increment of a search where pairs snap, and on a rigid plane [LU].
+        smooth_step: increment of a search elsewhere, where the force is a smooth function of the displacement [LU].
         time_step: [TU].
         damping: coefficient of a particle [FU·TU/LU].
         plate_mass, plate_damping: [MU], [FU·TU/LU].
@@ -89,6 +92,7 @@ class Settings:
     force_scale: float
     force_tolerance: float
     displacement_step: float
+    smooth_step: float
     longest_move: float
     time_step: float
     damping: float
@@ -97,6 +101,17 @@ class Settings:
     settle_time: float
     largest_displacement: float
     estimate: ContactEstimate
+
+    @property
+    def is_smooth(self) -> bool:
+        """Whether the force is a smooth function of the displacement: particles, and none of them snaps."""
+        return self.law is not None and not self.estimate.snaps
+
+    def increment(self, smallest_distance: float = math.inf) -> float:
+        """Longest increment [LU] of a search from a state with this smallest distance [LU]; unloading has no such."""
+        if not self.is_smooth:
+            return self.displacement_step
+        return min(self.smooth_step, max(self.longest_move, MOVE_SHARE * smallest_distance))
 
 
 def interaction_law(scene: Scene) -> DoubleExponential | None:
@@ -166,6 +181,7 @@ def _chosen(scene: Scene) -> Settings:
         force_scale=force_scale,
         force_tolerance=RESIDUAL_SHARE * tolerance * force_scale,
         displacement_step=_displacement_step(law, estimate, largest, closest),
+        smooth_step=SMOOTH_SHARE * law.longest_range if law is not None else 0.0,
         longest_move=MOVE_SHARE * closest if law is not None else math.inf,
         largest_displacement=largest,
         estimate=estimate,

@@ -120,6 +120,8 @@ def test_lmp_repeats_the_run_bitwise(finished: Run, tmp_path: Path) -> None:
         assert (tmp_path / name).read_bytes() == (finished.folder / name).read_bytes(), name
 
 
+BEND = 0.25
+"""A maximum between rows exceeds the largest row by at most an eighth of the second difference there; twice that."""
 PASSING = ("path", "slide", "pull_off")
 """Experiments whose deck may have rows that are no results: between two places, while loading, after the loss."""
 
@@ -151,7 +153,10 @@ def test_numbers_can_be_read_off_the_curve(finished: Run) -> None:
     if "adhesion_force" in finished.results:
         adhesion, uncertainty = value(finished, "adhesion_force")
         held = rows[[phase in ("unloading", "pulling") for phase in phases], 1]
-        assert -held.min() == pytest.approx(adhesion, abs=uncertainty + SUM)
+        largest = -float(held.min())
+        # The quantity is the vertex between rows: at most one bend of the curve above the largest row.
+        bend = BEND * float(np.abs(np.diff(held, 2)).max(initial=0.0))
+        assert largest - uncertainty - SUM <= adhesion <= largest + bend + uncertainty + SUM
     if "preload" in finished.results:
         loaded = rows[[phase == "loading" for phase in phases], 1]
         assert loaded[-1] == pytest.approx(value(finished, "preload")[0], rel=SUM)

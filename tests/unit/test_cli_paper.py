@@ -41,7 +41,7 @@ def test_a_finished_run_gets_the_units_of_table_1(tmp_path: Path) -> None:
     assert found.returncode == 0, found.stderr
     units = dict(line.split(maxsplit=2)[1:] for line in found.stdout.splitlines() if line.startswith("  1 "))
     assert float(units["LU"].split()[0]) == pytest.approx(6.1, rel=ROUGH)  # nm
-    assert float(units["FU"].split()[0]) == pytest.approx(39.0, rel=0.03)  # µN; this scene's F_A is 1 % above the paper's
+    assert float(units["FU"].split()[0]) == pytest.approx(39.0, rel=0.03)  # µN; F_A is 1 % above
 
 
 @pytest.mark.parametrize(

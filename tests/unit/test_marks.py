@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from workflow.experiments.marks import crossing, largest_tension
+from workflow.experiments.marks import crossing, largest_tension, smooth_crossing
 
 PARABOLA = 1e-12  # round-off of a polynomial fit in doubles
+SIXTH = 0.5  # the constant of the interpolation error of this function, generously
 CUBIC = 1e-5  # the fit is a parabola: its error is the third derivative times the square of the step
 
 
@@ -21,7 +22,7 @@ def test_the_vertex_of_a_parabola_is_found_between_samples() -> None:
     assert peak.position == pytest.approx(0.123, abs=PARABOLA)
     assert peak.smooth == pytest.approx(2.0, abs=PARABOLA)
     assert peak.tension <= peak.smooth
-    assert 2.0 - peak.tension <= peak.uncertainty + PARABOLA
+    assert abs(2.0 - peak.smooth) <= peak.uncertainty + PARABOLA
 
 
 def test_uneven_steps_around_a_smooth_maximum_are_no_jump() -> None:
@@ -42,6 +43,30 @@ def test_a_jump_after_the_maximum_leaves_the_sampled_point_and_the_last_rise_as_
 def test_a_maximum_at_an_end_is_as_uncertain_as_it_is_large(force: list[float]) -> None:
     peak = largest_tension([1.0, 0.5, 0.0], force)
     assert peak.uncertainty == peak.tension == 2.0
+
+
+@pytest.mark.parametrize("step", [0.2, 0.1, 0.05])
+def test_the_vertex_of_a_smooth_maximum_is_of_sixth_order_and_its_uncertainty_covers_it(step: float) -> None:
+    displacement = falling(0.03 + step * np.arange(-6, 7))
+    peak = largest_tension(displacement, [-np.exp(-((d - 0.05) ** 2)) for d in displacement])
+    assert abs(peak.smooth - 1.0) <= peak.uncertainty
+    assert abs(peak.smooth - 1.0) <= SIXTH * step**5
+
+
+def test_a_smooth_crossing_is_of_fourth_order() -> None:
+    errors = []
+    for step in (0.2, 0.1):
+        displacement = falling(0.07 + step * np.arange(-6, 7))
+        place = smooth_crossing(displacement, [np.expm1(d) for d in displacement], 0.0)
+        errors.append(abs(place))
+    assert errors[0] / errors[1] > 2.0**3.5
+
+
+def test_a_smooth_crossing_at_a_jump_or_an_end_is_the_straight_lines() -> None:
+    jump = ([4.0, 3.0, 2.0, 1.0], [9.0, 8.9, -1.0, -1.1])
+    assert smooth_crossing(*jump, 0.0) == pytest.approx(crossing(*jump, 0.0)[1], abs=0.5)
+    end = ([2.0, 1.0, 0.0], [3.0, 1.0, -1.0])
+    assert smooth_crossing(*end, 0.0) == crossing(*end, 0.0)[1]
 
 
 def test_a_crossing_lies_where_the_straight_line_passes_the_level() -> None:

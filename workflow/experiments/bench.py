@@ -34,7 +34,7 @@ class Bench:
         folder: the run folder; system.data and the table are in it.
         progress: told of phases and steps.
         time_limit: for each contact [s].
-        lammps_seconds, steps: summed over all contacts so far.
+        lammps_seconds, lammps_cpu_seconds, steps: summed over all contacts so far.
         phase, timestep: where the latest contact is or ended.
     """
 
@@ -43,6 +43,7 @@ class Bench:
     progress: Progress
     time_limit: float
     lammps_seconds: float = field(default=0.0, init=False)
+    lammps_cpu_seconds: float = field(default=0.0, init=False)
     steps: int = field(default=0, init=False)
     phase: str = field(default="start", init=False)
     timestep: int = field(default=0, init=False)
@@ -57,6 +58,7 @@ class Bench:
                 yield Contact(self.deck, session)
             finally:
                 self.lammps_seconds += session.lammps_seconds
+                self.lammps_cpu_seconds += session.lammps_cpu_seconds
                 self.steps += session.steps
                 self.phase, self.timestep = session.phase, session.timestep
 

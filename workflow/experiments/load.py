@@ -26,10 +26,10 @@ def load_quasistatic(bench: Bench) -> Outcome:
     force = scene.experiment.force
     with bench.contact() as contact:
         contact.begin("loading", "displace")
-        states = approach(contact, max(force, 0.0), 0.0, settings.displacement_step)
+        states = approach(contact, max(force, 0.0), 0.0)
         if force < 0.0:
             contact.begin("unloading", "displace")
-            states += approach(contact, force, states[-1].displacement, settings.displacement_step, direction=-1)
+            states += approach(contact, force, states[-1].displacement, direction=-1)
         contact.write_state()
         contact.finish()
     final = states[-1]

@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -15,8 +18,8 @@ class Peak:
     Attributes:
         index: of the sampled point.
         tension: there [FU], positive.
-        uncertainty: how much the sampling may have missed [FU].
-        smooth: the tension at the vertex of the parabola through the point and its neighbours [FU].
+        uncertainty: of `smooth`: how much the sampling may have missed [FU].
+        smooth: the tension at the vertex of the polynomial through the point and its neighbours [FU].
         position: the vertex's displacement [LU]; the sampled point's where the curve jumps there.
     """
 
@@ -27,8 +30,8 @@ class Peak:
     position: float
 
 
-FIT_POINTS = 4
-"""Points on either side of the largest tension through which the parabola goes, where there are as many."""
+REAL = 1e-9
+"""Imaginary part up to which a root counts as real."""
 JUMP = 3.0
 """A fall after the maximum over the rise before it, from which on it is a jump and no curve."""
 
@@ -36,9 +39,9 @@ JUMP = 3.0
 def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Peak:
     """The largest −F of an unloading branch (displacements falling).
 
-    Between samples a smooth curve exceeds the sampled maximum by what a parabola through its neighbourhood says. Where
-    a particle snaps after the maximum, tension rises right up to the snap: it is then missed by one increment's rise at
-    most, and the sampled point is the place.
+    Between samples a smooth curve exceeds the sampled maximum by what the polynomial through five points says; that
+    through three tells how far to believe it. Where a particle snaps after the maximum, tension rises right up to the
+    snap: it is then missed by one increment's rise at most, and the sampled point is the place.
     """
     d, tension = np.asarray(displacement), -np.asarray(force)
     i = int(np.argmax(tension))
@@ -49,14 +52,28 @@ def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Pe
     even = rise / max(d[i - 1] - d[i], 1e-300), fall / max(d[i] - d[i + 1], 1e-300)
     if even[1] > JUMP * even[0] + JUMP * abs(_bend(d, tension, i)):
         return Peak(i, top, float(rise), top, float(d[i]))
-    reach = min(FIT_POINTS, i, len(tension) - 1 - i)
-    near = slice(i - reach, i + reach + 1)
-    scale = float(np.ptp(d[near]))
-    a, b, c = np.polyfit((d[near] - d[i]) / scale, tension[near] - top, 2)
-    if a >= 0:
-        return Peak(i, top, float(max(rise, fall)), top, float(d[i]))
-    place = float(np.clip(d[i] - scale * b / (2 * a), d[i + 1], d[i - 1]))
-    return Peak(i, top, float(abs(c - b**2 / (4 * a))), top + max(0.0, float(c - b**2 / (4 * a))), place)
+    position, smooth = _vertex(d[i - 1 : i + 2], tension[i - 1 : i + 2], top)
+    if not 2 <= i < len(d) - 2:
+        return Peak(i, top, abs(smooth - top), smooth, position)
+    coarse = smooth
+    position, smooth = _vertex(d[i - 2 : i + 3], tension[i - 2 : i + 3], top)
+    return Peak(i, top, abs(smooth - coarse), smooth, position)
+
+
+def _vertex(d: Array, tension: Array, top: float) -> tuple[float, float]:
+    """Place and value of the maximum of the polynomial through all points, between the middle one's neighbours."""
+    middle = len(d) // 2
+    scale = float(np.ptp(d))
+    x = (d - d[middle]) / scale
+    polynomial = np.polynomial.Polynomial.fit(x, tension - top, len(d) - 1, domain=(-1, 1), window=(-1, 1))
+    inside = _real_roots(polynomial.deriv(), float(x[middle + 1]), float(x[middle - 1]))
+    best = max([0.0, *inside], key=lambda place: float(polynomial(place)))
+    return float(d[middle]) + scale * best, top + max(0.0, float(polynomial(best)))
+
+
+def _real_roots(polynomial: np.polynomial.Polynomial, low: float, high: float) -> list[float]:
+    roots = np.asarray(polynomial.roots(), dtype=np.complex128)
+    return [float(root.real) for root in roots if abs(root.imag) < REAL and low <= root.real <= high]
 
 
 def _bend(d: np.ndarray, tension: np.ndarray, i: int) -> float:
@@ -82,3 +99,22 @@ def crossing(displacement: Sequence[float], force: Sequence[float], level: float
             part = over[i] / (over[i] - over[i + 1])
             return i, float(displacement[i] + part * (displacement[i + 1] - displacement[i]))
     raise ValueError(f"the force never passes {level:.4g} FU")
+
+
+def smooth_crossing(displacement: Sequence[float], force: Sequence[float], level: float) -> float:
+    """Displacement of the first crossing of `level` [FU] on the cubic through the two points on each side of it.
+
+    At an end of the curve, and where the cubic does not cross between the two points, as beside a jump, it is the
+    straight line's.
+
+    Raises:
+        ValueError: if the curve never crosses the level.
+    """
+    index, place = crossing(displacement, force, level)
+    if not 1 <= index < len(force) - 2:
+        return place
+    d = np.asarray(displacement[index - 1 : index + 3])
+    over = np.asarray(force[index - 1 : index + 3]) - level
+    x = (d - d[1]) / (d[2] - d[1])
+    inside = _real_roots(np.polynomial.Polynomial.fit(x, over, 3, domain=(-1, 1), window=(-1, 1)), 0.0, 1.0)
+    return float(d[1] + inside[0] * (d[2] - d[1])) if len(inside) == 1 else place

@@ -16,14 +16,16 @@ from analysis.radius import ContactRadius
 from workflow.deck import Phase
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import State
-from workflow.experiments.marks import Peak, crossing, largest_tension
+from workflow.experiments.marks import Peak, largest_tension, smooth_crossing
 from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, law_share, radius_of, require_trust
 from workflow.experiments.quasistatic import approach, separate
 from workflow.units import FORCE, LENGTH
 
 MOST_PASSES = 8
 WINDOW_ROWS = 8
-"""Rows on either side of the largest tension in a refined pass."""
+"""Rows on either side of the largest tension in a refined pass, where particles snap one by one."""
+SMOOTH_ROWS = 2
+"""The same where the force is smooth."""
 ZOOM = 0.25
 """Width of the window of one pass over that of the one before."""
 LATTICE = 1e-3
@@ -64,7 +66,7 @@ class Pass:
     @property
     def zero_load(self) -> float:
         """Displacement at which the force crosses zero while unloading [LU]."""
-        return crossing([s.displacement for s in self.unloading], [s.force for s in self.unloading], 0.0)[1]
+        return smooth_crossing([s.displacement for s in self.unloading], [s.force for s in self.unloading], 0.0)
 
 
 def pull_off_quasistatic(bench: Bench) -> Outcome:
@@ -78,10 +80,11 @@ def pull_off_quasistatic(bench: Bench) -> Outcome:
     assert experiment.kind == "pull_off"
     tolerance = SHARE * scene.accuracy.tolerance
     latest = _first(bench, experiment.preload)
-    window = settings.displacement_step
+    window = settings.increment()
     for _ in range(MOST_PASSES):
         before = latest
-        latest = _replay(bench, experiment.preload, _refined(before, experiment.preload, window))
+        rows = SMOOTH_ROWS if settings.is_smooth else WINDOW_ROWS
+        latest = _replay(bench, experiment.preload, _refined(before, experiment.preload, window, rows))
         window *= ZOOM
         if _agree(bench, before, latest, experiment.preload, tolerance):
             return _outcome(bench, before, latest)
@@ -92,24 +95,23 @@ def pull_off_quasistatic(bench: Bench) -> Outcome:
 
 
 def _first(bench: Bench, preload: float) -> Pass:
-    step = bench.deck.settings.displacement_step
     with bench.contact("looking for the path") as contact:
         contact.begin("loading", "displace")
-        loading = approach(contact, preload, 0.0, step)
+        loading = approach(contact, preload, 0.0)
         contact.begin("unloading", "displace")
-        unloading = separate(contact, loading[-1].displacement, step)
+        unloading = separate(contact, loading[-1].displacement)
         contact.finish()
         return Pass(preload, contact.phases, loading, unloading)
 
 
-def _refined(known: Pass, preload: float, window: float) -> tuple[Phase, ...]:
+def _refined(known: Pass, preload: float, window: float, rows: int) -> tuple[Phase, ...]:
     """The schedule of the next pass: loading, unloading to F = 0, pulling to the largest tension, separating."""
     climbed = sorted({s.displacement for s in known.loading if s.force < preload and s is not known.loading[-1]})
     deepest = _displacement_at(known.loading, preload)
     loading = [d for d in climbed if d < deepest - 1e-9] + [deepest]
     zero = known.zero_load
     peak = known.peak.position
-    fine = peak + window * np.linspace(1.0, -1.0, 2 * WINDOW_ROWS)
+    fine = peak + window * np.linspace(1.0, -1.0, 2 * rows)
     fine = fine[fine < zero - 1e-9]
     coarse = [s.displacement for s in known.unloading if not fine[-1] <= s.displacement <= fine[0]]
     falling = sorted({deepest, zero, peak, *coarse, *fine.tolist()}, reverse=True)
@@ -146,38 +148,39 @@ def _replay(bench: Bench, wanted: float, phases: tuple[Phase, ...]) -> Pass:
 
 def _agree(bench: Bench, before: Pass, latest: Pass, preload: float, tolerance: float) -> bool:
     """Whether two passes give the same results, and the latest has its marked states where they belong."""
-    tension, radius = latest.peak.tension, _radius(bench, latest.critical).value
+    tension, radius = latest.peak.smooth, _radius(bench, latest.critical).value
     return (
-        abs(tension - before.peak.tension) <= tolerance * tension
+        abs(tension - before.peak.smooth) <= tolerance * tension
         and latest.peak.uncertainty <= tolerance * tension
         and abs(latest.preload - preload) <= tolerance * preload
         and abs(latest.zero.force) <= tolerance * tension
         and tension + latest.critical.force <= tolerance * tension
-        and _critical_spread(bench, latest) <= max(tolerance * radius, LATTICE * bench.deck.scene.bodies.spacing)
+        and abs(_critical_shift(bench, latest)) <= max(tolerance * radius, LATTICE * bench.deck.scene.bodies.spacing)
     )
 
 
-def _critical_spread(bench: Bench, latest: Pass) -> float:
-    """How much a_cr changes from the critical state to where the curve of the same pass has its maximum [LU]."""
+def _critical_shift(bench: Bench, latest: Pass) -> float:
+    """By how much a changes from the critical state to where the curve of the same pass has its maximum [LU]."""
     rows = sorted(latest.unloading, key=lambda s: abs(s.displacement - latest.critical.displacement))
     near = next(s for s in rows if s.displacement != latest.critical.displacement)
-    distance = abs(latest.peak.position - latest.critical.displacement)
-    change = abs(_radius(bench, near).value - _radius(bench, latest.critical).value)
-    return change * distance / abs(near.displacement - latest.critical.displacement)
+    distance = latest.peak.position - latest.critical.displacement
+    change = _radius(bench, near).value - _radius(bench, latest.critical).value
+    return change * distance / (near.displacement - latest.critical.displacement)
 
 
 def _outcome(bench: Bench, before: Pass, latest: Pass) -> Outcome:
     scene, settings = bench.deck.scene, bench.deck.settings
     zero, critical, peak = latest.zero, latest.critical, latest.peak
     residual = critical.residual * settings.particles
-    missed = max(abs(peak.tension - before.peak.tension), peak.uncertainty)
+    missed = max(abs(peak.smooth - before.peak.smooth), peak.uncertainty)
     states = (*latest.loading, *latest.unloading)
     critical_radius, zero_radius = _radius(bench, critical), _radius(bench, zero)
+    shift = _critical_shift(bench, latest)
     slope = abs(zero_radius.value - critical_radius.value) / peak.tension
     quantities = {
-        "adhesion_force": Quantity(peak.tension, missed + residual + law_share(scene, settings) * peak.tension, FORCE),
+        "adhesion_force": Quantity(peak.smooth, missed + residual + law_share(scene, settings) * peak.smooth, FORCE),
         "critical_radius": Quantity(
-            critical_radius.value, critical_radius.uncertainty + _critical_spread(bench, latest), LENGTH
+            critical_radius.value + shift, critical_radius.uncertainty + abs(shift), LENGTH
         ),
         "zero_load_radius": Quantity(zero_radius.value, zero_radius.uncertainty + slope * abs(zero.force), LENGTH),
         "preload": Quantity(latest.preload, abs(latest.preload - latest.wanted), FORCE),
@@ -188,9 +191,6 @@ def _outcome(bench: Bench, before: Pass, latest: Pass) -> Outcome:
 
 
 def _radius(bench: Bench, state: State) -> ContactRadius:
+    """The radius; 0 where no particle is in tension, as where F = 0 and a single pair touches."""
     radius = radius_of(bench.deck.scene, state.profile)
-    if radius is None:
-        raise UntrustedError(
-            f"no contact radius at displacement {state.displacement:.4g} LU: no particle is in tension"
-        )
-    return radius
+    return radius or ContactRadius(0.0, 0.5 * bench.deck.scene.bodies.spacing, 0.0, 0.0, reaches_end=False)

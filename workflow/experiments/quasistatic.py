@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 from workflow.experiments.contact import Contact, State
 from workflow.experiments.outcome import UntrustedError, require_trust
 
 MOST_ROWS = 2_000
 """Rows of one branch of a search; a search that needs more has no end in sight."""
-APPROACH = 0.3
+APPROACH = 0.03
 """How near to a wanted force a search must come, over the tolerance."""
 SEPARATED = 0.02
 """Tension over the largest one at which bodies that move apart count as separated."""
@@ -20,11 +22,11 @@ SAME_PLACE = 1e-12
 """Displacements [LU] nearer than this are the same place: a force that still differs has jumped."""
 
 
-def approach(contact: Contact, force: float, start: float, step: float, direction: int = 1) -> list[State]:
+def approach(contact: Contact, force: float, start: float, direction: int = 1) -> list[State]:
     """Rows of growing displacement (direction 1; falling: −1) from `start` [LU] until the force is `force` [FU].
 
-    Increments are `step` [LU] at most and follow the secant of the last two rows near the end. The last state's force
-    is within APPROACH·tolerance of the wanted one.
+    Increments are those of the settings at most and follow the secant of the last two rows near the end. The last
+    state's force is within APPROACH·tolerance of the wanted one.
 
     Raises:
         UntrustedError: see `require_trust`; also where the wanted force cannot be held.
@@ -45,6 +47,7 @@ def approach(contact: Contact, force: float, start: float, step: float, directio
             raise UntrustedError(f"the force jumps past {force:.4g} FU at displacement {before.displacement:.6g} LU")
         if len(states) > MOST_ROWS or (direction < 0 and last.smallest_distance > contact.settings.cutoff):
             raise UntrustedError(f"{force:.4g} FU is never reached: the largest tension is smaller")
+        step = contact.settings.increment(last.smallest_distance if direction > 0 else math.inf)
         states.append(_trusted(contact, _next(before, beyond, states, force, direction * step)))
     return states
 
@@ -62,9 +65,10 @@ def _next(before: State, beyond: State | None, states: list[State], force: float
     return before.displacement + ahead * step
 
 
-def separate(contact: Contact, start: float, step: float) -> list[State]:
+def separate(contact: Contact, start: float) -> list[State]:
     """Rows of falling displacement from `start` [LU] until the tension has passed its largest value and is gone."""
     displacement, states, largest = start, [_trusted(contact, start)], 0.0
+    step = contact.settings.increment()
     for _ in range(MOST_ROWS):
         displacement -= step
         state = _trusted(contact, displacement)

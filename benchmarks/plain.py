@@ -1,0 +1,128 @@
+"""The plain way of the paper, kept to be compared with: every tension from the start, bisected.
+
+For each tension a fresh contact is pressed together by F_D until it is at rest, then pulled until it is at rest again
+or lost; the bracket of the tension is halved until it is as narrow as the accuracy that is asked for. Damping is one
+fixed value, the critical one of the contact under its preload, which is as good as a fixed one gets.
+
+    .venv/bin/python benchmarks/plain.py [SCENE] [--tolerance 1e-2 1e-3]
+
+prints processor time in LAMMPS, timesteps and F_A of the plain way beside those of `contact1d run` with `quasistatic`
+and with `dynamic`, on the same scene at the same tolerance, and the error of each against the independent solver.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import platform
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from analysis.reference.pull_off import pull_off
+from workflow import read_scene, run, scene_from_dict
+from workflow.deck import Deck
+from workflow.experiments.bench import Bench, write_system
+from workflow.experiments.dynamic import hold
+from workflow.progress import Silent
+from workflow.reproduce.oracles import chain_model
+from workflow.scene import PullOff, Scene
+from workflow.settings import settings_for
+
+SCENE = Path(__file__).parents[1] / "lammps_inputs" / "scenes" / "paper.toml"
+RESULTS = Path(__file__).parent / "results" / "plain.json"
+TIME_LIMIT = 3600.0
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What a pull-off took: F_A [FU], its error, processor time in LAMMPS [s], timesteps and minimiser iterations."""
+
+    way: str
+    tolerance: float
+    adhesion_force: float
+    error: float
+    cpu_s: float
+    steps: int
+
+
+def dynamic(scene: Scene, tolerance: float) -> Scene:
+    """The scene by the paper's method."""
+    data = scene.model_dump(by_alias=True, exclude_none=True)
+    data["experiment"]["method"] = "dynamic"
+    data |= {"damping": {"coefficient": "auto"}, "plate": {"mass": "auto"}, "accuracy": {"tolerance": tolerance}}
+    return scene_from_dict(data)
+
+
+def quasistatic(scene: Scene, tolerance: float) -> Scene:
+    """The scene by prescribed displacement."""
+    data = scene.model_dump(by_alias=True, exclude_none=True)
+    data["experiment"]["method"] = "quasistatic"
+    data["accuracy"] = {"tolerance": tolerance}
+    return scene_from_dict(data)
+
+
+def plain(scene: Scene, tolerance: float, folder: Path) -> tuple[float, float, int]:
+    """F_A [FU], processor time [s] and timesteps of the plain way."""
+    timed = dynamic(scene, tolerance)
+    assert isinstance(timed.experiment, PullOff)
+    preload = timed.experiment.preload
+    deck = Deck(timed, settings_for(timed))
+    folder.mkdir(parents=True, exist_ok=True)
+    write_system(deck, folder)
+    bench = Bench(deck, folder, Silent(), TIME_LIMIT)
+    guess = deck.settings.estimate.pull_off_force()
+    low, high = 0.0, 2.0 * guess
+    while high - low > tolerance * high:
+        tension = 0.5 * (low + high)
+        with bench.contact() as contact:
+            contact.begin("loading", "load")
+            hold(contact, preload, max(preload, guess))
+            contact.begin("pulling", "load")
+            held = hold(contact, -tension, max(preload, guess)).held
+            contact.finish()
+        low, high = (tension, high) if held else (low, tension)
+    return 0.5 * (low + high), bench.lammps_cpu_seconds, bench.steps
+
+
+def compared(scene: Scene, tolerance: float, folder: Path) -> list[Cost]:
+    """All three ways at one tolerance."""
+    assert isinstance(scene.experiment, PullOff)
+    exact = pull_off(chain_model(scene), scene.experiment.preload).adhesion_force
+    costs = []
+    for way, timed in (("quasistatic", quasistatic(scene, tolerance)), ("dynamic", dynamic(scene, tolerance))):
+        results = run(timed, folder / way, figures=False).results
+        force = results["adhesion_force"]["value"]
+        timing = results["timing"]
+        costs.append(Cost(way, tolerance, force, abs(force / exact - 1.0), timing["lammps_cpu_s"], timing["steps"]))
+    force, cpu, steps = plain(scene, tolerance, folder / "plain")
+    costs.append(Cost("plain", tolerance, force, abs(force / exact - 1.0), cpu, steps))
+    return costs
+
+
+def main() -> None:
+    """Compare and print; the table goes to benchmarks/results/plain.json as well."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scene", nargs="?", default=SCENE, type=Path)
+    parser.add_argument("--tolerance", nargs="+", type=float, default=[1e-2, 1e-3])
+    options = parser.parse_args()
+    scene, rows = read_scene(options.scene), []
+    head = ("way", "tolerance", "F_A (FU)", "error", "CPU (s)", "steps", "plain over it")
+    print("{:<12} {:>9} {:>10} {:>9} {:>9} {:>9} {:>14}".format(*head))
+    for tolerance in options.tolerance:
+        with tempfile.TemporaryDirectory() as folder:
+            costs = compared(scene, tolerance, Path(folder))
+        for cost in costs:
+            ratio = costs[-1].cpu_s / cost.cpu_s
+            rows.append(vars(cost) | {"plain_over_it": ratio})
+            print(
+                f"{cost.way:<12} {tolerance:>9.0e} {cost.adhesion_force:>10.6f} {cost.error:>9.1e} {cost.cpu_s:>9.3f} "
+                f"{cost.steps:>9} {ratio:>14.1f}"
+            )
+    RESULTS.parent.mkdir(exist_ok=True)
+    machine = {"processor": platform.processor() or platform.machine(), "python": platform.python_version()}
+    RESULTS.write_text(json.dumps({"scene": scene.title, "machine": machine, "rows": rows}, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
