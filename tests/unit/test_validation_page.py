@@ -6,7 +6,6 @@ Renew all of it with `make validation`, or the texts alone with WRITE_DOCS=1 pyt
 from __future__ import annotations
 
 import os
-import re
 from pathlib import Path
 
 from workflow.reproduce.markdown import readme_table, validation_markdown
@@ -32,10 +31,11 @@ def test_validation_md_is_what_the_record_says() -> None:
 def test_the_table_of_the_readme_is_what_the_record_says() -> None:
     readme = ROOT / "README.md"
     text = readme.read_text(encoding="utf-8")
-    before, kept, after = re.split(f"(?<={BEGIN})|(?={END})", text)
+    before, begin, rest = text.partition(BEGIN)
+    kept, end, after = rest.partition(END)
     if os.environ.get("WRITE_DOCS"):
         kept = readme_table(record())
-        readme.write_text(before + kept + after, encoding="utf-8")
+        readme.write_text(before + begin + kept + end + after, encoding="utf-8")
     assert kept == readme_table(record())
 
 

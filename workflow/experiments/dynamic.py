@@ -84,4 +84,5 @@ def _lost(contact: Contact, state: State, load: float, largest: float) -> bool:
     if contact.settings.law is not None and state.smallest_distance > contact.settings.cutoff:
         return True
     tension = -state.force
-    return load < 0.0 and state.plate_velocity < 0.0 and tension < LOST * min(largest, -load)
+    pulled = load < 0.0 and largest > 0.0  # before any tension was felt, the plate is still on its way from a preload
+    return pulled and state.plate_velocity < 0.0 and tension < LOST * min(largest, -load)
