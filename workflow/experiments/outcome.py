@@ -72,6 +72,11 @@ def radius_of(scene: Scene, profile: Profile) -> ContactRadius | None:
     return compressive_radius(profile, RESIDUAL_SHARE * scene.accuracy.tolerance)
 
 
+def radius_or_spot(scene: Scene, profile: Profile) -> ContactRadius:
+    """The contact radius; 0 where no particle is in tension, as where F = 0 and a single pair touches."""
+    return radius_of(scene, profile) or ContactRadius(0.0, 0.5 * scene.bodies.spacing, 0.0, 0.0, reaches_end=False)
+
+
 def require_trust(scene: Scene, settings: Settings, state: State) -> None:
     """Refuse a state that is no result.
 

@@ -1,5 +1,6 @@
-"""Pull-off by prescribed displacement, in passes: each pass is a whole schedule, refined by what the one before found.
+"""Pull-off by prescribed displacement: `pull_off_smooth` where the force is smooth, passes where particles snap.
 
+Each pass is a whole schedule, refined by what the one before found, since the state depends on the way to it.
 Pass 1 finds its own way: load up to F_D, unload until the bodies separate. Every further pass starts afresh and holds
 the displacements of: F_D; F = 0; a window around the largest tension, four times as fine each time. It ends when two
 passes agree. The numbers are those of the last pass, and its schedule is the deck.
@@ -12,24 +13,28 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.radius import ContactRadius
 from workflow.deck import Phase
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import State
 from workflow.experiments.marks import Peak, largest_tension, smooth_crossing
-from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, law_share, radius_of, require_trust
+from workflow.experiments.outcome import (
+    Outcome,
+    Quantity,
+    UntrustedError,
+    doubts,
+    law_share,
+    radius_or_spot,
+    require_trust,
+)
+from workflow.experiments.pull_off_smooth import LATTICE, SmoothPass, critical_shift, smooth_pass
 from workflow.experiments.quasistatic import approach, separate
 from workflow.units import FORCE, LENGTH
 
 MOST_PASSES = 8
 WINDOW_ROWS = 8
-"""Rows on either side of the largest tension in a refined pass, where particles snap one by one."""
-SMOOTH_ROWS = 2
-"""The same where the force is smooth."""
+"""Rows on either side of the largest tension in a refined pass."""
 ZOOM = 0.25
 """Width of the window of one pass over that of the one before."""
-LATTICE = 1e-3
-"""Part of a spacing below which a radius is not looked at any closer: the interpolation between particles limits it."""
 SHARE = 0.3
 """Part of the tolerance that the schedule may use up."""
 
@@ -79,15 +84,18 @@ def pull_off_quasistatic(bench: Bench) -> Outcome:
     experiment = scene.experiment
     assert experiment.kind == "pull_off"
     tolerance = SHARE * scene.accuracy.tolerance
+    if settings.is_smooth:
+        smooth = smooth_pass(bench, experiment.preload, tolerance)
+        return _outcome(bench, smooth, experiment.preload, smooth.missed)
     latest = _first(bench, experiment.preload)
-    window = settings.increment()
+    window = settings.displacement_step
     for _ in range(MOST_PASSES):
         before = latest
-        rows = SMOOTH_ROWS if settings.is_smooth else WINDOW_ROWS
-        latest = _replay(bench, experiment.preload, _refined(before, experiment.preload, window, rows))
+        latest = _replay(bench, experiment.preload, _refined(before, experiment.preload, window))
         window *= ZOOM
         if _agree(bench, before, latest, experiment.preload, tolerance):
-            return _outcome(bench, before, latest)
+            missed = abs(latest.peak.smooth - before.peak.smooth)
+            return _outcome(bench, latest, experiment.preload, missed)
     raise UntrustedError(
         f"the pull-off force still changes from {before.peak.tension:.6g} to {latest.peak.tension:.6g} FU after "
         f"{MOST_PASSES} refinements of the path: loosen [accuracy] tolerance"
@@ -104,14 +112,14 @@ def _first(bench: Bench, preload: float) -> Pass:
         return Pass(preload, contact.phases, loading, unloading)
 
 
-def _refined(known: Pass, preload: float, window: float, rows: int) -> tuple[Phase, ...]:
+def _refined(known: Pass, preload: float, window: float) -> tuple[Phase, ...]:
     """The schedule of the next pass: loading, unloading to F = 0, pulling to the largest tension, separating."""
     climbed = sorted({s.displacement for s in known.loading if s.force < preload and s is not known.loading[-1]})
     deepest = _displacement_at(known.loading, preload)
     loading = [d for d in climbed if d < deepest - 1e-9] + [deepest]
     zero = known.zero_load
     peak = known.peak.position
-    fine = peak + window * np.linspace(1.0, -1.0, 2 * rows)
+    fine = peak + window * np.linspace(1.0, -1.0, 2 * WINDOW_ROWS)
     fine = fine[fine < zero - 1e-9]
     coarse = [s.displacement for s in known.unloading if not fine[-1] <= s.displacement <= fine[0]]
     falling = sorted({deepest, zero, peak, *coarse, *fine.tolist()}, reverse=True)
@@ -148,49 +156,36 @@ def _replay(bench: Bench, wanted: float, phases: tuple[Phase, ...]) -> Pass:
 
 def _agree(bench: Bench, before: Pass, latest: Pass, preload: float, tolerance: float) -> bool:
     """Whether two passes give the same results, and the latest has its marked states where they belong."""
-    tension, radius = latest.peak.smooth, _radius(bench, latest.critical).value
+    tension, radius = latest.peak.smooth, radius_or_spot(bench.deck.scene, latest.critical.profile).value
     return (
         abs(tension - before.peak.smooth) <= tolerance * tension
         and latest.peak.uncertainty <= tolerance * tension
         and abs(latest.preload - preload) <= tolerance * preload
         and abs(latest.zero.force) <= tolerance * tension
         and tension + latest.critical.force <= tolerance * tension
-        and abs(_critical_shift(bench, latest)) <= max(tolerance * radius, LATTICE * bench.deck.scene.bodies.spacing)
+        and abs(critical_shift(bench, latest.unloading, latest.critical, latest.peak))
+        <= max(tolerance * radius, LATTICE * bench.deck.scene.bodies.spacing)
     )
 
 
-def _critical_shift(bench: Bench, latest: Pass) -> float:
-    """By how much a changes from the critical state to where the curve of the same pass has its maximum [LU]."""
-    rows = sorted(latest.unloading, key=lambda s: abs(s.displacement - latest.critical.displacement))
-    near = next(s for s in rows if s.displacement != latest.critical.displacement)
-    distance = latest.peak.position - latest.critical.displacement
-    change = _radius(bench, near).value - _radius(bench, latest.critical).value
-    return change * distance / (near.displacement - latest.critical.displacement)
-
-
-def _outcome(bench: Bench, before: Pass, latest: Pass) -> Outcome:
+def _outcome(bench: Bench, found: Pass | SmoothPass, preload: float, missed: float) -> Outcome:
+    """The results of a finished schedule; `missed` by the search for the largest tension [FU]."""
     scene, settings = bench.deck.scene, bench.deck.settings
-    zero, critical, peak = latest.zero, latest.critical, latest.peak
+    zero, critical, peak = found.zero, found.critical, found.peak
     residual = critical.residual * settings.particles
-    missed = max(abs(peak.smooth - before.peak.smooth), peak.uncertainty)
-    states = (*latest.loading, *latest.unloading)
-    critical_radius, zero_radius = _radius(bench, critical), _radius(bench, zero)
-    shift = _critical_shift(bench, latest)
-    slope = abs(zero_radius.value - critical_radius.value) / peak.tension
+    states = (*found.loading, *found.unloading)
+    critical_radius, zero_radius = (radius_or_spot(scene, state.profile) for state in (critical, zero))
+    shift = critical_shift(bench, found.unloading, critical, peak)
+    slope = abs(zero_radius.value - critical_radius.value) / peak.smooth
+    loaded = found.loading[-1].force
     quantities = {
-        "adhesion_force": Quantity(peak.smooth, missed + residual + law_share(scene, settings) * peak.smooth, FORCE),
-        "critical_radius": Quantity(
-            critical_radius.value + shift, critical_radius.uncertainty + abs(shift), LENGTH
+        "adhesion_force": Quantity(
+            peak.smooth, max(missed, peak.uncertainty) + residual + law_share(scene, settings) * peak.smooth, FORCE
         ),
+        "critical_radius": Quantity(critical_radius.value + shift, critical_radius.uncertainty + abs(shift), LENGTH),
         "zero_load_radius": Quantity(zero_radius.value, zero_radius.uncertainty + slope * abs(zero.force), LENGTH),
-        "preload": Quantity(latest.preload, abs(latest.preload - latest.wanted), FORCE),
+        "preload": Quantity(loaded, abs(loaded - preload), FORCE),
     }
     profiles = {"zero_load": zero.profile, "critical": critical.profile}
     radii = {"zero_load": zero_radius.value, "critical": critical_radius.value}
-    return Outcome(quantities, states, profiles, radii, latest.phases, doubts(scene, settings, states))
-
-
-def _radius(bench: Bench, state: State) -> ContactRadius:
-    """The radius; 0 where no particle is in tension, as where F = 0 and a single pair touches."""
-    radius = radius_of(bench.deck.scene, state.profile)
-    return radius or ContactRadius(0.0, 0.5 * bench.deck.scene.bodies.spacing, 0.0, 0.0, reaches_end=False)
+    return Outcome(quantities, states, profiles, radii, found.phases, doubts(scene, settings, states))

@@ -9,13 +9,13 @@ from workflow.experiments.outcome import UntrustedError, require_trust
 
 MOST_ROWS = 2_000
 """Rows of one branch of a search; a search that needs more has no end in sight."""
-APPROACH = 0.03
+APPROACH = 1e-3
 """How near to a wanted force a search must come, over the tolerance."""
 SEPARATED = 0.02
 """Tension over the largest one at which bodies that move apart count as separated."""
 PAST_PEAK = 0.5
 """Tension over the largest one below which increments may grow."""
-GROWTH = 1.2
+GROWTH, SMOOTH_GROWTH = 1.2, 1.6
 OVERSHOOT = 1.02
 """Secant steps aim a little beyond, so that a bracket forms instead of a slow approach from one side."""
 SAME_PLACE = 1e-12
@@ -33,7 +33,7 @@ def approach(contact: Contact, force: float, start: float, direction: int = 1) -
     """
     scale = abs(force) if force != 0.0 else contact.settings.force_scale
     near = APPROACH * contact.scene.accuracy.tolerance * scale
-    states = [_trusted(contact, start)]
+    states = [measured(contact, start)]
     before, beyond = None, None
     while abs(states[-1].force - force) > near:
         last = states[-1]
@@ -48,7 +48,7 @@ def approach(contact: Contact, force: float, start: float, direction: int = 1) -
         if len(states) > MOST_ROWS or (direction < 0 and last.smallest_distance > contact.settings.cutoff):
             raise UntrustedError(f"{force:.4g} FU is never reached: the largest tension is smaller")
         step = contact.settings.increment(last.smallest_distance if direction > 0 else math.inf)
-        states.append(_trusted(contact, _next(before, beyond, states, force, direction * step)))
+        states.append(measured(contact, _next(before, beyond, states, force, direction * step)))
     return states
 
 
@@ -65,17 +65,21 @@ def _next(before: State, beyond: State | None, states: list[State], force: float
     return before.displacement + ahead * step
 
 
-def separate(contact: Contact, start: float) -> list[State]:
-    """Rows of falling displacement from `start` [LU] until the tension has passed its largest value and is gone."""
-    displacement, states, largest = start, [_trusted(contact, start)], 0.0
+def separate(contact: Contact, start: float, largest: float = 0.0) -> list[State]:
+    """Rows of falling displacement from `start` [LU] until the tension has passed its largest value and is gone.
+
+    `largest` is what the tension has been before [FU].
+    """
+    displacement, states = start, [measured(contact, start)]
     step = contact.settings.increment()
+    growth = SMOOTH_GROWTH if contact.settings.is_smooth else GROWTH
     for _ in range(MOST_ROWS):
         displacement -= step
-        state = _trusted(contact, displacement)
+        state = measured(contact, displacement)
         states.append(state)
         largest = max(largest, -state.force)
         if largest > 0.0 and -state.force < PAST_PEAK * largest and state.force <= 0.0:
-            step *= GROWTH
+            step *= growth
         if _apart(contact, state, largest):
             return states
     raise UntrustedError(f"the bodies did not separate within {MOST_ROWS} increments of the displacement")
@@ -86,7 +90,8 @@ def _apart(contact: Contact, state: State, largest: float) -> bool:
     return gone or state.smallest_distance > contact.settings.cutoff
 
 
-def _trusted(contact: Contact, displacement: float) -> State:
+def measured(contact: Contact, displacement: float) -> State:
+    """One row at a displacement [LU]. Raises UntrustedError, see `require_trust`."""
     state = contact.row(displacement)
     require_trust(contact.scene, contact.settings, state)
     return state
