@@ -6,8 +6,9 @@ import json
 import math
 import os
 import platform
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -15,8 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.curve import Curve, curve_columns, profile_columns, write_columns
-from workflow.experiments import Outcome
+from analysis.curve import Column, Curve, curve_columns, profile_columns, write_columns
+from workflow.experiments import Outcome, unmet
 from workflow.experiments.outcome import radius_of
 from workflow.scales import scales_of, unfound
 from workflow.scene import Parabola, Scene
@@ -49,6 +50,12 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
             entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
         quantities["units"] = {unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE)}
     doubts = dict(outcome.warnings)
+    if coarse := unmet(scene, outcome.quantities):
+        doubts["tolerance"] = (
+            f"{coarse}, which is more than the tolerance of {scene.accuracy.tolerance:g} that was asked for. A radius is "
+            "known no better than the spacing lets it, and by the dynamic method no better than the bracket of the "
+            'tension: take a smaller bodies.spacing at the same stiffness and energy per length, or method = "quasistatic"'
+        )
     if missing := unfound(scene, outcome.quantities):
         doubts["no_units"] = (
             f"the run found no {' and no '.join(missing)} above 0, from which surface_energy would fix both units, so "
@@ -73,12 +80,13 @@ def _frame(scene: Scene, status: str, warnings: list[dict[str, str]], timing: Ma
         "status": status,
         "warnings": warnings,
         "timing": dict(timing),
-        "versions": versions(),
+        "versions": dict(versions()),
     }
 
 
+@cache
 def versions() -> dict[str, str]:
-    """Versions of what a result depends on."""
+    """Versions of what a result depends on; asked once, since looking them up takes milliseconds."""
     return {name: version(name) for name in PACKAGES} | {"python": platform.python_version()}
 
 
@@ -112,7 +120,10 @@ COLUMN_UNITS = {
 
 def write_tables(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> None:
     """Write curve.csv, profile.csv and, for a slide, friction.csv; with a [material], SI columns stand at the right."""
-    tables = {"curve.csv": curve_columns(curve), "profile.csv": profile_columns(outcome.profiles)}
+    tables: dict[str, dict[str, Column]] = {
+        "curve.csv": curve_columns(curve),
+        "profile.csv": profile_columns(outcome.profiles),
+    }
     if outcome.friction:
         tables["friction.csv"] = dict(outcome.friction)
     scales = scales_of(scene, outcome.quantities)
@@ -120,12 +131,12 @@ def write_tables(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> 
         write_columns(folder / name, columns if scales is None else columns | _in_si(columns, scales))
 
 
-def _in_si(columns: Mapping[str, Sequence[float | str]], scales: Scales) -> dict[str, Sequence[float | str]]:
+def _in_si(columns: Mapping[str, Column], scales: Scales) -> dict[str, Column]:
     """The columns that have a unit, in SI: `force_N` beside `force`."""
     return {
-        f"{name}_{SI[COLUMN_UNITS[name]][2].replace('/', '_per_')}": [
-            float(value) * scales.factor(COLUMN_UNITS[name]) for value in values
-        ]
+        f"{name}_{SI[COLUMN_UNITS[name]][2].replace('/', '_per_')}": (
+            np.asarray(values, dtype=np.float64) * scales.factor(COLUMN_UNITS[name])
+        )
         for name, values in columns.items()
         if name in COLUMN_UNITS
     }

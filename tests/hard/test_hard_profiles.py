@@ -82,7 +82,7 @@ def test_contact_wider_than_its_profile_is_refused_with_the_possible_displacemen
     possible = float(found[1]) * (1.0 - LAST_FIGURE)
     results = done(tmp_path, tables(WIDE[name], path(possible), reduction=reduction)).results
     assert results["status"] == "done"
-    assert results["warnings"] == []
+    assert {warning["name"] for warning in results["warnings"]} <= {"tolerance"}  # of the radius at its very edge
     assert results["largest_force"]["value"] > 0.0
 
 

@@ -98,21 +98,25 @@ def test_a_run_that_takes_too_long_is_stopped(tmp_path: Path) -> None:
     assert json.loads((tmp_path / "run" / "results.json").read_text())["status"] == "failed"
 
 
+def doubts(results: dict[str, Any]) -> set[str]:
+    return {warning["name"] for warning in results["warnings"]}
+
+
 def test_a_chain_that_cuts_the_tail_of_the_contact_gets_a_warning(tmp_path: Path) -> None:
     results = run(scene_from_dict(tables(PULL, {"particles": 34})), tmp_path / "run", figures=False).results
     assert results["status"] == "done"
-    assert [warning["name"] for warning in results["warnings"]] == ["chain_end"]
+    assert doubts(results) == {"chain_end", "tolerance"}  # the radius of this short contact is known to a percent
 
 
 def test_particles_closer_than_the_table_was_chosen_for_get_a_warning(tmp_path: Path) -> None:
     scene = tables({"kind": "path", "displacements": [0.0, 1.7]})  # one leap: the rows between are the program's
     results = run(scene_from_dict(scene), tmp_path / "run", figures=False).results
-    assert "table_core" in [warning["name"] for warning in results["warnings"]]
+    assert "table_core" in doubts(results)
 
 
 def test_automatic_chains_need_no_warning(tmp_path: Path) -> None:
     results = run(scene_from_dict(tables(PULL, {"particles": "auto"})), tmp_path / "run", figures=False).results
-    assert results["warnings"] == []
+    assert doubts(results) == {"tolerance"}  # no chain_end
 
 
 def test_atoms_that_fly_apart_are_no_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,11 +9,20 @@ import numpy as np
 import pytest
 
 from benchmarks.peers.contacts import (
-    A_0, DEPTH, F_A, Curve, closed_form, displacements, errors, law_range, reduced_distance,
+    A_0,
+    DEPTH,
+    F_A,
+    Curve,
+    closed_form,
+    displacements,
+    errors,
+    law_range,
+    reduced_distance,
 )  # fmt: skip
 from benchmarks.peers.table import BEGIN, END, quickest, section, write_section
 
 INTERPOLATION = 1e-8  # of F_A, between 50000 radii
+PEAK = 1e-3  # of F_A, which lies between two of 50 points
 
 
 def exact(contact: str) -> Curve:
@@ -42,9 +51,10 @@ def test_jkr_beyond_its_fold_is_refused() -> None:
 def test_an_exact_curve_has_no_error() -> None:
     for contact in ("hertz", "jkr"):
         found = errors(contact, exact(contact))
+        missed = found.pop("theory_pull_off", 0.0)
         assert all(value == 0.0 for name, value in found.items() if not name.endswith("place"))
-    # F_A and a_0 are read off 50 points: the largest of them is 8e-4 short of F_A
-    assert reduced_distance(exact("jkr")) < 2e-3
+        assert -PEAK < missed <= 0.0
+    assert reduced_distance(exact("jkr")) < 2.0 * PEAK
 
 
 def test_the_range_is_that_of_the_tabor_number() -> None:

@@ -32,6 +32,11 @@ PINNED = {
     "thermal_load": ("displacement", 0.2592, 2e-3),  # statistics: four standard errors of either run
 }
 
+LIMITED = {"pull_off_dynamic": ["tolerance"], "path_hysteresis": ["tolerance"]}
+"""The force is flat at the pull-off, so that a bracket of the tension leaves the radius there open to some percent;
+where particles snap, a radius between them does not exist to better than a share of the spacing.
+"""
+
 
 def test_every_shipped_scene_is_pinned() -> None:
     assert {path.stem for path in SCENES.glob("*.toml")} == PINNED.keys()
@@ -42,7 +47,7 @@ def test_a_shipped_scene_gives_its_number(name: str, tmp_path: Path) -> None:
     quantity, value, tolerance = PINNED[name]
     results = run(read_scene(SCENES / f"{name}.toml"), tmp_path / name, figures=False).results
     assert results["status"] == "done"
-    assert results["warnings"] == []
+    assert [warning["name"] for warning in results["warnings"]] == LIMITED.get(name, [])
     assert results[quantity]["value"] == pytest.approx(value, abs=tolerance)
     assert abs(results[quantity]["value"] - value) <= max(3 * results[quantity]["uncertainty"], 0.2 * tolerance)
 

@@ -114,6 +114,20 @@ def law_share(scene: Scene, settings: Settings) -> float:
     return (tail + settings.table.error_beyond(0.5 * settings.rest)) / settings.force_scale
 
 
+def unmet(scene: Scene, quantities: Mapping[str, Quantity]) -> str:
+    """Which main results are known less well than the tolerance, in words; "" where none is, and with noise."""
+    if scene.noise is not None:
+        return ""
+    shares = {
+        name: quantity.uncertainty / abs(quantity.value)
+        for name, quantity in quantities.items()
+        if name != "preload" and quantity.value != 0.0
+    }
+    return ", ".join(
+        f"{name} is known to {share:.1e}" for name, share in shares.items() if share > scene.accuracy.tolerance
+    )
+
+
 def _reaches_end(scene: Scene, profile: Profile) -> bool:
     """Whether the contact's edge, the largest tension or else the last loaded particle, is a chain's last particle.
 
