@@ -13,31 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analysis.reference.adhesive_pair import AdhesivePair
 from analysis.reference.interaction import Floats
 
 
 @dataclass(frozen=True)
-class Dmt:
-    """One adhesive sphere.
-
-    Args:
-        radius: effective radius R [length].
-        contact_modulus: E* [stress].
-        work_of_adhesion: W = 2 gamma [force/length].
-
-    Raises:
-        ValueError: if one of them is not positive.
-    """
-
-    radius: float
-    contact_modulus: float
-    work_of_adhesion: float
-
-    def __post_init__(self) -> None:
-        """Check the signs."""
-        for name in ("radius", "contact_modulus", "work_of_adhesion"):
-            if not getattr(self, name) > 0.0:
-                raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
+class Dmt(AdhesivePair):
+    """One adhesive sphere."""
 
     def pull_off_force(self) -> float:
         """Return 2 pi W R, held at a = 0, as a magnitude [force]: that of rigid spheres (Bradley 1932)."""

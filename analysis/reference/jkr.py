@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analysis.reference.adhesive_pair import AdhesivePair
 from analysis.reference.interaction import Floats
 
 CRITICAL_RADIUS_RATIO = 0.25 ** (1.0 / 3.0)
@@ -28,27 +29,8 @@ def work_of_adhesion(surface_energy: float) -> float:
 
 
 @dataclass(frozen=True)
-class Jkr:
-    """One adhesive sphere.
-
-    Args:
-        radius: effective radius R [length].
-        contact_modulus: E* [stress].
-        work_of_adhesion: W = 2 gamma [force/length].
-
-    Raises:
-        ValueError: if one of them is not positive.
-    """
-
-    radius: float
-    contact_modulus: float
-    work_of_adhesion: float
-
-    def __post_init__(self) -> None:
-        """Check the signs."""
-        for name in ("radius", "contact_modulus", "work_of_adhesion"):
-            if not getattr(self, name) > 0.0:
-                raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
+class Jkr(AdhesivePair):
+    """One adhesive sphere."""
 
     def pull_off_force(self) -> float:
         """Return (3/2) pi W R = 3 pi gamma R, the largest tension held under a fixed load, as a magnitude [force]."""

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analysis.reference.adhesive_pair import AdhesivePair
 from analysis.reference.interaction import Floats
 
 BARQUINS_FACTOR = 4.0 ** (4.0 / 3.0) / 3.0
@@ -29,27 +30,8 @@ def barquins_reduced_force(reduced_radius: Floats | float) -> Floats:
 
 
 @dataclass(frozen=True)
-class AdhesiveCylinder:
-    """One adhesive cylinder on a half space, everything per length of the cylinder. Valid for a << R.
-
-    Args:
-        radius: effective radius R [length].
-        contact_modulus: E* [stress].
-        work_of_adhesion: W = 2 gamma [force/length].
-
-    Raises:
-        ValueError: if one of them is not positive.
-    """
-
-    radius: float
-    contact_modulus: float
-    work_of_adhesion: float
-
-    def __post_init__(self) -> None:
-        """Check the signs."""
-        for name in ("radius", "contact_modulus", "work_of_adhesion"):
-            if not getattr(self, name) > 0.0:
-                raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
+class AdhesiveCylinder(AdhesivePair):
+    """One adhesive cylinder on a half space, everything per length of the cylinder. Valid for a << R."""
 
     def force(self, half_width: Floats | float) -> Floats:
         """Return F/L = pi E* a^2/4R - sqrt(2 pi E* W a) [force/length], shape of `half_width` a >= 0 [length]."""
