@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analysis.pressure import Profile
+
+Array = NDArray[np.float64]
+Column = Sequence[float] | Sequence[str] | Array
+CHUNK = 100_000
+"""Rows that are turned into text at a time."""
 
 
 @dataclass(frozen=True)
@@ -39,17 +46,18 @@ class Curve:
 PROFILE_COLUMNS = ("x", "z_lower", "z_upper", "pressure", "shear")
 
 
-def write_columns(path: Path, columns: Mapping[str, Iterable[float | str]]) -> None:
+def write_columns(path: Path, columns: Mapping[str, Column]) -> None:
     """Write a CSV file with a header; numbers with 17 digits, NaN as an empty cell."""
     part = path.with_name(path.name + ".part")
     with part.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(columns)
-        writer.writerows(map(_cells, zip(*columns.values(), strict=True)))
+        csv.writer(file, lineterminator="\n").writerow(columns)
+        for start in range(0, max(map(len, columns.values())), CHUNK):
+            cells = [_cells(column[start : start + CHUNK]) for column in columns.values()]
+            file.writelines(f"{','.join(row)}\n" for row in zip(*cells, strict=True))
     os.replace(part, path)
 
 
-def curve_columns(curve: Curve) -> dict[str, Sequence[float | str]]:
+def curve_columns(curve: Curve) -> dict[str, Column]:
     """Return the columns of curve.csv by name."""
     return {field.name: getattr(curve, field.name) for field in fields(curve)}
 
@@ -65,14 +73,12 @@ def read_curve(path: Path) -> Curve:
     return Curve(**numbers, branch=columns["branch"])
 
 
-def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Sequence[float | str]]:
+def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Column]:
     """Return the columns of profile.csv: the profiles below each other, the state's name in the last column."""
-    columns: dict[str, list[float | str]] = {name: [] for name in (*PROFILE_COLUMNS, "state")}
-    for state, profile in profiles.items():
-        for name in PROFILE_COLUMNS:
-            columns[name] += getattr(profile, name).tolist()
-        columns["state"] += [state] * len(profile.x)
-    return dict(columns)
+    numbers = {
+        name: np.concatenate([getattr(profile, name) for profile in profiles.values()]) for name in PROFILE_COLUMNS
+    }
+    return {**numbers, "state": [state for state, profile in profiles.items() for _ in profile.x]}
 
 
 def read_profiles(path: Path) -> dict[str, Profile]:
@@ -84,8 +90,21 @@ def read_profiles(path: Path) -> dict[str, Profile]:
     return {state: Profile(*(arrays[name][chosen == state] for name in PROFILE_COLUMNS)) for state in states}
 
 
-def _cells(row: Iterable[float | str]) -> list[str]:
-    return [cell if isinstance(cell, str) else "" if math.isnan(cell) else f"{cell:.17g}" for cell in row]
+def _cells(column: Column) -> list[str]:
+    """The cells of a column; one `%` operation for all numbers, and each different word is quoted once."""
+    if len(column) and isinstance(column[0], str):
+        words = {word: _quoted(str(word)) for word in dict.fromkeys(column)}
+        return [words[word] for word in column]
+    numbers = np.asarray(column, dtype=np.float64)
+    cells = ("%.17g\n" * len(numbers) % tuple(numbers.tolist())).split()
+    return ["" if cell == "nan" else cell for cell in cells] if np.isnan(numbers).any() else cells
+
+
+def _quoted(word: str) -> str:
+    """A word as one of several cells of a row: alone, an empty one would be quoted."""
+    row = io.StringIO()
+    csv.writer(row, lineterminator="\n").writerow([word, 0])
+    return row.getvalue().removesuffix(",0\n")
 
 
 def _number(cell: str) -> float:

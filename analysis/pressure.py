@@ -103,16 +103,37 @@ def smallest_distance(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike
     """Return min_ij |r_i - r_j| [LU] over upper particles i and lower particles j.
 
     x_upper, z_upper [LU], (n,); x_lower, z_lower [LU], (m,). Raises ValueError where a body has no particle or a
-    position is not finite.
+    position is not finite. Each upper particle looks along the sorted lower body, from the place above which it stands
+    to both sides, as far as the smallest distance found so far: for chains a few looks, whatever their length.
     """
-    from scipy.spatial import cKDTree
-
-    upper = np.column_stack([np.asarray(x_upper, dtype=np.float64), np.asarray(z_upper, dtype=np.float64)])
-    lower = np.column_stack([np.asarray(x_lower, dtype=np.float64), np.asarray(z_lower, dtype=np.float64)])
-    if not (len(upper) and len(lower)):
+    upper, lower = _sorted_by_x(x_upper, z_upper), _sorted_by_x(x_lower, z_lower)
+    if not (upper.size and lower.size):
         raise ValueError("a distance between the bodies needs a particle in each of them")
-    distances, _ = cKDTree(lower).query(upper)
-    return float(np.min(distances))
+    if not (np.isfinite(upper).all() and np.isfinite(lower).all()):
+        raise ValueError("the positions of particles must be finite")
+    above = np.searchsorted(lower[0], upper[0])
+    first = np.minimum(above, lower.shape[1] - 1)
+    least = float(np.min(np.hypot(*(upper - lower[:, first]))))
+    reach = np.maximum(upper[1] - lower[1].max(), lower[1].min() - upper[1])  # no lower particle is nearer than that
+    for step, start in ((1, above), (-1, above - 1)):
+        left, at = upper, start
+        near = reach < least
+        while near.any():
+            left, at = left[:, near], at[near]
+            inside = (at >= 0) & (at < lower.shape[1])
+            left, at = left[:, inside], at[inside]
+            apart = left - lower[:, at]
+            least = min(least, float(np.min(np.hypot(*apart), initial=least)))
+            near = np.abs(apart[0]) < least
+            at = at + step
+    return least
+
+
+def _sorted_by_x(x: ArrayLike, z: ArrayLike) -> Array:
+    """Rows x and z, shape (2, n), with rising x."""
+    places = np.stack([np.asarray(x, dtype=np.float64), np.asarray(z, dtype=np.float64)])
+    rising: Array = places[:, np.argsort(places[0], kind="stable")]
+    return rising
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from workflow.experiments import Bench, Outcome, UntrustedError, perform, planne
 from workflow.progress import Progress, Silent
 from workflow.report import FILES, curve_of, draw, failure, results, write_results, write_tables, write_whole
 from workflow.scene import Scene, scene_to_toml
-from workflow.settings import settings_for
+from workflow.settings import Settings, settings_for
 
 LOCK = ".running"
 TIME_LIMIT = 3600.0
@@ -66,6 +66,7 @@ def run(
     figures: bool = True,
     progress: Progress | None = None,
     time_limit: float = TIME_LIMIT,
+    settings: Settings | None = None,
 ) -> Run:
     """Run a scene in a folder and leave everything there.
 
@@ -75,6 +76,7 @@ def run(
         figures: whether to draw.
         progress: told of phases and steps.
         time_limit: wall time for LAMMPS [s].
+        settings: in place of those that `settings_for` chooses; for cost studies.
 
     Raises:
         SettingsError: the scene's numbers lead to no computable system; nothing is written.
@@ -82,7 +84,7 @@ def run(
         RunError: LAMMPS failed, or the result can't be trusted.
     """
     started = time.perf_counter()
-    deck = Deck(scene, settings_for(scene))
+    deck = Deck(scene, settings or settings_for(scene))
     folder = prepare(Path(folder))
     with _alone(folder):
         return _run(deck, folder, started, figures, progress or Silent(), time_limit)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from workflow.cli_cost import cost
 from workflow.cli_paper import INTERRUPTED, RUN_FAILED, SCENE_IS_WRONG, identify, reproduce, stop
 
 if TYPE_CHECKING:
@@ -144,6 +145,7 @@ def doctor() -> None:
 
 app.command()(identify)
 app.command()(reproduce)
+app.command()(cost)
 
 
 def _read(path: Path, overrides: list[str] | None, without: list[str] | None) -> Scene:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import atexit
 import mmap
 import os
+import pickle
 import select
 import signal
 import subprocess
@@ -17,6 +18,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 from multiprocessing import Pipe
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
@@ -60,6 +62,24 @@ def worker_environment(environ: Mapping[str, str]) -> dict[str, str]:
     if nodes == "1":
         environment.setdefault("UCX_TLS", "self,sm")
     return environment | {"OMP_NUM_THREADS": "1", "PYTHONSAFEPATH": "1"}
+
+
+def receive(connection: Connection) -> Any:
+    """Return what `workflow.worker.send` sent, reading each array into the place where it stays.
+
+    Raises:
+        EOFError: the other end is gone.
+    """
+    head, sizes = connection.recv()
+    arrays = [bytearray(size) for size in sizes]
+    for array in arrays:
+        left = memoryview(array)
+        while left:
+            count = os.readv(connection.fileno(), [left])
+            if not count:
+                raise EOFError
+            left = left[count:]
+    return pickle.loads(head, buffers=arrays)
 
 
 class WorkerProcess:
@@ -122,7 +142,7 @@ class WorkerProcess:
                     raise OutOfTimeError("it ran out of time")
                 if tick:
                     tick()
-            return self._connection.recv()
+            return receive(self._connection)
         except (EOFError, ConnectionError):
             raise WorkerLostError(self._cause_of_death()) from None
         except BaseException:

@@ -9,9 +9,9 @@ starts it.
 from __future__ import annotations
 
 import ctypes
-import importlib.metadata
 import mmap
 import os
+import pickle
 import re
 import signal
 import sys
@@ -38,9 +38,11 @@ LOOP = re.compile(rb"^Loop time of .* for (\d+) steps", re.MULTILINE)
 def mpi_candidates() -> Iterator[str]:
     """Places of the MPI library, the likeliest first: beside the interpreter, in the mpich wheel, the system's."""
     yield str(Path(sys.prefix) / "lib" / MPI_LIBRARY)
+    from importlib import metadata  # an import of 20 ms that the first place mostly spares
+
     try:
-        files = importlib.metadata.files("mpich") or []
-    except importlib.metadata.PackageNotFoundError:
+        files = metadata.files("mpich") or []
+    except metadata.PackageNotFoundError:
         files = []
     yield from (str(file.locate()) for file in files if file.name == MPI_LIBRARY)
     yield MPI_LIBRARY
@@ -192,6 +194,18 @@ def answer(runner: Runner, verb: str, arguments: tuple[Any, ...]) -> tuple[Any, 
     return outcome, payload, runner.board[0], runner.steps, runner.wall, runner.cpu
 
 
+def send(connection: Connection, reply: tuple[Any, ...]) -> None:
+    """Send a reply as `workflow.process.receive` reads it: arrays follow it byte by byte, without a copy."""
+    arrays: list[pickle.PickleBuffer] = []
+    head = pickle.dumps(reply, protocol=5, buffer_callback=arrays.append)
+    parts = [array.raw() for array in arrays]
+    connection.send((head, [part.nbytes for part in parts]))
+    for part in parts:
+        left = part
+        while left:
+            left = left[os.write(connection.fileno(), left) :]
+
+
 def watch(runner: Runner, parent: int) -> None:
     """Keep the board and the log file up to date while LAMMPS runs; leave when the parent is gone."""
     buffers = ctypes.CDLL(None)
@@ -211,7 +225,7 @@ def main(connection_fd: int, board_fd: int, parent: int) -> None:
     try:
         while True:
             verb, *arguments = connection.recv()
-            connection.send(answer(runner, verb, tuple(arguments)))
+            send(connection, answer(runner, verb, tuple(arguments)))
     except (EOFError, OSError):
         ctypes.CDLL(None).fflush(None)
         os._exit(0)  # nothing is left to tidy that the kernel does not; MPI's own farewell can hang

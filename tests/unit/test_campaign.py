@@ -44,7 +44,7 @@ def test_a_run_leaves_a_complete_folder(tmp_path: Path) -> None:
     assert document["status"] == "done"
     assert document["effects"] == []
     assert document["force"].keys() == {"value", "uncertainty", "unit"}
-    assert document["timing"].keys() == {"total_s", "lammps_s", "steps"}
+    assert document["timing"].keys() == {"total_s", "lammps_s", "lammps_cpu_s", "steps"}
     assert workflow.read_scene(finished.folder / "scene.toml") == plane()
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from analysis import curve as curve_module
 from analysis.curve import Curve, curve_columns, profile_columns, read_curve, read_profiles, write_columns
 from analysis.pressure import Profile
 
@@ -61,6 +62,23 @@ def test_profiles_come_back_by_the_names_of_their_states(tmp_path: Path) -> None
     for name, profile in profiles.items():
         for field in fields(profile):
             np.testing.assert_array_equal(getattr(back[name], field.name), getattr(profile, field.name))
+
+
+def test_long_tables_are_written_in_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The text is that of the csv module, row by row, whatever the size of a chunk."""
+    numbers = awkward(np.random.default_rng(6), 11)
+    numbers[[3, 7]] = math.nan, math.inf
+    words = ["zero_load", 'a "quoted", one', "", "nan"] * 2 + ["line\nbreak", "z", "z"]
+    columns = {"number": numbers, "word, or two": words, "count": list(range(11))}
+    with (tmp_path / "by_row").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
+        for number, word, count in zip(*columns.values(), strict=True):
+            writer.writerow(["" if math.isnan(number) else f"{number:.17g}", word, f"{count:.17g}"])
+    for chunk in (100, 4):
+        monkeypatch.setattr(curve_module, "CHUNK", chunk)
+        write_columns(tmp_path / "table.csv", columns)
+        assert (tmp_path / "table.csv").read_bytes() == (tmp_path / "by_row").read_bytes()
 
 
 def test_an_interrupted_write_leaves_the_old_table(curve: Curve, tmp_path: Path) -> None:

@@ -105,9 +105,27 @@ def test_the_smallest_distance_is_that_of_all_pairs() -> None:
     assert smallest_distance(*upper, *lower) == pytest.approx(min(every), rel=ROUND_OFF)
 
 
+@pytest.mark.parametrize("seed", range(40))
+def test_the_smallest_distance_of_chains_in_any_place(seed: int) -> None:
+    """Beside, above and through each other, with places taken twice: what a search along the chain could miss."""
+    rng = np.random.default_rng(seed)
+    count, other = rng.integers(1, 40, 2)
+    spacing = rng.choice([0.1, 1.0, 10.0])
+    x_upper = rng.permutation(spacing * np.arange(count) + rng.choice([0.0, 0.3]) * rng.normal(size=count))
+    x_lower = np.round(spacing * rng.uniform(0.0, other, other), 1) - rng.choice([0.0, 3.0, 100.0])
+    z_upper, z_lower = rng.uniform(-4.0, 4.0) + rng.normal(size=count), 0.1 * rng.normal(size=other)
+    every = np.hypot(x_upper[:, None] - x_lower, z_upper[:, None] - z_lower)
+    assert smallest_distance(x_upper, z_upper, x_lower, z_lower) == pytest.approx(every.min(), rel=ROUND_OFF)
+
+
 def test_no_distance_to_no_body() -> None:
     with pytest.raises(ValueError, match="in each"):
         smallest_distance([0.0], [0.0], [], [])
+
+
+def test_no_distance_to_nowhere() -> None:
+    with pytest.raises(ValueError, match="finite"):
+        smallest_distance([0.0, math.nan], [0.0, 0.0], [0.0], [1.0])
 
 
 def test_particles_below_the_lower_surface_are_found_with_their_depth() -> None:

@@ -264,3 +264,14 @@ def test_a_chain_loaded_to_its_end_says_so() -> None:
 def test_tension_has_no_compressive_radius() -> None:
     with pytest.raises(ValueError, match="carry tension"):
         compressive_radius(profile(np.arange(3.0), np.array([-0.1, 1.0, -0.1])))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_radius_does_not_depend_on_how_far_the_chain_goes_on(seed: int) -> None:
+    """Bitwise: samples beyond a stencil's reach of the edge have no part in it."""
+    rng = np.random.default_rng(seed)
+    x, pressure, _ = random_case(rng, snaps=bool(seed % 2))
+    far = 500
+    longer = np.concatenate([x[0] - np.arange(far, 0.0, -1.0), x, x[-1] + np.arange(1.0, far + 1.0)])
+    padded = np.concatenate([np.zeros(far), pressure, np.zeros(far)])
+    assert tensile_radius(profile(longer, padded)) == tensile_radius(profile(x, pressure))

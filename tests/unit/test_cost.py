@@ -1,0 +1,324 @@
+"""`contact1d cost`: which knobs a scene has, orders, front, advice, the record, and a study from end to end."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from workflow import read_scene
+from workflow.cost.advice import advise, combinations
+from workflow.cost.change import Change, base_change
+from workflow.cost.errors import judged, main_results
+from workflow.cost.knobs import knobs_of, left_out
+from workflow.cost.measure import Prepared, measure
+from workflow.cost.orders import Order, fit_order, pareto_front
+from workflow.cost.per_step import without_effects
+from workflow.cost.record import Advice, CostRecord, EffectCost, KnobRecord, VariantRecord, read_record
+from workflow.cost.report import COLUMNS, csv_text, effects_markdown, summary, write_report
+from workflow.experiments.outcome import Quantity
+from workflow.progress import Silent
+from workflow.scene import Scene
+from workflow.settings import settings_for
+
+MakeScene = Callable[..., Scene]
+ROOT = Path(__file__).parents[2]
+SCENES = ROOT / "lammps_inputs" / "scenes"
+BEGIN, END = "<!-- cost: begin -->\n", "<!-- cost: end -->\n"
+ROUND_OFF = 1e-12
+TINY = """
+title = "tiny"
+[bodies]
+particles = "auto"
+spacing = 1.0
+profile = { kind = "parabola", radius = 100.0 }
+bulk_stiffness = 0.5
+lower = "rigid_plane"
+[neighbours]
+stiffness = 0.1
+[accuracy]
+tolerance = 1e-2
+[experiment]
+kind = "path"
+displacements = { from = 0.0, to = 0.5, steps = 2 }
+"""
+
+
+def names(scene: Scene) -> set[str]:
+    base = base_change(scene)
+    return {knob.name for knob in knobs_of(scene, settings_for(scene), base.chosen(base.scene(scene)))}
+
+
+ALWAYS = {"tolerance"}
+STILL = {"convergence threshold", "load increment"}
+TIMED = {"time step", "damping"}
+LAW = {"table points", "cutoff"}
+
+
+@pytest.mark.parametrize(
+    ("name", "wanted"),
+    [
+        ("pull_off", ALWAYS | STILL | LAW | {"chain length", "method dynamic"}),
+        ("load", ALWAYS | STILL | LAW | {"chain length", "method dynamic"}),
+        ("hertz_plane", ALWAYS | STILL | {"chain length", "method dynamic", "spacing"}),
+        ("path_hysteresis", ALWAYS | STILL | LAW | {"chain length", "method dynamic"}),
+        ("pull_off_dynamic", ALWAYS | TIMED | LAW | {"chain length", "method quasistatic"}),
+        ("thermal_load", ALWAYS | TIMED | LAW | {"chain length"}),
+    ],
+)
+def test_a_scene_has_the_knobs_of_its_effects_and_method(name: str, wanted: set[str]) -> None:
+    scene = read_scene(SCENES / f"{name}.toml")
+    assert names(scene) == wanted
+    assert not names(scene) & left_out(scene).keys()
+    assert ("thermostat scheme" in left_out(scene)) == (scene.noise is not None)
+    assert ("spacing" in left_out(scene)) == ("spacing" not in wanted)
+
+
+def test_a_law_without_attraction_has_no_cutoff_to_turn(make_scene: MakeScene) -> None:
+    scene = make_scene(interaction={"repulsion": {"amplitude": 0.18, "range": 0.13}})
+    assert "table points" in names(scene)
+    assert "cutoff" not in names(scene)
+    assert "physics" in left_out(scene)["cutoff"]
+
+
+def test_a_change_sets_keys_settings_and_table_and_changes_add_up(make_scene: MakeScene) -> None:
+    scene = make_scene()
+    change = base_change(scene) + Change(("accuracy.tolerance=0.01",), (), (("table_points", 1000),))
+    change += Change((), (), (("force_tolerance", 1e-5), ("table_points", 2000)))
+    changed = change.scene(scene)
+    chosen, usual = change.chosen(changed), settings_for(changed)
+    assert changed.accuracy.tolerance == 0.01
+    assert changed.bodies.particles == "auto"
+    assert chosen.table is not None
+    assert chosen.table.points == 2000
+    assert chosen.force_tolerance == 1e-5
+    assert (chosen.cutoff, chosen.particles, chosen.closest) == (usual.cutoff, usual.particles, usual.closest)
+
+
+def test_a_spacing_keeps_stiffness_per_length() -> None:
+    scene = read_scene(SCENES / "hertz_plane.toml")
+    base = base_change(scene)
+    knobs = knobs_of(scene, settings_for(scene), base.chosen(base.scene(scene)))
+    spacing = next(knob for knob in knobs if knob.name == "spacing")
+    for level in spacing.levels:
+        changed = (base + level.change).scene(scene)
+        assert changed.bodies.spacing == level.value
+        assert changed.bulk_stiffness / changed.bodies.spacing == pytest.approx(0.5, rel=ROUND_OFF)
+
+
+def test_the_order_of_synthetic_errors_is_found_with_its_standard_error() -> None:
+    h = [0.1, 0.05, 0.025, 0.0125]
+    exact = fit_order(h, [3.0 * x**2 for x in h])
+    assert exact is not None
+    assert exact.order == pytest.approx(2.0, rel=ROUND_OFF)
+    assert exact.standard_error < ROUND_OFF
+    rng = np.random.default_rng(1)
+    fits = [
+        fit_order(h, [x**2 * math.exp(0.2 * e) for x, e in zip(h, rng.normal(size=4), strict=True)]) for _ in h * 99
+    ]
+    pulls = [(fit.order - 2.0) / fit.standard_error for fit in fits if fit is not None]
+    # Student's t with two degrees of freedom: half of all lies within 0.816; 396 fits give that share within 0.025.
+    assert np.mean(np.abs(pulls) < 0.816) == pytest.approx(0.5, abs=0.1)
+
+
+def test_errors_at_the_floor_or_without_a_number_are_not_fitted() -> None:
+    h, errors = [0.1, 0.05, 0.025, 0.0125, 0.00625], [0.5, 1e-3, 1e-4, 1e-5, 1e-6]
+    assert fit_order(h, errors, floor=1e-6) == fit_order(h[1:4], errors[1:4])
+    assert fit_order(h, errors, floor=1e-4) is None
+    assert fit_order(h, [math.nan] * 5) is None
+    assert fit_order(h, [1e-12] * 5) is None
+
+
+def test_the_pareto_front_is_what_nothing_else_beats() -> None:
+    costs, errors = [1.0, 2.0, 2.0, 3.0, 4.0, 0.5, math.nan], [1e-2, 1e-3, 5e-3, 2e-3, 1e-5, math.nan, 1e-9]
+    assert pareto_front(costs, errors) == [0, 1, 4]
+    assert pareto_front([], []) == []
+
+
+def variant(label: str, error: float, cpu: float, **more: Any) -> VariantRecord:
+    return VariantRecord(label, more.pop("knob", "tolerance"), 1e-3, error=error, cpu_s=cpu, cpu_runs=(cpu,), **more)
+
+
+def test_advice_names_the_cheapest_and_the_cheapest_of_a_scene_file() -> None:
+    variants = [
+        variant("slow", 1e-6, 3.0),
+        variant("plain", 1e-4, 0.5),
+        variant("tuned", 2e-4, 0.1, settings={"time_step": 0.2}, details="time step 0.2"),
+    ]
+    assert advise(1e-3, variants, noisy=False).text == (
+        "tolerance 1e-3: tuned (time step 0.2), 0.1 s of CPU, error 2.0e-04; "
+        "by the scene file alone: plain, 0.5 s of CPU, error 1.0e-04"
+    )
+    assert advise(1e-5, variants, noisy=False).label == "slow"
+    missed = advise(1e-7, variants, noisy=False)
+    assert missed.text == "tolerance 1e-7: not reached by any setting tried (best 1.0e-06: slow)"
+    assert missed.label == ""
+
+
+def test_with_noise_an_error_counts_with_its_standard_error() -> None:
+    lucky = variant("lucky", 1e-6, 1.0, spread=5e-3)
+    assert advise(1e-2, [lucky], noisy=True).label == "lucky"
+    assert advise(1e-3, [lucky], noisy=True).text.endswith("(best 5.0e-03, by its noise: lucky)")
+    reference = {"displacement": Quantity(2.0, 0.003, "LU")}
+    found = judged(variant("a", math.nan, 1.0), {"displacement": Quantity(2.02, 0.004, "LU")}, reference, noisy=True)
+    assert found.error == pytest.approx(0.01)
+    assert found.spread == pytest.approx(0.0025)
+
+
+def test_a_variant_without_a_main_result_has_failed(make_scene: MakeScene) -> None:
+    force, none = Quantity(1.0, 0.1, "FU"), Quantity(0.0, 0.1, "LU")
+    reference = main_results(make_scene(), {"adhesion_force": force, "zero_load_radius": none, "preload": force})
+    assert list(reference) == ["adhesion_force"]
+    assert judged(variant("a", math.nan, 1.0), {}, reference, noisy=False).failure == "found no adhesion_force"
+
+
+def test_a_combination_takes_each_knob_at_its_coarsest_good_value() -> None:
+    scene = read_scene(SCENES / "pull_off.toml")
+    base = base_change(scene)
+    knobs = knobs_of(scene, settings_for(scene), base.chosen(base.scene(scene)))
+    errors = {500: 1e-1, 1000: 2e-3, 2000: 1e-4, 4000: 1e-6}
+    records = [variant(f"table of {n} points", error, 1.0, knob="table points") for n, error in errors.items()]
+    found = {label: (text, change.settings) for label, text, change in combinations(knobs, records, base)}
+    assert found["combined for 1e-2"] == ("table of 1000 points", (("table_points", 1000),))
+    assert found["combined for 1e-3"][1] == (("table_points", 2000),)
+    assert found["combined for 1e-5"][1] == (("table_points", 4000),)
+
+
+def test_effects_that_cannot_be_left_out_say_why() -> None:
+    changes, reasons = without_effects(read_scene(SCENES / "pull_off_dynamic.toml"))
+    assert set(changes) == {"neighbours", "horizontal"}
+    assert set(reasons) == {"interaction", "damping", "plate"}
+    assert "needed by a dynamic pull_off" in reasons["plate"]
+
+
+def record() -> CostRecord:
+    failed = VariantRecord("coarse", "table points", 500.0, failure="particles flew\napart")
+    good = variant(
+        "accuracy.tolerance = 0.01", 1e-4, 0.2, values={"adhesion_force": 1.5}, errors={"adhesion_force": 1e-4},
+        steps=70, memory_mb=61.0, total_s=0.4, scene_keys=("accuracy.tolerance=0.01",), settings={},
+    )  # fmt: skip
+    return CostRecord(
+        title="a pull-off", scene="pull_off", method="quasistatic", tolerance=1e-3,
+        effects=("interaction", "neighbours"), reference="quasistatic", reference_values={"adhesion_force": 1.5},
+        reference_uncertainties={"adhesion_force": 1e-9}, base="base", base_error=1e-8, repeats=3,
+        knobs=(
+            KnobRecord("tolerance", "of all", "smaller", 1e-3, False, Order(0.94, 0.04, 4)),
+            KnobRecord("method dynamic", "the other", "smaller", math.nan, False, None),
+        ),
+        variants=(good, failed),
+        effect_costs=(
+            EffectCost("interaction", 17.0, math.nan, math.nan, math.nan, 400, "interaction missing"),
+            EffectCost("neighbours", 17.0, 15.0, 1.133, 0.004, 400, "", {"adhesion_force": 6e-5}),
+        ),
+        left_out={"spacing": "it would change the physics"}, pareto=(good.label,),
+        advice=(Advice(1e-3, "tolerance 1e-3: take it", good.label, good.label),), versions={"lammps": "1"}, wall_s=9.0,
+    )  # fmt: skip
+
+
+def test_a_record_survives_its_file(tmp_path: Path) -> None:
+    (tmp_path / "cost.json").write_text(record().to_json(), encoding="utf-8")
+    assert read_record(tmp_path / "cost.json").to_json() == record().to_json()
+    assert read_record(tmp_path / "cost.json").variants[1].failure == "particles flew\napart"
+    assert read_record(tmp_path / "cost.json").knobs[0] == record().knobs[0]
+
+
+def test_the_table_has_a_row_for_every_variant_and_failures_a_reason() -> None:
+    rows = list(csv.DictReader(StringIO(csv_text(record()))))
+    assert list(rows[0]) == [*COLUMNS, "error_adhesion_force"]
+    assert (rows[0]["error"], rows[0]["lammps_cpu_s"], rows[0]["pareto"]) == ("0.0001", "0.2", "1")
+    assert (rows[1]["error"], rows[1]["failure"], rows[1]["runs"]) == ("", "particles flew apart", "0")
+
+
+def test_the_summary_and_the_readme_say_orders_costs_failures_and_advice() -> None:
+    text = "\n".join(summary(record()))
+    for words in (
+        "0.94 ± 0.04",
+        "1.133 ± 0.004",
+        "coarse: particles flew apart",
+        "take it",
+        "would change the physics",
+    ):
+        assert words in text
+    assert "| `neighbours` | 17.0 µs | 15.0 µs | 1.133 ± 0.004 | 5.0 ns | up to 6.0e-05 |" in effects_markdown(record())
+
+
+def test_a_report_is_three_files_and_a_figure_is_drawn_without_a_failed_variant(tmp_path: Path) -> None:
+    write_report(record(), tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {"cost.json", "cost.csv", "cost.png"}
+    assert (tmp_path / "cost.png").stat().st_size > 10_000
+
+
+def test_a_variant_that_fails_is_listed_and_does_not_stop_the_others(make_scene: MakeScene, tmp_path: Path) -> None:
+    scene = make_scene()
+    usual = settings_for(scene)
+    loose = replace(usual, force_tolerance=1e3)
+    ready = [Prepared("loose", scene, loose), Prepared("usual", scene, usual)]
+    done = measure(ready, tmp_path, repeats=2, workers=1, progress=Silent())
+    assert "not converged" in done["loose"].failure
+    assert not done["usual"].failure
+    assert len(done["usual"].cpu_runs) == 2
+    assert done["usual"].cpu_s > 0.0
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_table_of_the_readme_is_what_the_kept_record_says() -> None:
+    """Renew docs with `contact1d cost lammps_inputs/scenes/pull_off.toml`, then WRITE_DOCS=1 pytest this file."""
+    readme = ROOT / "README.md"
+    kept = effects_markdown(read_record(ROOT / "docs" / "cost.json"))
+    before, begin, rest = readme.read_text(encoding="utf-8").partition(BEGIN)
+    there, end, after = rest.partition(END)
+    if os.environ.get("WRITE_DOCS"):
+        readme.write_text(before + begin + kept + end + after, encoding="utf-8")
+        there = kept
+    assert begin
+    assert there == kept
+    assert (ROOT / "docs" / "cost.png").is_file()
+
+
+def contact1d(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "workflow.cli", *map(str, arguments)]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=300, check=False)
+
+
+def test_the_command_studies_a_scene_from_end_to_end(tmp_path: Path) -> None:
+    (tmp_path / "tiny.toml").write_text(TINY, encoding="utf-8")
+    done = contact1d("cost", "tiny.toml", "--repeats", "1", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "tolerance 1e-3: " in done.stdout
+    assert "gave no numbers" in done.stdout  # the shortest chains are too short
+    folder = tmp_path / "costs" / "tiny"
+    assert {path.name for path in folder.iterdir()} == {"cost.json", "cost.csv", "cost.png"}
+    found = read_record(folder / "cost.json")
+    assert {"tolerance", "chain length", "convergence threshold", "spacing"} <= {knob.name for knob in found.knobs}
+    assert found.pareto
+    assert [one.name for one in found.effect_costs] == ["neighbours"]
+    assert found.effect_costs[0].without_us > 0.0
+    assert json.loads((folder / "cost.json").read_text(encoding="utf-8"))["reference"].startswith("quasistatic")
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["pull_off.toml", "--set", "bodies.spacing=-1"], "bodies.spacing"),
+        (["pull_off.toml", "--without", "interaction"], "interaction"),
+        (["nowhere.toml"], "no such file"),
+    ],
+)
+def test_a_wrong_scene_is_told_and_nothing_is_written(options: list[str], words: str, tmp_path: Path) -> None:
+    name, *more = options
+    done = contact1d("cost", SCENES / name, *more, cwd=tmp_path)
+    assert done.returncode == 2, done.stdout
+    assert words in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,76 @@
+"""A variant of a scene: scene keys, effects left out, and fields of the settings, which add up.
+
+base + one knob's change = a variant;  base + several = a combination
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from potentials.table import Table
+from workflow.scene import FlatPunch, Scene, scene_from_dict
+from workflow.scene.tables import TIMED
+from workflow.settings import Settings, settings_for
+
+BASE_TOLERANCE = 1e-5
+"""Of the base of a quasistatic scene; in time the scene's own is taken, since time costs by the tolerance."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """What makes a variant of a scene.
+
+    Attributes:
+        overrides: "table.key=value", as `--set` takes them.
+        without: effects left out.
+        settings: (field of `Settings`, value) set after the rules have chosen; "table_points" sets the table's points.
+    """
+
+    overrides: tuple[str, ...] = ()
+    without: tuple[str, ...] = ()
+    settings: tuple[tuple[str, float], ...] = ()
+
+    def __add__(self, later: Change) -> Change:
+        """Both; where they meet, the later one prevails."""
+        fields = dict(self.settings) | dict(later.settings)
+        left = tuple(dict.fromkeys(self.without + later.without))
+        return Change(self.overrides + later.overrides, left, tuple(fields.items()))
+
+    def scene(self, scene: Scene) -> Scene:
+        """The changed scene. Raises SceneError where it is none."""
+        return scene_from_dict(scene, self.overrides, self.without)
+
+    def chosen(self, scene: Scene) -> Settings:
+        """The settings of the changed `scene`. Raises SettingsError where it has none."""
+        settings = settings_for(scene)
+        fields: dict[str, object] = dict(self.settings)
+        points = fields.pop("table_points", None)
+        if points is not None and settings.law is not None:
+            fields["table"] = Table(settings.law, settings.cutoff, int(dict(self.settings)["table_points"]))
+        return replace(settings, **fields)  # type: ignore[arg-type]
+
+
+def base_change(scene: Scene) -> Change:
+    """Much more exact than the scene (in time: as exact), on a chain and with a cutoff that are long enough."""
+    tolerance = scene.accuracy.tolerance
+    if scene.method == "quasistatic":
+        tolerance = min(BASE_TOLERANCE, tolerance)
+    return at_tolerance(scene, tolerance)
+
+
+def at_tolerance(scene: Scene, tolerance: float) -> Change:
+    """The tolerance, and nothing numerical that the scene fixed by itself."""
+    overrides = [f"accuracy.tolerance={tolerance!r}"]
+    if not isinstance(scene.bodies.profile, FlatPunch):
+        overrides.append("bodies.particles=auto")
+    if scene.interaction is not None and scene.interaction.attraction is not None:
+        overrides.append("interaction.cutoff=auto")
+    return Change(tuple(overrides))
+
+
+def with_method(scene: Scene, method: str) -> Change:
+    """The scene with the other method: what exists in time only goes, or comes as far as the experiment needs it."""
+    if method == "quasistatic":
+        return Change(("experiment.method=quasistatic",), tuple(name for name in TIMED if name in scene.effects))
+    needed = ["damping.coefficient=auto"] + (["plate.mass=auto"] if scene.experiment.kind != "path" else [])
+    return Change(("experiment.method=dynamic", *needed))

@@ -1,0 +1,212 @@
+"""The numerical knobs of a scene: what can be turned without changing the physics, the values to try, and how.
+
+They are turned one at a time from a base that is much more exact than the scene asks for (`change.base_change`), so
+that an error belongs to the knob.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from workflow.cost.change import Change, at_tolerance, with_method
+from workflow.scene import FlatPunch, Scene
+from workflow.scene.experiments import Span
+from workflow.settings import Settings, settings_for
+
+TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+TOLERANCE_FACTORS = (8.0, 4.0, 2.0, 1.0, 0.5)
+"""Of a scene in time, over its own."""
+OTHER_METHOD = {"dynamic": (1e-2, 3e-3), "quasistatic": (1e-1, 1e-2, 1e-3, 1e-4)}
+"""Tolerances of the method that the scene does not have."""
+TABLE_POINTS = (500, 1_000, 2_000, 4_000, 8_000, 16_000)
+CUTOFF_SHARES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+"""Force at the cutoff over the law's own."""
+CHAIN_FACTORS = (0.6, 0.7, 0.8, 0.9)
+"""Over the length that is automatic for the scene's tolerance."""
+THRESHOLDS = (1e-4, 1e-5, 1e-6, 1e-7)
+"""Norm of the residual forces over the force scale."""
+INCREMENT_FACTORS = (4.0, 2.0, 1.0, 0.5)
+STEP_FACTORS = (8.0, 4.0, 2.0, 1.0, 0.5)
+DAMPING_FACTORS = (0.25, 0.5, 1.0, 2.0, 4.0)
+SPACING_FACTORS = (4.0, 2.0, 1.0, 0.5, 0.125)
+
+
+@dataclass(frozen=True)
+class Level:
+    """One value of a knob; `label` says it with its unit."""
+
+    value: float
+    label: str
+    change: Change
+
+
+@dataclass(frozen=True)
+class Knob:
+    """Something that costs time and buys accuracy.
+
+    Attributes:
+        name: one word or two.
+        meaning: of its value, with the unit.
+        finer: which values are the more exact ones.
+        levels: to try.
+        own: the value that the scene has, by itself or by the rules; NaN where there is no such.
+        has_order: whether its error is expected to be a power of the value.
+        own_reference: whether its errors are against its own finest level, since the reference does not have it.
+    """
+
+    name: str
+    meaning: str
+    finer: Literal["larger", "smaller"]
+    levels: tuple[Level, ...]
+    own: float
+    has_order: bool = True
+    own_reference: bool = False
+
+
+def knobs_of(scene: Scene, own: Settings, base: Settings) -> tuple[Knob, ...]:
+    """The knobs that a scene has; `own` and `base` are the settings of the scene as it is and of the base."""
+    found = [_tolerance(scene), *_law(scene, own), *_chain(scene, own)]
+    if scene.method == "quasistatic":
+        found += [_threshold(own)]
+    else:
+        found += [_time_step(own), _damping(own)]
+    found += [*_increment(scene, own, base), *_method(scene), *_spacing(scene)]
+    return tuple(found)
+
+
+def left_out(scene: Scene) -> dict[str, str]:
+    """Knobs that one could think of and that are not turned, each with the reason."""
+    reasons = {}
+    if scene.interaction is not None:
+        reasons["table style"] = "decks have one style, spline"
+        if scene.interaction.attraction is None:
+            reasons["cutoff"] = "without attraction displacements count from the cutoff, so it is physics"
+    if scene.noise is not None:
+        reasons["thermostat scheme"] = "decks have one scheme, fix langevin with fix nve"
+    if not _keeps_physics(scene):
+        reasons["spacing"] = (
+            "a particle feels several opposite ones, and no scaling of the amplitudes keeps their joint force at "
+            "another spacing"
+            if scene.interaction is not None
+            else "noise of a particle belongs to its spacing"
+        )
+    if isinstance(scene.bodies.profile, FlatPunch):
+        reasons["chain length"] = "a flat punch is as long as it is wide"
+    if scene.noise is not None or scene.experiment.kind == "slide":
+        reasons["method"] = "what is asked for exists in time only"
+    return reasons
+
+
+def _tolerance(scene: Scene) -> Knob:
+    own = scene.accuracy.tolerance
+    values: tuple[float, ...] = TOLERANCES
+    if scene.method == "dynamic":
+        values = tuple(min(own * factor, 0.1) for factor in TOLERANCE_FACTORS)
+    levels = [Level(t, f"accuracy.tolerance = {t:g}", at_tolerance(scene, t)) for t in dict.fromkeys(values)]
+    return Knob("tolerance", "accuracy.tolerance, which sets all others", "smaller", tuple(levels), own)
+
+
+def _law(scene: Scene, own: Settings) -> Iterator[Knob]:
+    if own.table is None or own.law is None or scene.interaction is None:
+        return
+    points = [Level(n, f"table of {n} points", Change(settings=(("table_points", n),))) for n in TABLE_POINTS]
+    yield Knob("table points", "points of the spline table over r²", "larger", tuple(points), own.table.points)
+    if scene.interaction.attraction is None:
+        return
+    levels = []
+    for share in CUTOFF_SHARES:
+        cutoff = own.law.cutoff_for(share)
+        change = Change((f"interaction.cutoff={cutoff!r}",))
+        levels.append(Level(share, f"cutoff {cutoff:.3g} LU", change))
+    share = math.exp(-(own.cutoff - own.law.force_free_distance()) / own.law.longest_range)
+    yield Knob("cutoff", "force at the cutoff over the law's own", "smaller", tuple(levels), share)
+
+
+def _chain(scene: Scene, own: Settings) -> Iterator[Knob]:
+    if isinstance(scene.bodies.profile, FlatPunch):
+        return
+    automatic = settings_for(at_tolerance(scene, scene.accuracy.tolerance).scene(scene)).particles
+    counts = dict.fromkeys(max(4, 2 * round(0.5 * factor * automatic)) for factor in CHAIN_FACTORS)
+    levels = [Level(n, f"chain of {n} particles", Change((f"bodies.particles={n}",))) for n in counts]
+    # The tail of the pressure falls exponentially where a cutoff ends it, algebraically where springs carry it on.
+    yield Knob("chain length", "particles per body", "larger", tuple(levels), own.particles, has_order=False)
+
+
+def _threshold(own: Settings) -> Knob:
+    levels = [
+        Level(s, f"residual {s:.0e}", Change(settings=(("force_tolerance", s * own.force_scale),))) for s in THRESHOLDS
+    ]
+    value = own.force_tolerance / own.force_scale
+    meaning = "norm of the residual forces over the force scale"
+    return Knob("convergence threshold", meaning, "smaller", tuple(levels), value)
+
+
+def _time_step(own: Settings) -> Knob:
+    steps = [factor * own.time_step for factor in STEP_FACTORS]
+    levels = [Level(dt, f"time step {dt:.3g} TU", Change(settings=(("time_step", dt),))) for dt in steps]
+    return Knob("time step", "time step [TU]", "smaller", tuple(levels), own.time_step)
+
+
+def _damping(own: Settings) -> Knob:
+    values = [factor * own.damping for factor in DAMPING_FACTORS]
+    levels = [Level(c, f"damping {c:.3g} FU·TU/LU", Change((f"damping.coefficient={c!r}",))) for c in values]
+    return Knob("damping", "damping of a particle [FU·TU/LU]", "smaller", tuple(levels), own.damping, has_order=False)
+
+
+def _increment(scene: Scene, own: Settings, base: Settings) -> Iterator[Knob]:
+    experiment = scene.experiment
+    if experiment.kind == "path":
+        if not isinstance(experiment.displacements, Span):
+            return
+        counts = dict.fromkeys(max(1, round(experiment.displacements.steps / f)) for f in INCREMENT_FACTORS)
+        rows = [Level(n, f"{n} increments", Change((f"experiment.displacements.steps={n}",))) for n in counts]
+        own_count = experiment.displacements.steps
+        yield Knob("load increment", "increments of a leg", "larger", tuple(rows), own_count, own_reference=True)
+    elif scene.method == "quasistatic":
+        fields = ("smooth_step" if own.is_smooth else "displacement_step", "longest_move")
+        levels = [
+            Level(
+                f, f"{f:g} × the increment", Change(settings=tuple((name, f * getattr(base, name)) for name in fields))
+            )
+            for f in INCREMENT_FACTORS
+        ]
+        yield Knob("load increment", "increment over the automatic one", "smaller", tuple(levels), 1.0, has_order=False)
+
+
+def _method(scene: Scene) -> Iterator[Knob]:
+    if scene.noise is not None or scene.experiment.kind == "slide":
+        return
+    other = "dynamic" if scene.method == "quasistatic" else "quasistatic"
+    change = with_method(scene, other)
+    levels = [
+        Level(t, f"{other}, accuracy.tolerance = {t:g}", at_tolerance(scene, t) + change) for t in OTHER_METHOD[other]
+    ]
+    meaning = f"the other method, {other}, by its accuracy.tolerance"
+    yield Knob(f"method {other}", meaning, "smaller", tuple(levels), math.nan, has_order=False)
+
+
+def _keeps_physics(scene: Scene) -> bool:
+    """Whether springs alone carry the load: they scale with the spacing, unlike sums over pairs and thermal forces."""
+    return scene.interaction is None and scene.noise is None
+
+
+def _spacing(scene: Scene) -> Iterator[Knob]:
+    """Stiffness per length, and that of neighbour springs times length, are kept."""
+    if not _keeps_physics(scene) or isinstance(scene.bodies.profile, FlatPunch):
+        return
+    levels = []
+    for factor in SPACING_FACTORS:
+        spacing = factor * scene.bodies.spacing
+        overrides = [f"bodies.spacing={spacing!r}", f"bodies.mass={factor * scene.bodies.mass!r}"]
+        if scene.bodies.bulk_stiffness != "auto":
+            overrides.append(f"bodies.bulk_stiffness={factor * scene.bulk_stiffness!r}")
+        if scene.bodies.bulk_stiffness_tangential is not None:
+            overrides.append(f"bodies.bulk_stiffness_tangential={factor * scene.bodies.bulk_stiffness_tangential!r}")
+        if scene.neighbours is not None:
+            overrides.append(f"neighbours.stiffness={scene.neighbours.stiffness / factor!r}")
+        levels.append(Level(spacing, f"spacing {spacing:g} LU", Change(tuple(overrides))))
+    own = scene.bodies.spacing
+    yield Knob("spacing", "spacing [LU], same stiffness per length", "smaller", tuple(levels), own, own_reference=True)

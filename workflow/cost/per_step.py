@@ -1,0 +1,92 @@
+"""What each effect costs per step: the same number of timesteps with all effects and without one, turn by turn.
+
+A timestep evaluates every force once, and so does a step of a minimiser; reading tables and setting up is left out.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from statistics import median, stdev
+
+from workflow.cost.change import Change
+from workflow.cost.record import EffectCost
+from workflow.deck import Deck
+from workflow.engine import Engine, Session
+from workflow.experiments import write_system
+from workflow.scene import Scene, SceneError
+from workflow.settings import settings_for
+
+STEPS = 2_000
+TURNS = 7
+MEDIAN_ERROR = 1.25
+"""Standard error of a median over that of a mean."""
+
+
+def without_effects(scene: Scene) -> tuple[dict[str, Change], dict[str, str]]:
+    """How to leave out each effect that can be, by its name; and why others cannot."""
+    method = () if scene.experiment.kind == "slide" else (f"experiment.method={scene.method}",)
+    changes, reasons = {}, {}
+    for effect in scene.effects:
+        change = Change(method, (effect,))
+        try:
+            change.scene(scene)
+        except SceneError as error:
+            reasons[effect] = "; ".join(f"{problem.path} {problem.message}" for problem in error.problems)
+        else:
+            changes[effect] = change
+    return changes, reasons
+
+
+def effect_costs(scene: Scene, folder: Path, turns: int = TURNS) -> tuple[EffectCost, ...]:
+    """CPU time of a step with and without each effect; medians over `turns` (at least 2) blocks of STEPS steps."""
+    changes, reasons = without_effects(scene)
+    scenes = {"": scene} | {effect: change.scene(scene) for effect, change in changes.items()}
+    with ExitStack() as stack:
+        sessions = {
+            effect: stack.enter_context(_opened(changed, folder / f"step_{effect}"))
+            for effect, changed in scenes.items()
+        }
+        times = _interleaved(sessions, turns)
+    particles = settings_for(scene).particles * scene.chains
+    return tuple(
+        _cost(effect, times, particles) if effect in changes else _cost_of_all(effect, times, particles, reasons)
+        for effect in scene.effects
+    )
+
+
+def _cost(effect: str, times: Mapping[str, list[float]], particles: int) -> EffectCost:
+    ratios = [both / without for both, without in zip(times[""], times[effect], strict=True)]
+    error = MEDIAN_ERROR * stdev(ratios) / math.sqrt(len(ratios))
+    return EffectCost(effect, median(times[""]), median(times[effect]), median(ratios), error, particles)
+
+
+def _cost_of_all(
+    effect: str, times: Mapping[str, list[float]], particles: int, reasons: Mapping[str, str]
+) -> EffectCost:
+    none = math.nan
+    return EffectCost(effect, median(times[""]), none, none, none, particles, reasons[effect])
+
+
+@contextmanager
+def _opened(scene: Scene, folder: Path) -> Iterator[Session]:
+    """A session in which the scene stands at displacement 0, ready for timesteps."""
+    folder.mkdir(parents=True)
+    deck = Deck(scene, settings_for(scene))
+    write_system(deck, folder)
+    with Engine.session(folder) as session:
+        session.execute(deck.head, phase="setting up")
+        yield session
+
+
+def _interleaved(sessions: Mapping[str, Session], turns: int) -> dict[str, list[float]]:
+    """CPU time of a step [µs] in each turn of each session; the first block warms up."""
+    blocks: dict[str, list[float]] = {effect: [] for effect in sessions}
+    for _ in range(turns + 1):
+        for effect, session in sessions.items():
+            before = session.lammps_cpu_seconds
+            session.execute(f"run {STEPS}")
+            blocks[effect].append(1e6 * (session.lammps_cpu_seconds - before) / STEPS)
+    return {effect: times[1:] for effect, times in blocks.items()}
