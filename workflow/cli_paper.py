@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from workflow.identify import Identified, Target
     from workflow.progress import Progress
 
+ROW_FAILS = 1
 SCENE_IS_WRONG = 2
 RUN_FAILED = 3
 INTERRUPTED = 130
@@ -163,7 +164,8 @@ def reproduce(
     """Compute every quantitative statement of the paper and lay it beside the printed value and beside theory.
 
     Leaves reproduce.json, reproduce.html (open it in a browser), VALIDATION.md and the figures in the folder. Runs that
-    are there already are not made again, so that a second call, or one after an interruption, goes on.
+    are there already are not made again, so that a second call, or one after an interruption, goes on; with `--only`
+    the other studies of an earlier record stay in it. Exit code 1: a row fails.
     """
     from workflow.campaign import FolderError, RunError
     from workflow.identify import IdentifyError
@@ -200,3 +202,5 @@ def reproduce(
             if check.verdict == "FAIL":
                 typer.secho(f"  FAIL {check.name}: {check.value:.6g} {check.unit}, {check.reference:.6g}", fg="red")
     typer.echo(f"\n{record.passed} of {len(record.checks)} rows pass, in {record.wall_s:.0f} s; {out / PAGE}")
+    if record.passed < len(record.checks):
+        raise typer.Exit(ROW_FAILS)

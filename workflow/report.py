@@ -54,7 +54,8 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
         doubts["tolerance"] = (
             f"{coarse}, which is more than the tolerance of {scene.accuracy.tolerance:g} that was asked for. A radius "
             "is known no better than the spacing lets it, and by the dynamic method no better than the bracket of the "
-            'tension: take a smaller bodies.spacing at the same stiffness and energy per length, or method = "quasistatic"'
+            "tension: take a smaller bodies.spacing at the same stiffness and energy per length, or method = "
+            '"quasistatic"'
         )
     if missing := unfound(scene, outcome.quantities):
         doubts["no_units"] = (

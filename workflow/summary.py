@@ -19,6 +19,8 @@ NAMES = {
 }
 PREFIXES = {-5: "f", -4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G", 4: "T"}
 """Of SI units, by powers of 1000."""
+EXACT = 1e-9
+"""A relative uncertainty below it, as of a unit that was given, is left out."""
 COLUMNS = 64
 ROWS = 9
 BLOCK, EMPTY, AXIS = "█", " ", "─"
@@ -38,13 +40,15 @@ def quantities(results: Mapping[str, Any]) -> list[str]:
 
 
 def in_si(entry: Mapping[str, Any]) -> str:
-    """Value, unit with a prefix, and the uncertainty as a share: `39.028 µN ± 1.2e-04`."""
-    value, unit = float(entry["value"]), entry["unit"]
-    share = f" ± {entry['uncertainty'] / abs(value):.1e}" if value and entry["uncertainty"] else ""
+    """Value ± uncertainty with a prefix: `39.028 ± 0.012 µN`."""
+    value, uncertainty, unit = float(entry["value"]), float(entry["uncertainty"]), entry["unit"]
     power = math.floor(math.log10(abs(value)) / 3) if value else 0
-    if unit in ("N", "m", "Pa") and min(PREFIXES) <= power <= max(PREFIXES):
-        return f"{value / 1000.0**power:.5g} {PREFIXES[power]}{unit}{share}"
-    return f"{value:.5g} {unit}{share}"
+    if unit not in ("N", "m", "Pa") or not min(PREFIXES) <= power <= max(PREFIXES):
+        power = 0
+    scale = 1000.0**power
+    spread = uncertainty / scale
+    number = rounded(value / scale, spread) if spread > EXACT * abs(value) / scale else f"{value / scale:.5g}"
+    return f"{number} {PREFIXES[power]}{unit}"
 
 
 def rounded(value: float, uncertainty: float) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from workflow.experiments.marks import crossing, largest_tension, smooth_crossing
+from workflow.experiments.marks import crossing, largest_tension, rival_excess, smooth_crossing
 
 PARABOLA = 1e-12  # round-off of a polynomial fit in doubles
 SIXTH = 0.5  # the constant of the interpolation error of this function, generously
@@ -67,6 +67,20 @@ def test_a_smooth_crossing_at_a_jump_or_an_end_is_the_straight_lines() -> None:
     assert smooth_crossing(*jump, 0.0) == pytest.approx(crossing(*jump, 0.0)[1], abs=0.5)
     end = ([2.0, 1.0, 0.0], [3.0, 1.0, -1.0])
     assert smooth_crossing(*end, 0.0) == crossing(*end, 0.0)[1]
+
+
+def test_a_tooth_beside_the_highest_row_may_be_higher_by_its_last_rise() -> None:
+    places = falling(np.arange(9.0))
+    tension = [0.0, 1.0, 1.5, 0.5, 1.2, 1.48, 0.5, 0.2, 0.0]
+    peak = largest_tension(places, [-t for t in tension])
+    assert peak.tension == 1.5
+    assert rival_excess(places, [-t for t in tension], peak) == pytest.approx(1.48 + 0.28 - peak.smooth)
+    assert rival_excess(places[:4], [-t for t in tension[:4]], peak) == 0.0
+
+
+def test_places_that_all_but_coincide_get_no_polynomial() -> None:
+    places, force = [1.0, 1.0 - 1e-9, 0.0, -1.0], [2.0, 1.0, -1.0, -2.0]
+    assert smooth_crossing(places, force, 0.0) == crossing(places, force, 0.0)[1]
 
 
 def test_a_crossing_lies_where_the_straight_line_passes_the_level() -> None:

@@ -253,3 +253,30 @@ def test_scene_of_a_run_folder_reads_back_without_the_file(tmp_path: Path) -> No
     assert scene_from_dict(finished.results["scene"]) == scene
     assert scene_from_dict(tomllib.loads(scene_to_toml(again))) == scene
     assert "p.csv" not in (finished.folder / "scene.toml").read_text()
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("x,r,z\n9,0,0\n9,1,0.5\n9,2,2\n9,3,4.5\n", ([0.0, 1.0, 2.0, 3.0], [0.0, 0.5, 2.0, 4.5])),
+        ("z (nm); r (nm)\n0;0\n0.5;1\n2;2\n4.5;3\n", ([0.0, 1.0, 2.0, 3.0], [0.0, 0.5, 2.0, 4.5])),
+        ("radius\theight\n0\t0\n1\t0.5\n2\t2\n3\t4.5\n", ([0.0, 1.0, 2.0, 3.0], [0.0, 0.5, 2.0, 4.5])),
+    ],
+)
+def test_columns_are_found_by_their_names(text: str, expected: tuple[list[float], list[float]], tmp_path: Path) -> None:
+    (tmp_path / "p.csv").write_text(text, encoding="utf-8")
+    assert read_profile(tmp_path / "p.csv", 1.0) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("a,b,c\n0,0,0\n", "the columns are named a, b, c"),
+        ("r,height\n0,0\n", "the columns are named r, height"),
+        ("r;z\n0,0;0,0\n0,5;1,5\n", "write it with a decimal point"),
+    ],
+)
+def test_names_that_say_nothing_and_decimal_commas_are_refused(text: str, words: str, tmp_path: Path) -> None:
+    (tmp_path / "p.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(ProfileFileError, match=words):
+        read_profile(tmp_path / "p.csv", 1.0)

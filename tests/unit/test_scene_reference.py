@@ -17,6 +17,7 @@ HEAD = """# Every key of a scene
 
 Made from the tables of `workflow/scene`. Units: LU length, FU force, MU mass, TU = √(MU·LU/FU), k_BT in FU·LU.
 A table that is absent adds nothing to the deck; tables that do not fit together are reported with what to do.
+Above the first table stands `title = "…"`, one line of text, required.
 """
 TABLES = {
     "bodies": scenes.Bodies,

@@ -30,6 +30,8 @@ class Peak:
     position: float
 
 
+NEAREST = 1e-5
+"""Distance of two places over that of the outermost ones below which no polynomial is put through them."""
 REAL = 1e-9
 """Imaginary part up to which a root counts as real."""
 JUMP = 3.0
@@ -63,12 +65,30 @@ def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Pe
 def _vertex(d: Array, tension: Array, top: float) -> tuple[float, float]:
     """Place and value of the maximum of the polynomial through all points, between the middle one's neighbours."""
     middle = len(d) // 2
+    if not _apart(d):
+        return float(d[middle]), top
     scale = float(np.ptp(d))
     x = (d - d[middle]) / scale
     polynomial = np.polynomial.Polynomial.fit(x, tension - top, len(d) - 1, domain=(-1, 1), window=(-1, 1))
     inside = _real_roots(polynomial.deriv(), float(x[middle + 1]), float(x[middle - 1]))
     best = max([0.0, *inside], key=lambda place: float(polynomial(place)))
     return float(d[middle]) + scale * best, top + max(0.0, float(polynomial(best)))
+
+
+def rival_excess(displacement: Sequence[float], force: Sequence[float], peak: Peak) -> float:
+    """By how much another tooth of a sawtooth may be higher than the one that was looked at closely [FU], 0 if by none.
+
+    Each tooth rises by less than its last rise beyond its highest row. Displacements fall.
+    """
+    tension = -np.asarray(force)
+    inner = np.arange(1, len(tension) - 1)
+    teeth = inner[(tension[inner] > tension[inner - 1]) & (tension[inner] > tension[inner + 1])]
+    teeth = teeth[np.abs(teeth - peak.index) > 1]
+    return float(np.max(2.0 * tension[teeth] - tension[teeth - 1] - peak.smooth, initial=0.0))
+
+
+def _apart(d: Array) -> bool:
+    return float(np.abs(np.diff(d)).min()) > NEAREST * float(np.ptp(d))
 
 
 def _real_roots(polynomial: np.polynomial.Polynomial, low: float, high: float) -> list[float]:
@@ -114,6 +134,8 @@ def smooth_crossing(displacement: Sequence[float], force: Sequence[float], level
     if not 1 <= index < len(force) - 2:
         return place
     d = np.asarray(displacement[index - 1 : index + 3])
+    if not _apart(d):
+        return place
     over = np.asarray(force[index - 1 : index + 3]) - level
     x = (d - d[1]) / (d[2] - d[1])
     inside = _real_roots(np.polynomial.Polynomial.fit(x, over, 3, domain=(-1, 1), window=(-1, 1)), 0.0, 1.0)

@@ -51,6 +51,8 @@ class Outcome:
 
 END_SHARE_LIMIT = 1.0
 """Pressure at a chain's end over the largest one, per unit of tolerance, from which on the chain cuts the contact."""
+INSIDE = 0.5
+"""The same from which on the end of the chain is inside the contact."""
 TAIL = 10.0
 """Force of the tail beyond the cutoff, summed over particles, over the force at the cutoff times a particle's share."""
 RESIDUAL_LIMIT = 0.1
@@ -138,7 +140,8 @@ def _reaches_end(scene: Scene, profile: Profile) -> bool:
     pressure = profile.pressure
     if scene.interaction is not None and scene.interaction.attraction is not None:
         largest = float(pressure.min())
-        return largest < 0.0 and largest in (pressure[0], pressure[-1])
+        inside = end_pressure_share(profile) > INSIDE  # the chain is shorter than the compressed middle
+        return inside or (largest < 0.0 and largest in (pressure[0], pressure[-1]))
     return bool(max(pressure[0], pressure[-1]) > 0.0)
 
 

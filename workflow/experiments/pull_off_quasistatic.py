@@ -12,11 +12,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from workflow.deck import Phase
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import State
-from workflow.experiments.marks import Peak, largest_tension, smooth_crossing
+from workflow.experiments.marks import Peak, largest_tension, rival_excess, smooth_crossing
 from workflow.experiments.outcome import (
     Outcome,
     Quantity,
@@ -30,9 +31,12 @@ from workflow.experiments.pull_off_smooth import LATTICE, SmoothPass, critical_s
 from workflow.experiments.quasistatic import approach, separate
 from workflow.units import FORCE, LENGTH
 
+Array = NDArray[np.float64]
 MOST_PASSES = 8
 WINDOW_ROWS = 8
 """Rows on either side of the largest tension in a refined pass."""
+RIVAL = 0.05
+"""Teeth of the tension within this share of the largest are looked at more closely."""
 ZOOM = 0.25
 """Width of the window of one pass over that of the one before."""
 SHARE = 0.3
@@ -41,10 +45,11 @@ SHARE = 0.3
 
 @dataclass(frozen=True)
 class Pass:
-    """One whole schedule and its measured states; `wanted` is the preload F_D [FU]."""
+    """One whole schedule and its measured states; `wanted` is the preload F_D [FU], `refined` all but the first."""
 
     wanted: float
     phases: tuple[Phase, ...]
+    refined: bool
     loading: list[State]
     unloading: list[State]
 
@@ -54,9 +59,14 @@ class Pass:
         return self.loading[-1].force
 
     @property
+    def falling(self) -> list[State]:
+        """The states of the unloading, by falling displacement."""
+        return sorted(self.unloading, key=lambda state: -state.displacement)
+
+    @property
     def peak(self) -> Peak:
         """The largest tension while unloading."""
-        return largest_tension([s.displacement for s in self.unloading], [s.force for s in self.unloading])
+        return largest_tension([s.displacement for s in self.falling], [s.force for s in self.falling])
 
     @property
     def zero(self) -> State:
@@ -94,7 +104,8 @@ def pull_off_quasistatic(bench: Bench) -> Outcome:
         latest = _replay(bench, experiment.preload, _refined(before, experiment.preload, window))
         window *= ZOOM
         if _agree(bench, before, latest, experiment.preload, tolerance):
-            missed = abs(latest.peak.smooth - before.peak.smooth)
+            places, forces = zip(*((s.displacement, s.force) for s in latest.falling), strict=True)
+            missed = abs(latest.peak.smooth - before.peak.smooth) + rival_excess(places, forces, latest.peak)
             return _outcome(bench, latest, experiment.preload, missed)
     raise UntrustedError(
         f"the pull-off force still changes from {before.peak.tension:.6g} to {latest.peak.tension:.6g} FU after "
@@ -109,7 +120,7 @@ def _first(bench: Bench, preload: float) -> Pass:
         contact.begin("unloading", "displace")
         unloading = separate(contact, loading[-1].displacement)
         contact.finish()
-        return Pass(preload, contact.phases, loading, unloading)
+        return Pass(preload, contact.phases, False, loading, unloading)
 
 
 def _refined(known: Pass, preload: float, window: float) -> tuple[Phase, ...]:
@@ -119,7 +130,7 @@ def _refined(known: Pass, preload: float, window: float) -> tuple[Phase, ...]:
     loading = [d for d in climbed if d < deepest - 1e-9] + [deepest]
     zero = known.zero_load
     peak = known.peak.position
-    fine = peak + window * np.linspace(1.0, -1.0, 2 * WINDOW_ROWS)
+    fine = _window(known, peak, window)
     fine = fine[fine < zero - 1e-9]
     coarse = [s.displacement for s in known.unloading if not fine[-1] <= s.displacement <= fine[0]]
     falling = sorted({deepest, zero, peak, *coarse, *fine.tolist()}, reverse=True)
@@ -133,6 +144,18 @@ def _refined(known: Pass, preload: float, window: float) -> tuple[Phase, ...]:
         Phase(name, "displace", tuple((d,) for d in rows), state=name != "separating") for name, rows in parts.items()
     ]
     return (Phase("loading", "displace", tuple((d,) for d in loading)), *later)
+
+
+def _window(known: Pass, peak: float, window: float) -> Array:
+    """Displacements around the largest tension, falling. Where the tension has several teeth of nearly that height, as
+    particles let go one by one, a coarse pass can't tell which is the highest: the window then has all of them.
+    """
+    rivals = [s.displacement for s in known.unloading if -s.force >= (1.0 - RIVAL) * known.peak.tension]
+    step = window / WINDOW_ROWS
+    first, last = max(peak + window, *rivals), min(peak - window, *rivals)
+    if known.refined:
+        first, last = peak + window, peak - window
+    return np.asarray(first - step * np.arange(round((first - last) / step) + 1), dtype=np.float64)
 
 
 def _displacement_at(states: Sequence[State], force: float) -> float:
@@ -151,7 +174,7 @@ def _replay(bench: Bench, wanted: float, phases: tuple[Phase, ...]) -> Pass:
         for state in states:
             require_trust(contact.scene, contact.settings, state)
     climbed = len(phases[0].rows)
-    return Pass(wanted, phases, states[:climbed], states[climbed:])
+    return Pass(wanted, phases, True, states[:climbed], states[climbed:])
 
 
 def _agree(bench: Bench, before: Pass, latest: Pass, preload: float, tolerance: float) -> bool:

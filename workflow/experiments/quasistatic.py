@@ -31,7 +31,7 @@ def approach(contact: Contact, force: float, start: float, direction: int = 1) -
     Raises:
         UntrustedError: see `require_trust`; also where the wanted force cannot be held.
     """
-    scale = abs(force) if force != 0.0 else contact.settings.force_scale
+    scale = max(abs(force), contact.settings.force_scale)
     near = APPROACH * contact.scene.accuracy.tolerance * scale
     states = [measured(contact, start)]
     before, beyond = None, None

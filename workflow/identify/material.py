@@ -10,6 +10,10 @@ RESOLUTION = 28.5
 """Particles in a₀, unless the length unit is given: as in the first row of the paper's Table 1."""
 COARSEST = 8.0
 """Fewest particles in a₀ that a length unit must leave."""
+FINEST = 2000.0
+"""Most particles in a₀."""
+WIDEST = 0.6
+"""Largest a₀ over the radius of the sphere: beyond it neither a parabola nor a half space is meant."""
 PRELOAD_SHARE = 0.7
 """Preload of a scene for a material over its F_A."""
 SHAPE = {"amplitudes": 2.0, "ranges": 2.0}
@@ -41,6 +45,18 @@ def material_scene(
         raise IdentifyError(
             f"a length unit of {unit:.4g} m leaves {target.zero_load_radius / unit:.2g} particles in the zero-load "
             f"radius of {target.zero_load_radius:.4g} m: at most {coarsest:.4g} m leaves {COARSEST:g}"
+        )
+    if unit < target.zero_load_radius / FINEST:
+        raise IdentifyError(
+            f"a length unit of {unit:.4g} m puts {target.zero_load_radius / unit:.2g} particles into the zero-load "
+            f"radius of {target.zero_load_radius:.4g} m: at least {target.zero_load_radius / FINEST:.4g} m leaves "
+            f"{FINEST:g}"
+        )
+    if target.zero_load_radius > WIDEST * radius:
+        raise IdentifyError(
+            f"the zero-load radius of {target.zero_load_radius:.4g} m is {target.zero_load_radius / radius:.2g} of the "
+            f"sphere's: JKR is for contacts small beside the sphere, here up to {WIDEST:g} of it. A larger radius, a "
+            "larger contact modulus or a smaller surface energy has that"
         )
     force_unit = 2.0 * contact_modulus * unit**2
     wanted = Target(target.adhesion_force / force_unit, target.zero_load_radius / unit)

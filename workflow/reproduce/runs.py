@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import json
 import multiprocessing
+import os
+import signal
+import threading
+import time
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import suppress
@@ -22,6 +26,9 @@ from workflow.report import RESULTS, versions
 from workflow.scene import Scene
 
 Array = NDArray[np.float64]
+WATCH = 1.0
+"""Seconds between two looks of a worker at its parent."""
+TABLES = ("curve.csv", "profile.csv")
 
 
 @dataclass(frozen=True)
@@ -72,11 +79,11 @@ def finish(scenes: Mapping[str, Scene], folder: Path, workers: int, progress: Pr
         workers: runs at a time.
         progress: is told of each run that ends, or is there.
     """
-    done = {name: found for name, scene in scenes.items() if (found := _there(scene, folder / name))}
+    done = {name: found for name, scene in scenes.items() if (found := there(scene, folder / name))}
     missing = {name: scene for name, scene in scenes.items() if name not in done}
     progress.advance(len(done))
     for name in _run_all(missing, folder, workers):
-        found = _there(missing[name], folder / name)
+        found = there(missing[name], folder / name)
         assert found is not None
         done[name] = found
         progress.advance(1)
@@ -87,7 +94,7 @@ def _run_all(scenes: Mapping[str, Scene], folder: Path, workers: int) -> Iterato
     if not scenes:
         return
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(min(workers, len(scenes)), mp_context=context) as executor:
+    with ProcessPoolExecutor(min(workers, len(scenes)), context, _begin_worker, (os.getpid(),)) as executor:
         futures = {executor.submit(_run_one, scene, folder / name): name for name, scene in scenes.items()}
         try:
             for future in as_completed(futures):
@@ -95,7 +102,21 @@ def _run_all(scenes: Mapping[str, Scene], folder: Path, workers: int) -> Iterato
                 yield futures[future]
         except BaseException:
             executor.shutdown(wait=False, cancel_futures=True)
+            for child in multiprocessing.active_children():
+                child.terminate()  # the runs under way are not finished first; their folders are made anew next time
             raise
+
+
+def _begin_worker(parent: int) -> None:
+    """Leave Ctrl-C to the parent, and end when it is gone, however it went."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(WATCH)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 def _run_one(scene: Scene, folder: Path) -> None:
@@ -103,14 +124,15 @@ def _run_one(scene: Scene, folder: Path) -> None:
         run(scene, folder, figures=False)
 
 
-def _there(scene: Scene, folder: Path) -> Finished | None:
+def there(scene: Scene, folder: Path) -> Finished | None:
     """The run in `folder`, if it is of this scene and of these versions, and whole."""
     try:
         results = json.loads((folder / RESULTS).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
     same = bool(results.get("scene") == scene.model_dump(mode="json", by_alias=True, exclude_none=True))
-    return Finished(folder, results) if same and results.get("versions") == versions() else None
+    whole = results.get("status") == "failed" or all((folder / name).is_file() for name in TABLES)
+    return Finished(folder, results) if same and whole and results.get("versions") == versions() else None
 
 
 def branch(finished: Finished) -> tuple[Array, Array, Array, Array]:

@@ -5,15 +5,17 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
+from workflow.campaign import FolderError
 from workflow.progress import Progress, Silent
 from workflow.report import versions, write_whole
 from workflow.reproduce import eq3, fig4, fig6, fig7, fig8, table1
 from workflow.reproduce.markdown import validation_markdown
 from workflow.reproduce.page import html_page
 from workflow.reproduce.paper import calibrated
-from workflow.reproduce.record import RECORD, Record, StudyRecord
+from workflow.reproduce.record import RECORD, Record, StudyRecord, read_record
 from workflow.reproduce.runs import Finished, finish
 from workflow.reproduce.study import Scenes, Study
 from workflow.scene import Scene
@@ -57,6 +59,7 @@ def reproduce(
 
     Raises:
         KeyError: a name that no study has.
+        FolderError: the folder holds something else.
         IdentifyError, RunError: the paper's scene could not be identified.
     """
     started = time.perf_counter()
@@ -64,6 +67,8 @@ def reproduce(
     chosen = [study for study in STUDIES if study.name in (only or NAMES)]
     if unknown := set(only) - set(NAMES):
         raise KeyError(", ".join(sorted(unknown)))
+    if folder.is_dir() and any(folder.iterdir()) and not any((folder / name).exists() for name in ("runs", RECORD)):
+        raise FolderError(f"{folder} holds files that are not of a reproduction; choose another folder with --out")
     folder.mkdir(parents=True, exist_ok=True)
     progress.phase("identifying the interaction")
     paper = calibrated(folder / "runs" / "identification")
@@ -74,11 +79,22 @@ def reproduce(
     done = finish(needed, folder / "runs", workers or cores(), progress)
     progress.phase("judging")
     records = tuple(_judged(study, paper, done, folder) for study in chosen)
-    record = Record(records, versions(), time.perf_counter() - started)
+    record = Record(_merged(folder, records), versions(), time.perf_counter() - started)
     write_whole(folder / RECORD, record.to_json())
     write_whole(folder / PAGE, html_page(record, folder))
     write_whole(folder / VALIDATION, validation_markdown(record))
     return record
+
+
+def _merged(folder: Path, records: tuple[StudyRecord, ...]) -> tuple[StudyRecord, ...]:
+    """The studies just done, and those of an earlier record of the same versions, in the paper's order."""
+    known = {}
+    with suppress(OSError, ValueError, KeyError, TypeError):
+        earlier = read_record(folder / RECORD)
+        if earlier.versions == versions():
+            known = {study.name: study for study in earlier.studies}
+    known |= {study.name: study for study in records}
+    return tuple(known[name] for name in NAMES if name in known)
 
 
 def _longest_first(studies: Sequence[Study]) -> list[Study]:

@@ -33,11 +33,13 @@ def read_profile(path: Path, scale: float) -> tuple[list[float], list[float]]:
     except ValueError:
         raise ProfileFileError("is no name that a file can have") from None
     rows = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
+    columns = (0, 1)
     if rows and not any(_number(cell) is not None for cell in _cells(rows[0][1])):
+        columns = _columns(path, *rows[0])
         rows = rows[1:]
     if not rows:
         raise ProfileFileError(f"{path} has no points")
-    points = [_point(path, place, line) for place, line in rows]
+    points = [_point(path, place, line, columns) for place, line in rows]
     if len(points) < FEWEST:
         raise ProfileFileError(f"{path} must have at least {FEWEST} points, not {len(points)}")
     radii, heights = [scale * r for r, _ in points], [scale * z for _, z in points]
@@ -46,17 +48,34 @@ def read_profile(path: Path, scale: float) -> tuple[list[float], list[float]]:
     return radii, heights
 
 
-def _point(path: Path, place: int, line: str) -> tuple[float, float]:
+def _columns(path: Path, place: int, line: str) -> tuple[int, int]:
+    """Where r and z stand by their names; two columns of other names are r and z in this order."""
+    names = [(re.match(r"\w+", cell.strip().lower()) or [""])[0] for cell in _cells(line)]
+    if "r" in names and "z" in names:
+        return names.index("r"), names.index("z")
+    if len(names) == 2 and not {"r", "z"} & set(names):
+        return 0, 1
+    raise ProfileFileError(
+        f"{path.name}, line {place}: the columns are named {', '.join(names)}; name the radius r and the height z, or "
+        "leave the names out and have these two columns in this order"
+    )
+
+
+def _point(path: Path, place: int, line: str, columns: tuple[int, int]) -> tuple[float, float]:
     cells = _cells(line)
     at = f"{path.name}, line {place}"
-    if len(cells) < 2:
-        raise ProfileFileError(f"{at}: {line.strip()[:40]!r} is one column; r and z are needed")
+    if len(cells) <= max(columns):
+        many = "is one column" if len(cells) == 1 else f"has {len(cells)} columns"
+        raise ProfileFileError(f"{at}: {line.strip()[:40]!r} {many}; r and z are needed")
     values = []
-    for name, cell in zip("rz", cells, strict=False):
+    for name, cell in zip("rz", (cells[column] for column in columns), strict=True):
         value = _number(cell)
         if value is None:
             what = f"{cell[:20]!r} is no number" if cell.strip() else "is empty"
-            raise ProfileFileError(f"{at}: {name} {what}; leave out a line that has no value, or interpolate it")
+            hint = "leave out a line that has no value, or interpolate it"
+            if _number(cell.replace(",", ".")) is not None:
+                hint = "write it with a decimal point"
+            raise ProfileFileError(f"{at}: {name} {what}; {hint}")
         if not math.isfinite(value):
             raise ProfileFileError(f"{at}: {name} is {cell.strip()}; leave out a line that has no value")
         values.append(value)
