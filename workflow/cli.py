@@ -76,6 +76,9 @@ def run(
 ) -> None:
     """Run a scene and print its numbers, each with its uncertainty."""
     checked = _read(scene, set_, without)
+    from workflow.process import start_ahead
+
+    start_ahead()  # LAMMPS loads while numpy and the rest of the program do
     from workflow.campaign import FolderError, RunError
     from workflow.campaign import run as run_scene
     from workflow.progress import Silent, choose_progress

@@ -89,37 +89,41 @@ class ContactEstimate:
 
     def contact_force(self, displacement: float) -> float:
         """F(d) [FU], compression positive."""
-        half = self.half_width(displacement, self.gap[-1])
+        return float(self.contact_forces(np.asarray([displacement]))[0])
+
+    def contact_forces(self, displacements: Array) -> Array:
+        """F(d) [FU] at each of the displacements [LU], compression positive."""
+        half = self.half_widths(displacements, self.gap[-1])
         x = np.linspace(-half, half, CONTACT_POINTS)
-        per_particle = np.interp(self.rest + self.profile.height(x) - displacement, self.gap, self.force, right=0.0)
-        return float(np.trapezoid(per_particle, x)) / self.spacing
+        gap = self.rest + self.profile.height(x.ravel()).reshape(x.shape) - displacements
+        per_particle = np.interp(gap, self.gap, self.force, right=0.0)
+        return np.asarray(np.trapezoid(per_particle, x, axis=0)) / self.spacing
 
     def half_width(self, displacement: float, gap: float) -> float:
-        """Half-width [LU] within which the undeformed gap is below `gap` [LU] at this displacement [LU].
+        """`half_widths` at one displacement."""
+        return float(self.half_widths(np.asarray([displacement]), gap)[0])
+
+    def half_widths(self, displacements: Array, gap: float) -> Array:
+        """Half-widths [LU] within which the undeformed gap is below `gap` [LU] at these displacements [LU].
 
         At most the body's own.
         """
-        height = gap - self.rest + displacement
-        if height <= 0:
-            return self.spacing
-        reach = self.profile.reach
-        if reach < np.inf and float(self.profile.height(np.asarray([reach]))[0]) < height:
-            return reach
-        inner, outer = 0.0, min(self.spacing, reach)
-        while outer < reach and float(self.profile.height(np.asarray([outer]))[0]) < height:
-            inner, outer = outer, min(2 * outer, reach)
+        height, reach = gap - self.rest + displacements, self.profile.reach
+        inner, outer = np.zeros_like(height), np.full_like(height, min(self.spacing, reach))
+        while (short := (outer < reach) & (self.profile.height(outer) < height)).any():
+            inner[short], outer[short] = outer[short], np.minimum(2 * outer[short], reach)
         for _ in range(60):
             middle = 0.5 * (inner + outer)
-            if float(self.profile.height(np.asarray([middle]))[0]) < height:
-                inner = middle
-            else:
-                outer = middle
-        return outer
+            below = self.profile.height(middle) < height
+            np.copyto(inner, middle, where=below)
+            np.copyto(outer, middle, where=~below)
+        whole = reach < np.inf and self.profile.height(np.asarray([reach]))[0] < height
+        return np.where(height <= 0, self.spacing, np.where(whole, reach, outer))
 
     def pull_off_force(self) -> float:
         """Largest tension of the estimate [FU]; 0 without attraction."""
         places = np.linspace(self.rest - float(self.gap[-1]), self.rest, 400)
-        return max(0.0, -min(self.contact_force(float(d)) for d in places))
+        return max(0.0, -float(self.contact_forces(places).min()))
 
     def displacement_at(self, force: float) -> float:
         """Displacement [LU] at which F(d) reaches a compressive force [FU] ≥ 0."""

@@ -91,7 +91,7 @@ class WorkerProcess:
     """
 
     def __init__(self) -> None:
-        """Start a worker; LAMMPS is loaded at its first session."""
+        """Start a worker, which loads LAMMPS."""
         self._connection, theirs = Pipe()
         self._output = tempfile.TemporaryFile()  # noqa: SIM115 (open as long as the worker lives)
         with tempfile.TemporaryFile() as file:
@@ -209,6 +209,11 @@ def borrow() -> WorkerProcess:
                 return worker
             worker.kill()
     return WorkerProcess()
+
+
+def start_ahead() -> None:
+    """Start the worker that the next `borrow` will return, so that LAMMPS loads while the caller prepares."""
+    give_back(borrow())
 
 
 def give_back(worker: WorkerProcess) -> None:

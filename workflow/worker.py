@@ -18,6 +18,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
@@ -78,7 +79,7 @@ class Runner:
     """
 
     def __init__(self, board: memoryview) -> None:
-        """Start without an instance: the first `open` loads LAMMPS."""
+        """Start without an instance."""
         self.board = board
         self.library: tuple[Any, str] | None = None
         self.lammps: Any = None
@@ -222,6 +223,8 @@ def main(connection_fd: int, board_fd: int, parent: int) -> None:
     connection = Connection(connection_fd)
     runner = Runner(memoryview(mmap.mmap(board_fd, 16)).cast("q"))
     threading.Thread(target=watch, args=(runner, parent), daemon=True).start()
+    with suppress(RefusalError):  # the first `open` tells of it
+        runner.library = load_lammps()
     try:
         while True:
             verb, *arguments = connection.recv()
