@@ -129,7 +129,7 @@ def test_under_an_mpi_launcher_each_rank_has_a_worker(tmp_path: Path) -> None:
     process = script(tmp_path, "normal", (str(launcher), "-n", "2"))
     out, err = process.communicate(timeout=60)
     assert (process.returncode, err) == (0, "")
-    assert [line.split()[1] for line in sorted(out.splitlines())] == ["6.5", "6.5"]
+    assert out.split().count("6.5") == 2  # the launcher may mix the lines of two ranks
 
 
 def bare_python(folder: Path, *distributions: str) -> str:

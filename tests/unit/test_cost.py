@@ -260,7 +260,7 @@ def test_a_report_is_three_files_and_a_figure_is_drawn_without_a_failed_variant(
 
 
 def test_a_variant_that_fails_is_listed_and_does_not_stop_the_others(make_scene: MakeScene, tmp_path: Path) -> None:
-    scene = make_scene()
+    scene = make_scene(bodies={"particles": "auto"})
     usual = settings_for(scene)
     loose = replace(usual, force_tolerance=1e3)
     ready = [Prepared("loose", scene, loose), Prepared("usual", scene, usual)]

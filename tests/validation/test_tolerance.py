@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.stats import binom
 
 from analysis.reference.interaction import Exponential, PairInteraction
 from analysis.reference.model import ChainModel
@@ -23,6 +24,8 @@ from workflow import run, scene_from_dict
 
 SEED, SCENES, QUICK = 20071, 60, 12
 WITHIN_TOLERANCE, WITHIN_UNCERTAINTY = 0.99, 0.95
+CHANCE = 0.01
+"""Of a right program to fail here: so few of a number of results may be covered by chance."""
 TOLD = 0.2
 """Radii of a few particles are not known to 1e-4 of themselves; of other results the tolerance is met."""
 STENCIL = 9
@@ -135,10 +138,10 @@ def collected(count: int, folder: Path) -> list[Error]:
 
 def require(errors: list[Error]) -> None:
     within = np.mean([error.over_tolerance <= 1.0 for error in errors if not error.told])
-    covered = np.mean([error.over_uncertainty <= 1.0 for error in errors])
+    covered = sum(error.over_uncertainty <= 1.0 for error in errors)
     assert np.mean([error.told for error in errors]) <= TOLD
     assert within >= WITHIN_TOLERANCE, sorted(errors, key=lambda e: -e.over_tolerance)[:5]
-    assert covered >= WITHIN_UNCERTAINTY, sorted(errors, key=lambda e: -e.over_uncertainty)[:5]
+    assert covered >= binom.ppf(CHANCE, len(errors), WITHIN_UNCERTAINTY), sorted(errors, key=lambda e: -e.over_uncertainty)[:5]
 
 
 def test_a_dozen_random_scenes_are_as_exact_as_asked(tmp_path: Path) -> None:
