@@ -20,7 +20,7 @@ from workflow.settings import Settings
 PLANE_DEPTH = 1e3
 """Distance of the wall's origin below the plane over the deepest expected displacement."""
 MINIMISER_ITERATIONS = 20_000
-RELAXATION = 0.25
+RELAXATION = 0.1
 """First step of a relaxation over the time step of a run in time: ten times as much is 0.5/ω_max."""
 STEP_COLUMNS = {
     "displace": ("row_displacement",),
