@@ -9,6 +9,7 @@ have N and R of their own.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -59,6 +60,7 @@ def radius_run(R: float) -> str:
     return lengthened_run(200) if TABLE_1[0].radius == R else f"curve_R{R:g}"
 
 
+@cache  # three studies ask for the same four scenes, of a second each
 def refined(paper: Scene, count: int) -> Scene:
     """The paper's scene with `count` particles on the same length."""
     spacing = 200.0 / count
