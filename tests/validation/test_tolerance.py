@@ -136,19 +136,19 @@ def collected(count: int, folder: Path) -> list[Error]:
     return [error for i in range(count) for error in errors_of(random_scene(rng), folder / str(i))]
 
 
-def require(errors: list[Error]) -> None:
+def require(errors: list[Error], covered_at_least: float) -> None:
     within = np.mean([error.over_tolerance <= 1.0 for error in errors if not error.told])
     covered = sum(error.over_uncertainty <= 1.0 for error in errors)
     assert np.mean([error.told for error in errors]) <= TOLD
     assert within >= WITHIN_TOLERANCE, sorted(errors, key=lambda e: -e.over_tolerance)[:5]
-    least = binom.ppf(CHANCE, len(errors), WITHIN_UNCERTAINTY)
-    assert covered >= least, sorted(errors, key=lambda e: -e.over_uncertainty)[:5]
+    assert covered >= covered_at_least * len(errors), sorted(errors, key=lambda e: -e.over_uncertainty)[:5]
 
 
 def test_a_dozen_random_scenes_are_as_exact_as_asked(tmp_path: Path) -> None:
-    require(collected(QUICK, tmp_path))
+    errors = collected(QUICK, tmp_path)  # too few for the share itself: what it lets happen by chance
+    require(errors, binom.ppf(CHANCE, len(errors), WITHIN_UNCERTAINTY) / len(errors))
 
 
 @pytest.mark.slow
 def test_sixty_random_scenes_are_as_exact_as_asked(tmp_path: Path) -> None:
-    require(collected(SCENES, tmp_path))
+    require(collected(SCENES, tmp_path), WITHIN_UNCERTAINTY)
