@@ -1,9 +1,9 @@
 """The paper's numbers, and the scenes that stand for its experiments.
 
 Geike and Popov, Tribology International 40 (2007). Neither interaction nor bulk stiffness is printed. The interaction
-is identified by the first row of Table 1. The stiffness of 1 FU/LU was chosen as the one with which the curve of R = 1000
-lies nearest to JKR's, so the nearness of that curve and the mean pressure are not predictions; the other rows of Table
-1, the exponents, and that curves of other R and N fall on the same one, are.
+is identified by the first row of Table 1. The stiffness of 1 FU/LU was chosen: with it the curve of R = 1000
+lies nearest to JKR's, so the nearness of that curve and the mean pressure are not predictions. The other rows of the
+table, the exponents, and that curves of other R and N fall on the same one, are.
 """
 
 from __future__ import annotations
