@@ -108,7 +108,6 @@ def _run(deck: Deck, folder: Path, started: float, figures: bool, progress: Prog
         where = f" [phase {bench.phase}, step {bench.timestep}]"
         raise RunError(f"{facts['message']}{_hint(str(facts['message']))}{where}", folder) from error
     write_whole(folder / "in.lammps", deck.text(outcome.phases))
-    (folder / "saved.lammpstrj").unlink(missing_ok=True)
     curve = curve_of(scene, outcome)
     write_tables(folder, scene, outcome, curve)
     if figures:

@@ -11,6 +11,7 @@ h is the profile. This chooses chain lengths, first steps and time scales; no re
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -21,6 +22,11 @@ from potentials import DoubleExponential
 Array = NDArray[np.float64]
 GRID = 4000
 CONTACT_POINTS = 401
+BRANCH_POINTS = 400
+DIFFERENCE = 1e-3
+"""Difference of two displacements whose forces give a stiffness, over the way since the bodies feel each other."""
+SOFTEST = 0.998
+"""Tension over the largest one at which a contact counts as softest: at the largest itself it has no stiffness left."""
 PLACES, NEAR = 1000, 0.01
 """Places at which a profile is tabulated, and the first one beyond its apex over the spacing."""
 
@@ -122,8 +128,32 @@ class ContactEstimate:
 
     def pull_off_force(self) -> float:
         """Largest tension of the estimate [FU]; 0 without attraction."""
-        places = np.linspace(self.rest - float(self.gap[-1]), self.rest, 400)
+        places = np.linspace(self.rest - float(self.gap[-1]), self.rest, BRANCH_POINTS)
         return max(0.0, -float(self.contact_forces(places).min()))
+
+    def stiffness_under(self, force: float) -> float:
+        """Contact stiffness dF/dd [FU/LU] under a force [FU]; a tension above SOFTEST of the largest counts as that."""
+        if force > 0.0:
+            deepest = self.displacement_at(force)
+            step = DIFFERENCE * (deepest - self.rest + float(self.gap[-1]))
+            return (self.contact_force(deepest) - self.contact_force(deepest - step)) / step
+        places, forces = self._tensions
+        top = int(forces.argmin())
+        stiffness = np.gradient(forces, places)[top:]
+        return float(np.interp(max(force, SOFTEST * forces[top]), forces[top:], stiffness))
+
+    def parted(self, share: float) -> float:
+        """Displacement [LU] beyond the largest tension at which the tension has fallen to this share of it."""
+        places, forces = self._tensions
+        top = int(forces.argmin())
+        gone = forces[:top] > share * forces[top]
+        return float(places[:top][gone][-1]) if gone.any() else float(places[0])
+
+    @cached_property
+    def _tensions(self) -> tuple[Array, Array]:
+        """Displacements [LU] from where nothing is felt to F = 0, and forces [FU]."""
+        places = np.linspace(self.rest - float(self.gap[-1]), self.displacement_at(0.0), BRANCH_POINTS)
+        return places, self.contact_forces(places)
 
     def displacement_at(self, force: float) -> float:
         """Displacement [LU] at which F(d) reaches a compressive force [FU] ≥ 0."""

@@ -75,6 +75,7 @@ class Settings:
         smooth_step: increment of a search elsewhere, where the force is a smooth function of the displacement [LU].
         time_step: [TU].
         damping: coefficient of a particle [FU·TU/LU].
+        damped_stiffness: of the contact [FU/LU], for which that is critical; 0 where it is the same under every load.
         plate_mass, plate_damping: [MU], [FU·TU/LU].
         settle_time: about one period of the plate on its contact [TU].
         longest_move: of a body between two states at rest [LU], inf on a rigid plane: a body that is moved by more than
@@ -98,6 +99,7 @@ class Settings:
     longest_move: float
     time_step: float
     damping: float
+    damped_stiffness: float
     plate_mass: float
     plate_damping: float
     settle_time: float
@@ -342,10 +344,13 @@ def _motion(
         plate_mass = particles * bodies.mass if scene.plate.mass == "auto" else scene.plate.mass
     moving = plate_mass + particles * bodies.mass
     critical = 2.0 * math.sqrt(SOFTENING * contact * moving)
-    damping = 0.0
+    damping = damped_stiffness = 0.0
     if scene.damping is not None:
         automatic = critical / particles if scene.plate is not None else math.sqrt(scene.bulk_stiffness * bodies.mass)
-        damping = automatic if scene.damping.coefficient == "auto" else scene.damping.coefficient
+        given = scene.damping.coefficient
+        damping = automatic if given == "auto" else given
+        # The drag on a slide is part of what is measured, so it is one and the same throughout.
+        damped_stiffness = SOFTENING * contact if given == "auto" and scene.experiment.kind != "slide" else 0.0
     plate_damping = 0.0
     if scene.plate is not None:
         given = scene.plate.damping
@@ -360,6 +365,7 @@ def _motion(
     return {
         "time_step": step,
         "damping": damping,
+        "damped_stiffness": damped_stiffness,
         "plate_mass": plate_mass,
         "plate_damping": plate_damping,
         "settle_time": 2.0 * math.pi / math.sqrt(slowest),

@@ -183,7 +183,7 @@ def test_a_scene_that_never_had_the_effect_has_none_of_its_lines(make_scene: Mak
 def test_no_langevin_without_noise(make_scene: MakeScene) -> None:
     quiet, noisy = (make_scene(**TIMED, experiment=LOAD, noise=noise) for noise in (None, ALL["noise"]))
     assert "langevin" not in commands(text_of(quiet))
-    assert commands(text_of(quiet)).count(" viscous ") == 2  # particles and plate
+    assert commands(text_of(quiet)).count(" viscous ") == 3  # particles (anew with each load) and plate
     assert commands(text_of(noisy)).count(" langevin ") == 1
     assert commands(text_of(noisy)).count(" viscous ") == 1  # the plate's
 

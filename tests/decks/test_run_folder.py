@@ -34,6 +34,8 @@ HARMLESS = (
     "Compute force/tally only called from pair style",  # as it should be
     "Stress was not tallied by pair style",  # the bodies are out of each other's reach
     "No fixes with time integration, atoms won't move",  # they are measured at rest
+    "Attempting to displace atoms in rigid bodies",  # a search goes back; the body is set up anew in the next run, …
+    "Changing velocities of atoms in rigid bodies",  # … as this says as well
     "Too many warnings",  # of these, one for every measurement
 )
 """LAMMPS's warnings that mean nothing here."""

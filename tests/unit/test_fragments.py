@@ -24,10 +24,14 @@ MakeScene = Callable[..., Scene]
 
 ROOT = Path(__file__).parents[2] / "lammps_inputs" / "fragments"
 NAMES = sorted(path.relative_to(ROOT).with_suffix("").as_posix() for path in ROOT.rglob("*.lmp"))
-DEFINITION = re.compile(r"^(variable|group|fix|compute)\s+(\w+)\s+(\w+)", re.MULTILINE)
-AGAIN = {"steps/load": {"plate_load"}, "steps/drive": {"cantilever_start"}}
+DEFINITION = re.compile(r'(?:^|then +")(variable|group|fix|compute)\s+(\w+)\s+(\w+)', re.MULTILINE)
+AGAIN = {
+    "steps/load": {"plate_load"},
+    "steps/hold": {"plate_load", "damping_viscous"},
+    "steps/drive": {"cantilever_start"},
+}
 """What a step defines anew on purpose; the first definition is the effect's."""
-LOOP_VARIABLES = {"row_phase", "saved_step", "state_append", *(c for columns in STEP_COLUMNS.values() for c in columns)}
+LOOP_VARIABLES = {"row_phase", "state_append", *(c for columns in STEP_COLUMNS.values() for c in columns)}
 """Variables that the schedule defines around the steps."""
 
 
@@ -88,8 +92,8 @@ def test_fixes_and_computes_are_named_after_their_fragment(name: str) -> None:
 
 
 def test_steps_need_nothing_that_no_part_defines() -> None:
-    """What a step needs is a column of its rows, a loop variable, or of the method that has the step."""
-    of_method = {"force_tolerance", "minimiser_iterations"}
+    """What a step needs is a column of its rows, a loop variable, or of the method or plate that has the step."""
+    of_method = {"force_tolerance", "minimiser_iterations", "plate_force", "plate_velocity"}
     for name in NAMES:
         if name.startswith("steps/"):
             assert header_of(name, "Needs") <= LOOP_VARIABLES | of_method

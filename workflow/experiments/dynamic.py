@@ -1,23 +1,46 @@
-"""Force control in time, the paper's way: hold a load until all is at rest, or until the bodies part."""
+"""Force control in time, the paper's way: hold a load until all is at rest, or until the bodies part.
+
+LAMMPS itself looks every few timesteps whether the plate is at rest or out of reach, and stops there; only then a state
+is measured. With automatic damping each load has the drag that is critical for the contact's stiffness under it: the
+stiffness falls to zero towards the pull-off, and one drag for all makes the last tensions creep.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from enum import IntEnum
 
 from workflow.experiments.contact import Contact, State
 from workflow.experiments.outcome import UntrustedError, require_trust
-from workflow.settings import Settings
+from workflow.scene import Scene
+from workflow.settings import SOFTENING, Settings
 
 CHUNK = 0.25
-"""Time between two looks at the contact, over the settling time."""
+"""Time between two samples of a thermal contact over the settling time."""
 FEWEST_STEPS = 20
-MOST_CHUNKS = 2_000
-"""Looks at one load after which it counts as never coming to rest."""
+PATIENCE = 10.0
+"""Time of one row over the settling time, after which a state is measured in any case."""
+MOST_ROWS = 50
+"""Rows under one load after which it counts as never coming to rest."""
 AT_REST = 0.1
-"""Unbalanced load, and load that the plate would still travel through, over the load scale and the tolerance."""
+"""Unbalanced load over the load scale and the tolerance."""
+CALMER = 0.5
+"""Factor on the threshold of a plate that stood still while its contact did not."""
 LOST = 0.7
-"""Tension over the largest one under this load at which a plate that moves off counts as lost."""
+"""Tension over what is pulled with, below which a plate that moves off counts as lost."""
+PARTED = 0.6
+"""The same of the estimate's largest tension, where LAMMPS stops: the first place at which to look for it."""
+
+
+class Start(IntEnum):
+    """Where a load begins."""
+
+    BACK = -1
+    """Where the load before began."""
+    HERE = 0
+    KEPT = 1
+    """Here, and the place is kept to come back to."""
 
 
 @dataclass(frozen=True)
@@ -28,14 +51,12 @@ class Held:
         load: compression positive [FU].
         states: measured on the way.
         held: whether the contact carries it at rest.
-        steps: LAMMPS timesteps that it took.
         unbalance: |contact force − load| at the end [FU].
     """
 
     load: float
     states: tuple[State, ...]
     held: bool
-    steps: int
     unbalance: float
 
     @property
@@ -45,44 +66,87 @@ class Held:
 
 
 def chunk_steps(settings: Settings) -> int:
-    """Timesteps between two looks."""
+    """Timesteps between two samples of a thermal contact."""
     return max(FEWEST_STEPS, math.ceil(CHUNK * settings.settle_time / settings.time_step))
 
 
-def hold(contact: Contact, load: float, load_scale: float) -> Held:
-    """Apply a load to a `load` phase and run until it is held at rest, or lost.
+def damping_under(settings: Settings, load: float) -> float:
+    """Coefficient of a particle [FU·TU/LU]; an automatic one is critical for the contact's stiffness under the load."""
+    if settings.damped_stiffness == 0.0:
+        return settings.damping
+    stiffer = settings.estimate.stiffness_under(load) / settings.damped_stiffness
+    return settings.damping * math.sqrt(min(stiffer, 1.0 / SOFTENING))
 
-    At rest means both: the contact's force balances the load within AT_REST·tolerance·load_scale, and at its present
-    velocity the plate would within a settling time change the contact's force by no more than that.
+
+def overshoot(settings: Settings, mass: float, load: float, next_load: float) -> float:
+    """How far a plate at rest under `load` shoots past its place under `next_load` at most, over the way there.
+
+    exp(−πζ/√(1 − ζ²)) of a linear oscillator with the stiffness of the beginning, the largest one under tension.
+    """
+    moving = settings.plate_mass + settings.particles * mass
+    drag = settings.particles * damping_under(settings, next_load) + settings.plate_damping
+    ratio = drag / (2.0 * math.sqrt(settings.estimate.stiffness_under(load) * moving))
+    return math.exp(-math.pi * ratio / math.sqrt(1.0 - ratio**2)) if ratio < 1.0 else 0.0
+
+
+def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start: Start) -> tuple[float, ...]:
+    """The values of a `hold` row, which ends where the contact's force is within `at_rest` of the load.
+
+    With M the plate's mass, N m that of the particles that move with it and c the drag on both, the contact's force
+    misses the load by (M + N m) Z″ + c Z′; LAMMPS knows M Z″ and Z′.
+    """
+    damping = damping_under(settings, load)
+    inertia = 1.0 + settings.particles * scene.bodies.mass / settings.plate_mass
+    drag = settings.particles * damping + settings.plate_damping
+    limit = settings.estimate.parted(PARTED) if load < 0.0 else _apart(settings)
+    steps = max(FEWEST_STEPS, math.ceil(PATIENCE * settings.settle_time / settings.time_step))
+    return int(start), load, damping, drag / inertia, at_rest(scene, scale) / inertia, limit, steps
+
+
+def at_rest(scene: Scene, scale: float) -> float:
+    """Unbalanced force [FU] at which a contact counts as at rest; `scale` is the force in question [FU]."""
+    return AT_REST * scene.accuracy.tolerance * scale
+
+
+def hold(contact: Contact, load: float, scale: float, start: Start = Start.KEPT) -> Held:
+    """Apply a load to a `hold` phase and run until it is held at rest, or lost.
+
+    At rest means that the contact's force balances the load within `at_rest(scene, scale)`, and that the plate's motion
+    keeps it there (see `hold_row`).
 
     Raises:
         UntrustedError: the contact neither comes to rest nor is lost, or see `require_trust`.
     """
     settings = contact.settings
-    near = AT_REST * contact.scene.accuracy.tolerance * load_scale
-    steps, states, largest = chunk_steps(settings), [], 0.0
-    stiffness = load_scale / max(settings.largest_displacement, settings.closest, 0.1 * contact.scene.bodies.spacing)
-    for count in range(1, MOST_CHUNKS + 1):
-        state = contact.row(load, steps)
+    near = at_rest(contact.scene, scale)
+    _, _, damping, drag, rest, limit, steps = hold_row(contact.scene, settings, load, scale, start)
+    states: list[State] = []
+    for _ in range(MOST_ROWS):
+        state = contact.row(int(start), load, damping, drag, rest, limit, steps)
         states.append(state)
-        unbalance = abs(state.force - load)
-        travel = abs(state.plate_velocity) * settings.settle_time * stiffness
-        if unbalance <= near and travel <= near:
+        unbalance, calm = abs(state.force - load), drag * abs(state.plate_velocity) <= rest
+        if calm and unbalance <= near:
             require_trust(contact.scene, settings, state)
-            return Held(load, tuple(states), True, count * steps, unbalance)
-        largest = max(largest, -state.force)
-        if _lost(contact, state, load, largest):
-            return Held(load, tuple(states), False, count * steps, unbalance)
+            return Held(load, tuple(states), True, unbalance)
+        if state.displacement < limit:
+            if _lost(contact, state, load):
+                return Held(load, tuple(states), False, unbalance)
+            limit = _apart(settings)
+        rest *= CALMER if calm else 1.0
+        start = Start.HERE
     raise UntrustedError(
-        f"the contact did not come to rest under {load:.4g} FU within {MOST_CHUNKS * steps} timesteps "
+        f"the contact did not come to rest under {load:.4g} FU within {MOST_ROWS * steps} timesteps "
         f"(phase {state.phase}): {unbalance:.2g} FU are unbalanced. More [damping] or [plate] damping settles it sooner"
     )
 
 
-def _lost(contact: Contact, state: State, load: float, largest: float) -> bool:
-    """Out of reach, or past the largest tension: moving off, and the tension has fallen below what is pulled with."""
+def _apart(settings: Settings) -> float:
+    """Displacement [LU] at which the bodies are certainly out of each other's reach."""
+    return settings.rest - settings.cutoff - settings.estimate.spacing
+
+
+def _lost(contact: Contact, state: State, load: float) -> bool:
+    """Out of reach, or moving off with a tension that has fallen below what is pulled with."""
     if contact.settings.law is not None and state.smallest_distance > contact.settings.cutoff:
         return True
-    tension = -state.force
-    pulled = load < 0.0 and largest > 0.0  # before any tension was felt, the plate is still on its way from a preload
-    return pulled and state.plate_velocity < 0.0 and tension < LOST * min(largest, -load)
+    return load < 0.0 and state.plate_velocity < 0.0 and -state.force < -LOST * load

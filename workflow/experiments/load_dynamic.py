@@ -57,7 +57,7 @@ def _settled(bench: Bench, contact: Contact, load: float) -> tuple[list[State], 
     for name, level in (("loading", max(load, 0.0)), ("unloading", load)):
         if name == "unloading" and load >= 0.0:
             break
-        contact.begin(name, "load")
+        contact.begin(name, "hold")
         held = hold(contact, level, scale)
         states += held.states
         if not held.held:

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from workflow.deck import Phase
-from workflow.experiments.dynamic import chunk_steps
+from workflow.experiments.dynamic import Start, chunk_steps, hold_row
 from workflow.experiments.load_dynamic import SAMPLES, SETTLING
 from workflow.experiments.path import schedule
 from workflow.experiments.slide import slide_rows
 from workflow.scene import Scene
 from workflow.settings import LOADING_STEPS, Settings
 
-SETTLED = 10.0
-"""Settling times that an unsearched schedule gives each load."""
 TENSIONS = 12
 UNLOADING_STEPS = 80
 
@@ -45,21 +41,27 @@ def _rows(displacements: np.ndarray) -> tuple[tuple[float, ...], ...]:
 
 
 def _loads(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-    steps = math.ceil(SETTLED * settings.settle_time / settings.time_step)
+    tension = settings.estimate.pull_off_force()
     if scene.experiment.kind == "load":
         force = scene.experiment.force
         if scene.noise is None:
-            return (Phase("loading", "load", ((force, steps),), state=True),)
+            return (_held("loading", scene, settings, (force,), max(abs(force), settings.force_scale), state=True),)
         row = (force, chunk_steps(settings))
         return Phase("settling", "load", (row,) * SETTLING), Phase("sampling", "load", (row,) * SAMPLES, state=True)
     assert scene.experiment.kind == "pull_off"
-    tension = settings.estimate.pull_off_force()
-    rows = tuple((float(-t), steps) for t in np.linspace(0.0, 1.2 * tension, TENSIONS + 1)[1:])
+    preload = scene.experiment.preload
+    tensions = tuple(float(-t) for t in np.linspace(0.0, 1.2 * tension, TENSIONS + 1)[1:])
     return (
-        Phase("loading", "load", ((scene.experiment.preload, steps),)),
-        Phase("unloading", "load", ((0.0, steps),), state=True),
-        Phase("pulling", "load", rows, state=True),
+        _held("loading", scene, settings, (preload,), max(preload, tension)),
+        _held("unloading", scene, settings, (0.0,), max(preload, tension), state=True),
+        _held("pulling", scene, settings, tensions, tension, state=True),
     )
+
+
+def _held(
+    name: str, scene: Scene, settings: Settings, loads: tuple[float, ...], scale: float, state: bool = False
+) -> Phase:
+    return Phase(name, "hold", tuple(hold_row(scene, settings, load, scale, Start.KEPT) for load in loads), state)
 
 
 def _slide(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
@@ -68,8 +70,10 @@ def _slide(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     assert cantilever is not None
     rows, stride = slide_rows(scene, settings)
     force = experiment.normal_force
-    settle = math.ceil(SETTLED * settings.settle_time / settings.time_step)
+    loading = _held("loading", scene, settings, (force,), force)
+    if scene.noise is not None:
+        loading = Phase("loading", "load", ((force, chunk_steps(settings)),) * SETTLING)
     return (
-        Phase("loading", "load", ((force, settle),)),
+        loading,
         Phase("sliding", "load", ((force, stride),) * rows, state=True, begin=("steps/drive",)),
     )

@@ -1,43 +1,63 @@
 """Pull-off as the paper does it: preload F_D, then tensions F_Z, each held until rest or separation, iterated.
 
-The search keeps the last state that held and comes back to it when a tension breaks the contact. Close to the pull-off
-the tension over displacement is a parabola: the vertex through the last three held states tells where to look. The
-schedule that it ends with rises through the tensions that held to the one that broke; it is run from the start, and the
-numbers are those of that run.
+A tension that breaks the contact is undone: the next one begins where it began. The first tensions are chosen by the
+estimate of independent pairs, which is mostly within a tolerance of the pull-off force; what counts is the bracket of a
+tension that held and one that did not. The rows of the search are the schedule: nothing is run twice.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from workflow.deck import Phase
+from workflow.deck import Deck, Phase
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import Contact, State
-from workflow.experiments.dynamic import LOST, Held, hold
-from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, radius_of, require_trust
-from workflow.fragments import fragment
+from workflow.experiments.dynamic import Held, Start, hold, overshoot
+from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, radius_of, radius_or_spot
 from workflow.scene import Scene
 from workflow.units import FORCE, LENGTH
 
 MOST_LEVELS = 60
 BRACKET = 1.0
 """Width of the final bracket of the tension over the tolerance."""
-AIM = 0.35
+AIM = 0.45
 """Distance from the expected pull-off force at which both sides are tried, over the tolerance."""
-FIRST_LEVEL = 0.6
-"""First tension over the estimated pull-off force."""
+FEWEST_HELD = 4
+"""States at rest from which the critical radius is extrapolated."""
+REACH = 5.0
+"""Farthest extrapolation over the width of the states that it starts from."""
+SPREAD = 2.0
+"""Uncertainty of the extrapolation over the difference that one state less makes."""
+STRIDE = 0.8
+"""Rise of a tension, before there are as many, over what is left to the expected pull-off force."""
+GROWTH = 0.25
+"""Rise of a tension over the one that held, where nothing better is known."""
 
 
 @dataclass
 class Search:
-    """Tensions tried so far; `held` are the ones that held, rising, the first of them F = 0."""
+    """Tensions tried so far.
+
+    Attributes:
+        tolerance: of the pull-off force, relative.
+        guess: what is expected [FU].
+        overshoot: of the plate from a tension that held (see `workflow.experiments.dynamic.overshoot`).
+        held: the tensions that held, rising, the first of them F = 0.
+        lost: the smallest tension that broke the contact [FU].
+        broken: no larger tension holds [FU]; above `lost` by the momentum of the plate that it set going.
+    """
 
     tolerance: float
     guess: float
-    held: list[Held] = field(default_factory=list)
-    lost: Held | None = None
+    overshoot: Callable[[float], float]
+    held: list[Held]
+    lost: float = math.inf
+    broken: float = math.inf
 
     @property
     def best(self) -> float:
@@ -45,139 +65,139 @@ class Search:
         return -self.held[-1].load
 
     @property
-    def broken(self) -> float | None:
-        """The smallest tension that broke the contact [FU]."""
-        return None if self.lost is None else -self.lost.load
-
-    @property
     def done(self) -> bool:
         """Whether the bracket is narrow enough."""
-        return self.broken is not None and self.broken - self.best <= BRACKET * self.tolerance * self.broken
+        return self.broken - self.best <= BRACKET * self.tolerance * self.best
+
+    def learn(self, result: Held) -> None:
+        """Take in what the latest tension led to."""
+        if result.held:
+            self.held.append(result)
+            return
+        self.lost = min(self.lost, -result.load)
+        self.broken = min(self.broken, -result.load + self.overshoot(self.best) * (-result.load - self.best))
 
     def next(self) -> float:
-        """The tension to try next [FU]."""
-        low, high = self.best, self.broken
-        expected = self._vertex()
-        if expected is not None:
-            margin = AIM * self.tolerance * expected
-            for tension in (expected - margin, expected + margin):
-                if low + 0.1 * margin < tension < (high - 0.1 * margin if high is not None else np.inf):
-                    return min(tension, 1.5 * low)
-        if high is not None:
-            return 0.5 * (low + high)
-        return FIRST_LEVEL * self.guess if low == 0.0 else low + 0.25 * max(self.guess, low)
+        """The tension to try next [FU]; the plate's momentum is not to carry it beyond the expected pull-off force."""
+        low, high, past = self.best, self.broken, self.overshoot(self.best)
+        expected = self._expected()
+        margin = AIM * self.tolerance * expected
+        gentle = (expected + past * low) / (1.0 + past)
+        if len(self.held) < FEWEST_HELD - 1:
+            gentle = min(gentle, low + STRIDE * (expected - low))
+        for tension in (min(expected - margin, gentle), expected + margin):
+            if low + 0.1 * margin < tension < self.lost - 0.1 * margin:
+                return tension
+        return low + 0.5 * (high - low) / (1.0 + past) if high < math.inf else (1.0 + GROWTH) * low
 
-    def _vertex(self) -> float | None:
-        """Top of the parabola of tension over displacement through the last three held states."""
-        if len(self.held) < 4:
-            return None
-        d = np.asarray([h.last.displacement for h in self.held[-3:]])
-        tension = np.asarray([-h.load for h in self.held[-3:]])
-        a, b, c = np.polyfit(d - d[-1], tension, 2)
-        top = c - b**2 / (4 * a) if a < 0 else None
-        return float(top) if top is not None and top > self.best else None
+    def _expected(self) -> float:
+        """The guess while nothing speaks against it, then the top of a parabola through the last three held states."""
+        if len(self.held) < 3 or self.best < self.guess < self.broken:
+            return self.guess
+        top = top_of([h.last for h in self.held[-3:]])
+        return self.guess if top is None else top[1]
 
 
 def pull_off_dynamic(bench: Bench) -> Outcome:
     """F_A, a_cr and a₀ of a scene with `[experiment] kind = "pull_off"`, `method = "dynamic"`.
 
     Raises:
-        UntrustedError: see `hold`; also where the schedule does not repeat what the search found.
+        UntrustedError: see `hold`.
     """
     scene = bench.deck.scene
     assert scene.experiment.kind == "pull_off"
     preload = scene.experiment.preload
-    with bench.contact("looking for the pull-off force") as contact:
-        first, search = _search(contact, preload)
-    phases = _schedule(first, search)
-    with bench.contact("the tensions that were found, from the start") as contact:
-        states = contact.replay(phases)
-    return _outcome(bench, search, phases, states)
+    guess = bench.deck.settings.estimate.pull_off_force()
+    with bench.contact() as contact:
+        contact.begin("loading", "hold")
+        loaded = hold(contact, preload, max(preload, guess))
+        contact.begin("unloading", "hold")
+        zero = hold(contact, 0.0, max(preload, guess))
+        if not (loaded.held and zero.held):
+            raise UntrustedError("the contact is lost before any tension is applied: the bodies do not stick")
+        contact.write_state()
+        search = Search(scene.accuracy.tolerance, guess, partial(_overshoot, bench.deck, guess), [zero])
+        contact.begin("pulling", "hold")
+        _pull(contact, search)
+        contact.begin("critical", "hold")
+        critical = hold(contact, -search.best, guess, Start.BACK)
+        contact.write_state()
+        contact.finish()
+    if not critical.held:
+        raise UntrustedError(f"the contact held {search.best:.6g} FU once and not again")
+    return _outcome(bench, search, loaded, critical, contact.phases)
 
 
-def _search(contact: Contact, preload: float) -> tuple[Held, Search]:
-    guess = contact.settings.estimate.pull_off_force()
-    scale = max(preload, guess)
-    contact.begin("loading", "load")
-    first = hold(contact, preload, scale)
-    contact.begin("unloading", "load")
-    zero = hold(contact, 0.0, scale)
-    if not (first.held and zero.held):
-        raise UntrustedError("the contact is lost before any tension is applied: the bodies do not stick")
-    search = Search(contact.scene.accuracy.tolerance, guess, [zero])
-    contact.begin("pulling", "load")
-    contact.run_fragment(fragment("steps/save").commands)
+def _overshoot(deck: Deck, guess: float, tension: float) -> float:
+    return overshoot(deck.settings, deck.scene.bodies.mass, -tension, -guess)
+
+
+def _pull(contact: Contact, search: Search) -> None:
+    """Try tensions until the bracket is narrow enough."""
+    start = Start.KEPT
     for _ in range(MOST_LEVELS):
-        tension = search.next()
-        result = hold(contact, -tension, scale)
-        if result.held:
-            search.held.append(result)
-            contact.run_fragment(fragment("steps/save").commands)
-        else:
-            search.lost = result
-            contact.run_fragment(fragment("steps/restore").commands)
+        result = hold(contact, -search.next(), search.guess, start)
+        start = Start.KEPT if result.held else Start.BACK
+        search.learn(result)
         if search.done:
-            return first, search
+            return
     raise UntrustedError(
         f"the pull-off force was not bracketed within {MOST_LEVELS} tensions: it is above {search.best:.6g} FU"
     )
 
 
-def _schedule(first: Held, search: Search) -> tuple[Phase, ...]:
-    zero, *held = search.held
-    assert search.lost is not None
-    rows = tuple((h.load, h.steps) for h in held)
-    lost = (search.lost.load, search.lost.steps + search.lost.steps // 4)
-    return (
-        Phase("loading", "load", ((first.load, first.steps),)),
-        Phase("unloading", "load", ((zero.load, zero.steps),), state=True),
-        Phase("pulling", "load", rows, state=True),
-        Phase("separating", "load", (lost,)),
-    )
-
-
-def _outcome(bench: Bench, search: Search, phases: tuple[Phase, ...], states: list[State]) -> Outcome:
+def _outcome(bench: Bench, search: Search, loaded: Held, critical: Held, phases: tuple[Phase, ...]) -> Outcome:
     scene, settings = bench.deck.scene, bench.deck.settings
-    assert search.broken is not None
     assert scene.experiment.kind == "pull_off"
-    loaded, zero, *held, lost = states
-    for state in (loaded, zero, *held):
-        require_trust(scene, settings, state)
-    critical = held[-1]
-    if -lost.force > LOST * search.broken or abs(critical.force + search.best) > 1e-2 * search.best:
-        raise UntrustedError(
-            "run from the start, the schedule of the search does not break the contact where the search did"
-        )
+    zero = search.held[0].last
     adhesion = 0.5 * (search.best + search.broken)
-    half = 0.5 * (search.broken - search.best) + abs(critical.force + search.best)
-    radii = {name: radius_of(scene, state.profile) for name, state in (("zero_load", zero), ("critical", critical))}
-    zero_radius, critical_radius = radii["zero_load"], radii["critical"]
-    if zero_radius is None or critical_radius is None:
-        raise UntrustedError("no contact radius: no particle is in tension")
-    value, spread = _critical_radius(scene, held, adhesion, critical_radius.value)
+    half = 0.5 * (search.broken - search.best) + critical.unbalance
+    rest = (*(h.last for h in search.held[:-1]), critical.last)
+    critical_radius, zero_radius = _critical_radius(scene, rest), radius_or_spot(scene, zero.profile)
     slope = abs(critical_radius.value - zero_radius.value) / adhesion
     quantities = {
         "adhesion_force": Quantity(adhesion, half, FORCE),
-        "critical_radius": Quantity(value, critical_radius.uncertainty + spread, LENGTH),
+        "critical_radius": critical_radius,
         "zero_load_radius": Quantity(zero_radius.value, zero_radius.uncertainty + slope * abs(zero.force), LENGTH),
-        "preload": Quantity(loaded.force, abs(loaded.force - scene.experiment.preload), FORCE),
+        "preload": Quantity(loaded.last.force, loaded.unbalance, FORCE),
     }
-    profiles = {"zero_load": zero.profile, "critical": critical.profile}
-    values = {"zero_load": zero_radius.value, "critical": critical_radius.value}
-    rest = (loaded, zero, *held)
-    return Outcome(quantities, rest, profiles, values, phases, doubts(scene, settings, rest))
+    profiles = {"zero_load": zero.profile, "critical": critical.last.profile}
+    radii = {name: radius_or_spot(scene, profile).value for name, profile in profiles.items()}
+    states = (loaded.last, *rest)
+    return Outcome(quantities, states, profiles, radii, phases, doubts(scene, settings, states))
 
 
-def _critical_radius(scene: Scene, held: list[State], adhesion: float, last: float) -> tuple[float, float]:
-    """Radius at the pull-off itself: near it a falls with √(F_A − F), so the last two held states lead there."""
-    if len(held) < 2:
-        return last, last
-    radii = [radius_of(scene, state.profile) for state in held[-2:]]
-    if radii[0] is None or radii[1] is None:
-        return last, last
-    root = [max(adhesion + state.force, 0.0) ** 0.5 for state in held[-2:]]
-    if root[0] <= root[1]:
-        return last, abs(radii[0].value - radii[1].value)
-    slope = (radii[0].value - radii[1].value) / (root[0] - root[1])
-    step = slope * root[1]
-    return last - step, abs(step)
+def top_of(states: Sequence[State]) -> tuple[float, float] | None:
+    """(displacement [LU], tension [FU]) of the largest tension of the polynomial through states at rest.
+
+    None where it has none within REACH of the states. Their own forces count, not the loads that they balance within a
+    threshold.
+    """
+    place = np.asarray([state.displacement for state in states])
+    tension = np.polynomial.Polynomial.fit(place, [-state.force for state in states], len(states) - 1)
+    flat = [root.real for root in tension.deriv().roots() if root.imag == 0.0]
+    reach = REACH * float(np.ptp(place))
+    tops = [float(d) for d in flat if tension.deriv(2)(d) < 0.0 and abs(d - place[-1]) < reach]
+    if not tops:
+        return None
+    nearest = min(tops, key=lambda d: abs(d - place[-1]))
+    return nearest, float(tension(nearest))
+
+
+def _critical_radius(scene: Scene, held: Sequence[State]) -> Quantity:
+    """Radius at the pull-off itself, which force control never sees: extrapolated over the displacement.
+
+    The largest tension is that of a cubic through the last four states at rest, the radius goes there as a parabola
+    through the last three; the largest tension of a parabola through those three says how far both can be trusted.
+    """
+    radii = [radius_of(scene, state.profile) for state in held[1 - FEWEST_HELD :]]
+    last = radii[-1]
+    if last is None:
+        raise UntrustedError("no contact radius: no particle is in tension")
+    tops = [top_of(held[-count:]) for count in (FEWEST_HELD, FEWEST_HELD - 1)]
+    values = [radius.value for radius in radii if radius is not None]
+    if len(values) < FEWEST_HELD - 1 or len(held) < FEWEST_HELD or tops[0] is None or tops[1] is None:
+        return Quantity(last.value, last.value, LENGTH)
+    radius = np.polynomial.Polynomial.fit([state.displacement for state in held[1 - FEWEST_HELD :]], values, 2)
+    value, other = (float(radius(top[0])) for top in tops if top is not None)
+    return Quantity(value, last.uncertainty + SPREAD * abs(value - other), LENGTH)

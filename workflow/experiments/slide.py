@@ -8,9 +8,9 @@ import numpy as np
 
 from workflow.deck import Phase
 from workflow.experiments.bench import Bench
-from workflow.experiments.contact import State
-from workflow.experiments.dynamic import hold
-from workflow.experiments.load_dynamic import standard_error
+from workflow.experiments.contact import Contact, State
+from workflow.experiments.dynamic import chunk_steps, hold
+from workflow.experiments.load_dynamic import SETTLING, standard_error
 from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, radius_of, require_trust
 from workflow.scene import Scene
 from workflow.settings import Settings
@@ -40,15 +40,24 @@ def slide(bench: Bench) -> Outcome:
     assert experiment.kind == "slide"
     rows, stride = slide_rows(scene, settings)
     with bench.contact() as contact:
-        contact.begin("loading", "load")
-        loaded = hold(contact, experiment.normal_force, experiment.normal_force)
+        loaded = _loaded(contact, experiment.normal_force)
         contact.begin("sliding", "load", ("steps/drive",), expected_steps=rows * stride)
         states = [contact.row(experiment.normal_force, stride) for _ in range(rows)]
         contact.write_state()
         contact.finish()
     for state in states:
         require_trust(scene, settings, state)
-    return _outcome(bench, loaded.last, states, contact.phases)
+    return _outcome(bench, loaded, states, contact.phases)
+
+
+def _loaded(contact: Contact, force: float) -> State:
+    """At rest under the normal force; with noise, after it has forgotten its start."""
+    if contact.scene.noise is None:
+        contact.begin("loading", "hold")
+        return hold(contact, force, force).last
+    steps = chunk_steps(contact.settings)
+    contact.begin("loading", "load", expected_steps=SETTLING * steps)
+    return [contact.row(force, steps) for _ in range(SETTLING)][-1]
 
 
 def slide_rows(scene: Scene, settings: Settings) -> tuple[int, int]:
