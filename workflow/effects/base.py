@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import IntEnum
 
+BINS = 100
+"""Most bins of LAMMPS's neighbour search across a box made wide by atoms that feel no pair force: they take memory."""
+
 
 class Stage(IntEnum):
     """Order of the fragments in a deck: a force that acts comes before what takes parts of it away or integrates it."""

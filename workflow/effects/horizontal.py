@@ -1,6 +1,6 @@
 """Effect [horizontal]: particles may also move along x, against k_t u_x; k_t may differ from the normal stiffness."""
 
-from workflow.effects.base import Contribution, Stage, number
+from workflow.effects.base import BINS, Contribution, Stage, number
 from workflow.scene import Scene
 from workflow.settings import Settings
 
@@ -14,6 +14,6 @@ def horizontal(scene: Scene, settings: Settings) -> Contribution:
         "far_bond_type": "2" if scene.neighbours is None else "3",
         "far_bond_coefficient": number(difference / 2),
         "far_length": number(settings.far),
-        "far_bin": number(max(settings.far / 100.0, settings.cutoff)),
+        "far_bin": number(max(settings.far / BINS, settings.cutoff)),
     }
     return Contribution("horizontal", Stage.SPRINGS, ("horizontal", "far"), variables)

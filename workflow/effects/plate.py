@@ -1,6 +1,7 @@
 """Effect [plate]: the upper plate is a rigid body, M Z″ = F_contact − F_load − c Z′ (Eq. 5 of the paper)."""
 
-from workflow.effects.base import Contribution, Stage, number
+from workflow.effects.base import BINS, Contribution, Stage, number
+from workflow.lattice import STAGGER
 from workflow.scene import Scene
 from workflow.settings import Settings
 
@@ -13,4 +14,10 @@ def plate(scene: Scene, settings: Settings) -> Contribution:
         "plate_damping_per_anchor": number(settings.plate_damping / anchors),
         "plate_free_x": "on" if "x" in scene.plate.free else "off",
     }
-    return Contribution("plate", Stage.PLATE, ("plate",), variables, integrates="plate")
+    fragments: tuple[str, ...] = ("plate",)
+    width = 2.0 * STAGGER * settings.particles * scene.bodies.spacing
+    own = max(settings.cutoff, settings.far / BINS)
+    if scene.interaction is not None and width / BINS > own:
+        fragments += ("wide",)
+        variables["wide_bin"] = number(width / BINS)
+    return Contribution("plate", Stage.PLATE, fragments, variables, integrates="plate")

@@ -19,12 +19,12 @@ from workflow.progress import Progress
 SIDE_MARGIN = 20.0
 """Free space beside the chains over the spacing, beyond what a slide needs."""
 HEAD_MARGIN = 10.0
-"""Free space above and below the bodies over the spacing and over the cutoff, where displacements are prescribed.
+"""Free space above and below the bodies over the spacing and over the cutoff.
 
 LAMMPS bins the whole box, five integers for a square of half a cutoff: of long chains it is most of the memory.
 """
 FLIGHT = 10.0
-"""How much more a free plate needs, which flies off before it is seen to be lost."""
+"""How much more a free plate needs that may fly off between two looks; under a held load LAMMPS stops it."""
 
 BIN_MARGIN = 1e-3
 """Least free space over the length of a long bond: LAMMPS wants no box much thinner than its bins."""
@@ -78,7 +78,7 @@ def write_system(deck: Deck, folder: Path) -> None:
     if scene.experiment.kind == "slide":
         side += scene.experiment.distance
     head = HEAD_MARGIN * max(scene.bodies.spacing, settings.cutoff) + 2 * abs(settings.largest_displacement)
-    if scene.plate is not None:
+    if scene.plate is not None and (scene.noise is not None or scene.experiment.kind == "slide"):
         head *= FLIGHT
     if scene.experiment.kind == "path":
         head -= min(0.0, *scene.experiment.values())

@@ -1,0 +1,86 @@
+"""Plates that are hard for `fix rigid` and for the search: of three particles, nearly a line, with momentum."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from analysis.reference.interaction import Exponential, PairInteraction
+from analysis.reference.model import ChainModel
+from analysis.reference.pull_off import pull_off
+from workflow import run
+from workflow.deck import Deck
+from workflow.engine import Session
+from workflow.experiments import planned
+from workflow.scene import Scene, scene_from_dict
+from workflow.settings import settings_for
+
+MakeScene = Callable[..., Scene]
+OpenDeck = Callable[[Scene], tuple[Deck, Session]]
+TIMED: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
+LOAD = {"kind": "load", "force": 0.1}
+
+
+@pytest.mark.parametrize("height", [0.05, 5.0])
+@pytest.mark.parametrize("particles", [3, 40, 4_000, 20_000])
+def test_a_plate_of_any_length_is_accepted(
+    make_scene: MakeScene, open_deck: OpenDeck, particles: int, height: float
+) -> None:
+    """LAMMPS says "Bad principal moments" where a body is too nearly a line: many particles on a low profile."""
+    radius = (0.5 * particles) ** 2 / (2.0 * height)
+    bodies = {"particles": particles, "profile": {"kind": "parabola", "radius": radius}}
+    _, session = open_deck(make_scene(bodies=bodies, experiment=LOAD, **TIMED))
+    session.execute("run 2\n")
+    assert session.value("v_plate_velocity") == pytest.approx(0.0, abs=1e-3)
+
+
+def test_a_long_chain_has_few_bins(make_scene: MakeScene) -> None:
+    """LAMMPS bins the whole box, and the plate's anchors widen it with the chain's length."""
+    scene = make_scene(experiment=LOAD, **TIMED)
+    short = settings_for(scene)
+    texts = [
+        Deck(scene, replace(short, particles=count)).text(planned(scene, short)) for count in (short.particles, 10**6)
+    ]
+    assert "binsize" not in texts[0]
+    found = re.search(r"variable\s+wide_bin index (\S+)", texts[1])
+    assert found is not None
+    assert float(found[1]) == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize("plate", [{"mass": 20.0, "damping": 0.3}, {"mass": 500.0, "damping": 2.0}])
+def test_a_plate_with_momentum_does_not_break_the_contact_too_early(
+    tmp_path: Path, plate: dict[str, float]
+) -> None:
+    """A weakly damped plate shoots past its place: the stated bracket still holds the pull-off force."""
+    attraction, repulsion = (0.2, 0.5), (0.4, 0.25)
+    scene = scene_from_dict(
+        {
+            "title": "momentum",
+            "bodies": {
+                "particles": "auto",
+                "spacing": 1.0,
+                "profile": {"kind": "parabola", "radius": 50.0},
+                "bulk_stiffness": 0.83,
+            },
+            "interaction": {
+                "repulsion": {"amplitude": repulsion[0], "range": repulsion[1]},
+                "attraction": {"amplitude": attraction[0], "range": attraction[1]},
+            },
+            "damping": {"coefficient": 0.02},
+            "plate": plate,
+            "accuracy": {"tolerance": 1e-2},
+            "experiment": {"kind": "pull_off", "method": "dynamic", "preload": 0.5},
+        }
+    )
+    finished = run(scene, tmp_path / "run", figures=False)
+    law = PairInteraction(Exponential(*repulsion), Exponential(*attraction))
+    model = ChainModel(finished.outcome.states[0].profile.x.size, 0.83, law, radius=50.0)
+    exact = pull_off(model, 0.5, step=0.06).adhesion_force
+    found = finished.outcome.quantities["adhesion_force"]
+    assert abs(found.value - exact) <= found.uncertainty
+    assert found.uncertainty <= 2e-2 * exact
