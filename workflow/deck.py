@@ -26,7 +26,7 @@ STEP_COLUMNS = {
     "displace": ("row_displacement",),
     "displace_dynamic": ("row_displacement", "row_steps"),
     "load": ("row_load", "row_steps"),
-    "hold": ("row_start", "row_load", "row_damping", "row_drag", "row_rest", "row_limit", "row_steps"),
+    "hold": ("row_start", "row_load", "row_damping", "row_drag", "row_rest", "row_parted", "row_through", "row_steps"),
 }
 """What a row of each kind of step prescribes, in order."""
 NUMBERS_PER_LINE = 6

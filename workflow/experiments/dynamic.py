@@ -98,9 +98,10 @@ def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start:
     damping = damping_under(settings, load)
     inertia = 1.0 + settings.particles * scene.bodies.mass / settings.plate_mass
     drag = settings.particles * damping + settings.plate_damping
-    limit = settings.estimate.parted(PARTED) if load < 0.0 else _apart(settings)
+    parted = settings.estimate.parted(PARTED) if load < 0.0 else _apart(settings)
     steps = max(FEWEST_STEPS, math.ceil(PATIENCE * settings.settle_time / settings.time_step))
-    return int(start), load, damping, drag / inertia, at_rest(scene, scale) / inertia, limit, steps
+    rest = at_rest(scene, scale) / inertia
+    return int(start), load, damping, drag / inertia, rest, parted, _through(settings), steps
 
 
 def at_rest(scene: Scene, scale: float) -> float:
@@ -119,19 +120,22 @@ def hold(contact: Contact, load: float, scale: float, start: Start = Start.KEPT)
     """
     settings = contact.settings
     near = at_rest(contact.scene, scale)
-    _, _, damping, drag, rest, limit, steps = hold_row(contact.scene, settings, load, scale, start)
+    _, _, damping, drag, rest, parted, through, steps = hold_row(contact.scene, settings, load, scale, start)
     states: list[State] = []
     for _ in range(MOST_ROWS):
-        state = contact.row(int(start), load, damping, drag, rest, limit, steps)
+        state = contact.row(int(start), load, damping, drag, rest, parted, through, steps)
         states.append(state)
         unbalance, calm = abs(state.force - load), drag * abs(state.plate_velocity) <= rest
         if calm and unbalance <= near:
             require_trust(contact.scene, settings, state)
             return Held(load, tuple(states), True, unbalance)
-        if state.displacement < limit:
+        if state.displacement < parted:
             if _lost(contact, state, load):
                 return Held(load, tuple(states), False, unbalance)
-            limit = _apart(settings)
+            parted = _apart(settings)
+        if state.displacement > through:
+            require_trust(contact.scene, settings, state)
+            raise UntrustedError(f"under {load:.4g} FU the plate went on to {state.displacement:.4g} LU")
         rest *= CALMER if calm else 1.0
         start = Start.HERE
     raise UntrustedError(
@@ -143,6 +147,12 @@ def hold(contact: Contact, load: float, scale: float, start: Start = Start.KEPT)
 def _apart(settings: Settings) -> float:
     """Displacement [LU] at which the bodies are certainly out of each other's reach."""
     return settings.rest - settings.cutoff - settings.estimate.spacing
+
+
+def _through(settings: Settings) -> float:
+    """Displacement [LU] beyond what a plate without any damping would shoot to: the bodies went through each other."""
+    way = settings.largest_displacement - settings.rest + settings.cutoff
+    return settings.largest_displacement + 2.0 * max(way, settings.estimate.spacing)
 
 
 def _lost(contact: Contact, state: State, load: float) -> bool:
