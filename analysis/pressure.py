@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Profile:
-    """The state of a contact along x; all arrays (n,), sorted by x.
+    """The state of a contact along x; all arrays (n,), sorted by x. Two are equal if they are the same object.
 
     x: positions of the upper particles [LU]; z_lower, z_upper: heights of the lower and upper surface there [LU];
     pressure: force on the upper particle in +z per spacing, compression positive [FU/LU];

@@ -167,9 +167,9 @@ def _alone(folder: Path) -> Iterator[None]:
 
 def _write(deck: Deck, folder: Path) -> None:
     """Replace whatever an earlier run left by what the deck needs."""
-    for name in FILES:
-        (folder / name).unlink(missing_ok=True)
-        (folder / f"{name}.part").unlink(missing_ok=True)
+    for path in folder.iterdir():
+        if path.name.removesuffix(".part") in FILES:
+            path.unlink()
     write_whole(folder / "in.lammps", deck.text(planned(deck.scene, deck.settings)))
     write_whole(folder / "scene.toml", scene_to_toml(deck.scene))
     write_system(deck, folder)

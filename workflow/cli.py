@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,6 +13,9 @@ from workflow.cli_paper import INTERRUPTED, RUN_FAILED, SCENE_IS_WRONG, identify
 
 if TYPE_CHECKING:
     from workflow.scene import Scene
+
+SELDOM = 100_000
+"""New objects after which Python looks for garbage: at 700, a tenth of what the imports take goes into looking."""
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -168,6 +172,7 @@ def _folder(scene: Path, out: Path | None) -> Path:
 
 def main() -> None:
     """Entry point of the command `contact1d`."""
+    gc.set_threshold(SELDOM)
     app(prog_name="contact1d")
 
 

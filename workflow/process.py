@@ -17,6 +17,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Mapping
+from itertools import accumulate, pairwise
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -71,15 +72,15 @@ def receive(connection: Connection) -> Any:
         EOFError: the other end is gone.
     """
     head, sizes = connection.recv()
-    arrays = [bytearray(size) for size in sizes]
-    for array in arrays:
-        left = memoryview(array)
-        while left:
-            count = os.readv(connection.fileno(), [left])
-            if not count:
-                raise EOFError
-            left = left[count:]
-    return pickle.loads(head, buffers=arrays)
+    arrays = memoryview(bytearray(sum(sizes)))
+    left = arrays
+    while left:
+        count = os.readv(connection.fileno(), [left])
+        if not count:
+            raise EOFError
+        left = left[count:]
+    ends = list(accumulate(sizes, initial=0))
+    return pickle.loads(head, buffers=[arrays[start:end] for start, end in pairwise(ends)])
 
 
 class WorkerProcess:

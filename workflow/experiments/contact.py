@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from analysis.pressure import Profile, interpenetration, pressure_profile, smallest_distance
 from workflow.datafile import PARTICLES
 from workflow.deck import STEP_COLUMNS, Deck, Phase
-from workflow.engine import Session
+from workflow.engine import EngineError, Session
 from workflow.scene import Scene
 
 Array = NDArray[np.float64]
@@ -75,7 +75,11 @@ class Contact:
         self.session.execute("", phase=name, expected_steps=expected_steps)
 
     def row(self, *values: float) -> State:
-        """Run one row of the current phase and measure."""
+        """Run one row of the current phase and measure.
+
+        Raises:
+            EngineError: LAMMPS failed, or lost particles.
+        """
         phase = self._phases[-1]
         self._phases[-1] = Phase(phase.name, phase.step, (*phase.rows, values), begin=phase.begin)
         text = self._unfinished + self.deck.values(phase.step, values) + self.deck.row(phase.step)
@@ -124,6 +128,11 @@ class Contact:
     def _state(self, phase: str, numbers: dict[str, float], atoms: dict[str, Array]) -> State:
         upper = atoms["type"] == PARTICLES["upper"]
         lower = atoms["type"] == PARTICLES["lower"]
+        here = int(upper.sum() + lower.sum())
+        if here < self.settings.particles * (1 if self.scene.bodies.lower == "rigid_plane" else 2):
+            # LAMMPS looks for lost atoms when it makes a new neighbour list, and a row may end before.
+            message = f"atoms are missing: only {here} particles are left in the box"
+            raise EngineError(message, phase, int(numbers["step"]), self.session.folder, "")
         place, force = atoms["x"], atoms["f"]
         x, z = place[upper, 0], place[upper, 2]
         if lower.any():
