@@ -72,6 +72,14 @@ class DoubleExponential:
         return value if self.attraction is None else value - self.attraction.stiffness(r)
 
     @property
+    def formula(self) -> str:
+        """V(r) as text, with 17 significant digits."""
+        terms = f"{self.repulsion.amplitude:.17g} exp(-r/{self.repulsion.range:.17g})"
+        if self.attraction is not None:
+            terms += f" - {self.attraction.amplitude:.17g} exp(-r/{self.attraction.range:.17g})"
+        return terms
+
+    @property
     def longest_range(self) -> float:
         """The range of the term that decides the law far away [LU]."""
         return self.repulsion.range if self.attraction is None else self.attraction.range

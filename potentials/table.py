@@ -116,12 +116,9 @@ def write_table(table: Table, closest: float, path: Path) -> None:
 @lru_cache(maxsize=4)  # scenes run one after the other mostly share their law, and 32 000 rows take 45 ms
 def _text(table: Table, closest: float) -> str:
     law = table.law
-    terms = f"{law.repulsion.amplitude:.17g} exp(-r/{law.repulsion.range:.17g})"
-    if law.attraction is not None:
-        terms += f" - {law.attraction.amplitude:.17g} exp(-r/{law.attraction.range:.17g})"
     distance, energy, force = table.entries()
     header = (
-        f"# V(r) = {terms}, r in the plane [LU], V [FU LU]\n"
+        f"# V(r) = {law.formula}, r in the plane [LU], V [FU LU]\n"
         f"# cut at r = {table.cutoff:.17g} and shifted there to zero energy\n"
         f"# r_L = sqrt(r^2 + e^2), e = {table.plane_offset:.17g} LU: the bodies lie in planes that far apart\n"
         f"# measured: force within {table.error_beyond(closest):.2e} FU of the law for r >= {closest:.3g} LU;"

@@ -18,15 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workflow.scene import Scene
-from workflow.settings import Settings
+from workflow.settings import STAGGER, Settings
 
 Array = NDArray[np.float64]
-STAGGER = 5e-4
-"""Shift of a plate's anchors out of the plane, to and fro, over the chain's length.
-
-No force acts in that direction, but `fix rigid` refuses a body that is nearly a line ("Bad principal moments"): the
-least moment of inertia must be more than 1e-7 of the largest, and is 12 STAGGER² = 3e-6 of it.
-"""
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -39,6 +40,12 @@ NOISE_BIAS = 0.4
 """Relative error of ⟨u²⟩ over (ω Δt)² with `fix langevin` and `fix nve`, measured at ω Δt = 0.1: 0.4 %."""
 SOFTENING = 0.6
 """Stiffness of the contact under tension over that under the preload: automatic damping is critical for the former."""
+STAGGER = 5e-4
+"""Shift of a plate's anchors out of the plane, to and fro, over the chain's length.
+
+No force acts in that direction, but `fix rigid` refuses a body that is nearly a line ("Bad principal moments"): the
+least moment of inertia must be more than 1e-7 of the largest, and is 12 STAGGER² = 3e-6 of it.
+"""
 MOST_PARTICLES = 10_000_000
 CHAIN_MARGIN = 1.1
 """Length of an automatic chain over what the estimate asks for."""
@@ -81,6 +88,9 @@ class Settings:
         longest_move: of a body between two states at rest [LU], inf on a rigid plane: a body that is moved by more than
             its particles' distance from the opposite ones is put behind them.
         largest_displacement: what the estimate expects [LU].
+        table_style: of `pair_style table`. "spline" is the only one that decks have by themselves; others are for
+            `contact1d cost`, which measures that none of them is cheaper at an equal error.
+        thermostat: scheme of [noise], "langevin" or "gjf" (`workflow.effects.noise`); the latter for cost studies too.
     """
 
     particles: int
@@ -105,6 +115,8 @@ class Settings:
     settle_time: float
     largest_displacement: float
     estimate: ContactEstimate
+    table_style: str = "spline"
+    thermostat: str = "langevin"
 
     @property
     def is_smooth(self) -> bool:
@@ -127,15 +139,15 @@ def interaction_law(scene: Scene) -> DoubleExponential | None:
     return DoubleExponential(Exponential(terms.repulsion.amplitude, terms.repulsion.range), attraction)
 
 
-def settings_for(scene: Scene) -> Settings:
-    """Choose every open number of a scene.
+def settings_for(scene: Scene, law: DoubleExponential | None = None) -> Settings:
+    """Choose every open number of a scene; a `law` takes the place of the scene's own, for cost studies.
 
     Raises:
         SettingsError: the numbers are so far apart that no chain, table or time step comes out of them.
     """
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
-            chosen = _chosen(scene)
+            chosen = _chosen(scene, law or interaction_law(scene))
     except (OverflowError, FloatingPointError, ZeroDivisionError, MemoryError) as error:
         raise SettingsError(
             f"the scene's numbers are too far apart to compute with ({error}): compare its lengths (spacing, ranges, "
@@ -149,12 +161,11 @@ def settings_for(scene: Scene) -> Settings:
     return chosen
 
 
-def _chosen(scene: Scene) -> Settings:
+def _chosen(scene: Scene, law: DoubleExponential | None) -> Settings:
     tolerance = scene.accuracy.tolerance
     bodies = scene.bodies
     _require_room(bodies)
     shape = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
-    law = interaction_law(scene)
     plane = _plane_stiffness(scene)
     bond = scene.bulk_stiffness if law is not None else 1.0 / (1.0 / scene.bulk_stiffness - 1.0 / plane)
     cutoff, rest, closest, table = 0.0, 0.0, 0.0, None
@@ -325,7 +336,7 @@ def _motion(
     estimate: ContactEstimate,
     largest: float,
     particles: int,
-) -> dict[str, float]:
+) -> dict[str, Any]:
     """Time step, damping, plate mass and settling time from the stiffest and the softest motion of the scene."""
     bodies = scene.bodies
     stiffest = max(scene.bulk_stiffness, scene.tangential_stiffness) + plane

@@ -30,9 +30,13 @@ def quickest(records: Iterable[dict[str, Any]], key: str | None = None) -> dict[
     return min(good, key=lambda record: float(record["seconds"])) if good else None
 
 
-def ratios(document: dict[str, Any]) -> list[str]:
-    """Return one sentence for each comparison at equal error: each boundary-element code over this program."""
-    lines = []
+Comparison = tuple[str, str, dict[str, Any] | None, dict[str, Any] | None]
+"""What is compared, the other solver, our record and theirs; None where no setting reaches it."""
+
+
+def comparisons(document: dict[str, Any]) -> list[Comparison]:
+    """Return each boundary-element code beside this program, at equal error."""
+    found: list[Comparison] = []
     for contact, key, what in (
         ("hertz", "limit_force", "Hertz, 1 % of the largest force (rms)"),
         ("hertz", None, "Hertz, 1 % of each force (rms)"),
@@ -41,19 +45,20 @@ def ratios(document: dict[str, Any]) -> list[str]:
     ):
         records = [r for r in document["records"] if r["contact"] == contact]
         ours = quickest((r for r in records if r["solver"] == OURS), key)
-        for solver in ELEMENTS:
-            theirs = quickest((r for r in records if r["solver"] == solver), key)
-            lines.append(f"- {what}: {_ratio(ours, theirs, solver)}")
+        found += [(what, name, ours, quickest((r for r in records if r["solver"] == name), key)) for name in ELEMENTS]
     adhesive = [r for r in document["records"] if r["contact"] == "jkr" and error_of(r) <= ENOUGH]
     ours = quickest(r for r in adhesive if r["solver"] == OURS)
     for solver in ELEMENTS:
         theirs = [r for r in adhesive if r["solver"] == solver]
         best = min(theirs, key=lambda r: float(r["errors"]["theory_force"]), default=None)
         off = f"{best['errors']['theory_force']:.1%}" if best else "-"
-        lines.append(
-            f"- adhesive, the same and as near to JKR's F(d) as it comes ({off}): {_ratio(ours, best, solver)}"
-        )
-    return lines
+        found.append((f"adhesive, the same and as near to JKR's F(d) as it comes ({off})", solver, ours, best))
+    return found
+
+
+def ratios(document: dict[str, Any]) -> list[str]:
+    """Return one sentence for each comparison."""
+    return [f"- {what}: {_ratio(ours, theirs, solver)}" for what, solver, ours, theirs in comparisons(document)]
 
 
 def _ratio(ours: dict[str, Any] | None, theirs: dict[str, Any] | None, solver: str) -> str:

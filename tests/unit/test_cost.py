@@ -27,16 +27,21 @@ from workflow.cost.orders import Order, fit_order, pareto_front
 from workflow.cost.per_step import without_effects
 from workflow.cost.record import Advice, CostRecord, EffectCost, KnobRecord, VariantRecord, read_record
 from workflow.cost.report import COLUMNS, csv_text, effects_markdown, summary, write_report
+from workflow.cost.sampling import samplings
+from workflow.deck import Deck
+from workflow.estimate import row_force
 from workflow.experiments.outcome import Quantity
 from workflow.progress import Silent
 from workflow.scene import Scene
-from workflow.settings import settings_for
+from workflow.settings import interaction_law, settings_for
 
 MakeScene = Callable[..., Scene]
 ROOT = Path(__file__).parents[2]
 SCENES = ROOT / "lammps_inputs" / "scenes"
 BEGIN, END = "<!-- cost: begin -->\n", "<!-- cost: end -->\n"
 ROUND_OFF = 1e-12
+ROW_MISFIT = 2e-5
+"""Of the sum of exponentials, over the largest tension, at half the spacing; at wider ones it is below 1e-6."""
 TINY = """
 title = "tiny"
 [bodies]
@@ -63,25 +68,25 @@ def names(scene: Scene) -> set[str]:
 ALWAYS = {"tolerance"}
 STILL = {"convergence threshold", "load increment"}
 TIMED = {"time step", "damping"}
-LAW = {"table points", "cutoff"}
+LAW = {"table points", "table style linear", "table style lookup", "table style bitmap", "cutoff"}
 
 
 @pytest.mark.parametrize(
     ("name", "wanted"),
     [
         ("pull_off", ALWAYS | STILL | LAW | {"chain length", "method dynamic"}),
-        ("load", ALWAYS | STILL | LAW | {"chain length", "method dynamic"}),
+        ("load", ALWAYS | STILL | LAW | {"chain length", "method dynamic", "spacing"}),
         ("hertz_plane", ALWAYS | STILL | {"chain length", "method dynamic", "spacing"}),
         ("path_hysteresis", ALWAYS | STILL | LAW | {"chain length", "method dynamic"}),
         ("pull_off_dynamic", ALWAYS | TIMED | LAW | {"chain length", "method quasistatic"}),
-        ("thermal_load", ALWAYS | TIMED | LAW | {"chain length"}),
+        ("thermal_load", ALWAYS | TIMED | LAW | {"chain length", "thermostat gjf"}),
     ],
 )
 def test_a_scene_has_the_knobs_of_its_effects_and_method(name: str, wanted: set[str]) -> None:
     scene = read_scene(SCENES / f"{name}.toml")
     assert names(scene) == wanted
     assert not names(scene) & left_out(scene).keys()
-    assert ("thermostat scheme" in left_out(scene)) == (scene.noise is not None)
+    assert ("other thermostats" in left_out(scene)) == (scene.noise is not None)
     assert ("spacing" in left_out(scene)) == ("spacing" not in wanted)
 
 
@@ -115,6 +120,58 @@ def test_a_spacing_keeps_stiffness_per_length() -> None:
         changed = (base + level.change).scene(scene)
         assert changed.bodies.spacing == level.value
         assert changed.bulk_stiffness / changed.bodies.spacing == pytest.approx(0.5, rel=ROUND_OFF)
+
+
+def test_a_spacing_of_two_chains_keeps_the_force_of_opposite_rows_per_length() -> None:
+    scene = read_scene(SCENES / "load.toml")
+    own = interaction_law(scene)
+    assert own is not None
+    base = base_change(scene)
+    knobs = knobs_of(scene, settings_for(scene), base.chosen(base.scene(scene)))
+    spacing = next(knob for knob in knobs if knob.name == "spacing")
+    r = np.linspace(0.5, 8.0, 40) * own.force_free_distance()
+    wanted = row_force(own, r, 1.0, 10.0)
+    assert [level.value for level in spacing.levels] == [4.0, 3.0, 2.0, 1.0, 0.5]
+    for level in spacing.levels:
+        change = base + level.change
+        changed = change.scene(scene)
+        law = change.chosen(changed).law
+        assert law is not None
+        found = row_force(law, r, level.value, 10.0) / level.value
+        assert found == pytest.approx(wanted, abs=ROW_MISFIT * -wanted.min())
+        assert law.force_free_distance() == own.force_free_distance()  # where displacements count from
+        step = 1e-5 * r
+        assert law.force(r) == pytest.approx((law.energy(r - step) - law.energy(r + step)) / (2.0 * step), abs=1e-8)
+        assert changed.neighbours is not None
+        assert changed.neighbours.stiffness * level.value == pytest.approx(0.3, rel=ROUND_OFF)
+
+
+def test_where_a_spacing_would_be_other_physics_it_is_not_turned() -> None:
+    for name, word in (("pull_off", "along x"), ("path_hysteresis", "snap"), ("thermal_load", "thermal")):
+        assert word in left_out(read_scene(SCENES / f"{name}.toml"))["spacing"]
+
+
+@pytest.mark.parametrize(("style", "size"), [("spline", "8192"), ("linear", "8192"), ("bitmap", "13")])
+def test_a_table_style_reaches_the_deck(style: str, size: str, make_scene: MakeScene) -> None:
+    scene = make_scene()
+    settings = Change(settings=(("table_points", 8192), ("table_style", style))).chosen(scene)
+    assert f"table {style} {size}\n" in Deck(scene, settings).head
+
+
+def test_thermostats_are_held_against_equipartition(tmp_path: Path) -> None:
+    """A short study; the standard errors are a few times wider than those of a real one."""
+    scene = read_scene(SCENES / "thermal_load.toml", ("bodies.particles=40", "accuracy.tolerance=0.05"))
+    found = samplings(scene, tmp_path, steps=8_000)
+    assert [(one.scheme, one.time_step / found[0].time_step) for one in found] == [
+        (scheme, pytest.approx(factor)) for scheme in ("langevin", "gjf") for factor in (1.0, 2.0, 4.0, 8.0)
+    ]
+    for one in found:
+        assert one.us_per_step > 0.0
+        assert 0.0 < one.error < 0.1
+    # Both at the scene's own time step; at eight times that only gjf is still without bias.
+    for one in (found[0], *found[4:]):
+        assert abs(one.variance - 1.0) < 5.0 * one.error
+    assert samplings(read_scene(SCENES / "load.toml"), tmp_path) == ()
 
 
 def test_the_order_of_synthetic_errors_is_found_with_its_standard_error() -> None:

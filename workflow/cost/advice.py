@@ -17,7 +17,7 @@ def combinations(
     knobs: Sequence[Knob], records: Sequence[VariantRecord], base: Change
 ) -> Iterator[tuple[str, str, Change]]:
     """For each tolerance, every knob at its coarsest value whose error is within SHARE of it: label, what, change."""
-    turned = [knob for knob in knobs if not knob.own_reference and not knob.name.startswith("method")]
+    turned = [knob for knob in knobs if not knob.own_reference and not knob.alternative]
     for target in TARGETS:
         change = base
         found: list[str] = []

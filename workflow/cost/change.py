@@ -6,11 +6,13 @@ base + one knob's change = a variant;  base + several = a combination
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 from potentials.table import Table
+from workflow.cost.row_law import row_law
 from workflow.scene import FlatPunch, Scene, scene_from_dict
 from workflow.scene.tables import TIMED
-from workflow.settings import Settings, settings_for
+from workflow.settings import Settings, interaction_law, settings_for
 
 BASE_TOLERANCE = 1e-5
 """Of the base of a quasistatic scene; in time the scene's own is taken, since time costs by the tolerance."""
@@ -24,17 +26,20 @@ class Change:
         overrides: "table.key=value", as `--set` takes them.
         without: effects left out.
         settings: (field of `Settings`, value) set after the rules have chosen; "table_points" sets the table's points.
+        row_spacing: spacing [LU] whose rows' force per length is kept (`row_law`), None where the law is the scene's.
     """
 
     overrides: tuple[str, ...] = ()
     without: tuple[str, ...] = ()
-    settings: tuple[tuple[str, float], ...] = ()
+    settings: tuple[tuple[str, float | str], ...] = ()
+    row_spacing: float | None = None
 
     def __add__(self, later: Change) -> Change:
         """Both; where they meet, the later one prevails."""
         fields = dict(self.settings) | dict(later.settings)
         left = tuple(dict.fromkeys(self.without + later.without))
-        return Change(self.overrides + later.overrides, left, tuple(fields.items()))
+        row = self.row_spacing if later.row_spacing is None else later.row_spacing
+        return Change(self.overrides + later.overrides, left, tuple(fields.items()), row)
 
     def scene(self, scene: Scene) -> Scene:
         """The changed scene. Raises SceneError where it is none."""
@@ -42,12 +47,14 @@ class Change:
 
     def chosen(self, scene: Scene) -> Settings:
         """The settings of the changed `scene`. Raises SettingsError where it has none."""
-        settings = settings_for(scene)
-        fields: dict[str, object] = dict(self.settings)
+        own = interaction_law(scene)
+        keeps = self.row_spacing is not None and own is not None
+        settings = settings_for(scene, row_law(own, self.row_spacing, scene.bodies.spacing) if keeps else None)
+        fields: dict[str, Any] = dict(self.settings)
         points = fields.pop("table_points", None)
         if points is not None and settings.law is not None:
-            fields["table"] = Table(settings.law, settings.cutoff, int(dict(self.settings)["table_points"]))
-        return replace(settings, **fields)  # type: ignore[arg-type]
+            fields["table"] = Table(settings.law, settings.cutoff, int(points))
+        return replace(settings, **fields)
 
 
 def base_change(scene: Scene) -> Change:

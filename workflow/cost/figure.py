@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 SIZE = (10.5, 4.8)
 COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#999933")
-"""Okabe and Ito's, and one more; a knob has its colour and its marker in both panels."""
-MARKERS = "osD^vPX*"
+"""Okabe and Ito's, and one more; a knob has its colour and its marker in both panels, of 88 pairs."""
+MARKERS = "osD^vPX*<>p"
 
 
 def cost_figure(record: CostRecord) -> Figure:
@@ -37,7 +37,7 @@ def cost_figure(record: CostRecord) -> Figure:
     _front(left, record)
     for axis in (left, right):
         axis.axhline(record.tolerance, color=THEORY, linewidth=0.8, linestyle=":")
-        axis.legend(frameon=False, fontsize=8)
+        axis.legend(frameon=False, fontsize=7)
     left.set_xlabel("CPU time in LAMMPS (s)")
     left.set_ylabel("largest relative error of the main results")
     right.axvline(1.0, color=THEORY, linewidth=0.8)

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from workflow.cost.change import Change, at_tolerance, with_method
+from workflow.cost.row_law import row_law
+from workflow.cost.spacing import SPACING_FACTORS, at_spacing, spacing_is_physics
 from workflow.scene import FlatPunch, Scene
 from workflow.scene.experiments import Span
 from workflow.settings import Settings, settings_for
@@ -22,6 +24,12 @@ TOLERANCE_FACTORS = (8.0, 4.0, 2.0, 1.0, 0.5)
 OTHER_METHOD = {"dynamic": (1e-2, 3e-3), "quasistatic": (1e-1, 1e-2, 1e-3, 1e-4)}
 """Tolerances of the method that the scene does not have."""
 TABLE_POINTS = (500, 1_000, 2_000, 4_000, 8_000, 16_000)
+STYLE_POINTS = {
+    "linear": (1_000, 4_000, 16_000, 64_000),
+    "lookup": (1_000, 8_000, 64_000),
+    "bitmap": (1_024, 8_192, 65_536),
+}
+"""Of the table styles that decks do not have; a bitmap has a power of two."""
 CUTOFF_SHARES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 """Force at the cutoff over the law's own."""
 CHAIN_FACTORS = (0.6, 0.7, 0.8, 0.9)
@@ -31,7 +39,14 @@ THRESHOLDS = (1e-4, 1e-5, 1e-6, 1e-7)
 INCREMENT_FACTORS = (4.0, 2.0, 1.0, 0.5)
 STEP_FACTORS = (8.0, 4.0, 2.0, 1.0, 0.5)
 DAMPING_FACTORS = (0.25, 0.5, 1.0, 2.0, 4.0)
-SPACING_FACTORS = (4.0, 2.0, 1.0, 0.5, 0.125)
+
+
+OTHER_THERMOSTATS = (
+    "temp/csvr and nvt scale all velocities alike, so that springs keep the shares of energy that they began with; "
+    "langevin with zero stills what all particles do together; brownian, fix gjf and temp/csld move particles in held "
+    "directions"
+)
+"""Why a deck has none of LAMMPS's other schemes; tests/validation/test_noise.py shows it of csvr, nvt and gjf."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +70,7 @@ class Knob:
         own: the value that the scene has, by itself or by the rules; NaN where there is no such.
         has_order: whether its error is expected to be a power of the value.
         own_reference: whether its errors are against its own finest level, since the reference does not have it.
+        alternative: whether it is another way, to be compared with the scene's own and not combined with it.
     """
 
     name: str
@@ -64,6 +80,7 @@ class Knob:
     own: float
     has_order: bool = True
     own_reference: bool = False
+    alternative: bool = False
 
 
 def knobs_of(scene: Scene, own: Settings, base: Settings) -> tuple[Knob, ...]:
@@ -73,26 +90,19 @@ def knobs_of(scene: Scene, own: Settings, base: Settings) -> tuple[Knob, ...]:
         found += [_threshold(own)]
     else:
         found += [_time_step(own), _damping(own)]
-    found += [*_increment(scene, own, base), *_method(scene), *_spacing(scene)]
+    found += [*_increment(scene, own, base), *_method(scene), *_thermostat(scene, own), *_spacing(scene, own)]
     return tuple(found)
 
 
 def left_out(scene: Scene) -> dict[str, str]:
     """Knobs that one could think of and that are not turned, each with the reason."""
     reasons = {}
-    if scene.interaction is not None:
-        reasons["table style"] = "decks have one style, spline"
-        if scene.interaction.attraction is None:
-            reasons["cutoff"] = "without attraction displacements count from the cutoff, so it is physics"
+    if scene.interaction is not None and scene.interaction.attraction is None:
+        reasons["cutoff"] = "without attraction displacements count from the cutoff, so it is physics"
     if scene.noise is not None:
-        reasons["thermostat scheme"] = "decks have one scheme, fix langevin with fix nve"
-    if not _keeps_physics(scene):
-        reasons["spacing"] = (
-            "a particle feels several opposite ones, and no scaling of the amplitudes keeps their joint force at "
-            "another spacing"
-            if scene.interaction is not None
-            else "noise of a particle belongs to its spacing"
-        )
+        reasons["other thermostats"] = OTHER_THERMOSTATS
+    if reason := spacing_is_physics(scene, settings_for(scene)):
+        reasons["spacing"] = reason
     if isinstance(scene.bodies.profile, FlatPunch):
         reasons["chain length"] = "a flat punch is as long as it is wide"
     if scene.noise is not None or scene.experiment.kind == "slide":
@@ -114,6 +124,10 @@ def _law(scene: Scene, own: Settings) -> Iterator[Knob]:
         return
     points = [Level(n, f"table of {n} points", Change(settings=(("table_points", n),))) for n in TABLE_POINTS]
     yield Knob("table points", "points of the spline table over r²", "larger", tuple(points), own.table.points)
+    for style, counts in STYLE_POINTS.items():
+        styled = [Level(n, f"{style} table of {n} points", _styled(style, n)) for n in counts]
+        meaning = f"points of a table over r², pair_style table {style}"
+        yield Knob(f"table style {style}", meaning, "larger", tuple(styled), own.table.points, alternative=True)
     if scene.interaction.attraction is None:
         return
     levels = []
@@ -123,6 +137,10 @@ def _law(scene: Scene, own: Settings) -> Iterator[Knob]:
         levels.append(Level(share, f"cutoff {cutoff:.3g} LU", change))
     share = math.exp(-(own.cutoff - own.law.force_free_distance()) / own.law.longest_range)
     yield Knob("cutoff", "force at the cutoff over the law's own", "smaller", tuple(levels), share)
+
+
+def _styled(style: str, points: int) -> Change:
+    return Change(settings=(("table_points", points), ("table_style", style)))
 
 
 def _chain(scene: Scene, own: Settings) -> Iterator[Knob]:
@@ -148,6 +166,20 @@ def _time_step(own: Settings) -> Knob:
     steps = [factor * own.time_step for factor in STEP_FACTORS]
     levels = [Level(dt, f"time step {dt:.3g} TU", Change(settings=(("time_step", dt),))) for dt in steps]
     return Knob("time step", "time step [TU]", "smaller", tuple(levels), own.time_step)
+
+
+def _thermostat(scene: Scene, own: Settings) -> Iterator[Knob]:
+    if scene.noise is None:
+        return
+    steps = [factor * own.time_step for factor in STEP_FACTORS]
+    levels = [Level(dt, f"gjf, time step {dt:.3g} TU", gjf(dt)) for dt in steps]
+    meaning = "time step [TU] of fix langevin gjf"
+    yield Knob("thermostat gjf", meaning, "smaller", tuple(levels), own.time_step, alternative=True)
+
+
+def gjf(time_step: float) -> Change:
+    """The other thermostat that a deck can have, at that time step [TU]."""
+    return Change(settings=(("time_step", time_step), ("thermostat", "gjf")))
 
 
 def _damping(own: Settings) -> Knob:
@@ -185,28 +217,18 @@ def _method(scene: Scene) -> Iterator[Knob]:
         Level(t, f"{other}, accuracy.tolerance = {t:g}", at_tolerance(scene, t) + change) for t in OTHER_METHOD[other]
     ]
     meaning = f"the other method, {other}, by its accuracy.tolerance"
-    yield Knob(f"method {other}", meaning, "smaller", tuple(levels), math.nan, has_order=False)
+    yield Knob(f"method {other}", meaning, "smaller", tuple(levels), math.nan, has_order=False, alternative=True)
 
 
-def _keeps_physics(scene: Scene) -> bool:
-    """Whether springs alone carry the load: they scale with the spacing, unlike sums over pairs and thermal forces."""
-    return scene.interaction is None and scene.noise is None
-
-
-def _spacing(scene: Scene) -> Iterator[Knob]:
-    """Stiffness per length, and that of neighbour springs times length, are kept."""
-    if not _keeps_physics(scene) or isinstance(scene.bodies.profile, FlatPunch):
+def _spacing(scene: Scene, own: Settings) -> Iterator[Knob]:
+    if spacing_is_physics(scene, own):
         return
-    levels = []
-    for factor in SPACING_FACTORS:
-        spacing = factor * scene.bodies.spacing
-        overrides = [f"bodies.spacing={spacing!r}", f"bodies.mass={factor * scene.bodies.mass!r}"]
-        if scene.bodies.bulk_stiffness != "auto":
-            overrides.append(f"bodies.bulk_stiffness={factor * scene.bulk_stiffness!r}")
-        if scene.bodies.bulk_stiffness_tangential is not None:
-            overrides.append(f"bodies.bulk_stiffness_tangential={factor * scene.bodies.bulk_stiffness_tangential!r}")
-        if scene.neighbours is not None:
-            overrides.append(f"neighbours.stiffness={scene.neighbours.stiffness / factor!r}")
-        levels.append(Level(spacing, f"spacing {spacing:g} LU", Change(tuple(overrides))))
-    own = scene.bodies.spacing
-    yield Knob("spacing", "spacing [LU], same stiffness per length", "smaller", tuple(levels), own, own_reference=True)
+    spacing = scene.bodies.spacing
+    row = None if own.law is None else spacing
+    values = [factor * spacing for factor in SPACING_FACTORS[scene.bodies.lower]]
+    levels = [Level(h, f"spacing {h:g} LU", Change(at_spacing(scene, h), row_spacing=row)) for h in values]
+    meaning = "spacing [LU], same stiffness per length"
+    if own.law is not None:
+        misfit = max(row_law(own.law, spacing, h).misfit for h in values)
+        meaning += f", opposite rows with the same force per length within {misfit:.0e} of the largest tension"
+    yield Knob("spacing", meaning, "smaller", tuple(levels), spacing, has_order=own.law is None, own_reference=True)

@@ -46,7 +46,7 @@ def effect_costs(scene: Scene, folder: Path, turns: int = TURNS) -> tuple[Effect
     scenes = {"": scene} | {effect: change.scene(scene) for effect, change in changes.items()}
     with ExitStack() as stack:
         sessions = {
-            effect: stack.enter_context(_opened(changed, folder / f"step_{effect}"))
+            effect: stack.enter_context(opened(Deck(changed, settings_for(changed)), folder / f"step_{effect}"))
             for effect, changed in scenes.items()
         }
         times = _interleaved(sessions, turns)
@@ -71,10 +71,9 @@ def _cost_of_all(
 
 
 @contextmanager
-def _opened(scene: Scene, folder: Path) -> Iterator[Session]:
-    """A session in which the scene stands at displacement 0, ready for timesteps."""
+def opened(deck: Deck, folder: Path) -> Iterator[Session]:
+    """A session in which the deck's scene stands at displacement 0, ready for timesteps."""
     folder.mkdir(parents=True)
-    deck = Deck(scene, settings_for(scene))
     write_system(deck, folder)
     with Engine.session(folder) as session:
         session.execute(deck.head, phase="setting up")

@@ -42,7 +42,7 @@ class VariantRecord:
     value: float
     details: str = ""
     scene_keys: tuple[str, ...] = ()
-    settings: Mapping[str, float] | None = None
+    settings: Mapping[str, float | str] | None = None
     same_physics: bool = True
     own_reference: bool = False
     values: Mapping[str, float] | None = None
@@ -108,6 +108,25 @@ class EffectCost:
 
 
 @dataclass(frozen=True)
+class Sampling:
+    """One scheme at one time step.
+
+    Attributes:
+        scheme: a value of `Settings.thermostat`.
+        time_step: [TU].
+        us_per_step: processor time in LAMMPS [µs].
+        variance: ⟨u²⟩ of all particles along z over that of equipartition.
+        error: its standard error after the steps of all (`workflow.cost.sampling`).
+    """
+
+    scheme: str
+    time_step: float
+    us_per_step: float
+    variance: float
+    error: float
+
+
+@dataclass(frozen=True)
 class Advice:
     """The cheapest measured variants that reach a tolerance.
 
@@ -136,6 +155,8 @@ class CostRecord:
         base: label of what the knobs are turned from.
         base_error: what is left of error there, the floor of every fit.
         repeats: asked for.
+        left_out: knobs that are not turned, with the reason.
+        samplings: thermostats beside each other, for a scene with noise.
     """
 
     title: str
@@ -157,6 +178,7 @@ class CostRecord:
     advice: tuple[Advice, ...]
     versions: Mapping[str, str]
     wall_s: float
+    samplings: tuple[Sampling, ...] = ()
 
     def variant(self, label: str) -> VariantRecord:
         """The variant of that label."""
@@ -182,6 +204,7 @@ def read_record(path: Path) -> CostRecord:
             "knobs": tuple(KnobRecord(**one) for one in knobs),
             "variants": tuple(VariantRecord(**one) for one in variants),
             "effect_costs": tuple(EffectCost(**_numbers(one)) for one in data["effect_costs"]),
+            "samplings": tuple(Sampling(**one) for one in data.get("samplings", ())),
             "pareto": tuple(data["pareto"]),
             "advice": tuple(Advice(**one) for one in data["advice"]),
         }

@@ -11,6 +11,7 @@ from pathlib import Path
 from workflow.cost.advice import power
 from workflow.cost.figure import cost_figure
 from workflow.cost.record import RECORD, CostRecord, EffectCost, KnobRecord, VariantRecord
+from workflow.cost.sampling import SAMPLING_COLUMNS, sampling_rows
 from workflow.report import write_whole
 
 TABLE, FIGURE = "cost.csv", "cost.png"
@@ -55,10 +56,13 @@ def summary(record: CostRecord) -> list[str]:
     best = ", ".join(f"{name} {value:.9g}" for name, value in record.reference_values.items())
     lines = [f"reference: {record.reference}: {best}", ""]
     lines += _columns(("knob", "here", "error there", "order of the error"), [_knob(record, k) for k in record.knobs])
-    lines += [f"  {name}: not turned, {reason}" for name, reason in record.left_out.items()]
+    lines += [f"  not turned: {name}, because {reason}" for name, reason in record.left_out.items()]
     if record.effect_costs:
         lines += ["", "what each effect costs per step:"]
         lines += _columns(EFFECT_COLUMNS, [effect_row(one) for one in record.effect_costs])
+    if record.samplings:
+        lines += ["", "thermostats at equal steps, of free particles:"]
+        lines += _columns(SAMPLING_COLUMNS, sampling_rows(record.samplings))
     failures = [one for one in record.variants if one.failure]
     if failures:
         lines += ["", "gave no numbers:", *(f"  {one.label}: {' '.join(one.failure.split())}" for one in failures)]

@@ -17,6 +17,7 @@ from workflow.cost.measure import Measured, Prepared, measure, run_once
 from workflow.cost.orders import fit_order, pareto_front
 from workflow.cost.per_step import effect_costs, without_effects
 from workflow.cost.record import CostRecord, EffectCost, KnobRecord, VariantRecord
+from workflow.cost.sampling import samplings
 from workflow.experiments.outcome import Quantity
 from workflow.progress import Progress
 from workflow.report import versions
@@ -82,6 +83,7 @@ def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, p
                 records += _measured(scene, found, runs, repeats, workers, progress, reference)
         progress.phase("effects, step by step")
         effects = _with_changes(effect_costs(scene, runs), records)
+        thermostats = samplings(scene, runs)
     base = next(one for one in records if one.knob == BASE)
     competing = [one for one in records if one.competes]
     front = pareto_front([one.cpu_s for one in competing], [one.error for one in competing])
@@ -105,6 +107,7 @@ def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, p
         advice=tuple(advise(target, competing, is_sampled(scene)) for target in TARGETS),
         versions=versions(),
         wall_s=time.perf_counter() - started,
+        samplings=thermostats,
     )
 
 

@@ -1,9 +1,8 @@
 """Effect [plate]: the upper plate is a rigid body, M Z″ = F_contact − F_load − c Z′ (Eq. 5 of the paper)."""
 
 from workflow.effects.base import BINS, Contribution, Stage, number
-from workflow.lattice import STAGGER
 from workflow.scene import Scene
-from workflow.settings import Settings
+from workflow.settings import STAGGER, Settings
 
 
 def plate(scene: Scene, settings: Settings) -> Contribution:
