@@ -79,13 +79,17 @@ class Table:
 
         It interpolates F_table/r_L by a cubic spline over r_L².
         """
-        distance, _, force = self.entries()
-        spline = CubicSpline(self.grid(), force / distance)
-        return np.asarray(spline(r**2 + self.plane_offset**2) * r)
+        return np.asarray(_spline(self)(r**2 + self.plane_offset**2) * r)
 
     def error_beyond(self, r_min: float, samples: int = 20_000) -> float:
         """Largest interpolation error of the force [FU] for r_min ≤ r ≤ r_c, from samples dense near r_min."""
         return _error_beyond(self, r_min, samples)
+
+
+@lru_cache(maxsize=4)  # the same one is asked for offset by offset
+def _spline(table: Table) -> CubicSpline:
+    distance, _, force = table.entries()
+    return CubicSpline(table.grid(), force / distance)
 
 
 @lru_cache(maxsize=64)  # a scene asks for the same ones again and again

@@ -15,6 +15,7 @@ from workflow.deck import Deck
 from workflow.engine import EngineError
 from workflow.experiments import Bench, Outcome, UntrustedError, perform, planned, write_system
 from workflow.progress import Progress, Silent
+from workflow.refinement import Refined, refined
 from workflow.report import FILES, curve_of, draw, failure, results, write_results, write_tables, write_whole
 from workflow.scene import Scene, scene_to_toml
 from workflow.settings import Settings, settings_for
@@ -76,7 +77,7 @@ def run(
         figures: whether to draw.
         progress: told of phases and steps.
         time_limit: wall time for LAMMPS [s].
-        settings: in place of those that `settings_for` chooses; for cost studies.
+        settings: in place of those that `settings_for` chooses and refines; for cost studies.
 
     Raises:
         SettingsError: the scene's numbers lead to no computable system; nothing is written.
@@ -87,13 +88,13 @@ def run(
     deck = Deck(scene, settings or settings_for(scene))
     folder = prepare(Path(folder))
     with _alone(folder):
-        return _run(deck, folder, started, figures, progress or Silent(), time_limit)
+        bench = Bench(deck, folder, progress or Silent(), time_limit)
+        return _run(bench, started, figures, refine=settings is None)
 
 
-def _run(deck: Deck, folder: Path, started: float, figures: bool, progress: Progress, time_limit: float) -> Run:
-    scene = deck.scene
-    _write(deck, folder)
-    bench = Bench(deck, folder, progress, time_limit)
+def _run(bench: Bench, started: float, figures: bool, refine: bool) -> Run:
+    scene, folder = bench.deck.scene, bench.folder
+    _write(bench.deck, folder)
 
     def timing() -> dict[str, float]:
         total = time.perf_counter() - started
@@ -102,13 +103,15 @@ def _run(deck: Deck, folder: Path, started: float, figures: bool, progress: Prog
 
     try:
         outcome = perform(bench)
+        last = refined(bench, outcome) if refine else Refined(bench.deck, outcome)
     except (EngineError, UntrustedError) as error:
         facts = {"message": getattr(error, "message", str(error)), "phase": bench.phase, "step": bench.timestep}
         write_results(folder, failure(scene, facts, timing()))
         where = f" [phase {bench.phase}, step {bench.timestep}]"
         raise RunError(f"{facts['message']}{_hint(str(facts['message']))}{where}", folder) from error
-    write_whole(folder / "in.lammps", deck.text(outcome.phases))
-    curve = curve_of(scene, outcome)
+    outcome = last.outcome
+    write_whole(folder / "in.lammps", last.deck.text(outcome.phases))
+    curve = curve_of(last.deck.scene, outcome)
     write_tables(folder, scene, outcome, curve)
     if figures:
         draw(folder, scene, outcome, curve)

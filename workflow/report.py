@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.curve import Column, Curve, curve_columns, profile_columns, write_columns
-from workflow.experiments import Outcome, unmet
+from workflow.experiments import Outcome, in_words, unmet
 from workflow.experiments.outcome import radius_of
 from workflow.scales import scales_of, unfound
 from workflow.scene import Parabola, Scene
@@ -51,11 +51,12 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
         quantities["units"] = {unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE)}
     doubts = dict(outcome.warnings)
     if coarse := unmet(scene, outcome.quantities):
+        ended = "" if outcome.refinement is None else f" ({outcome.refinement.ended})"
         doubts["tolerance"] = (
-            f"{coarse}, which is more than the tolerance of {scene.accuracy.tolerance:g} that was asked for. A radius "
-            "is known no better than the spacing lets it, and by the dynamic method no better than the bracket of the "
-            "tension: take a smaller bodies.spacing at the same stiffness and energy per length, or method = "
-            '"quasistatic"'
+            f"{in_words(coarse)}, which is more than the tolerance of {scene.accuracy.tolerance:g} that was asked for"
+            f"{ended}. A radius is known no better than the spacing lets it, and by the dynamic method no better than "
+            "the bracket of the tension: take a smaller bodies.spacing at the same stiffness and energy per length, or "
+            'method = "quasistatic"'
         )
     if missing := unfound(scene, outcome.quantities):
         doubts["no_units"] = (
@@ -63,7 +64,12 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
             'nothing is in SI: use kind = "pull_off", and a radius that makes the contact many spacings wide'
         )
     warnings = [{"name": name, "message": message} for name, message in doubts.items()]
-    return quantities | _frame(scene, "done", warnings, timing)
+    refinement = outcome.refinement
+    accuracy = {
+        "tolerance": scene.accuracy.tolerance if refinement is None else refinement.tolerance,
+        "refinements": 0 if refinement is None else refinement.count,
+    }
+    return quantities | {"accuracy": accuracy} | _frame(scene, "done", warnings, timing)
 
 
 def failure(scene: Scene, error: Mapping[str, object], timing: Mapping[str, float]) -> dict[str, Any]:

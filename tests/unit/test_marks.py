@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from workflow.experiments.marks import crossing, largest_tension, rival_excess, smooth_crossing
+from workflow.experiments.pull_off_smooth import MISPLACED
 
 PARABOLA = 1e-12  # round-off of a polynomial fit in doubles
 SIXTH = 0.5  # the constant of the interpolation error of this function, generously
+FOURTH = 0.5  # the same of the vertex's place
 CUBIC = 1e-5  # the fit is a parabola: its error is the third derivative times the square of the step
 
 
@@ -51,6 +53,16 @@ def test_the_vertex_of_a_smooth_maximum_is_of_sixth_order_and_its_uncertainty_co
     peak = largest_tension(displacement, [-np.exp(-((d - 0.05) ** 2)) for d in displacement])
     assert abs(peak.smooth - 1.0) <= peak.uncertainty
     assert abs(peak.smooth - 1.0) <= SIXTH * step**5
+    assert abs(peak.position - 0.05) <= MISPLACED * peak.misplaced <= FOURTH * step**4
+
+
+@pytest.mark.parametrize("beside", [1e-7, -1e-7])
+def test_a_row_as_good_as_on_another_changes_nothing(beside: float) -> None:
+    displacement = falling(0.03 + 0.1 * np.arange(-6, 7))
+    doubled = falling(np.asarray([*displacement, 0.03 + beside]))
+    alone, both = (largest_tension(d, [-np.exp(-((x - 0.05) ** 2)) for x in d]) for d in (displacement, doubled))
+    assert both.position == pytest.approx(alone.position, abs=10 * abs(beside))
+    assert both.misplaced == pytest.approx(alone.misplaced, abs=10 * abs(beside))
 
 
 def test_a_smooth_crossing_is_of_fourth_order() -> None:

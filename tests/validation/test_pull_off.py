@@ -27,11 +27,11 @@ from analysis.reference.tension_radius import tension_radius
 from workflow.experiments import Quantity
 
 FORCE = 2e-5
-"""Relative; measured 4e-6: mostly the tail of the attraction beyond the automatic cutoff."""
+"""Relative; measured 1.2e-5: mostly the tail of the attraction beyond the automatic cutoff."""
 ZERO_LOAD_RADIUS = 2e-4
 """Relative; measured 9e-5: interpolation between particles, 2e-3 spacings in a contact of twenty."""
 CRITICAL_RADIUS = 2e-4
-"""Relative; measured 6e-5: the same, and the displacement of the maximum."""
+"""Relative; measured 4e-5: the same, and the displacement of the maximum."""
 PRELOAD = 1e-6
 """Relative; measured 6e-9: how near the secant of the last pass comes; far below what the force can change by it."""
 STENCIL = 9

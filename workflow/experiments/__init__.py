@@ -3,14 +3,16 @@
 from workflow.experiments.bench import Bench, write_system
 from workflow.experiments.load import load_quasistatic
 from workflow.experiments.load_dynamic import load_dynamic
-from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, unmet
+from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, in_words, unmet
 from workflow.experiments.path import path
 from workflow.experiments.plan import planned
 from workflow.experiments.pull_off_dynamic import pull_off_dynamic
 from workflow.experiments.pull_off_quasistatic import pull_off_quasistatic
 from workflow.experiments.slide import slide
 
-__all__ = ["Bench", "Outcome", "Quantity", "UntrustedError", "perform", "planned", "unmet", "write_system"]
+__all__ = [
+    "Bench", "Outcome", "Quantity", "UntrustedError", "in_words", "perform", "planned", "unmet", "write_system",
+]  # fmt: skip
 
 EXPERIMENTS = {
     ("load", "quasistatic"): load_quasistatic,

@@ -90,4 +90,4 @@ def write_system(deck: Deck, folder: Path) -> None:
         folder / "system.data",
     )
     if settings.table is not None:
-        write_table(settings.table, settings.closest, folder / "interaction.table")
+        write_table(settings.table, settings.table_from, folder / "interaction.table")

@@ -8,9 +8,14 @@ from analysis.pressure import mean_pressure
 from workflow.deck import Phase
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import State
-from workflow.experiments.outcome import Outcome, Quantity, doubts, law_share, radius_of
+from workflow.experiments.law import law_error
+from workflow.experiments.outcome import Outcome, Quantity, doubts, radius_of
 from workflow.experiments.quasistatic import approach
+from workflow.scene import Scene
 from workflow.units import FORCE, LENGTH, MEAN_PRESSURE
+
+APART = 0.01
+"""Difference of two forces over the largest one from which on that of their radii is more than interpolation error."""
 
 
 def load_quasistatic(bench: Bench) -> Outcome:
@@ -35,7 +40,7 @@ def load_quasistatic(bench: Bench) -> Outcome:
     final = states[-1]
     stiffness = _stiffness(states)
     unbalance = abs(final.force - force) + final.residual * settings.particles
-    unbalance += law_share(scene, settings) * abs(final.force)
+    unbalance += law_error(scene, settings, final)
     return load_outcome(bench, tuple(states), contact.phases, unbalance, unbalance / stiffness)
 
 
@@ -58,11 +63,30 @@ def load_outcome(
         warnings["no_radius"] = "the bodies do not touch over a width, so there is no contact radius"
     else:
         pressure = mean_pressure(final.profile, scene.bodies.spacing, radius.value)
-        share = 2 * radius.uncertainty / radius.value + force_uncertainty / max(abs(final.force), 1e-300)
-        quantities["contact_radius"] = Quantity(radius.value, radius.uncertainty, LENGTH)
+        spread = radius.uncertainty + _radius_slope(scene, states, radius.value) * force_uncertainty
+        share = 2 * spread / radius.value + force_uncertainty / max(abs(final.force), 1e-300)
+        quantities["contact_radius"] = Quantity(radius.value, spread, LENGTH)
         quantities["mean_pressure"] = Quantity(pressure, abs(pressure) * share, MEAN_PRESSURE)
     radii = {"final": math.nan if radius is None else radius.value}
-    return Outcome(quantities, states, {"final": final.profile}, radii, phases, warnings)
+    lattice = {} if radius is None else {"contact_radius": radius.uncertainty}
+    if "mean_pressure" in quantities and radius is not None:
+        lattice["mean_pressure"] = 2 * radius.uncertainty / radius.value * abs(quantities["mean_pressure"].value)
+    return Outcome(quantities, states, {"final": final.profile}, radii, phases, warnings, lattice=lattice)
+
+
+def _radius_slope(scene: Scene, states: tuple[State, ...], radius: float) -> float:
+    """|da/dF| [LU/FU] at the last state, with the radius a [LU], from the nearest row that is APART from it in force.
+
+    Where there is no such, or its bodies do not touch, a/F: that of a straight line, above that of a curved body.
+    """
+    final = states[-1]
+    scale = max(abs(state.force) for state in states)
+    others = [state for state in states if abs(state.force - final.force) > APART * scale]
+    near = min(others, key=lambda state: abs(state.force - final.force), default=final)
+    other = radius_of(scene, near.profile)
+    if near is final or other is None:
+        return radius / max(abs(final.force), 1e-300)
+    return abs((other.value - radius) / (near.force - final.force))
 
 
 def _stiffness(states: list[State]) -> float:

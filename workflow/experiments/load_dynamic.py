@@ -13,7 +13,8 @@ from workflow.experiments.bench import Bench
 from workflow.experiments.contact import Contact, State
 from workflow.experiments.dynamic import Held, chunk_steps, hold
 from workflow.experiments.load import load_outcome
-from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, law_share, radius_of, require_trust
+from workflow.experiments.law import law_error
+from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, radius_of, require_trust
 from workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
 SETTLING = 40
@@ -46,7 +47,7 @@ def load_dynamic(bench: Bench) -> Outcome:
     stiffness = max(
         settings.estimate.stiffness, abs(last.load) / max(abs(last.last.displacement), settings.closest, 1e-12)
     )
-    error = last.unbalance + law_share(scene, settings) * abs(load)
+    error = last.unbalance + law_error(contact.scene, settings, last.last)
     return load_outcome(bench, tuple(states), contact.phases, error, error / stiffness)
 
 

@@ -21,6 +21,7 @@ class Peak:
         uncertainty: of `smooth`: how much the sampling may have missed [FU].
         smooth: the tension at the vertex of the polynomial through the point and its neighbours [FU].
         position: the vertex's displacement [LU]; the sampled point's where the curve jumps there.
+        misplaced: of `position` [LU]: how far it lies from the vertex of another polynomial; 0 where the curve jumps.
     """
 
     index: int
@@ -28,10 +29,13 @@ class Peak:
     uncertainty: float
     smooth: float
     position: float
+    misplaced: float
 
 
 NEAREST = 1e-5
 """Distance of two places over that of the outermost ones below which no polynomial is put through them."""
+WIDEST = 3
+"""Samples on either side of the highest one under the widest polynomial."""
 REAL = 1e-9
 """Imaginary part up to which a root counts as real."""
 JUMP = 3.0
@@ -42,35 +46,50 @@ def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Pe
     """The largest −F of an unloading branch (displacements falling).
 
     Between samples a smooth curve exceeds the sampled maximum by what the polynomial through five points says; that
-    through three tells how far to believe it. Where a particle snaps after the maximum, tension rises right up to the
-    snap: it is then missed by one increment's rise at most, and the sampled point is the place.
+    through three tells how far to believe it, and that through seven how far to believe its place. Where a particle
+    snaps after the maximum, tension rises right up to the snap: it is then missed by one increment's rise at most, and
+    the sampled point is the place.
     """
     d, tension = np.asarray(displacement), -np.asarray(force)
     i = int(np.argmax(tension))
     top = float(tension[i])
     if i == 0 or i == len(tension) - 1:
-        return Peak(i, top, abs(top), top, float(d[i]))
+        return Peak(i, top, abs(top), top, float(d[i]), 0.0)
     rise, fall = top - tension[i - 1], top - tension[i + 1]
     even = rise / max(d[i - 1] - d[i], 1e-300), fall / max(d[i] - d[i + 1], 1e-300)
     if even[1] > JUMP * even[0] + JUMP * abs(_bend(d, tension, i)):
-        return Peak(i, top, float(rise), top, float(d[i]))
-    position, smooth = _vertex(d[i - 1 : i + 2], tension[i - 1 : i + 2], top)
-    if not 2 <= i < len(d) - 2:
-        return Peak(i, top, abs(smooth - top), smooth, position)
-    coarse = smooth
-    position, smooth = _vertex(d[i - 2 : i + 3], tension[i - 2 : i + 3], top)
-    return Peak(i, top, abs(smooth - coarse), smooth, position)
+        return Peak(i, top, float(rise), top, float(d[i]), 0.0)
+    # A search that has come back to the maximum leaves rows beside it that no polynomial tells apart.
+    d, tension, at = _apart_from(d, tension, i)
+    place, coarse = _vertex(d, tension, at, 1)
+    if not 2 <= at < len(d) - 2:
+        return Peak(i, top, abs(coarse - top), coarse, place, abs(place - float(d[at])))
+    position, smooth = _vertex(d, tension, at, 2)
+    if WIDEST <= at < len(d) - WIDEST:
+        place, _ = _vertex(d, tension, at, WIDEST)
+    return Peak(i, top, abs(smooth - coarse), smooth, position, abs(position - place))
 
 
-def _vertex(d: Array, tension: Array, top: float) -> tuple[float, float]:
-    """Place and value of the maximum of the polynomial through all points, between the middle one's neighbours."""
-    middle = len(d) // 2
-    if not _apart(d):
+def _apart_from(d: Array, tension: Array, i: int) -> tuple[Array, Array, int]:
+    """The samples without those that lie as good as on the inner sample i, and its new index; two neighbours stay."""
+    width = float(d[max(i - WIDEST, 0)] - d[min(i + WIDEST, len(d) - 1)])
+    kept = np.abs(d - d[i]) > NEAREST * width
+    kept[[0, i, -1]] = True
+    return d[kept], tension[kept], int(kept[:i].sum())
+
+
+def _vertex(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, float]:
+    """Place and value of the maximum of the polynomial through the highest point and so many on either side of it.
+
+    It lies between the highest point's neighbours.
+    """
+    near = slice(middle - beside, middle + beside + 1)
+    top, scale = float(tension[middle]), float(np.ptp(d[near]))
+    if not _apart(d[near]):
         return float(d[middle]), top
-    scale = float(np.ptp(d))
-    x = (d - d[middle]) / scale
-    polynomial = np.polynomial.Polynomial.fit(x, tension - top, len(d) - 1, domain=(-1, 1), window=(-1, 1))
-    inside = _real_roots(polynomial.deriv(), float(x[middle + 1]), float(x[middle - 1]))
+    x = (d[near] - d[middle]) / scale
+    polynomial = np.polynomial.Polynomial.fit(x, tension[near] - top, 2 * beside, domain=(-1, 1), window=(-1, 1))
+    inside = _real_roots(polynomial.deriv(), float(x[beside + 1]), float(x[beside - 1]))
     best = max([0.0, *inside], key=lambda place: float(polynomial(place)))
     return float(d[middle]) + scale * best, top + max(0.0, float(polynomial(best)))
 

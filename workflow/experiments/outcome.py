@@ -9,6 +9,7 @@ from analysis.pressure import Profile, end_pressure_share
 from analysis.radius import ContactRadius, compressive_radius, tensile_radius
 from workflow.deck import Phase
 from workflow.experiments.contact import State
+from workflow.experiments.law import law_share
 from workflow.scene import FlatPunch, Scene
 from workflow.settings import RESIDUAL_SHARE, Settings
 
@@ -27,6 +28,15 @@ class Quantity:
 
 
 @dataclass(frozen=True)
+class Refinement:
+    """How a run was refined: the tolerance of its settings in the end, how often that was lowered, why not further."""
+
+    tolerance: float
+    count: int
+    ended: str
+
+
+@dataclass(frozen=True)
 class Outcome:
     """The result of one experiment.
 
@@ -38,6 +48,9 @@ class Outcome:
         phases: the schedule.
         warnings: by name, what limits the trust in the numbers.
         friction: columns of friction.csv, for a slide.
+        lattice: by name, the part of a quantity's uncertainty that the spacing of the particles leaves, whatever the
+            settings.
+        refinement: None where the settings were given, or are not refined.
     """
 
     quantities: Mapping[str, Quantity]
@@ -47,14 +60,14 @@ class Outcome:
     phases: tuple[Phase, ...]
     warnings: Mapping[str, str] = field(default_factory=dict)
     friction: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    lattice: Mapping[str, float] = field(default_factory=dict)
+    refinement: Refinement | None = None
 
 
 END_SHARE_LIMIT = 1.0
 """Pressure at a chain's end over the largest one, per unit of tolerance, from which on the chain cuts the contact."""
 INSIDE = 0.5
 """The same from which on the end of the chain is inside the contact."""
-TAIL = 10.0
-"""Force of the tail beyond the cutoff, summed over particles, over the force at the cutoff times a particle's share."""
 RESIDUAL_LIMIT = 0.1
 """Largest residual force of a particle over the force scale, per unit of tolerance, for a converged state."""
 
@@ -107,27 +120,21 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
         )
 
 
-def law_share(scene: Scene, settings: Settings) -> float:
-    """Relative error of a force that table and cutoff, or a plane that is not quite rigid, may cause."""
-    if settings.table is None or settings.law is None:
-        neighbours = 0.0 if scene.neighbours is None else scene.neighbours.stiffness
-        return 4.0 * neighbours / settings.plane_stiffness
-    tail = TAIL * abs(float(settings.law.force(settings.cutoff)))
-    return (tail + settings.table.error_beyond(0.5 * settings.rest)) / settings.force_scale
-
-
-def unmet(scene: Scene, quantities: Mapping[str, Quantity]) -> str:
-    """Which main results are known less well than the tolerance, in words; "" where none is, and with noise."""
+def unmet(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, float]:
+    """Relative uncertainties of the main results that are known less well than the tolerance; with noise of none."""
     if scene.noise is not None:
-        return ""
+        return {}
     shares = {
         name: quantity.uncertainty / abs(quantity.value)
         for name, quantity in quantities.items()
         if name != "preload" and quantity.value != 0.0
     }
-    return ", ".join(
-        f"{name} is known to {share:.1e}" for name, share in shares.items() if share > scene.accuracy.tolerance
-    )
+    return {name: share for name, share in shares.items() if share > scene.accuracy.tolerance}
+
+
+def in_words(shares: Mapping[str, float]) -> str:
+    """What `unmet` found: "critical_radius is known to 3.1e-04"."""
+    return ", ".join(f"{name} is known to {share:.1e}" for name, share in shares.items())
 
 
 def _reaches_end(scene: Scene, profile: Profile) -> bool:
@@ -162,9 +169,10 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
             'interaction.cutoff, or "auto"'
         )
     closest = min(state.smallest_distance for state in states)
-    if settings.table is not None and closest < settings.closest:
+    if settings.table is not None and closest < settings.table_from:
+        error = settings.table.error_beyond(max(closest, settings.table.core))
         found["table_core"] = (
-            f"opposite particles came as close as {closest:.3g} LU; the table was chosen for {settings.closest:.3g} LU "
-            f"and follows the law within {settings.table.error_beyond(max(closest, settings.table.core)):.1e} FU there"
+            f"opposite particles came as close as {closest:.3g} LU; the table was chosen for {settings.table_from:.3g} "
+            f"LU and follows the law within {error:.1e} FU there"
         )
     return found

@@ -10,8 +10,9 @@ import numpy as np
 from workflow.deck import Phase
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import State
+from workflow.experiments.law import law_error
 from workflow.experiments.marks import Peak, crossing, largest_tension
-from workflow.experiments.outcome import Outcome, Quantity, doubts, law_share, radius_of, require_trust
+from workflow.experiments.outcome import Outcome, Quantity, doubts, radius_of, require_trust
 from workflow.scene import Scene
 from workflow.settings import Settings
 from workflow.units import FORCE, LENGTH
@@ -169,4 +170,4 @@ def _zero_load(bench: Bench, branch: list[State], displacement: list[float], for
 def _noise(bench: Bench, state: State) -> float:
     """What residual forces on the particles may add up to, and the error of the law [FU]."""
     scene, settings = bench.deck.scene, bench.deck.settings
-    return state.residual * settings.particles + law_share(scene, settings) * abs(state.force)
+    return state.residual * settings.particles + law_error(scene, settings, state)

