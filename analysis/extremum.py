@@ -124,7 +124,8 @@ def _polynomial_minimum(x: Array, y: Array, stencil: _Stencil, low: float, high:
     """
     points, values = stencil.of(x), stencil.of(y)
     origin, width, depth = float(points.sum()) / len(points), float(points[-1] - points[0]), float(np.abs(values).max())
-    inverse = np.linalg.pinv(np.vander((points - origin) / width, stencil.degree + 1, increasing=True))
+    matrix = np.vander((points - origin) / width, stencil.degree + 1, increasing=True)
+    inverse = np.linalg.inv(matrix) if stencil.size == stencil.degree + 1 else np.linalg.pinv(matrix)
     coefficients = inverse @ values / depth
     powers = np.arange(1, stencil.degree + 1)
     first = coefficients[1:] * powers

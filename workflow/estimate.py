@@ -16,13 +16,16 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from potentials import DoubleExponential
 
 Array = NDArray[np.float64]
 GRID = 4000
 CONTACT_POINTS = 401
-BRANCH_POINTS = 400
+BRANCH_POINTS, COARSE_POINTS = 400, 40
+ROOT = 1e-9
+"""Relative error of a displacement that is solved for."""
 DIFFERENCE = 1e-3
 """Difference of two displacements whose forces give a stiffness, over the way since the bodies feel each other."""
 SOFTEST = 0.998
@@ -131,8 +134,7 @@ class ContactEstimate:
 
     def pull_off_force(self) -> float:
         """Largest tension of the estimate [FU]; 0 without attraction."""
-        places = np.linspace(self.rest - float(self.gap[-1]), self.rest, BRANCH_POINTS)
-        return max(0.0, -float(self.contact_forces(places).min()))
+        return max(0.0, self._largest_tension[1])
 
     def stiffness_under(self, force: float) -> float:
         """Contact stiffness dF/dd [FU/LU] under a force [FU]; a tension above SOFTEST of the largest counts as that."""
@@ -153,6 +155,17 @@ class ContactEstimate:
         return float(places[:top][gone][-1]) if gone.any() else float(places[0])
 
     @cached_property
+    def _largest_tension(self) -> tuple[float, float]:
+        """(displacement [LU], tension [FU]) where the tension is largest, looked for twice, the second time nearby."""
+        low, high = self.rest - float(self.gap[-1]), self.rest
+        for _ in range(2):
+            places = np.linspace(low, high, COARSE_POINTS)
+            forces = self.contact_forces(places)
+            top = int(forces.argmin())
+            low, high = float(places[max(top - 1, 0)]), float(places[min(top + 1, COARSE_POINTS - 1)])
+        return float(places[top]), -float(forces[top])
+
+    @cached_property
     def _tensions(self) -> tuple[Array, Array]:
         """Displacements [LU] from where nothing is felt to F = 0, and forces [FU]."""
         places = np.linspace(self.rest - float(self.gap[-1]), self.displacement_at(0.0), BRANCH_POINTS)
@@ -160,17 +173,11 @@ class ContactEstimate:
 
     def displacement_at(self, force: float) -> float:
         """Displacement [LU] at which F(d) reaches a compressive force [FU] ≥ 0."""
-        low = self.rest - float(self.gap[-1])
+        low = self._largest_tension[0]  # where the force begins to rise
         high = max(1.0, 2 * self.rest)
         while self.contact_force(high) < force:
             high *= 2
-        for _ in range(60):
-            middle = 0.5 * (low + high)
-            if self.contact_force(middle) < force:
-                low = middle
-            else:
-                high = middle
-        return high
+        return float(brentq(lambda place: self.contact_force(place) - force, low, high, xtol=ROOT * high))
 
 
 def row_force(law: DoubleExponential, r: Array, spacing: float, cutoff: float) -> Array:

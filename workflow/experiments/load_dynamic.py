@@ -12,8 +12,8 @@ from analysis.pressure import Profile, mean_pressure
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import Contact, State
 from workflow.experiments.dynamic import Held, chunk_steps, hold
-from workflow.experiments.load import load_outcome
 from workflow.experiments.law import law_error
+from workflow.experiments.load import load_outcome
 from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, radius_of, require_trust
 from workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
