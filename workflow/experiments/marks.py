@@ -85,7 +85,7 @@ def _vertex(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, 
     """
     near = slice(middle - beside, middle + beside + 1)
     top, scale = float(tension[middle]), float(np.ptp(d[near]))
-    if not _apart(d[near]):
+    if not are_apart(d[near]):
         return float(d[middle]), top
     x = (d[near] - d[middle]) / scale
     polynomial = np.polynomial.Polynomial.fit(x, tension[near] - top, 2 * beside, domain=(-1, 1), window=(-1, 1))
@@ -106,7 +106,8 @@ def rival_excess(displacement: Sequence[float], force: Sequence[float], peak: Pe
     return float(np.max(2.0 * tension[teeth] - tension[teeth - 1] - peak.smooth, initial=0.0))
 
 
-def _apart(d: Array) -> bool:
+def are_apart(d: Array) -> bool:
+    """Whether neighbouring displacements are far enough from each other for a polynomial through them."""
     return float(np.abs(np.diff(d)).min()) > NEAREST * float(np.ptp(d))
 
 
@@ -153,7 +154,7 @@ def smooth_crossing(displacement: Sequence[float], force: Sequence[float], level
     if not 1 <= index < len(force) - 2:
         return place
     d = np.asarray(displacement[index - 1 : index + 3])
-    if not _apart(d):
+    if not are_apart(d):
         return place
     over = np.asarray(force[index - 1 : index + 3]) - level
     x = (d - d[1]) / (d[2] - d[1])

@@ -18,6 +18,7 @@ from workflow.deck import Deck, Phase
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import Contact, State
 from workflow.experiments.dynamic import Held, Start, hold, overshoot
+from workflow.experiments.marks import are_apart
 from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, radius_of, radius_or_spot
 from workflow.scene import Scene
 from workflow.units import FORCE, LENGTH
@@ -174,6 +175,8 @@ def top_of(states: Sequence[State]) -> tuple[float, float] | None:
     threshold.
     """
     place = np.asarray([state.displacement for state in states])
+    if not are_apart(place):
+        return None
     tension = np.polynomial.Polynomial.fit(place, [-state.force for state in states], len(states) - 1)
     flat = [root.real for root in tension.deriv().roots() if root.imag == 0.0]
     reach = REACH * float(np.ptp(place))
