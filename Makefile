@@ -35,6 +35,7 @@ lint: $(READY) ## check style, types and the direction of imports
 	$(BIN)/lint-imports
 
 validation: $(READY) ## reproduce the paper anew: VALIDATION.md, docs/reproduced and the README's table
+	@rm -rf reproduced  # runs of an older state of the program would be taken over
 	@$(BIN)/contact1d reproduce --out reproduced
 	@mkdir -p docs/reproduced && cp reproduced/reproduce.json reproduced/*.png docs/reproduced/
 	@WRITE_DOCS=1 $(BIN)/python -m pytest -q tests/unit/test_validation_page.py
