@@ -41,6 +41,9 @@ def write_whole(path: Path, text: str) -> None:
     os.replace(part, path)
 
 
+IN_TIME = ', or method = "quasistatic", since force control never sees the pull-off itself'
+
+
 def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict[str, Any]:
     """What results.json holds after a run that was done."""
     scales = scales_of(scene, outcome.quantities)
@@ -54,9 +57,8 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
         ended = "" if outcome.refinement is None else f" ({outcome.refinement.ended})"
         doubts["tolerance"] = (
             f"{in_words(coarse)}, which is more than the tolerance of {scene.accuracy.tolerance:g} that was asked for"
-            f"{ended}. A radius is known no better than the spacing lets it, and by the dynamic method no better than "
-            "the bracket of the tension: take a smaller bodies.spacing at the same stiffness and energy per length, or "
-            'method = "quasistatic"'
+            f"{ended}. A radius is known no better than the spacing lets it: take a smaller bodies.spacing at the same "
+            f"stiffness and energy per length{IN_TIME if scene.method == 'dynamic' else ''}"
         )
     if missing := unfound(scene, outcome.quantities):
         doubts["no_units"] = (
@@ -66,7 +68,7 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
     warnings = [{"name": name, "message": message} for name, message in doubts.items()]
     refinement = outcome.refinement
     accuracy = {
-        "tolerance": scene.accuracy.tolerance if refinement is None else refinement.tolerance,
+        "tolerance": scene.accuracy.tolerance if refinement is None else float(f"{refinement.tolerance:.6g}"),
         "refinements": 0 if refinement is None else refinement.count,
     }
     return quantities | {"accuracy": accuracy} | _frame(scene, "done", warnings, timing)

@@ -11,7 +11,6 @@ from workflow.experiments.contact import State
 from workflow.experiments.law import law_error
 from workflow.experiments.outcome import Outcome, Quantity, doubts, radius_of
 from workflow.experiments.quasistatic import approach
-from workflow.scene import Scene
 from workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
 APART = 0.01
@@ -63,7 +62,7 @@ def load_outcome(
         warnings["no_radius"] = "the bodies do not touch over a width, so there is no contact radius"
     else:
         pressure = mean_pressure(final.profile, scene.bodies.spacing, radius.value)
-        spread = radius.uncertainty + _radius_slope(scene, states, radius.value) * force_uncertainty
+        spread = radius.uncertainty + _radius_slope(bench, states, radius.value) * force_uncertainty
         share = 2 * spread / radius.value + force_uncertainty / max(abs(final.force), 1e-300)
         quantities["contact_radius"] = Quantity(radius.value, spread, LENGTH)
         quantities["mean_pressure"] = Quantity(pressure, abs(pressure) * share, MEAN_PRESSURE)
@@ -74,18 +73,19 @@ def load_outcome(
     return Outcome(quantities, states, {"final": final.profile}, radii, phases, warnings, lattice=lattice)
 
 
-def _radius_slope(scene: Scene, states: tuple[State, ...], radius: float) -> float:
+def _radius_slope(bench: Bench, states: tuple[State, ...], radius: float) -> float:
     """|da/dF| [LU/FU] at the last state, with the radius a [LU], from the nearest row that is APART from it in force.
 
-    Where there is no such, or its bodies do not touch, a/F: that of a straight line, above that of a curved body.
+    Where there is no such, or its bodies do not touch, a/F, F at least the expected pull-off force: that of a straight
+    line, above that of a curved body.
     """
-    final = states[-1]
+    scene, final = bench.deck.scene, states[-1]
     scale = max(abs(state.force) for state in states)
     others = [state for state in states if abs(state.force - final.force) > APART * scale]
     near = min(others, key=lambda state: abs(state.force - final.force), default=final)
     other = radius_of(scene, near.profile)
     if near is final or other is None:
-        return radius / max(abs(final.force), 1e-300)
+        return radius / max(abs(final.force), bench.deck.settings.estimate.pull_off_force())
     return abs((other.value - radius) / (near.force - final.force))
 
 

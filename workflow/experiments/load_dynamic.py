@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 from analysis.pressure import Profile, mean_pressure
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import Contact, State
-from workflow.experiments.dynamic import Held, chunk_steps, hold
+from workflow.experiments.dynamic import Held, chunk_steps, hold, overshoot
 from workflow.experiments.law import law_error
 from workflow.experiments.load import load_outcome
 from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, radius_of, require_trust
 from workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
+CLOSE = 1e-3
+"""Steps towards a tension, over the largest one that is expected, below which the tension itself is tried."""
 SETTLING = 40
 """Looks (of a quarter of a settling time each) that a thermal contact has to forget its start."""
 SAMPLES = 200
@@ -44,25 +46,28 @@ def load_dynamic(bench: Bench) -> Outcome:
         contact.write_state()
         contact.finish()
     settings = bench.deck.settings
-    stiffness = max(
-        settings.estimate.stiffness, abs(last.load) / max(abs(last.last.displacement), settings.closest, 1e-12)
-    )
+    stiffness = settings.estimate.stiffness_under(load)
     error = last.unbalance + law_error(contact.scene, settings, last.last)
     return load_outcome(bench, tuple(states), contact.phases, error, error / stiffness)
 
 
 def _settled(bench: Bench, contact: Contact, load: float) -> tuple[list[State], Held]:
-    """Hold the load; a tension is approached from a held F = 0."""
-    scale = max(abs(load), bench.deck.settings.force_scale)
-    states: list[State] = []
-    for name, level in (("loading", max(load, 0.0)), ("unloading", load)):
-        if name == "unloading" and load >= 0.0:
-            break
-        contact.begin(name, "hold")
-        held = hold(contact, level, scale)
+    """Hold the load; a tension is approached from a held F = 0, so gently that the plate's momentum breaks nothing."""
+    settings = bench.deck.settings
+    scale, largest = max(abs(load), settings.force_scale), settings.estimate.pull_off_force()
+    contact.begin("loading", "hold")
+    held = hold(contact, max(load, 0.0), scale)
+    states = list(held.states)
+    if load < 0.0 and held.held:
+        contact.begin("unloading", "hold")
+    while held.held and held.load > load:
+        past = overshoot(settings, contact.scene.bodies.mass, held.load, -largest)
+        gentle = (past * held.load - largest) / (1.0 + past)
+        close = gentle >= held.load - CLOSE * largest
+        held = hold(contact, load if close else max(load, gentle), scale)
         states += held.states
-        if not held.held:
-            raise UntrustedError(f"the contact cannot hold {level:.4g} FU: the bodies part")
+    if not held.held:
+        raise UntrustedError(f"the contact cannot hold {held.load:.4g} FU: the bodies part")
     return states, held
 
 

@@ -103,8 +103,8 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
     if state.depth > 0.0:
         raise UntrustedError(
             f"the bodies went through each other {at}: a particle lies {state.depth:.3g} LU below the opposite "
-            "surface. One layer of particles cannot carry this load: lower the load or the displacement, take smaller "
-            "steps, a stronger repulsion, a range nearer to the spacing, or stiffer neighbour springs"
+            "surface. One layer of particles cannot carry this load: lower the load or the displacement, take a "
+            "smaller [accuracy] tolerance, a stronger repulsion, a range nearer to the spacing, or stiffer neighbour springs"
         )
     limit = RESIDUAL_LIMIT * scene.accuracy.tolerance * settings.force_scale
     prescribed = scene.method == "quasistatic" or scene.experiment.kind == "path"
@@ -121,13 +121,19 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
 
 
 def unmet(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, float]:
-    """Relative uncertainties of the main results that are known less well than the tolerance; with noise of none."""
+    """Relative uncertainties of the main results that are known less well than the tolerance; with noise of none.
+
+    What a scene prescribes is no result, and neither is the pressure of a contact that is to carry nothing.
+    """
     if scene.noise is not None:
         return {}
+    prescribed = {"preload"}
+    if scene.experiment.kind == "load" and scene.experiment.force == 0.0:
+        prescribed |= {"force", "mean_pressure"}
     shares = {
         name: quantity.uncertainty / abs(quantity.value)
         for name, quantity in quantities.items()
-        if name != "preload" and quantity.value != 0.0
+        if name not in prescribed and quantity.value != 0.0
     }
     return {name: share for name, share in shares.items() if share > scene.accuracy.tolerance}
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from workflow.deck import Deck, Phase
 from workflow.experiments.bench import Bench
@@ -35,7 +36,9 @@ REACH = 5.0
 SPREAD = 2.0
 """Uncertainty of the extrapolation over the difference that one state less makes."""
 STRIDE = 0.8
-"""Rise of a tension, before there are as many, over what is left to the expected pull-off force."""
+"""Rise of a tension over what is left to the expected pull-off force, so that the last states lie near it, …"""
+NEAR = 3.0
+"""… until that is this many times the distance at which both sides are tried."""
 GROWTH = 0.25
 """Rise of a tension over the one that held, where nothing better is known."""
 
@@ -84,7 +87,7 @@ class Search:
         expected = self._expected()
         margin = AIM * self.tolerance * expected
         gentle = (expected + past * low) / (1.0 + past)
-        if len(self.held) < FEWEST_HELD - 1:
+        if expected - low > NEAR * margin:
             gentle = min(gentle, low + STRIDE * (expected - low))
         for tension in (min(expected - margin, gentle), expected + margin):
             if low + 0.1 * margin < tension < self.lost - 0.1 * margin:
@@ -201,6 +204,15 @@ def _critical_radius(scene: Scene, held: Sequence[State]) -> Quantity:
     values = [radius.value for radius in radii if radius is not None]
     if len(values) < FEWEST_HELD - 1 or len(held) < FEWEST_HELD or tops[0] is None or tops[1] is None:
         return Quantity(last.value, last.value, LENGTH)
-    radius = np.polynomial.Polynomial.fit([state.displacement for state in held[1 - FEWEST_HELD :]], values, 2)
-    value, other = (float(radius(top[0])) for top in tops if top is not None)
-    return Quantity(value, last.uncertainty + SPREAD * abs(value - other), LENGTH)
+    places = np.asarray([state.displacement for state in held[1 - FEWEST_HELD :]])
+    value, other = (float(_weights(places, top[0]) @ values) for top in tops if top is not None)
+    uncertainties = [radius.uncertainty for radius in radii if radius is not None]
+    spread = float(np.abs(_weights(places, tops[0][0])) @ uncertainties)
+    return Quantity(value, spread + SPREAD * abs(value - other), LENGTH)
+
+
+def _weights(places: NDArray[np.float64], place: float) -> NDArray[np.float64]:
+    """Weights of the values at `places` [LU] in the value at `place` of the polynomial through all of them."""
+    width = float(np.ptp(places))
+    matrix = np.vander((places - place) / width, increasing=True)
+    return np.asarray(np.linalg.inv(matrix)[0])
