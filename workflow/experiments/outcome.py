@@ -104,7 +104,8 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
         raise UntrustedError(
             f"the bodies went through each other {at}: a particle lies {state.depth:.3g} LU below the opposite "
             "surface. One layer of particles cannot carry this load: lower the load or the displacement, take a "
-            "smaller [accuracy] tolerance, a stronger repulsion, a range nearer to the spacing, or stiffer neighbour springs"
+            "smaller [accuracy] tolerance, a stronger repulsion, a range nearer to the spacing, or stiffer neighbour "
+            "springs"
         )
     limit = RESIDUAL_LIMIT * scene.accuracy.tolerance * settings.force_scale
     prescribed = scene.method == "quasistatic" or scene.experiment.kind == "path"
