@@ -94,11 +94,6 @@ class Contact:
         self._unfinished += self.deck.state(first=self._states == 0)
         self._states += 1
 
-    def run_fragment(self, text: str) -> None:
-        """Run text that is no part of the schedule, such as saving a state to come back to."""
-        self.session.execute(self._unfinished + text, phase=self._phases[-1].name)
-        self._unfinished = ""
-
     def finish(self) -> None:
         """Run what is left of the last row."""
         self.session.execute(self._unfinished, phase=self._phases[-1].name)
