@@ -13,13 +13,13 @@ only there, the force falls to 0 at r = 0 instead of jumping to its opposite.
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from potentials.double_exponential import Array, DoubleExponential
 
@@ -28,6 +28,8 @@ FEWEST_POINTS = 2_000
 MOST_POINTS = 400_000
 INNER_CELLS = 4
 """Grid cells between the first entry and r = 0: a spline's end condition does not reach across them."""
+SPLINE_REACH = 28
+"""Entries over which a change of one is felt by the spline: (2 − √3)^28 = 1e-16."""
 
 
 @dataclass(frozen=True)
@@ -77,9 +79,16 @@ class Table:
     def force(self, r: Array) -> Array:
         """The force in the plane [FU] that LAMMPS makes of this table at distances r ≤ r_c [LU].
 
-        It interpolates F_table/r_L by a cubic spline over r_L².
+        It interpolates g = F_table/r_L by a cubic spline over s = r_L² with knots at the entries. Between two of them,
+        at the share t of the cell h: (1 − t) g₀ + t g₁ − t (1 − t) [(2 − t) M₀ + (1 + t) M₁] h²/6, M = g″.
         """
-        return np.asarray(_spline(self)(r**2 + self.plane_offset**2) * r)
+        slope, bend = _knots(self)
+        place = (np.square(r) + self.plane_offset**2 - self.grid()[0]) / self.cell
+        left = np.clip(place.astype(np.intp), 0, self.points - 2)
+        t = place - left
+        curved = (2.0 - t) * bend[left] + (1.0 + t) * bend[left + 1]
+        between = (1.0 - t) * slope[left] + t * slope[left + 1] - t * (1.0 - t) * curved
+        return np.asarray(between * r)
 
     def error_beyond(self, r_min: float, samples: int = 20_000) -> float:
         """Largest interpolation error of the force [FU] for r_min ≤ r ≤ r_c, from samples dense near r_min."""
@@ -87,9 +96,19 @@ class Table:
 
 
 @lru_cache(maxsize=4)  # the same one is asked for offset by offset
-def _spline(table: Table) -> CubicSpline:
+def _knots(table: Table) -> tuple[Array, Array]:
+    """g at the entries of a table, and M h²/6 of its spline there, each of shape (points,).
+
+    On a uniform grid M₋ + 4 M₀ + M₊ = 6 δ²g/h² is solved by the decaying Green's function z^|j| / 2√3, z = √3 − 2. The
+    spline's ends, where LAMMPS has conditions of its own, lie in the margin of INNER_CELLS and beyond the cutoff.
+    `scipy.interpolate.CubicSpline`, which the tests hold it against, takes longer to import than a small run takes.
+    """
     distance, _, force = table.entries()
-    return CubicSpline(table.grid(), force / distance)
+    slope = force / distance
+    second = np.zeros_like(slope)
+    second[1:-1] = slope[:-2] - 2.0 * slope[1:-1] + slope[2:]
+    green = (math.sqrt(3.0) - 2.0) ** np.abs(np.arange(-SPLINE_REACH, SPLINE_REACH + 1)) / (2.0 * math.sqrt(3.0))
+    return slope, np.convolve(second, green, mode="same")
 
 
 @lru_cache(maxsize=64)  # a scene asks for the same ones again and again

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
 from potentials import DoubleExponential, Exponential
 from potentials import table as table_module
@@ -23,7 +24,7 @@ LAWS = {"adhesive": (ADHESIVE, 2.5, 0.07), "repulsive": (REPULSIVE, 1.8, 0.026),
 """Law, cutoff [LU], closest distance [LU]."""
 
 END_CONDITION = 6e-6
-"""scipy's and LAMMPS's splines end differently: f/r times the root of a cell, over the force at r = 0 (3e-6 seen), …"""
+"""`Table.force` and LAMMPS end their splines differently: f/r times the root of a cell, over the force at r = 0 (3e-6 seen), …"""
 DECAY = 2 - 3**0.5
 """… times this for every cell away from the end, as any disturbance of a cubic spline."""
 ROUND_OFF = 1e-12
@@ -32,6 +33,8 @@ MEASURED = 0.02
 """Header and LAMMPS sample the same error at different places; near its largest value it changes by less than this."""
 DIGITS = 5e-3
 """The header states the error with three digits."""
+SPLINE_MARGIN = 28
+"""Cells after which nothing is left of an end condition: DECAY^28 = 1e-16."""
 BEND = 1e-6
 """Of the force at r = 0: next to its largest tension a force is not between its neighbours on the grid."""
 RATE = 0.25
@@ -100,6 +103,18 @@ def test_table_force_is_what_lammps_computes(session: Session, name: str) -> Non
         cells = r**2 / table.cell
         allowed = END_CONDITION * np.sqrt(1 + cells) * DECAY**cells + ROUND_OFF
         assert (np.abs(force[:, 2] - table.force(r)) <= float(law.force(0.0)) * allowed).all()
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_table_force_is_the_cubic_spline(name: str) -> None:
+    """`Table.force` against scipy's spline through the same entries, away from the ends, whose conditions differ."""
+    law, cutoff, _ = LAWS[name]
+    table = Table(law, cutoff, 4000)
+    distance, _, force = table.entries()
+    spline = CubicSpline(table.grid(), force / distance)
+    r = np.sqrt(np.linspace(SPLINE_MARGIN * table.cell, cutoff**2 - SPLINE_MARGIN * table.cell, 5000))
+    expected = spline(r**2 + table.plane_offset**2) * r
+    assert np.abs(table.force(r) - expected).max() <= ROUND_OFF * float(law.force(0.0))
 
 
 @pytest.mark.parametrize("name", LAWS)
