@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import re
 from collections.abc import Sequence
 from typing import Any
@@ -93,10 +94,23 @@ def _styled_rows(lammps: Any, kind: str, base: str, column: str | None) -> Any:
         return None
     if kind == "v":
         per_atom = lammps.lib.lammps_extract_variable_datatype(lammps.lmp, base.encode()) == ATOM_VARIABLE
-        return lammps.numpy.extract_variable(base, "all", ATOM_VARIABLE) if per_atom else None
+        return _variable_rows(lammps, base) if per_atom else None
     columns = getattr(lammps, f"extract_{category}")(base, PER_ATOM, COLUMNS)
     data = getattr(lammps.numpy, f"extract_{category}")(base, PER_ATOM, ARRAY if columns else VECTOR)
     return data if column is None else data[:, int(column) - 1]
+
+
+def _variable_rows(lammps: Any, base: str) -> Any:
+    """Return an atom-style variable, copied at once: `lammps.extract_variable` takes 130 ns for each number of it."""
+    extract = lammps.lib.lammps_extract_variable
+    extract.restype = ctypes.POINTER(ctypes.c_double)
+    numbers = extract(lammps.lmp, base.encode(), b"all")
+    if not numbers:
+        return lammps.extract_variable(base, "all", ATOM_VARIABLE)  # which raises what LAMMPS has to say
+    try:
+        return np.ctypeslib.as_array(numbers, (lammps.extract_setting("nlocal"),)).copy()
+    finally:
+        lammps.lib.lammps_free(numbers)
 
 
 def _quoting(error: Exception, asked: str) -> Exception:

@@ -24,7 +24,7 @@ LAWS = {"adhesive": (ADHESIVE, 2.5, 0.07), "repulsive": (REPULSIVE, 1.8, 0.026),
 """Law, cutoff [LU], closest distance [LU]."""
 
 END_CONDITION = 6e-6
-"""`Table.force` and LAMMPS end their splines differently: f/r times the root of a cell, over the force at r = 0 (3e-6 seen), …"""
+"""`Table.force` and LAMMPS end their splines differently: f/r times the root of a cell, over the force at r = 0, …"""
 DECAY = 2 - 3**0.5
 """… times this for every cell away from the end, as any disturbance of a cubic spline."""
 ROUND_OFF = 1e-12
