@@ -76,7 +76,8 @@ def place_of_minimum(x: Array, y: Array, candidates: NDArray[np.intp]) -> Place:
     extent = float(x[final] - x[first])
     place = _interpolated(x, y, index, noise) if final - first < FEW - 1 else _fitted(x, y, first, final, noise)
     open_towards_others = (first == candidates[0] and first > 0) or (final == candidates[-1] and final < last)
-    spread = extent if open_towards_others else 0.25 * extent
+    inside = 0.25 * extent if final - first > 1 else 0.0  # two neighbours that tie are what interpolation is for
+    spread = extent if open_towards_others else inside
     return Place(place.position, max(place.uncertainty, spread), first == 0 or final == last)
 
 

@@ -28,6 +28,8 @@ CUTS, PARTS = 5, 17
 `scipy.optimize.brentq` would do it too, but its import takes a quarter of the time of a whole small run."""
 DIFFERENCE = 1e-3
 """Difference of two displacements whose forces give a stiffness, over the way since the bodies feel each other."""
+FLAT = 1e-6
+"""Rise of a gap over the mean one below which the grid is level there: made monotone, where a pair snaps."""
 SOFTEST = 0.998
 """Tension over the largest one at which a contact counts as softest: at the largest itself it has no stiffness left."""
 PLACES, NEAR = 1000, 0.01
@@ -146,6 +148,19 @@ class ContactEstimate:
         top = int(forces.argmin())
         stiffness = np.gradient(forces, places)[top:]
         return float(np.interp(max(force, SOFTEST * forces[top]), forces[top:], stiffness))
+
+    @cached_property
+    def snap(self) -> tuple[float, float]:
+        """(undeformed gap [LU] at which a pair lets go, tension [FU] that it loses then); the end, 0 if none does."""
+        level = np.flatnonzero(np.diff(self.gap) < FLAT * float(np.ptp(self.gap)) / self.gap.size)
+        if level.size == 0:
+            return float(self.gap[-1]), 0.0
+        return float(self.gap[level[0]]), float(self.force[level[-1] + 1] - self.force[level[0]])
+
+    def stuck_stiffness(self, displacement: float) -> float:
+        """Contact stiffness [FU/LU] of all pairs together that have not let go at a displacement [LU]; one at least."""
+        width = 2.0 * self.half_width(displacement, self.snap[0])
+        return max(1.0, width / self.spacing) * self.stiffness
 
     def parted(self, share: float) -> float:
         """Displacement [LU] beyond the largest tension at which the tension has fallen to this share of it."""

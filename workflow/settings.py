@@ -6,7 +6,7 @@ Each is derived from `[accuracy] tolerance` (relative, on the main results) by t
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -37,6 +37,9 @@ SMOOTH_SHARE = 0.25
 """Increment of a smooth search over the longest range, the width of the curve's largest tension."""
 MOVE_SHARE = 0.25
 """Longest move of a body between two states at rest, over that distance: particles stay in order, down to r near 0."""
+NEAR_SHARE = 0.2
+"""Least distance down to which a table follows the law and a search comes down in ever smaller moves, over that one: a
+table that is smoothed any earlier lets bodies through that the law still carries."""
 FAR_SHARE = 10.0
 """Length of a long bond over the spacing, per 1/tolerance: a sideways move u bends its force by u/2L."""
 STILL_STEP = 0.5
@@ -84,7 +87,8 @@ class Settings:
         plate_mass, plate_damping: [MU], [FU·TU/LU].
         settle_time: about one period of the plate on its contact [TU].
         longest_move: of a body between two states at rest [LU], inf on a rigid plane: a body that is moved by more than
-            its particles' distance from the opposite ones is put behind them.
+            its particles' distance from the opposite ones is put behind them. A search may come nearer than `closest`,
+            in moves down to NEAR_SHARE of this.
         largest_displacement: what the estimate expects [LU].
         table_style: of `pair_style table`. "spline" is the only one that decks have by themselves; others are for
             `contact1d cost`, which measures that none of them is cheaper at an equal error.
@@ -126,7 +130,16 @@ class Settings:
         """Longest increment [LU] of a search from a state with this smallest distance [LU]; unloading has no such."""
         if not self.is_smooth:
             return self.displacement_step
-        return min(self.smooth_step, max(self.longest_move, MOVE_SHARE * smallest_distance))
+        return min(self.smooth_step, max(NEAR_SHARE * self.longest_move, MOVE_SHARE * smallest_distance))
+
+    def in_smaller_steps(self, part: float) -> Settings:
+        """The same, with increments of a search and moves that are this part as long; nothing else changes."""
+        return replace(
+            self,
+            displacement_step=part * self.displacement_step,
+            smooth_step=part * self.smooth_step,
+            longest_move=part * self.longest_move,
+        )
 
 
 def interaction_law(scene: Scene) -> DoubleExponential | None:
@@ -181,7 +194,8 @@ def _chosen(scene: Scene, law: DoubleExponential | None) -> Settings:
     force_scale = _force_scale(scene, law, largest)
     table_from, table = 0.0, None
     if law is not None:
-        table_from = max(closest, TABLE_MARGIN * (_distance(estimate, cutoff, largest) - _thermal_motion(scene)))
+        nearest = closest if scene.noise is not None else NEAR_SHARE * closest
+        table_from = max(nearest, TABLE_MARGIN * (_distance(estimate, cutoff, largest) - _thermal_motion(scene)))
         table = table_for(law, cutoff, table_from, TABLE_SHARE * tolerance * force_scale)
     motion = _motion(scene, law, closest, plane, estimate, largest, particles)
     different = scene.horizontal is not None and scene.tangential_stiffness != scene.bulk_stiffness

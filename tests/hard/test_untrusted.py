@@ -108,8 +108,13 @@ def test_a_chain_that_cuts_the_tail_of_the_contact_gets_a_warning(tmp_path: Path
     assert doubts(results) == {"chain_end", "tolerance"}  # the radius of this short contact is known to a percent
 
 
-def test_particles_closer_than_the_table_was_chosen_for_get_a_warning(tmp_path: Path) -> None:
+def test_particles_closer_than_the_table_was_chosen_for_get_a_warning(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     scene = tables({"kind": "path", "displacements": [0.0, 1.7]})  # one leap: the rows between are the program's
+    results = run(scene_from_dict(scene), tmp_path / "run", figures=False).results
+    assert "table_core" not in doubts(results)
+    spoil(monkeypatch, table_from=0.1)
     results = run(scene_from_dict(scene), tmp_path / "run", figures=False).results
     assert "table_core" in doubts(results)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from workflow.experiments.marks import crossing, largest_tension, rival_excess, smooth_crossing
+from workflow.experiments.marks import crossing, largest_tension, rivals, smooth_crossing
 from workflow.experiments.pull_off_smooth import MISPLACED
 
 PARABOLA = 1e-12  # round-off of a polynomial fit in doubles
@@ -86,8 +86,8 @@ def test_a_tooth_beside_the_highest_row_may_be_higher_by_its_last_rise() -> None
     tension = [0.0, 1.0, 1.5, 0.5, 1.2, 1.48, 0.5, 0.2, 0.0]
     peak = largest_tension(places, [-t for t in tension])
     assert peak.tension == 1.5
-    assert rival_excess(places, [-t for t in tension], peak) == pytest.approx(1.48 + 0.28 - peak.smooth)
-    assert rival_excess(places[:4], [-t for t in tension[:4]], peak) == 0.0
+    assert rivals([-t for t in tension], peak) == pytest.approx({5: 1.48 + 0.28 - peak.smooth})
+    assert rivals([-t for t in tension[:4]], peak) == {}
 
 
 def test_places_that_all_but_coincide_get_no_polynomial() -> None:

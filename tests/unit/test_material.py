@@ -463,11 +463,13 @@ def test_without_a_material_nothing_is_in_si(finished: dict[str, Run]) -> None:
 
 
 def test_contact_of_one_pair_has_no_units_by_jkr(tmp_path: Path) -> None:
-    """The radius of so sharp a parabola is 0 within half a spacing."""
+    """The radius of so sharp a parabola cannot be told from 0."""
     sharp = tables(JKR, {"kind": "pull_off", "preload": 0.01}, profile={"kind": "parabola", "radius": 0.05})
     results = run(scene_from_dict(sharp), tmp_path / "run", figures=False).results
     assert "units" not in results
-    (doubt,) = results["warnings"]
+    limited, doubt = results["warnings"]
+    assert limited["name"] == "tolerance"
+    assert limited["message"].startswith("critical_radius cannot be told from 0")
     assert doubt["name"] == "no_units"
     assert doubt["message"].startswith("the run found no zero_load_radius above 0")
 

@@ -14,6 +14,7 @@ from analysis.radius import compressive_radius, tensile_radius
 
 BODY_RADIUS = 1000.0  # LU
 CASES = 200
+SMALL_CASES = 300  # of them 0.98 covered, of those without a radius 0.99; 0.9 by interpolation alone
 COVERED = 0.95  # share of cases whose error the uncertainty must cover; 0.96 to 1 measured on 300 cases of each kind
 MEDIAN_ERROR = 1e-3  # spacings; 1e-4 measured: the degree of the interpolant limits it
 SNAP_ERROR = 0.1  # spacings; 0.03 measured: a particle's snap is seen on the lattice only
@@ -164,6 +165,23 @@ def test_one_tensile_spot_has_no_radius(offset: float) -> None:
     found = tensile_radius(profile(x, -np.exp(-(x**2) / 200.0)))
     assert found.value == pytest.approx(0.0, abs=1e-6)
     assert found.left == pytest.approx(0.0, abs=1e-4)
+
+
+def test_a_radius_of_a_few_spacings_is_not_known_to_a_thousandth_of_one() -> None:
+    """Small contacts in closed form, all of them and those that look like a single spot; a claim never falls to 0."""
+    rng = np.random.default_rng(7)
+    found = []
+    for _ in range(SMALL_CASES):
+        pair, body, exact = random_pair(rng, snaps=False), 10.0 ** rng.uniform(0.3, 2.0), rng.uniform(0.0, 2.5)
+        nearest = float(pair.undeformed(pair.where(1))) - 0.5 * exact**2 / body
+        x = np.arange(-60, 61) + rng.choice([0.0, 0.5])
+        radius = tensile_radius(profile(x, pair.tension(nearest + 0.5 * x**2 / body)))
+        found.append((radius.value, abs(radius.value - exact) <= radius.uncertainty))
+        assert radius.uncertainty >= 0.5 or radius.value > 1.0
+    assert np.mean([ok for _, ok in found]) >= COVERED
+    spots = [ok for value, ok in found if value == 0.0]
+    assert len(spots) > 0.2 * SMALL_CASES
+    assert np.mean(spots) >= COVERED
 
 
 def test_two_equal_particles_share_the_minimum() -> None:

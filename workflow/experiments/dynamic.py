@@ -2,7 +2,9 @@
 
 LAMMPS itself looks every few timesteps whether the plate is at rest or out of reach, and stops there; only then a state
 is measured. With automatic damping each load has the drag that is critical for the contact's stiffness under it: the
-stiffness falls to zero towards the pull-off, and one drag for all makes the last tensions creep.
+stiffness falls to zero towards the pull-off, and one drag for all makes the last tensions creep. Where pairs snap, it
+does not fall: F(d) is a row of teeth, each as stiff as the pairs that still hold, and a plate that swings past one
+lets go of pairs that would have held.
 """
 
 from __future__ import annotations
@@ -70,11 +72,18 @@ def chunk_steps(settings: Settings) -> int:
     return max(FEWEST_STEPS, math.ceil(CHUNK * settings.settle_time / settings.time_step))
 
 
+def stiffness_under(settings: Settings, load: float) -> float:
+    """Contact stiffness [FU/LU] under a load [FU]; where pairs snap, that of all that are stuck when deepest."""
+    if settings.estimate.snaps:
+        return settings.estimate.stuck_stiffness(settings.largest_displacement)
+    return settings.estimate.stiffness_under(load)
+
+
 def damping_under(settings: Settings, load: float) -> float:
     """Coefficient of a particle [FU·TU/LU]; an automatic one is critical for the contact's stiffness under the load."""
     if settings.damped_stiffness == 0.0:
         return settings.damping
-    stiffer = settings.estimate.stiffness_under(load) / settings.damped_stiffness
+    stiffer = stiffness_under(settings, load) / settings.damped_stiffness
     return settings.damping * math.sqrt(min(stiffer, 1.0 / SOFTENING))
 
 
@@ -85,7 +94,7 @@ def overshoot(settings: Settings, mass: float, load: float, next_load: float) ->
     """
     moving = settings.plate_mass + settings.particles * mass
     drag = settings.particles * damping_under(settings, next_load) + settings.plate_damping
-    ratio = drag / (2.0 * math.sqrt(settings.estimate.stiffness_under(load) * moving))
+    ratio = drag / (2.0 * math.sqrt(stiffness_under(settings, load) * moving))
     return math.exp(-math.pi * ratio / math.sqrt(1.0 - ratio**2)) if ratio < 1.0 else 0.0
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from analysis.pressure import mean_pressure
 from workflow.deck import Phase
@@ -13,8 +14,8 @@ from workflow.experiments.outcome import Outcome, Quantity, doubts, radius_of
 from workflow.experiments.quasistatic import approach
 from workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
-APART = 0.01
-"""Difference of two forces over the largest one from which on that of their radii is more than interpolation error."""
+BESIDE = 0.02
+"""Distance of two displacements over the whole way from which on a change is more than interpolation error."""
 
 
 def load_quasistatic(bench: Bench) -> Outcome:
@@ -37,10 +38,10 @@ def load_quasistatic(bench: Bench) -> Outcome:
         contact.write_state()
         contact.finish()
     final = states[-1]
-    stiffness = _stiffness(states)
     unbalance = abs(final.force - force) + final.residual * settings.particles
     unbalance += law_error(scene, settings, final)
-    return load_outcome(bench, tuple(states), contact.phases, unbalance, unbalance / stiffness)
+    moved = moved_by(states, unbalance, _stiffness(states))
+    return load_outcome(bench, tuple(states), contact.phases, unbalance, moved)
 
 
 def load_outcome(
@@ -62,7 +63,8 @@ def load_outcome(
         warnings["no_radius"] = "the bodies do not touch over a width, so there is no contact radius"
     else:
         pressure = mean_pressure(final.profile, scene.bodies.spacing, radius.value)
-        spread = radius.uncertainty + _radius_slope(bench, states, radius.value) * force_uncertainty
+        errors = (force_uncertainty, displacement_uncertainty)
+        spread = radius.uncertainty + _radius_spread(bench, states, radius.value, errors)
         share = 2 * spread / radius.value + force_uncertainty / max(abs(final.force), 1e-300)
         quantities["contact_radius"] = Quantity(radius.value, spread, LENGTH)
         quantities["mean_pressure"] = Quantity(pressure, abs(pressure) * share, MEAN_PRESSURE)
@@ -73,20 +75,62 @@ def load_outcome(
     return Outcome(quantities, states, {"final": final.profile}, radii, phases, warnings, lattice=lattice)
 
 
-def _radius_slope(bench: Bench, states: tuple[State, ...], radius: float) -> float:
-    """|da/dF| [LU/FU] at the last state, with the radius a [LU], from the nearest row that is APART from it in force.
+def beside(states: Sequence[State]) -> list[State]:
+    """Up to two states to tell how things change at the last one: one beside it, and one at least twice as far off.
 
-    Where there is no such, or its bodies do not touch, a/F, F at least the expected pull-off force: that of a straight
-    line, above that of a curved body.
+    Nearer than BESIDE of the way they say less than their own errors.
+    """
+    final = states[-1]
+    others = sorted(states[:-1], key=lambda s: abs(s.displacement - final.displacement))
+    least = BESIDE * max((abs(s.displacement - final.displacement) for s in others), default=0.0)
+    found: list[State] = []
+    for state in others:
+        away = abs(state.displacement - final.displacement)
+        if away > 0.0 and away >= least and len(found) < 2:
+            found.append(state)
+            least = 2.0 * away
+    return found
+
+
+def moved_by(states: Sequence[State], error: float, expected: float) -> float:
+    """How far [LU] an error of the force [FU] moves the displacement of the last state.
+
+    x with S x − K x²/2 = error: towards the largest tension the stiffness S = dF/dd falls as K = dS/dd says, and x
+    grows as a square root, up to √(2 error/K). S and K are those of a parabola through the states of `beside`; S is at
+    most `expected` [FU/LU], which counts alone where there are no such states.
+    """
+    near = beside(states)
+    slopes = [_slope(state, states[-1]) for state in near]
+    if len(near) < 2:
+        return error / min([expected, *(abs(slope) for slope in slopes if slope)])
+    ways = [state.displacement - states[-1].displacement for state in near]
+    bend = 2.0 * (slopes[0] - slopes[1]) / (ways[0] - ways[1])
+    stiffness = min(expected, slopes[0] - 0.5 * bend * ways[0])
+    if bend <= 0.0:
+        return error / (stiffness if stiffness > 0.0 else expected)
+    root = stiffness**2 - 2.0 * bend * error
+    if stiffness <= 0.0 or root <= 0.0:
+        return math.sqrt(2.0 * error / bend)
+    return 2.0 * error / (stiffness + math.sqrt(root))
+
+
+def _slope(one: State, other: State) -> float:
+    """dF/dd [FU/LU] between two states."""
+    return (one.force - other.force) / (one.displacement - other.displacement)
+
+
+def _radius_spread(bench: Bench, states: Sequence[State], radius: float, errors: tuple[float, float]) -> float:
+    """What errors of force [FU] and displacement [LU] make of the radius a [LU], which goes linearly with the latter.
+
+    Where no state beside the last tells da/dd, a/F for da/dF, F at least the expected pull-off force: that of a
+    straight line, above that of a curved body.
     """
     scene, final = bench.deck.scene, states[-1]
-    scale = max(abs(state.force) for state in states)
-    others = [state for state in states if abs(state.force - final.force) > APART * scale]
-    near = min(others, key=lambda state: abs(state.force - final.force), default=final)
-    other = radius_of(scene, near.profile)
-    if near is final or other is None:
-        return radius / max(abs(final.force), bench.deck.settings.estimate.pull_off_force())
-    return abs((other.value - radius) / (near.force - final.force))
+    near = beside(states)[:1]
+    other = radius_of(scene, near[0].profile) if near else None
+    if other is None:
+        return errors[0] * radius / max(abs(final.force), bench.deck.settings.estimate.pull_off_force())
+    return errors[1] * abs((other.value - radius) / (near[0].displacement - final.displacement))
 
 
 def _stiffness(states: list[State]) -> float:

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from analysis.pressure import Profile, mean_pressure
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import Contact, State
-from workflow.experiments.dynamic import Held, chunk_steps, hold, overshoot
+from workflow.experiments.dynamic import Held, chunk_steps, hold, overshoot, stiffness_under
 from workflow.experiments.law import law_error
-from workflow.experiments.load import load_outcome
+from workflow.experiments.load import load_outcome, moved_by
 from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, radius_of, require_trust
 from workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
@@ -46,9 +46,9 @@ def load_dynamic(bench: Bench) -> Outcome:
         contact.write_state()
         contact.finish()
     settings = bench.deck.settings
-    stiffness = settings.estimate.stiffness_under(load)
     error = last.unbalance + law_error(contact.scene, settings, last.last)
-    return load_outcome(bench, tuple(states), contact.phases, error, error / stiffness)
+    moved = moved_by(states, error, stiffness_under(settings, load))
+    return load_outcome(bench, tuple(states), contact.phases, error, moved)
 
 
 def _settled(bench: Bench, contact: Contact, load: float) -> tuple[list[State], Held]:

@@ -94,8 +94,8 @@ def _vertex(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, 
     return float(d[middle]) + scale * best, top + max(0.0, float(polynomial(best)))
 
 
-def rival_excess(displacement: Sequence[float], force: Sequence[float], peak: Peak) -> float:
-    """By how much another tooth of a sawtooth may be higher than the one that was looked at closely [FU], 0 if by none.
+def rivals(force: Sequence[float], peak: Peak) -> dict[int, float]:
+    """The other teeth of a sawtooth, by their highest rows: how much each may be higher than the peak [FU], or lower.
 
     Each tooth rises by less than its last rise beyond its highest row. Displacements fall.
     """
@@ -103,7 +103,7 @@ def rival_excess(displacement: Sequence[float], force: Sequence[float], peak: Pe
     inner = np.arange(1, len(tension) - 1)
     teeth = inner[(tension[inner] > tension[inner - 1]) & (tension[inner] > tension[inner + 1])]
     teeth = teeth[np.abs(teeth - peak.index) > 1]
-    return float(np.max(2.0 * tension[teeth] - tension[teeth - 1] - peak.smooth, initial=0.0))
+    return {int(i): float(2.0 * tension[i] - tension[i - 1] - peak.smooth) for i in teeth}
 
 
 def are_apart(d: Array) -> bool:
@@ -118,7 +118,7 @@ def _real_roots(polynomial: np.polynomial.Polynomial, low: float, high: float) -
 
 def _bend(d: np.ndarray, tension: np.ndarray, i: int) -> float:
     """Change of slope that a smooth curve makes over the increments around point i, from the increments before."""
-    if i < 2:
+    if i < 2 or d[i - 2] == d[i - 1]:
         return 0.0
     first = (tension[i - 1] - tension[i - 2]) / (d[i - 2] - d[i - 1])
     second = (tension[i] - tension[i - 1]) / (d[i - 1] - d[i])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -10,12 +11,17 @@ from analysis.radius import ContactRadius, compressive_radius, tensile_radius
 from workflow.deck import Phase
 from workflow.experiments.contact import State
 from workflow.experiments.law import law_share
+from workflow.experiments.pace import slowness
 from workflow.scene import FlatPunch, Scene
 from workflow.settings import RESIDUAL_SHARE, Settings
 
 
 class UntrustedError(RuntimeError):
     """The run ended, but its result can't be trusted; the message says why and what to do."""
+
+
+class ThroughError(UntrustedError):
+    """The bodies went through each other, which may be the way there and not the load (`in_smaller_steps`)."""
 
 
 @dataclass(frozen=True)
@@ -101,18 +107,19 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
     """
     at = f"at displacement {state.displacement:.4g} LU (phase {state.phase})"
     if state.depth > 0.0:
-        raise UntrustedError(
+        raise ThroughError(
             f"the bodies went through each other {at}: a particle lies {state.depth:.3g} LU below the opposite "
             "surface. One layer of particles cannot carry this load: lower the load or the displacement, take a "
-            "smaller [accuracy] tolerance, a stronger repulsion, a range nearer to the spacing, or stiffer neighbour "
-            "springs"
+            "stronger repulsion, a range nearer to the spacing, or stiffer neighbour springs"
         )
     limit = RESIDUAL_LIMIT * scene.accuracy.tolerance * settings.force_scale
     prescribed = scene.method == "quasistatic" or scene.experiment.kind == "path"
     if prescribed and state.residual > limit:
         raise UntrustedError(
-            f"not converged {at}: a particle is left with a force of {state.residual:.2g} FU, above {limit:.2g} FU. "
-            "Loosen [accuracy] tolerance, take smaller steps, or in time more [damping]"
+            f"not converged {at}: a particle is left with a force of {state.residual:.2g} FU, above the {limit:.2g} FU "
+            f"that a tolerance of {scene.accuracy.tolerance:g} allows. What helps is "
+            + ("more [damping]" if scene.method == "dynamic" else "a smaller load or smaller displacements")
+            + ", or a larger [accuracy] tolerance"
         )
     if _reaches_end(scene, state.profile):
         raise UntrustedError(
@@ -124,7 +131,8 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
 def unmet(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, float]:
     """Relative uncertainties of the main results that are known less well than the tolerance; with noise of none.
 
-    What a scene prescribes is no result, and neither is the pressure of a contact that is to carry nothing.
+    What a scene prescribes is no result, and neither is the pressure of a contact that is to carry nothing. That of a
+    radius of 0 is infinite.
     """
     if scene.noise is not None:
         return {}
@@ -132,16 +140,19 @@ def unmet(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, float]:
     if scene.experiment.kind == "load" and scene.experiment.force == 0.0:
         prescribed |= {"force", "mean_pressure"}
     shares = {
-        name: quantity.uncertainty / abs(quantity.value)
+        name: quantity.uncertainty / abs(quantity.value) if quantity.value else math.inf
         for name, quantity in quantities.items()
-        if name not in prescribed and quantity.value != 0.0
+        if name not in prescribed and (quantity.value != 0.0 or name.endswith("radius"))
     }
     return {name: share for name, share in shares.items() if share > scene.accuracy.tolerance}
 
 
 def in_words(shares: Mapping[str, float]) -> str:
     """What `unmet` found: "critical_radius is known to 3.1e-04"."""
-    return ", ".join(f"{name} is known to {share:.1e}" for name, share in shares.items())
+    return ", ".join(
+        f"{name} is known to {share:.1e}" if share < 1.0 else f"{name} cannot be told from 0 and is known to 1 or worse"
+        for name, share in shares.items()
+    )
 
 
 def _reaches_end(scene: Scene, profile: Profile) -> bool:
@@ -171,9 +182,19 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
     share = law_share(scene, settings)
     if share > scene.accuracy.tolerance:
         found["cutoff"] = (
-            f"what is left out of the law (beyond a cutoff of {settings.cutoff:.3g} LU, or of a plane not quite rigid) "
-            f"changes a force by a share of up to {share:.1g}, and the radii with it: take a longer "
-            'interaction.cutoff, or "auto"'
+            f"what is left out of the law (beyond a cutoff of {settings.cutoff:.3g} LU, by a table of particles that "
+            f"all but stand on each other, or of a plane not quite rigid) changes a force by a share of up to "
+            f'{share:.1g}, and the radii with it: take a longer interaction.cutoff, or "auto", or a smaller load'
+        )
+    if slow := slowness(scene, settings):
+        found["slow"] = slow
+    if settings.estimate.snaps and scene.experiment.kind in ("load", "pull_off"):
+        found["snaps"] = (
+            "the attraction of a pair of particles is steeper than its springs are stiff, so that pairs can snap "
+            "together and apart: there are several equilibria under one load, and which one is reached depends on the "
+            "way there. The uncertainties are those of this way; another preload or method may end in another "
+            "equilibrium, a few particles wider or narrower. Stiffer springs or a longer range of the interaction "
+            "leave one equilibrium only"
         )
     closest = min(state.smallest_distance for state in states)
     if settings.table is not None and closest < settings.table_from:

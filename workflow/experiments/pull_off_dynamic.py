@@ -37,6 +37,8 @@ SPREAD = 2.0
 """Uncertainty of the extrapolation over the difference that one state less makes."""
 STRIDE = 0.8
 """Rise of a tension over what is left to the expected pull-off force, so that the last states lie near it, …"""
+EDGES = 2
+"""Pairs that let go together, one at each edge of the contact: by so much the tension falls after a snap."""
 NEAR = 3.0
 """… until that is this many times the distance at which both sides are tried."""
 GROWTH = 0.25
@@ -128,7 +130,10 @@ def pull_off_dynamic(bench: Bench) -> Outcome:
         contact.write_state()
         contact.finish()
     if not critical.held:
-        raise UntrustedError(f"the contact held {search.best:.6g} FU once and not again")
+        raise UntrustedError(
+            f"the contact held {search.best:.6g} FU once and not again: a plate that still swings decides there. Leave "
+            '[damping] coefficient and [plate] damping "auto" or give more of them, or take method = "quasistatic"'
+        )
     return _outcome(bench, search, loaded, critical, contact.phases)
 
 
@@ -155,20 +160,44 @@ def _outcome(bench: Bench, search: Search, loaded: Held, critical: Held, phases:
     assert scene.experiment.kind == "pull_off"
     zero = search.held[0].last
     adhesion = 0.5 * (search.best + search.broken)
-    half = 0.5 * (search.broken - search.best) + critical.unbalance
+    half = 0.5 * (search.broken - search.best) + critical.unbalance + _swung_past(bench.deck, search)
     rest = (*(h.last for h in search.held[:-1]), critical.last)
-    critical_radius, zero_radius = _critical_radius(scene, rest), radius_or_spot(scene, zero.profile)
+    zero_radius = radius_or_spot(scene, zero.profile)
+    if settings.estimate.snaps:
+        critical_radius = _radius_between_snaps(bench, critical.last, zero_radius.value, half / adhesion)
+    else:
+        critical_radius = _critical_radius(scene, rest)
     slope = abs(critical_radius.value - zero_radius.value) / adhesion
+    at_zero = abs(zero.force)
+    if settings.estimate.snaps:
+        swung = overshoot(settings, scene.bodies.mass, loaded.last.force, 0.0) * loaded.last.force
+        at_zero += min(swung, adhesion)  # beyond the largest tension the plate would not have come back
     quantities = {
         "adhesion_force": Quantity(adhesion, half, FORCE),
         "critical_radius": critical_radius,
-        "zero_load_radius": Quantity(zero_radius.value, zero_radius.uncertainty + slope * abs(zero.force), LENGTH),
+        "zero_load_radius": Quantity(zero_radius.value, zero_radius.uncertainty + slope * at_zero, LENGTH),
         "preload": Quantity(loaded.last.force, loaded.unbalance, FORCE),
     }
     profiles = {"zero_load": zero.profile, "critical": critical.last.profile}
     radii = {name: radius_or_spot(scene, profile).value for name, profile in profiles.items()}
     states = (loaded.last, *rest)
     return Outcome(quantities, states, profiles, radii, phases, doubts(scene, settings, states))
+
+
+def _swung_past(deck: Deck, search: Search) -> float:
+    """Tension [FU] that a plate may miss which swings past a tooth of the tension, where pairs snap."""
+    return EDGES * deck.settings.estimate.snap[1] * search.overshoot(search.best)
+
+
+def _radius_between_snaps(bench: Bench, critical: State, zero_radius: float, missed: float) -> Quantity:
+    """Radius of the last state that held, where pairs snap: the tension's teeth have no smooth top to go on to.
+
+    The pull-off may be at the next tooth, with one particle less at each edge, and further off where up to twice the
+    share `missed` of the tension is left to it: the teeth's tops lie near F = F_A (1 − y²), y = (a − a_cr)/(a₀ − a_cr).
+    """
+    radius = radius_or_spot(bench.deck.scene, critical.profile)
+    beyond = bench.deck.scene.bodies.spacing + abs(zero_radius - radius.value) * math.sqrt(2.0 * missed)
+    return Quantity(radius.value, radius.uncertainty + beyond, LENGTH)
 
 
 def top_of(states: Sequence[State]) -> tuple[float, float] | None:

@@ -18,7 +18,7 @@ from workflow.deck import Phase
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import State
 from workflow.experiments.law import law_error
-from workflow.experiments.marks import Peak, largest_tension, rival_excess, smooth_crossing
+from workflow.experiments.marks import Peak, largest_tension, rivals, smooth_crossing
 from workflow.experiments.outcome import (
     Outcome,
     Quantity,
@@ -111,12 +111,13 @@ def pull_off_quasistatic(bench: Bench) -> Outcome:
         latest = _replay(bench, experiment.preload, _refined(before, experiment.preload, window))
         window *= ZOOM
         if _agree(bench, before, latest, experiment.preload, tolerance):
-            places, forces = zip(*((s.displacement, s.force) for s in latest.falling), strict=True)
-            missed = abs(latest.peak.smooth - before.peak.smooth) + rival_excess(places, forces, latest.peak)
+            excess = max(rivals([s.force for s in latest.falling], latest.peak).values(), default=0.0)
+            missed = abs(latest.peak.smooth - before.peak.smooth) + max(0.0, excess)
             return _outcome(bench, latest, experiment.preload, missed)
     raise UntrustedError(
         f"the pull-off force still changes from {before.peak.tension:.6g} to {latest.peak.tension:.6g} FU after "
-        f"{MOST_PASSES} refinements of the path: loosen [accuracy] tolerance"
+        f"{MOST_PASSES} refinements of the path, by more than a tolerance of {scene.accuracy.tolerance:g} allows: take "
+        "a larger [accuracy] tolerance, or stiffer springs or a longer range, with which particles do not snap"
     )
 
 
@@ -212,9 +213,13 @@ def _outcome(bench: Bench, found: Pass | SmoothPass, preload: float, missed: flo
     at_zero = abs(zero.force) + law_error(scene, settings, zero)
     rate = abs(radius_rate(bench, found.unloading, critical))
     at_critical = abs(shift) + MISPLACED * rate * peak.misplaced + slope * law_error(scene, settings, critical)
+    if isinstance(found, Pass):
+        at_critical += _rival_radius(bench, found, critical_radius.value, missed)
     quantities = {
         "adhesion_force": Quantity(peak.smooth, missed, FORCE),
-        "critical_radius": Quantity(critical_radius.value + shift, critical_radius.uncertainty + at_critical, LENGTH),
+        "critical_radius": Quantity(
+            max(0.0, critical_radius.value + shift), critical_radius.uncertainty + at_critical, LENGTH
+        ),
         "zero_load_radius": Quantity(zero_radius.value, zero_radius.uncertainty + slope * at_zero, LENGTH),
         "preload": Quantity(loaded, abs(loaded - preload), FORCE),
     }
@@ -223,3 +228,11 @@ def _outcome(bench: Bench, found: Pass | SmoothPass, preload: float, missed: flo
     lattice = {"critical_radius": critical_radius.uncertainty, "zero_load_radius": zero_radius.uncertainty}
     warnings = doubts(scene, settings, states)
     return Outcome(quantities, states, profiles, radii, found.phases, warnings, lattice=lattice)
+
+
+def _rival_radius(bench: Bench, found: Pass, radius: float, missed: float) -> float:
+    """How far [LU] the radius a_cr may be off because another tooth is the highest: by `missed` [FU] it may be."""
+    falling = found.falling
+    higher = rivals([s.force for s in falling], found.peak)
+    teeth = [falling[i] for i, excess in higher.items() if excess > -missed]
+    return max((abs(radius_or_spot(bench.deck.scene, s.profile).value - radius) for s in teeth), default=0.0)

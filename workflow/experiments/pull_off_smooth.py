@@ -30,6 +30,11 @@ MOST_PULLS = 500
 LATTICE = 0.5
 """Part of a radius's uncertainty below which it is looked at no closer: interpolation between particles limits it."""
 
+JUMPS = (
+    'the force jumps there, as particles snap or slip. Use kind = "path" to see it, or stiffer springs or a longer '
+    "range, with which particles do not snap"
+)
+
 
 @dataclass(frozen=True)
 class SmoothPass:
@@ -101,7 +106,7 @@ def _to_zero(contact: Contact, loading: list[State], tolerance: float) -> list[S
         if abs(states[-1].force) <= tolerance * scale:
             return states[1:]
         states.append(measured(contact, _zero([*loading, *states])))
-    raise UntrustedError(f"F = 0 is not found near {states[-1].displacement:.6g} LU: the force jumps there")
+    raise UntrustedError(f"F = 0 is not found near {states[-1].displacement:.6g} LU: {JUMPS}")
 
 
 def _zero(states: list[State]) -> float:
@@ -134,7 +139,7 @@ def _to_largest_tension(contact: Contact, unloaded: list[State], tolerance: floa
             states += [measured(contact, found.position + side * beside * step) for side in (1.0, -1.0)]
             found = _peak([*unloaded, *states])
         expected = found
-    raise UntrustedError(f"the largest tension is not found near {expected.position:.6g} LU: the force jumps there")
+    raise UntrustedError(f"the largest tension is not found near {expected.position:.6g} LU: {JUMPS}")
 
 
 def _near(contact: Contact, states: list[State], peak: Peak, tolerance: float) -> bool:

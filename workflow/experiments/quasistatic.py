@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
+from workflow.deck import Deck
+from workflow.experiments.bench import Bench
 from workflow.experiments.contact import Contact, State
-from workflow.experiments.outcome import UntrustedError, require_trust
+from workflow.experiments.outcome import Outcome, ThroughError, UntrustedError, require_trust
 
 MOST_ROWS = 2_000
 """Rows of one branch of a search; a search that needs more has no end in sight."""
@@ -20,6 +23,36 @@ OVERSHOOT = 1.02
 """Secant steps aim a little beyond, so that a bracket forms instead of a slow approach from one side."""
 SAME_PLACE = 1e-12
 """Displacements [LU] nearer than this are the same place: a force that still differs has jumped."""
+SMALLER = (1 / 4, 1 / 16)
+"""Parts of the increments that are tried where bodies went through each other: a body that moves by much of its
+particles' distance from the opposite ones, or by which their force changes much, lets the minimiser put one beyond."""
+
+
+def in_smaller_steps(search: Callable[[Bench], Outcome]) -> Callable[[Bench], Outcome]:
+    """The same search, which begins anew in smaller steps where the bodies went through each other.
+
+    Raises:
+        ThroughError: they do so in the smallest steps, too, so that it is the load and not the way there.
+    """
+
+    def searched(bench: Bench) -> Outcome:
+        deck = bench.deck
+        try:
+            return search(bench)
+        except ThroughError as error:
+            latest = error
+        for part in SMALLER:
+            bench.progress.note(f"the bodies went through each other: again from the start in steps of {part:g}")
+            bench.deck = Deck(deck.scene, deck.settings.in_smaller_steps(part))
+            try:
+                return search(bench)
+            except ThroughError as error:
+                latest = error
+            finally:
+                bench.deck = deck
+        raise ThroughError(f"{latest}. Steps {1 / SMALLER[-1]:g} times smaller did not help")
+
+    return searched
 
 
 def approach(contact: Contact, force: float, start: float, direction: int = 1) -> list[State]:
@@ -42,9 +75,18 @@ def approach(contact: Contact, force: float, start: float, direction: int = 1) -
         else:
             before = last
         if before is None:
-            raise UntrustedError(f"{force:.4g} FU cannot be approached: the force starts at {last.force:.4g} FU")
+            raise UntrustedError(
+                f"{force:.4g} FU cannot be approached: the force starts at {last.force:.4g} FU, "
+                f"{'below' if direction < 0 else 'above'} it already. Take a force beyond that, or "
+                'kind = "path" to see the curve'
+            )
         if beyond is not None and abs(beyond.displacement - before.displacement) < SAME_PLACE:
-            raise UntrustedError(f"the force jumps past {force:.4g} FU at displacement {before.displacement:.6g} LU")
+            raise UntrustedError(
+                f"the force jumps past {force:.4g} FU at displacement {before.displacement:.6g} LU, from "
+                f"{before.force:.4g} to {beyond.force:.4g} FU: particles snap or slip there, and no state on this way "
+                'has the force. Take a force outside of the jump, kind = "path" to see all of it, or stiffer springs '
+                "or a longer range, with which particles do not snap"
+            )
         if len(states) > MOST_ROWS or (direction < 0 and last.smallest_distance > contact.settings.cutoff):
             raise UntrustedError(f"{force:.4g} FU is never reached: the largest tension is smaller")
         step = contact.settings.increment(last.smallest_distance if direction > 0 else math.inf)
