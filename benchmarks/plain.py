@@ -34,7 +34,8 @@ from workflow.experiments.dynamic import AT_REST, LOST, chunk_steps
 from workflow.progress import Silent
 from workflow.reproduce.oracles import chain_model
 from workflow.scene import PullOff, Scene
-from workflow.settings import STILL_STEP, settings_for
+from workflow.settings import settings_for
+from workflow.shares import SHARES
 
 SCENE = Path(__file__).parents[1] / "lammps_inputs" / "scenes" / "paper.toml"
 RESULTS = Path(__file__).parent / "results" / "plain.json"
@@ -99,7 +100,7 @@ def plain(scene: Scene, tolerance: float, folder: Path, tuned: bool) -> tuple[fl
     if tuned:
         settings = replace(settings, damping=TUNED_DAMPING)
     else:
-        settings = replace(settings, time_step=settings.time_step * STEP / STILL_STEP)
+        settings = replace(settings, time_step=settings.time_step * STEP / SHARES.still_step)
     deck = Deck(timed, settings)
     folder.mkdir(parents=True, exist_ok=True)
     write_system(deck, folder)

@@ -75,8 +75,8 @@ def _most_particles(bodies: Bodies) -> int:
     return max(3, 2 * math.floor(bodies.reach / bodies.spacing * (1.0 - ROUND_OFF) + 0.5))
 
 
-def chain_length(scene: Scene, estimate: ContactEstimate, largest: float) -> int:
-    """Particles of an automatic chain: out to where a force is a tenth of the tolerance of the largest one.
+def chain_length(scene: Scene, estimate: ContactEstimate, largest: float, share: float) -> int:
+    """Particles of an automatic chain: out to where a force is this share of the largest one.
 
     A flat punch has its own length; no chain is longer than its profile is wide.
     """
@@ -84,7 +84,7 @@ def chain_length(scene: Scene, estimate: ContactEstimate, largest: float) -> int
         return round(2.0 * scene.bodies.reach / scene.bodies.spacing)
     force = np.abs(estimate.force)
     strongest = float(np.max(force[estimate.gap > estimate.rest - largest], initial=0.0))
-    felt = force > 0.1 * scene.accuracy.tolerance * strongest
+    felt = force > share * strongest
     reach = float(estimate.gap[felt][-1]) if strongest > 0 and felt.any() else estimate.rest
     if scene.interaction is not None and scene.interaction.attraction is None:
         reach = float(estimate.gap[-1])  # the contact ends where nothing is felt at all

@@ -1,13 +1,13 @@
 """Every number that a scene leaves open: chain length, cutoff, table, time step, thresholds, increments.
 
-Each is derived from `[accuracy] tolerance` (relative, on the main results) by the rule stated beside it.
+Each is derived from `[accuracy] tolerance` (relative, on the main results): by its measured share of it
+(`workflow.shares`), or by the rule stated beside it.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -16,42 +16,25 @@ from potentials.table import Table, table_for
 from workflow.chain import SettingsError as SettingsError
 from workflow.chain import chain_length, require_body, require_room
 from workflow.estimate import ContactEstimate, particles_estimate, plane_estimate, tabulated
+from workflow.motion import motion_of
 from workflow.scene import Measured, Scene
+from workflow.shares import SHARES, Shares
 
-CUTOFF_SHARE = 3e-3
-"""Force at an automatic cutoff over the law's own, per unit of tolerance. Over 260 random scenes the results miss by up
-to 0.04 of the tolerance with 1e-2, in proportion; that saves another 4 % of processor time."""
-TABLE_SHARE = 0.3
-"""Table error over the force scale, per unit of tolerance, from TABLE_MARGIN of the expected smallest distance on. Over
-200 random scenes no force or displacement changes by more than 0.0005 of the tolerance between 0.3 and 1."""
 TABLE_MARGIN = 0.8
-"""Measured: the smallest distance is 0.93 to 1.004 of what the estimate of independent pairs says."""
+"""Distance from which on a table is to follow the law, over the expected smallest one. Measured: the smallest distance
+is 0.93 to 1.004 of what the estimate of independent pairs says."""
 CLOSEST_SHARE = 0.2
 """Smallest distance that is looked after over the force-free one (with attraction) or the repulsion's range."""
 LIKELY = 5.0
 """Standard deviations by which a particle's thermal motion brings it nearer."""
-RESIDUAL_SHARE = 1e-3
-"""Norm of the forces left on the particles over the force scale, per unit of tolerance. Over 200 random scenes 3e-2
-gives the same errors and coverage, but 1e-2 saves a tenth of the steps only and is all that a rigid plane lacks."""
-SMOOTH_SHARE = 0.25
-"""Increment of a smooth search over the longest range, the width of the curve's largest tension."""
 MOVE_SHARE = 0.25
-"""Longest move of a body between two states at rest, over that distance: particles stay in order, down to r near 0."""
+"""Longest move of a body between two states at rest, over the smallest distance: particles stay in order, down to r
+near 0."""
 NEAR_SHARE = 0.2
-"""Least distance down to which a table follows the law and a search comes down in ever smaller moves, over that one: a
+"""Least distance down to which a table follows the law and a search comes down in ever smaller moves, over `closest`: a
 table that is smoothed any earlier lets bodies through that the law still carries."""
 FAR_SHARE = 10.0
 """Length of a long bond over the spacing, per 1/tolerance: a sideways move u bends its force by u/2L."""
-STILL_STEP = 0.5
-"""ω_max·Δt without noise: a quarter of the Verlet integrator's limit, since equilibria do not depend on it."""
-MOVING_STEP = 0.2
-"""The same of a slide, whose motion itself is the result."""
-DRAG_STEP = 0.2
-"""Time step over the time m/γ in which drag stops a particle, or the plate: explicit integration needs it below 1."""
-NOISE_BIAS = 0.4
-"""Relative error of ⟨u²⟩ over (ω Δt)² with `fix langevin` and `fix nve`, measured at ω Δt = 0.1: 0.4 %."""
-SOFTENING = 0.6
-"""Stiffness of the contact under tension over that under the preload: automatic damping is critical for the former."""
 STAGGER = 5e-4
 """Shift of a plate's anchors out of the plane, to and fro, over the chain's length.
 
@@ -59,8 +42,6 @@ No force acts in that direction, but `fix rigid` refuses a body that is nearly a
 least moment of inertia must be more than 1e-7 of the largest, and is 12 STAGGER² = 3e-6 of it.
 """
 MOST_PARTICLES = 10_000_000
-LOADING_STEPS = 24
-"""Increments from first touch to the preload on the first pass of a search."""
 
 
 @dataclass(frozen=True)
@@ -151,15 +132,20 @@ def interaction_law(scene: Scene) -> DoubleExponential | None:
     return DoubleExponential(Exponential(terms.repulsion.amplitude, terms.repulsion.range), attraction)
 
 
-def settings_for(scene: Scene, law: DoubleExponential | None = None) -> Settings:
-    """Choose every open number of a scene; a `law` takes the place of the scene's own, for cost studies.
+def settings_for(scene: Scene, law: DoubleExponential | None = None, shares: Shares | None = None) -> Settings:
+    """Choose every open number of a scene.
+
+    Args:
+        scene: with its tolerance.
+        law: in place of the scene's own, for cost studies.
+        shares: in place of those that were measured, for the study that measures them.
 
     Raises:
         SettingsError: the numbers are so far apart that no chain, table or time step comes out of them.
     """
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
-            chosen = _chosen(scene, law or interaction_law(scene))
+            chosen = _chosen(scene, law or interaction_law(scene), shares or SHARES)
     except (OverflowError, FloatingPointError, ZeroDivisionError, MemoryError) as error:
         raise SettingsError(
             f"the scene's numbers are too far apart to compute with ({error}): compare its lengths (spacing, ranges, "
@@ -173,7 +159,7 @@ def settings_for(scene: Scene, law: DoubleExponential | None = None) -> Settings
     return chosen
 
 
-def _chosen(scene: Scene, law: DoubleExponential | None) -> Settings:
+def _chosen(scene: Scene, law: DoubleExponential | None, shares: Shares) -> Settings:
     tolerance = scene.accuracy.tolerance
     bodies = scene.bodies
     require_room(bodies)
@@ -184,20 +170,22 @@ def _chosen(scene: Scene, law: DoubleExponential | None) -> Settings:
     if law is None:
         estimate = plane_estimate(shape, bodies.spacing, scene.bulk_stiffness)
     else:
-        cutoff = _cutoff(scene, law)
+        cutoff = _cutoff(scene, law, shares.cutoff)
         rest = law.force_free_distance() if law.attraction is not None else cutoff
         closest = CLOSEST_SHARE * (rest if law.attraction is not None else law.repulsion.range)
         estimate = particles_estimate(law, shape, bodies.spacing, scene.bulk_stiffness, cutoff, rest)
     largest = _largest_displacement(scene, estimate)
-    particles = chain_length(scene, estimate, largest) if bodies.particles == "auto" else bodies.particles
+    particles = bodies.particles
+    if particles == "auto":
+        particles = chain_length(scene, estimate, largest, shares.chain * tolerance)
     require_body(bodies, largest, particles)
     force_scale = _force_scale(scene, law, largest)
     table_from, table = 0.0, None
     if law is not None:
         nearest = closest if scene.noise is not None else NEAR_SHARE * closest
         table_from = max(nearest, TABLE_MARGIN * (_distance(estimate, cutoff, largest) - _thermal_motion(scene)))
-        table = table_for(law, cutoff, table_from, TABLE_SHARE * tolerance * force_scale)
-    motion = _motion(scene, law, closest, plane, estimate, largest, particles)
+        table = table_for(law, cutoff, table_from, shares.table * tolerance * force_scale)
+    motion = motion_of(scene, law, closest, plane, estimate, largest, particles, shares.still_step)
     different = scene.horizontal is not None and scene.tangential_stiffness != scene.bulk_stiffness
     return Settings(
         particles=particles,
@@ -211,9 +199,9 @@ def _chosen(scene: Scene, law: DoubleExponential | None) -> Settings:
         plane_stiffness=plane,
         far=FAR_SHARE / tolerance * bodies.spacing if different else 0.0,
         force_scale=force_scale,
-        force_tolerance=RESIDUAL_SHARE * tolerance * force_scale,
-        displacement_step=_displacement_step(law, estimate, largest, closest),
-        smooth_step=SMOOTH_SHARE * law.longest_range if law is not None else 0.0,
+        force_tolerance=shares.residual * tolerance * force_scale,
+        displacement_step=_displacement_step(law, bodies.spacing, shares.loading_increment * largest, closest),
+        smooth_step=shares.smooth_increment * law.longest_range if law is not None else 0.0,
         longest_move=MOVE_SHARE * closest if law is not None else math.inf,
         largest_displacement=largest,
         estimate=estimate,
@@ -236,11 +224,11 @@ def _plane_stiffness(scene: Scene) -> float:
     return (stiffness + 4.0 * neighbours) / scene.accuracy.tolerance
 
 
-def _cutoff(scene: Scene, law: DoubleExponential) -> float:
+def _cutoff(scene: Scene, law: DoubleExponential, share: float) -> float:
     assert scene.interaction is not None
     if scene.interaction.cutoff != "auto":
         return scene.interaction.cutoff
-    return law.cutoff_for(CUTOFF_SHARE * scene.accuracy.tolerance)
+    return law.cutoff_for(share * scene.accuracy.tolerance)
 
 
 def _distance(estimate: ContactEstimate, cutoff: float, displacement: float) -> float:
@@ -275,65 +263,7 @@ def _force_scale(scene: Scene, law: DoubleExponential | None, largest: float) ->
     return max(largest, 1e-3 * scene.bodies.spacing) * scene.bulk_stiffness / 2
 
 
-def _displacement_step(
-    law: DoubleExponential | None, estimate: ContactEstimate, largest: float, closest: float
-) -> float:
-    """A part of the way to the preload, never more than a quarter of the longest range or than the longest move."""
-    step = max(largest, 0.0) / LOADING_STEPS
-    limit = min(0.25 * law.longest_range, MOVE_SHARE * closest) if law is not None else 0.1 * estimate.spacing
+def _displacement_step(law: DoubleExponential | None, spacing: float, step: float, closest: float) -> float:
+    """The `step` [LU] if it is > 0, never more than a quarter of the longest range or than the longest move."""
+    limit = min(0.25 * law.longest_range, MOVE_SHARE * closest) if law is not None else 0.1 * spacing
     return min(step, limit) if step > 0 else limit
-
-
-def _motion(
-    scene: Scene,
-    law: DoubleExponential | None,
-    closest: float,
-    plane: float,
-    estimate: ContactEstimate,
-    largest: float,
-    particles: int,
-) -> dict[str, Any]:
-    """Time step, damping, plate mass and settling time from the stiffest and the softest motion of the scene."""
-    bodies = scene.bodies
-    stiffest = max(scene.bulk_stiffness, scene.tangential_stiffness) + plane
-    if law is not None:
-        rows = 1.0 + 2.0 * law.repulsion.range / bodies.spacing
-        stiffest += 2.0 * rows * float(law.stiffness(closest))
-    if scene.neighbours is not None:
-        stiffest += 4.0 * scene.neighbours.stiffness
-    product = MOVING_STEP if scene.experiment.kind == "slide" else STILL_STEP
-    if scene.noise is not None:
-        product = min(product, math.sqrt(scene.accuracy.tolerance / NOISE_BIAS))
-    touching = 2.0 * estimate.half_width(max(largest, 0.0), estimate.rest) / bodies.spacing
-    contact = max(touching, 1.0) * estimate.stiffness
-    plate_mass = 0.0
-    if scene.plate is not None:
-        plate_mass = particles * bodies.mass if scene.plate.mass == "auto" else scene.plate.mass
-    moving = plate_mass + particles * bodies.mass
-    critical = 2.0 * math.sqrt(SOFTENING * contact * moving)
-    damping = damped_stiffness = 0.0
-    if scene.damping is not None:
-        automatic = critical / particles if scene.plate is not None else math.sqrt(scene.bulk_stiffness * bodies.mass)
-        given = scene.damping.coefficient
-        damping = automatic if given == "auto" else given
-        # The drag on a slide is part of what is measured, so it is one and the same throughout.
-        damped_stiffness = SOFTENING * contact if given == "auto" and scene.experiment.kind != "slide" else 0.0
-    plate_damping = 0.0
-    if scene.plate is not None:
-        given = scene.plate.damping
-        plate_damping = max(0.0, critical - particles * damping) if given == "auto" else given
-    slowest = contact / moving if scene.plate is not None else scene.bulk_stiffness / bodies.mass
-    step = product / math.sqrt(stiffest / bodies.mass)
-    if damping > 0.0:
-        step = min(step, DRAG_STEP * bodies.mass / damping)
-    if plate_mass > 0.0:
-        step = min(step, product / math.sqrt(particles * scene.bulk_stiffness / plate_mass))
-        step = min(step, DRAG_STEP * plate_mass / max(plate_damping, 1e-300))
-    return {
-        "time_step": step,
-        "damping": damping,
-        "damped_stiffness": damped_stiffness,
-        "plate_mass": plate_mass,
-        "plate_damping": plate_damping,
-        "settle_time": 2.0 * math.pi / math.sqrt(slowest),
-    }

@@ -18,8 +18,8 @@ import numpy as np
 import pytest
 
 from workflow import read_scene
-from workflow.cost.advice import advise, combinations
-from workflow.cost.change import Change, base_change
+from workflow.cost.advice import TARGETS, advise, choice, combinations
+from workflow.cost.change import Change, at_tolerance, base_change
 from workflow.cost.errors import judged, main_results
 from workflow.cost.knobs import knobs_of, left_out
 from workflow.cost.measure import Prepared, measure
@@ -207,20 +207,70 @@ def variant(label: str, error: float, cpu: float, **more: Any) -> VariantRecord:
     return VariantRecord(label, more.pop("knob", "tolerance"), 1e-3, error=error, cpu_s=cpu, cpu_runs=(cpu,), **more)
 
 
-def test_advice_names_the_cheapest_and_the_cheapest_of_a_scene_file() -> None:
+def tolerance(value: float, error: float, cpu: float, **more: Any) -> VariantRecord:
+    label, details = f"accuracy.tolerance = {value:g}", more.pop("details", "table of 2000 points")
+    return replace(variant(label, error, cpu, **more), value=value, details=details)
+
+
+def test_advice_says_what_the_tolerance_chooses_and_what_is_cheaper_in_the_scene() -> None:
     variants = [
-        variant("slow", 1e-6, 3.0),
-        variant("plain", 1e-4, 0.5),
-        variant("tuned", 2e-4, 0.1, settings={"time_step": 0.2}, details="time step 0.2"),
+        tolerance(1e-3, 1e-6, 3.0),
+        tolerance(1e-1, 1e-4, 0.5),
+        variant("tuned", 2e-4, 0.1, knob="combined", settings={"time_step": 0.2}, details="time step 0.2"),
     ]
-    assert advise(1e-3, variants, noisy=False).text == (
-        "tolerance 1e-3: tuned (time step 0.2), 0.1 s of CPU, error 2.0e-04; "
-        "by the scene file alone: plain, 0.5 s of CPU, error 1.0e-04"
+    advice = advise(1e-3, variants, noisy=False)
+    assert advice.text == (
+        "tolerance 1e-3: chooses table of 2000 points: error 1.0e-06 in 3 s of CPU; "
+        "cheaper in this scene: tuned (time step 0.2), error 2.0e-04 in 0.1 s of CPU; "
+        "by the scene file alone: accuracy.tolerance = 0.1, error 1.0e-04 in 0.5 s of CPU"
     )
-    assert advise(1e-5, variants, noisy=False).label == "slow"
+    assert (advice.chosen, advice.label) == ("accuracy.tolerance = 0.001", "tuned")
+    assert advice.scene_label == "accuracy.tolerance = 0.1"
+
+
+def test_advice_is_silent_about_what_saves_nothing_to_speak_of() -> None:
+    variants = [tolerance(1e-3, 1e-5, 1.0), tolerance(1e-1, 1e-4, 0.95)]
+    assert advise(1e-3, variants, noisy=False).text.endswith("; nothing else that was tried is clearly cheaper")
+
+
+def test_advice_tells_a_tolerance_that_was_not_run_or_is_not_enough() -> None:
+    variants = [tolerance(1e-3, 2e-3, 1.0), variant("slow", 1e-6, 3.0)]
+    not_enough = advise(1e-3, variants, noisy=False)
+    assert "error 2.0e-03 in 1 s of CPU, which is not enough; the cheapest in this scene: slow" in not_enough.text
+    assert not_enough.label == "slow"
+    not_run = advise(1e-5, variants, noisy=False)
+    assert not_run.text.startswith("tolerance 1e-5: was not run; the cheapest in this scene: slow")
+    assert not_run.chosen == ""
     missed = advise(1e-7, variants, noisy=False)
-    assert missed.text == "tolerance 1e-7: not reached by any setting tried (best 1.0e-06: slow)"
+    assert missed.text.endswith("; not reached by any setting tried (best 1.0e-06: slow)")
     assert missed.label == ""
+
+
+def test_the_kept_advice_is_what_the_tolerance_uses() -> None:
+    """A change of the settings without a new study of `pull_off.toml` fails here."""
+    kept = read_record(ROOT / "docs" / "cost.json")
+    scene = read_scene(SCENES / "pull_off.toml")
+    assert [one.tolerance for one in kept.advice] == list(TARGETS)
+    for one in kept.advice:
+        asked = at_tolerance(scene, one.tolerance).scene(scene)
+        assert kept.variant(one.chosen).value == one.tolerance
+        assert kept.variant(one.chosen).details == choice(asked, settings_for(asked))
+        assert f"chooses {choice(asked, settings_for(asked))}: error " in one.text
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("pull_off", ("table of ", "cutoff ", "chain of ", "residual ", "increment ")),
+        ("hertz_plane", ("chain of ", "residual ")),
+        ("pull_off_dynamic", ("table of ", "cutoff ", "chain of ", "time step ")),
+    ],
+)
+def test_a_choice_names_the_settings_that_a_scene_has(name: str, words: tuple[str, ...]) -> None:
+    scene = read_scene(SCENES / f"{name}.toml")
+    parts = choice(scene, settings_for(scene)).split(", ")
+    assert len(parts) == len(words)
+    assert all(part.startswith(word) for part, word in zip(parts, words, strict=True))
 
 
 def test_with_noise_an_error_counts_with_its_standard_error() -> None:
@@ -279,7 +329,8 @@ def record() -> CostRecord:
             EffectCost("neighbours", 17.0, 15.0, 1.133, 0.004, 400, "", {"adhesion_force": 6e-5}),
         ),
         left_out={"spacing": "it would change the physics"}, pareto=(good.label,),
-        advice=(Advice(1e-3, "tolerance 1e-3: take it", good.label, good.label),), versions={"lammps": "1"}, wall_s=9.0,
+        advice=(Advice(1e-3, "tolerance 1e-3: take it", "", good.label, good.label),),
+        versions={"lammps": "1"}, wall_s=9.0,
     )  # fmt: skip
 
 

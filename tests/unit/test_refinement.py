@@ -19,6 +19,7 @@ from workflow.progress import Silent
 from workflow.refinement import FINER, MOST_REFINEMENTS, Refined, nested, refined
 from workflow.scene import Scene, read_scene, scene_from_dict
 from workflow.settings import settings_for
+from workflow.shares import SHARES
 
 TOLERANCE = 1e-4
 ROUND_OFF = 1e-12
@@ -136,7 +137,7 @@ def test_passes_that_differ_by_more_than_they_claim_claim_more() -> None:
 
 def test_a_refined_run_is_one_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its folder holds the finest pass, the scene as it was asked for, and repeats; times are those of all passes."""
-    monkeypatch.setattr("workflow.settings.CUTOFF_SHARE", 0.5)  # leaves out some times the tolerance
+    monkeypatch.setattr("workflow.settings.SHARES", replace(SHARES, cutoff=0.5))  # leaves out some times the tolerance
     asked, heard = scene(), Heard()
     finished = run(asked, tmp_path / "refined", figures=False, progress=heard)
     document = json.loads((finished.folder / "results.json").read_text())

@@ -1,16 +1,24 @@
-"""What to do about it: the cheapest measured variant for each tolerance, and combinations worth measuring."""
+"""What `[accuracy] tolerance` does about it, what a scene could do for less, and combinations worth measuring.
+
+What a tolerance chooses is good in every scene of a study of many (`workflow.shares`); one scene may need less.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 from workflow.cost.change import Change
 from workflow.cost.knobs import Knob
 from workflow.cost.record import Advice, VariantRecord
+from workflow.scene import Scene
+from workflow.settings import Settings
 
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-5)
 SHARE = 0.25
 """Part of a tolerance that one knob of a combination may use up."""
+CHEAPER = 0.9
+"""CPU time over that of what the tolerance chooses, below which something is worth saying: medians differ by less."""
 
 
 def combinations(
@@ -41,20 +49,55 @@ def _coarsest(knob: Knob, records: Sequence[VariantRecord], error: float) -> int
     return (max if knob.finer == "smaller" else min)(within, key=lambda i: knob.levels[i].value)
 
 
+def choice(scene: Scene, settings: Settings) -> str:
+    """What the settings of a scene are, in the words of the knobs."""
+    words = []
+    if settings.table is not None and scene.interaction is not None:
+        words.append(f"table of {settings.table.points} points")
+        if scene.interaction.attraction is not None:
+            words.append(f"cutoff {settings.cutoff:.3g} LU")
+    words.append(f"chain of {settings.particles} particles")
+    if scene.method == "dynamic":
+        words.append(f"time step {settings.time_step:.3g} TU")
+    else:
+        words.append(f"residual {settings.force_tolerance / settings.force_scale:.0e}")
+        if scene.experiment.kind != "path":
+            step = settings.smooth_step if settings.is_smooth else settings.displacement_step
+            words.append(f"increment {step:.3g} LU")
+    return ", ".join(words)
+
+
 def advise(tolerance: float, variants: Sequence[VariantRecord], noisy: bool) -> Advice:
-    """One line: the cheapest of `variants` that reaches `tolerance`, and the cheapest that a scene file can say."""
+    """One line: what `[accuracy] tolerance` chooses and what that was measured to be, and what reaches it for less.
+
+    Args:
+        tolerance: that is asked for.
+        variants: that compete.
+        noisy: whether errors have a standard error.
+    """
+    chosen = next((one for one in variants if one.knob == "tolerance" and math.isclose(one.value, tolerance)), None)
     reaching = sorted((one for one in variants if one.bound <= tolerance), key=lambda one: one.cpu_s)
-    asked = f"tolerance {power(tolerance)}"
-    if not reaching:
+    if chosen is None:
+        text = f"tolerance {power(tolerance)}: was not run"
+    else:
+        text = f"tolerance {power(tolerance)}: chooses {chosen.details}: {_measured(chosen)}"
+        text += "" if chosen in reaching else ", which is not enough"
+    limit = CHEAPER * chosen.cpu_s if chosen in reaching and chosen is not None else math.inf
+    less = [one for one in reaching if one.cpu_s < limit]
+    plain = next((one for one in less if not one.settings), None)
+    if less:
+        text += f"; {'cheaper' if limit < math.inf else 'the cheapest'} in this scene: {said(less[0])}"
+        if plain is not None and plain is not less[0]:
+            text += f"; by the scene file alone: {said(plain)}"
+    elif limit < math.inf:
+        text += "; nothing else that was tried is clearly cheaper"
+    else:
         best = min(variants, key=lambda one: one.bound, default=None)
         nearest = "" if best is None else f" (best {best.bound:.1e}{', by its noise' if noisy else ''}: {best.label})"
-        return Advice(tolerance, f"{asked}: not reached by any setting tried{nearest}", "", "")
-    cheapest = reaching[0]
-    text = f"{asked}: {said(cheapest)}"
-    plain = next((one for one in reaching if not one.settings), None)
-    if plain is not None and plain is not cheapest:
-        text += f"; by the scene file alone: {said(plain)}"
-    return Advice(tolerance, text, cheapest.label, "" if plain is None else plain.label)
+        text += f"; not reached by any setting tried{nearest}"
+    cheapest = reaching[0].label if reaching else ""
+    by_file = next((one.label for one in reaching if not one.settings), "")
+    return Advice(tolerance, text, "" if chosen is None else chosen.label, cheapest, by_file)
 
 
 def power(value: float) -> str:
@@ -63,7 +106,11 @@ def power(value: float) -> str:
 
 
 def said(one: VariantRecord) -> str:
-    """Label, CPU time and error."""
+    """Label, what it is made of if the label does not say it, error and CPU time."""
+    details = f" ({one.details})" if one.details and one.knob != "tolerance" else ""
+    return f"{one.label}{details}, {_measured(one)}"
+
+
+def _measured(one: VariantRecord) -> str:
     spread = f" ± {one.spread:.0e}" if one.spread else ""
-    label = f"{one.label} ({one.details})" if one.details else one.label
-    return f"{label}, {one.cpu_s:.2g} s of CPU, error {one.error:.1e}{spread}"
+    return f"error {one.error:.1e}{spread} in {one.cpu_s:.2g} s of CPU"

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from workflow.cost.change import Change, at_tolerance, with_method
+from workflow.cost.errors import is_sampled
 from workflow.cost.row_law import row_law
 from workflow.cost.spacing import SPACING_FACTORS, at_spacing, spacing_is_physics
 from workflow.scene import FlatPunch, Scene
@@ -20,7 +21,7 @@ from workflow.settings import Settings, settings_for
 
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 TOLERANCE_FACTORS = (8.0, 4.0, 2.0, 1.0, 0.5)
-"""Of a scene in time, over its own."""
+"""Of a scene whose results are averages over time, which cost by the square of the tolerance; over its own."""
 OTHER_METHOD = {"dynamic": (1e-2, 3e-3), "quasistatic": (1e-1, 1e-2, 1e-3, 1e-4)}
 """Tolerances of the method that the scene does not have."""
 TABLE_POINTS = (500, 1_000, 2_000, 4_000, 8_000, 16_000)
@@ -113,8 +114,10 @@ def left_out(scene: Scene) -> dict[str, str]:
 def _tolerance(scene: Scene) -> Knob:
     own = scene.accuracy.tolerance
     values: tuple[float, ...] = TOLERANCES
-    if scene.method == "dynamic":
+    if is_sampled(scene):
         values = tuple(min(own * factor, 0.1) for factor in TOLERANCE_FACTORS)
+    elif scene.method == "dynamic":
+        values = TOLERANCES[:-1]
     levels = [Level(t, f"accuracy.tolerance = {t:g}", at_tolerance(scene, t)) for t in dict.fromkeys(values)]
     return Knob("tolerance", "accuracy.tolerance, which sets all others", "smaller", tuple(levels), own)
 

@@ -7,12 +7,12 @@ import os
 import shutil
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from statistics import median
 
 from workflow.campaign import FolderError, RunError, run
-from workflow.experiments.outcome import Quantity
+from workflow.experiments.outcome import Quantity, unmet
 from workflow.fragments import DeckError
 from workflow.process import stop_idle
 from workflow.progress import Progress
@@ -40,6 +40,7 @@ class Measured:
         quantities: main results and all others, by name; the same in every run.
         cpu_runs, total_runs: CPU time in LAMMPS and wall time of each run [s].
         steps: of a run.
+        warnings: names of what limits the results; "tolerance <result>" where one is known less well than asked for.
         memory_mb: peak resident memory of the LAMMPS process, NaN where the system does not tell.
         failure: why there are no numbers, "" where there are.
     """
@@ -50,6 +51,7 @@ class Measured:
     steps: int = 0
     memory_mb: float = float("nan")
     failure: str = ""
+    warnings: frozenset[str] = frozenset()
 
     @property
     def cpu_s(self) -> float:
@@ -106,12 +108,14 @@ def run_once(variant: Prepared, folder: Path, fresh: bool) -> Measured:
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     timing = finished.results["timing"]
+    open_ = unmet(variant.scene, finished.outcome.quantities)
     return Measured(
         finished.outcome.quantities,
         (timing["lammps_cpu_s"],),
         (timing["total_s"],),
         timing["steps"],
         children_peak_mb() if fresh else float("nan"),
+        warnings=frozenset({*finished.outcome.warnings, *(f"tolerance {name}" for name in open_)}),
     )
 
 
@@ -134,4 +138,4 @@ def _together(before: Measured | None, latest: Measured) -> Measured:
     if before is None or latest.failure:
         return latest
     runs, totals = before.cpu_runs + latest.cpu_runs, before.total_runs + latest.total_runs
-    return Measured(before.quantities, runs, totals, before.steps, before.memory_mb)
+    return replace(before, cpu_runs=runs, total_runs=totals)

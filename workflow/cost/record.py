@@ -128,17 +128,19 @@ class Sampling:
 
 @dataclass(frozen=True)
 class Advice:
-    """The cheapest measured variants that reach a tolerance.
+    """What a tolerance chooses, and the cheapest measured variants that reach it.
 
     Attributes:
         tolerance: asked for.
         text: one line.
+        chosen: label of the scene with this `accuracy.tolerance`, "" where it was not run.
         label: of the cheapest, "" where none reaches it.
         scene_label: of the cheapest that a scene file can say.
     """
 
     tolerance: float
     text: str
+    chosen: str
     label: str
     scene_label: str
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from workflow.campaign import RunError
-from workflow.cost.advice import TARGETS, advise, combinations
+from workflow.cost.advice import TARGETS, advise, choice, combinations
 from workflow.cost.change import Change, at_tolerance, base_change, with_method
 from workflow.cost.errors import is_sampled, judged, main_results
 from workflow.cost.knobs import Knob, knobs_of, left_out
@@ -67,7 +67,7 @@ def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, p
     with tempfile.TemporaryDirectory(prefix=".cost-", dir=folder) as place:
         runs = Path(place)
         progress.phase("reference")
-        label, reference = _reference(scene, runs)
+        label, reference = reference_of(scene, runs)
         change = base_change(scene)
         knobs = knobs_of(scene, own, change.chosen(change.scene(scene)))
         planned = _planned(scene, knobs, change)
@@ -111,8 +111,12 @@ def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, p
     )
 
 
-def _reference(scene: Scene, folder: Path) -> tuple[str, dict[str, Quantity]]:
-    """Label and main results of the reference: the tightest that works, without time where time is no physics."""
+def reference_of(scene: Scene, folder: Path) -> tuple[str, dict[str, Quantity]]:
+    """Label and main results of the reference: the tightest that works, without time where time is no physics.
+
+    Raises:
+        RunError: none works.
+    """
     own, failures = scene.accuracy.tolerance, []
     candidates: list[tuple[str, Change]] = []
     if scene.noise is not None:
@@ -144,12 +148,21 @@ def _planned(scene: Scene, knobs: Sequence[Knob], base: Change) -> list[Planned]
                 knob.name,
                 level.value,
                 own_reference=knob.own_reference,
+                details=_choice(scene, level.change) if knob.name == "tolerance" else "",
             )
             for level in knob.levels
         ]
     changes, _ = without_effects(scene)
     found += [Planned(f"without {effect}", one, EFFECT, same_physics=False) for effect, one in changes.items()]
     return found
+
+
+def _choice(scene: Scene, change: Change) -> str:
+    try:
+        changed = change.scene(scene)
+        return choice(changed, change.chosen(changed))
+    except (SceneError, SettingsError):  # which the run will tell
+        return ""
 
 
 def _measured(

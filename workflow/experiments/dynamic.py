@@ -15,8 +15,9 @@ from enum import IntEnum
 
 from workflow.experiments.contact import Contact, State
 from workflow.experiments.outcome import UntrustedError, require_trust
+from workflow.motion import SOFTENING
 from workflow.scene import Scene
-from workflow.settings import SOFTENING, Settings
+from workflow.settings import Settings
 
 CHUNK = 0.25
 """Time between two samples of a thermal contact over the settling time."""

@@ -13,7 +13,8 @@ from workflow.experiments.contact import State
 from workflow.experiments.law import law_share
 from workflow.experiments.pace import slowness
 from workflow.scene import FlatPunch, Scene
-from workflow.settings import RESIDUAL_SHARE, Settings
+from workflow.settings import Settings
+from workflow.shares import SHARES
 
 
 class UntrustedError(RuntimeError):
@@ -90,7 +91,7 @@ def radius_of(scene: Scene, profile: Profile) -> ContactRadius | None:
         return ContactRadius(edge, 0.0, -edge, edge, reaches_end=False)
     if adhesive:
         return tensile_radius(profile)
-    return compressive_radius(profile, RESIDUAL_SHARE * scene.accuracy.tolerance)
+    return compressive_radius(profile, SHARES.residual * scene.accuracy.tolerance)
 
 
 def radius_or_spot(scene: Scene, profile: Profile) -> ContactRadius:

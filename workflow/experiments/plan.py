@@ -10,10 +10,10 @@ from workflow.experiments.load_dynamic import SAMPLES, SETTLING
 from workflow.experiments.path import schedule
 from workflow.experiments.slide import slide_rows
 from workflow.scene import Scene
-from workflow.settings import LOADING_STEPS, Settings
+from workflow.settings import Settings
 
 TENSIONS = 12
-UNLOADING_STEPS = 80
+LOADING_STEPS, UNLOADING_STEPS = 24, 80
 
 
 def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
