@@ -23,7 +23,8 @@ MOST_REFINEMENTS = 2
 HELPS = 0.8
 """Uncertainty of a result over that of the pass before from which on a refinement counts as no help."""
 REFINED = ("load", "pull_off")
-"""Experiments whose rows the program chooses; those of a path are the scene's, and they limit what it finds."""
+"""Experiments whose rows the program chooses; those of a path are the scene's, and they limit what it finds. With noise
+a load goes on sampling until it is known well enough, which is its own refinement (`load_dynamic`)."""
 FOLDER = ".refined"
 """Of a pass under way, in the run folder: its files replace those of the pass before only when it is done."""
 
@@ -43,7 +44,7 @@ def refined(bench: Bench, outcome: Outcome) -> Refined:
     was found before stands, and the refinement says how it ended.
     """
     scene, deck = bench.deck.scene, bench.deck
-    if scene.method != "quasistatic" or scene.experiment.kind not in REFINED:
+    if scene.noise is not None or scene.experiment.kind not in REFINED:
         return Refined(deck, outcome)
     tolerance, count, ended = scene.accuracy.tolerance, 0, ""
     while open_ := unmet(scene, outcome.quantities):
@@ -52,17 +53,17 @@ def refined(bench: Bench, outcome: Outcome) -> Refined:
             ended = "; ".join(filter(None, (ended, "the spacing alone leaves that open")))
             break
         if count == MOST_REFINEMENTS:
-            ended = f"after {count} refinements, the most that are tried"
+            ended = f"{_after(count)}, the most that are tried"
             break
         bench.progress.note(f"refining: {in_words(left)}, asked {scene.accuracy.tolerance:g}")
         try:
             finer_deck, finer = _pass(bench, tolerance / FINER)
         except (EngineError, UntrustedError, SettingsError) as error:
-            ended = f"after {count} refinements, since the next failed: {getattr(error, 'message', error)}"
+            ended = f"{_after(count)}, since the next failed: {getattr(error, 'message', error)}"
             break
         tolerance, count = tolerance / FINER, count + 1
         before, deck, outcome = outcome, finer_deck, nested(outcome, finer)
-        ended = f"after {count} refinement{'s' if count > 1 else ''}"
+        ended = _after(count)
         if unmet(scene, outcome.quantities) and not _helped(left, before, outcome):
             ended += ", the last of which did not help"
             break
@@ -82,6 +83,10 @@ def nested(coarse: Outcome, fine: Outcome) -> Outcome:
         factor = max(1.0, abs(quantity.value - before.value) / claimed) if claimed > 0.0 else 1.0
         quantities[name] = Quantity(quantity.value, factor * quantity.uncertainty, quantity.unit)
     return replace(fine, quantities=quantities)
+
+
+def _after(count: int) -> str:
+    return f"after {count} refinement{'' if count == 1 else 's'}"
 
 
 def _within_reach(scene: Scene, outcome: Outcome, shares: dict[str, float]) -> dict[str, float]:

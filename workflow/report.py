@@ -41,9 +41,6 @@ def write_whole(path: Path, text: str) -> None:
     os.replace(part, path)
 
 
-IN_TIME = ', or method = "quasistatic", since force control never sees the pull-off itself'
-
-
 def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict[str, Any]:
     """What results.json holds after a run that was done."""
     scales = scales_of(scene, outcome.quantities)
@@ -57,8 +54,7 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
         ended = "" if outcome.refinement is None else f" ({outcome.refinement.ended})"
         doubts["tolerance"] = (
             f"{in_words(coarse)}, which is more than the tolerance of {scene.accuracy.tolerance:g} that was asked for"
-            f"{ended}. A radius is known no better than the spacing lets it: take a smaller bodies.spacing at the same "
-            f"stiffness and energy per length{IN_TIME if scene.method == 'dynamic' else ''}"
+            f"{ended}. {_what_helps(scene, outcome, coarse)}"
         )
     if missing := unfound(scene, outcome.quantities):
         doubts["no_units"] = (
@@ -72,6 +68,20 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
         "refinements": 0 if refinement is None else refinement.count,
     }
     return quantities | {"accuracy": accuracy} | _frame(scene, "done", warnings, timing)
+
+
+def _what_helps(scene: Scene, outcome: Outcome, coarse: Mapping[str, float]) -> str:
+    """Against results that are known less well than asked for, by what limits them."""
+    reach = {name: scene.accuracy.tolerance * abs(outcome.quantities[name].value) for name in coarse}
+    finer = "a smaller bodies.spacing at the same stiffness and energy per length"
+    if any(outcome.lattice.get(name, 0.0) > reach[name] for name in coarse):
+        return f"A radius is known no better than the spacing lets it: take {finer}"
+    if scene.experiment.kind == "path":
+        return f"What helps is more steps in experiment.displacements; for a radius {finer}, too"
+    if scene.method == "dynamic":
+        since = ", since force control never sees the pull-off itself" if scene.experiment.kind == "pull_off" else ""
+        return f'What helps is method = "quasistatic"{since}'
+    return f'What helps is to leave interaction.cutoff and bodies.particles "auto"; for a radius {finer}, too'
 
 
 def failure(scene: Scene, error: Mapping[str, object], timing: Mapping[str, float]) -> dict[str, Any]:

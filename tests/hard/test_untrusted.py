@@ -105,7 +105,7 @@ def doubts(results: dict[str, Any]) -> set[str]:
 def test_a_chain_that_cuts_the_tail_of_the_contact_gets_a_warning(tmp_path: Path) -> None:
     results = run(scene_from_dict(tables(PULL, {"particles": 34})), tmp_path / "run", figures=False).results
     assert results["status"] == "done"
-    assert doubts(results) == {"chain_end", "tolerance"}  # the radius of this short contact is known to a percent
+    assert doubts(results) == {"chain_end"}
 
 
 def test_particles_closer_than_the_table_was_chosen_for_get_a_warning(
@@ -121,7 +121,7 @@ def test_particles_closer_than_the_table_was_chosen_for_get_a_warning(
 
 def test_automatic_chains_need_no_warning(tmp_path: Path) -> None:
     results = run(scene_from_dict(tables(PULL, {"particles": "auto"})), tmp_path / "run", figures=False).results
-    assert doubts(results) == {"tolerance"}  # no chain_end
+    assert doubts(results) == set()
 
 
 def test_atoms_that_fly_apart_are_no_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

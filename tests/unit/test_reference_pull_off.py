@@ -10,7 +10,7 @@ from analysis.reference.independent_pairs import IndependentPairs
 from analysis.reference.interaction import Exponential, PairInteraction
 from analysis.reference.model import ChainModel
 from analysis.reference.pull_off import pull_off
-from analysis.reference.tension_radius import state_radius, tension_radius
+from analysis.reference.tension_radius import band_limited_radius, state_radius, tension_radius
 
 SEARCH = 1e-8
 """Relative: the search stops at 1e-9."""
@@ -18,6 +18,8 @@ CHAIN_END = 1e-9
 """Relative: the tension beyond the end of a chain whose edge has a gap of 20 ranges."""
 STENCIL_OF_3, STENCIL_OF_9 = 3e-3, 2e-6
 """Relative: interpolation of the pressure between particles, in a dip some 6 to 9 spacings wide."""
+BAND_LIMITED = 3e-8
+"""Relative, of the same dips: 1e-8 measured at the zero-load radius, 2e-10 at the critical one."""
 FOLD = 1e-6
 """Relative: at a fold the force goes as the square root of the distance to it, which is located to 1e-10 LU."""
 
@@ -37,6 +39,23 @@ def test_closed_form_of_independent_pairs(radius: float) -> None:
     assert result.critical_radius == pytest.approx(exact.critical_radius(), rel=STENCIL_OF_3)
     assert state_radius(model, result.zero_load, 9) == pytest.approx(exact.zero_load_radius(), rel=STENCIL_OF_9)
     assert state_radius(model, result.critical, 9) == pytest.approx(exact.critical_radius(), rel=STENCIL_OF_9)
+
+
+@pytest.mark.parametrize("radius", [4000.0, 6000.0])
+def test_band_limited_interpolation_finds_the_radius_of_the_closed_form(radius: float) -> None:
+    exact = IndependentPairs(NARROW, 0.83, radius)
+    model = ChainModel(200, 0.83, NARROW, radius=radius)
+    result = pull_off(model, preload=0.01)
+    for state, known in ((result.zero_load, exact.zero_load_radius()), (result.critical, exact.critical_radius())):
+        found = band_limited_radius(model.places(), state.pair_force[:, 1])
+        assert found == pytest.approx(known, rel=BAND_LIMITED)
+
+
+def test_band_limited_interpolation_needs_tension_inside_the_chain() -> None:
+    x = np.linspace(-10.0, 10.0, 21)
+    for pressure in (np.ones(21), -np.abs(x)):
+        with pytest.raises(ValueError, match="inside the chain"):
+            band_limited_radius(x, pressure)
 
 
 def test_interpolated_radius_converges_with_the_stencil() -> None:

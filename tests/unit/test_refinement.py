@@ -128,6 +128,18 @@ def test_a_path_is_not_refined(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) 
     assert refine(monkeypatch, tmp_path, first, of=path)[0] is first
 
 
+def test_a_scene_in_time_is_refined_and_one_with_noise_goes_on_sampling_instead(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    timed: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
+    timed["experiment"] = {"kind": "load", "force": 0.7, "method": "dynamic"}
+    found, _ = refine(monkeypatch, tmp_path, outcome(4 * TOLERANCE), outcome(0.5 * TOLERANCE), of=scene(**timed))
+    assert found.refinement is not None
+    assert found.refinement.count == 1
+    first = outcome(4 * TOLERANCE)
+    assert refine(monkeypatch, tmp_path, first, of=scene(**timed, noise={"temperature": 1e-9, "seed": 1}))[0] is first
+
+
 def test_passes_that_differ_by_more_than_they_claim_claim_more() -> None:
     coarse, fine = outcome(2e-4, value=1.0), outcome(1e-4, value=1.0009)
     assert nested(coarse, fine).quantities["critical_radius"].uncertainty == pytest.approx(3e-4, rel=1e-9)

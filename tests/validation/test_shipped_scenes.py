@@ -32,10 +32,8 @@ PINNED = {
     "thermal_load": ("displacement", 0.2592, 2e-3),  # statistics: four standard errors of either run
 }
 
-LIMITED = {"pull_off_dynamic": ["tolerance"], "path_hysteresis": ["tolerance"]}
-"""The force is flat at the pull-off, so that a bracket of the tension leaves the radius there open to some percent;
-where particles snap, a radius between them does not exist to better than a share of the spacing.
-"""
+LIMITED = {"path_hysteresis": ["tolerance"]}
+"""Where particles snap, a radius between them does not exist to better than a share of the spacing."""
 
 
 def test_every_shipped_scene_is_pinned() -> None:

@@ -164,9 +164,9 @@ def _outcome(bench: Bench, search: Search, loaded: Held, critical: Held, phases:
     rest = (*(h.last for h in search.held[:-1]), critical.last)
     zero_radius = radius_or_spot(scene, zero.profile)
     if settings.estimate.snaps:
-        critical_radius = _radius_between_snaps(bench, critical.last, zero_radius.value, half / adhesion)
+        critical_radius, spread = _radius_between_snaps(bench, critical.last, zero_radius.value, half / adhesion)
     else:
-        critical_radius = _critical_radius(scene, rest)
+        critical_radius, spread = _critical_radius(scene, rest)
     slope = abs(critical_radius.value - zero_radius.value) / adhesion
     at_zero = abs(zero.force)
     if settings.estimate.snaps:
@@ -180,8 +180,9 @@ def _outcome(bench: Bench, search: Search, loaded: Held, critical: Held, phases:
     }
     profiles = {"zero_load": zero.profile, "critical": critical.last.profile}
     radii = {name: radius_or_spot(scene, profile).value for name, profile in profiles.items()}
+    lattice = {"critical_radius": spread, "zero_load_radius": zero_radius.uncertainty}
     states = (loaded.last, *rest)
-    return Outcome(quantities, states, profiles, radii, phases, doubts(scene, settings, states))
+    return Outcome(quantities, states, profiles, radii, phases, doubts(scene, settings, states), lattice=lattice)
 
 
 def _swung_past(deck: Deck, search: Search) -> float:
@@ -189,15 +190,17 @@ def _swung_past(deck: Deck, search: Search) -> float:
     return EDGES * deck.settings.estimate.snap[1] * search.overshoot(search.best)
 
 
-def _radius_between_snaps(bench: Bench, critical: State, zero_radius: float, missed: float) -> Quantity:
+def _radius_between_snaps(bench: Bench, critical: State, zero_radius: float, missed: float) -> tuple[Quantity, float]:
     """Radius of the last state that held, where pairs snap: the tension's teeth have no smooth top to go on to.
 
     The pull-off may be at the next tooth, with one particle less at each edge, and further off where up to twice the
     share `missed` of the tension is left to it: the teeth's tops lie near F = F_A (1 − y²), y = (a − a_cr)/(a₀ − a_cr).
+    Also the part of the uncertainty [LU] that the spacing leaves.
     """
     radius = radius_or_spot(bench.deck.scene, critical.profile)
-    beyond = bench.deck.scene.bodies.spacing + abs(zero_radius - radius.value) * math.sqrt(2.0 * missed)
-    return Quantity(radius.value, radius.uncertainty + beyond, LENGTH)
+    spread = radius.uncertainty + bench.deck.scene.bodies.spacing
+    beyond = abs(zero_radius - radius.value) * math.sqrt(2.0 * missed)
+    return Quantity(radius.value, spread + beyond, LENGTH), spread
 
 
 def top_of(states: Sequence[State]) -> tuple[float, float] | None:
@@ -219,11 +222,12 @@ def top_of(states: Sequence[State]) -> tuple[float, float] | None:
     return nearest, float(tension(nearest))
 
 
-def _critical_radius(scene: Scene, held: Sequence[State]) -> Quantity:
+def _critical_radius(scene: Scene, held: Sequence[State]) -> tuple[Quantity, float]:
     """Radius at the pull-off itself, which force control never sees: extrapolated over the displacement.
 
     The largest tension is that of a cubic through the last four states at rest, the radius goes there as a parabola
     through the last three; the largest tension of a parabola through those three says how far both can be trusted.
+    Also the part of the uncertainty [LU] that the spacing leaves.
     """
     radii = [radius_of(scene, state.profile) for state in held[1 - FEWEST_HELD :]]
     last = radii[-1]
@@ -232,12 +236,12 @@ def _critical_radius(scene: Scene, held: Sequence[State]) -> Quantity:
     tops = [top_of(held[-count:]) for count in (FEWEST_HELD, FEWEST_HELD - 1)]
     values = [radius.value for radius in radii if radius is not None]
     if len(values) < FEWEST_HELD - 1 or len(held) < FEWEST_HELD or tops[0] is None or tops[1] is None:
-        return Quantity(last.value, last.value, LENGTH)
+        return Quantity(last.value, last.value, LENGTH), last.uncertainty
     places = np.asarray([state.displacement for state in held[1 - FEWEST_HELD :]])
     value, other = (float(_weights(places, top[0]) @ values) for top in tops if top is not None)
     uncertainties = [radius.uncertainty for radius in radii if radius is not None]
     spread = float(np.abs(_weights(places, tops[0][0])) @ uncertainties)
-    return Quantity(value, spread + SPREAD * abs(value - other), LENGTH)
+    return Quantity(value, spread + SPREAD * abs(value - other), LENGTH), spread
 
 
 def _weights(places: NDArray[np.float64], place: float) -> NDArray[np.float64]:
