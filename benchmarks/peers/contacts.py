@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
 from analysis.reference.hertz import hertz_contact_radius, hertz_force
 from analysis.reference.jkr import FIXED_GRIPS_RADIUS_RATIO, Jkr
@@ -108,7 +109,8 @@ def errors(contact: str, curve: Curve) -> dict[str, float]:
     """Return the errors of a curve, each relative, against its own limit ("limit") and the closed form ("theory").
 
     For both: "force", rms of F - F_ref over the largest |F_ref| of Hertz, or over F_A; "worst", the largest of it;
-    "radius", rms of a - a_ref over a_0, NaN where there is none. Hertz also has "relative" and "worst_relative", where
+    "radius", rms of a - a_ref over a_0, NaN where there is none; "displacement", rms of d - d_ref at the same F where
+    that is compressive, over a_0²/R. Hertz also has "relative" and "worst_relative", where
     every point counts by its own F; JKR "pull_off", the largest tension over that of the reference, less 1 (a peak
     between two points makes up to 1e-3 of it against the closed form), and, over a_0²/R, where F_A and F = 0 are:
     "pull_off_place" and "zero_load_place".
@@ -121,6 +123,7 @@ def errors(contact: str, curve: Curve) -> dict[str, float]:
         found[f"{name}_force"] = _rms(off)
         found[f"{name}_worst"] = float(np.abs(off).max())
         found[f"{name}_radius"] = _rms((curve.radius[kept] - radius) / A_0)
+        found[f"{name}_displacement"] = _displacement_error(contact, curve.displacement[kept], curve.force[kept], force)
         if contact == "hertz":
             found[f"{name}_relative"] = _rms(curve.force / force - 1.0)
             found[f"{name}_worst_relative"] = float(np.abs(curve.force / force - 1.0).max())
@@ -133,6 +136,16 @@ def errors(contact: str, curve: Curve) -> dict[str, float]:
         ends = slice(lowest, None, -1)
         found["zero_load_place"] = float(np.interp(0.0, curve.force[ends], curve.displacement[ends]) / DEPTH)
     return found
+
+
+def _displacement_error(contact: str, displacement: Array, force: Array, wanted: Array) -> float:
+    """Rms of d - d_ref(F) over a_0²/R; d_ref between the points by a spline over F, over F^(2/3) for Hertz."""
+    kept = wanted > 0.0
+    place, force, wanted = displacement[kept], force[kept], wanted[kept]
+    if contact == "hertz":
+        force, wanted = np.maximum(force, 0.0) ** (2.0 / 3.0), wanted ** (2.0 / 3.0)
+    rising = np.argsort(wanted)
+    return _rms((place - CubicSpline(wanted[rising], place[rising])(force)) / DEPTH)
 
 
 def reduced_distance(curve: Curve) -> float:

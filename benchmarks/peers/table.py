@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from analysis.plots import new_figure, save_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 BEGIN, END = "<!-- peers: begin -->", "<!-- peers: end -->"
 ENOUGH = 0.01
@@ -80,11 +85,13 @@ def _time(seconds: float) -> str:
 COLUMNS = {
     "hertz": (
         ("F: rms over F_max", "limit_force"), ("rms of F/F_H − 1", "limit_relative"),
-        ("worst of it", "limit_worst_relative"), ("a: rms over a_0", "limit_radius"),
+        ("worst of it", "limit_worst_relative"), ("d: rms over a_0²/R", "limit_displacement"),
+        ("a: rms over a_0", "limit_radius"),
     ),
     "jkr": (
-        ("own limit: F", "limit_force"), ("F_A", "limit_pull_off"), ("a", "limit_radius"),
-        ("JKR: F", "theory_force"), ("F_A", "theory_pull_off"), ("a", "theory_radius"),
+        ("own limit: F", "limit_force"), ("F_A", "limit_pull_off"), ("d", "limit_displacement"),
+        ("a", "limit_radius"), ("JKR: F", "theory_force"), ("F_A", "theory_pull_off"), ("d", "theory_displacement"),
+        ("a", "theory_radius"),
         ("F/F_A over a/a_0", "reduced"), ("d at F_A", "pull_off_place"), ("d at F = 0", "zero_load_place"),
     ),
 }  # fmt: skip
@@ -134,32 +141,51 @@ def write_section(document: dict[str, Any], page: Path) -> None:
     page.write_text(f"{before}{BEGIN}\n{section(document)}\n{END}{after}", encoding="utf-8")
 
 
+PANELS: tuple[tuple[str, Callable[[dict[str, Any], str], float | None]], ...] = (
+    ("F", error_of),
+    ("d", lambda record, against: record["errors"].get(f"{against}_displacement")),
+    ("a", lambda record, against: record["errors"].get(f"{against}_radius")),
+)
+"""What is in error in the columns of the figure."""
+LEAST = 1e-6
+"""Errors below that are drawn there."""
+ERRORS = {
+    ("hertz", "F"): "rms of F/F(Hertz) − 1", ("hertz", "d"): "rms error of d at the same F, over a₀²/R",
+    ("hertz", "a"): "rms error of a over a₀", ("jkr", "F"): "rms error of F over F_A, or of F_A",
+    ("jkr", "d"): "rms error of d at the same F, over a₀²/R", ("jkr", "a"): "rms error of a over a₀",
+}  # fmt: skip
+
+
 def write_figure(document: dict[str, Any], path: Path) -> None:
-    """Draw error over time, one panel for each contact."""
-    import matplotlib
+    """Draw errors of F, d and a over time: a row for each contact."""
+    figure = new_figure((13.0, 8.6))
+    axes = figure.subplots(2, len(PANELS), sharex="row")
+    for row, (contact, title) in zip(axes, (("hertz", "Hertz"), ("jkr", "JKR")), strict=True):
+        records = [r for r in document["records"] if r["contact"] == contact]
+        for axis, (name, error) in zip(row, PANELS, strict=True):
+            for record in records:
+                if record["solver"] in COLORS:
+                    _point(axis, record, error(record, "limit"), error(record, "theory") if contact == "jkr" else None)
+            axis.axhline(ENOUGH, color="grey", lw=0.7, ls="--")
+            axis.set_xscale("log")
+            axis.set_yscale("log")
+            axis.set_ylim(0.5 * LEAST, 2.0)
+            axis.set(xlabel="time of a curve of 50 points (s)", ylabel=ERRORS[contact, name])
+        row[0].set_title(f"{title}, each beside its own continuum limit" + (" (× beside JKR)" * (contact == "jkr")),
+                         loc="left")  # fmt: skip
+    for solver, color in COLORS.items():
+        axes[0, 0].plot([], [], "o", color=color, label=solver)
+    figure.legend(loc="outside lower center", ncols=len(COLORS), frameon=False)
+    save_figure(figure, path)
 
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
 
-    figure, axes = pyplot.subplots(1, 2, figsize=(12, 5.2), layout="constrained")
-    for axis, contact, title in zip(axes, ("hertz", "jkr"), ("Hertz", "JKR"), strict=True):
-        for solver, color in COLORS.items():
-            records = [r for r in document["records"] if r["solver"] == solver and r["contact"] == contact]
-            times, near, far = (
-                [r["seconds"] for r in records],
-                [error_of(r) for r in records],
-                [error_of(r, "theory") for r in records],
-            )
-            axis.loglog(times, [max(e, 1e-6) for e in near], "o", color=color, label=f"{solver}")
-            if contact == "jkr":
-                axis.loglog(times, [max(e, 1e-6) for e in far], "x", color=color, alpha=0.6)
-            for record, x, y in zip(records, times, near, strict=True):
-                axis.annotate(record["setting"].split(",")[0], (x, max(y, 1e-6)), fontsize=7, xytext=(4, 3),
-                              textcoords="offset points")  # fmt: skip
-        axis.axhline(ENOUGH, color="grey", lw=0.7, ls="--")
-        axis.set(xlabel="time of a curve of 50 points [s]", title=title)
-    axes[0].set_ylabel("rms of F/F(Hertz) − 1")
-    axes[1].set_ylabel("rms error of F over F_A, or of the pull-off\n● own continuum limit   × JKR, by displacement")
-    axes[0].legend(fontsize=8)
-    figure.savefig(path, dpi=130)
-    pyplot.close(figure)
+def _point(axis: Axes, record: dict[str, Any], near: float | None, far: float | None) -> None:
+    """A solver with one setting; where the panel's quantity is not known, nothing."""
+    color, x = COLORS[record["solver"]], record["seconds"]
+    if far is not None:
+        axis.plot(x, max(far, LEAST), "x", color=color, alpha=0.6)
+    if near is not None:
+        y = max(near, LEAST)
+        axis.plot(x, y, "o", color=color, markersize=5)
+        if axis.get_subplotspec().is_first_col():
+            axis.annotate(record["setting"].split(",")[0], (x, y), (4, 3), fontsize=6, textcoords="offset points")

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SIZE = (10.5, 4.8)
+SIZE = (10.5, 5.4)
 COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#999933")
 """Okabe and Ito's, and one more; a knob has its colour and its marker in both panels, of 88 pairs."""
 MARKERS = "osD^vPX*<>p"
@@ -35,15 +35,15 @@ def cost_figure(record: CostRecord) -> Figure:
             _over_knob(right, knob, levels, style)
     _others(left, record)
     _front(left, record)
-    for axis in (left, right):
+    for axis, columns in ((left, 3), (right, 2)):
         axis.axhline(record.tolerance, color=THEORY, linewidth=0.8, linestyle=":")
-        axis.legend(frameon=False, fontsize=7)
+        axis.legend(frameon=False, fontsize=7, ncols=columns, loc="upper center", bbox_to_anchor=(0.5, -0.13))
     left.set_xlabel("CPU time in LAMMPS (s)")
     left.set_ylabel("largest relative error of the main results")
     right.axvline(1.0, color=THEORY, linewidth=0.8)
     right.set_xlabel("how much coarser than in the scene as it is")
     right.annotate(
-        "accuracy.tolerance", (0.99, record.tolerance), xycoords=("axes fraction", "data"), ha="right", va="bottom",
+        "accuracy.tolerance", (0.01, record.tolerance), xycoords=("axes fraction", "data"), ha="left", va="bottom",
         fontsize=8, color=THEORY,
     )  # fmt: skip
     left.set_title(record.title, loc="left", fontsize=10)

@@ -88,7 +88,7 @@ def _vertex(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, 
     if not are_apart(d[near]):
         return float(d[middle]), top
     x = (d[near] - d[middle]) / scale
-    polynomial = np.polynomial.Polynomial.fit(x, tension[near] - top, 2 * beside, domain=(-1, 1), window=(-1, 1))
+    polynomial = through(x, tension[near] - top)
     inside = _real_roots(polynomial.deriv(), float(x[beside + 1]), float(x[beside - 1]))
     best = max([0.0, *inside], key=lambda place: float(polynomial(place)))
     return float(d[middle]) + scale * best, top + max(0.0, float(polynomial(best)))
@@ -109,6 +109,11 @@ def rivals(force: Sequence[float], peak: Peak) -> dict[int, float]:
 def are_apart(d: Array) -> bool:
     """Whether neighbouring displacements are far enough from each other for a polynomial through them."""
     return float(np.abs(np.diff(d)).min()) > NEAREST * float(np.ptp(d))
+
+
+def through(x: Array, y: Array) -> np.polynomial.Polynomial:
+    """The polynomial of degree n - 1 through n points; x, (n,), of the order of 1 and all different, y, (n,)."""
+    return np.polynomial.Polynomial(np.linalg.solve(np.vander(x, increasing=True), y))
 
 
 def _real_roots(polynomial: np.polynomial.Polynomial, low: float, high: float) -> list[float]:
@@ -158,5 +163,5 @@ def smooth_crossing(displacement: Sequence[float], force: Sequence[float], level
         return place
     over = np.asarray(force[index - 1 : index + 3]) - level
     x = (d - d[1]) / (d[2] - d[1])
-    inside = _real_roots(np.polynomial.Polynomial.fit(x, over, 3, domain=(-1, 1), window=(-1, 1)), 0.0, 1.0)
+    inside = _real_roots(through(x, over), 0.0, 1.0)
     return float(d[1] + inside[0] * (d[2] - d[1])) if len(inside) == 1 else place

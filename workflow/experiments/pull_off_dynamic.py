@@ -19,7 +19,7 @@ from workflow.deck import Deck, Phase
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import Contact, State
 from workflow.experiments.dynamic import Held, Start, hold, overshoot
-from workflow.experiments.marks import are_apart
+from workflow.experiments.marks import are_apart, through
 from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, radius_of, radius_or_spot
 from workflow.scene import Scene
 from workflow.units import FORCE, LENGTH
@@ -212,14 +212,14 @@ def top_of(states: Sequence[State]) -> tuple[float, float] | None:
     place = np.asarray([state.displacement for state in states])
     if not are_apart(place):
         return None
-    tension = np.polynomial.Polynomial.fit(place, [-state.force for state in states], len(states) - 1)
+    width = float(np.ptp(place))
+    tension = through((place - place[-1]) / width, np.asarray([-state.force for state in states]))
     flat = [root.real for root in tension.deriv().roots() if root.imag == 0.0]
-    reach = REACH * float(np.ptp(place))
-    tops = [float(d) for d in flat if tension.deriv(2)(d) < 0.0 and abs(d - place[-1]) < reach]
+    tops = [float(x) for x in flat if tension.deriv(2)(x) < 0.0 and abs(x) < REACH]
     if not tops:
         return None
-    nearest = min(tops, key=lambda d: abs(d - place[-1]))
-    return nearest, float(tension(nearest))
+    nearest = min(tops, key=abs)
+    return float(place[-1]) + width * nearest, float(tension(nearest))
 
 
 def _critical_radius(scene: Scene, held: Sequence[State]) -> tuple[Quantity, float]:
