@@ -31,6 +31,7 @@ test: $(READY) ## run the tests: ARGS='-m slow' the long ones, ARGS=tests/unit o
 
 lint: $(READY) ## check style, types and the direction of imports
 	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 

@@ -21,6 +21,8 @@ PART = 0.1
 """Of the tolerance, that one share may add to the error of a main result."""
 SAME_COST = 0.03
 """Costs that differ by less are the same: tens of times on a machine that does other things too."""
+PROMISED = {"residual": (1e-3, "on a rigid plane forces are promised to 1e-6, tests/validation/test_hertz_plane.py")}
+"""Largest value of a share that something other than the tolerance allows, and what."""
 TOGETHER = "together"
 """In place of a share's name, of runs with all shares as chosen."""
 
@@ -79,7 +81,10 @@ def _refusals(rows: Sequence[Row], share: str, ladder: Sequence[float]) -> dict[
     for value, coarser in zip(ladder, [*ladder[1:], None], strict=True):
         worst = max(cases[value], key=lambda row: (bool(row.trouble), row.added))
         where = f"in {worst.scene} at {power(worst.tolerance)}"
-        if worst.trouble:
+        most, promise = PROMISED.get(share, (math.inf, ""))
+        if value > most:
+            refusals[value] = promise
+        elif worst.trouble:
             refusals[value] = f"{worst.trouble.split(':')[0]} {where}"
         elif worst.added > PART:
             refusals[value] = f"adds {worst.added:.2g} of the tolerance {where}"

@@ -174,11 +174,7 @@ def run_a_little(scene: Scene, case: Case, folder: Path) -> None:
 
 @pytest.mark.parametrize(
     ("case", "tangential"),
-    [
-        pytest.param(case, k, id=f"{label(case)}-{k}")
-        for case in LONG
-        for k in BOTH_WAYS
-    ],
+    [pytest.param(case, k, id=f"{label(case)}-{k}") for case in LONG for k in BOTH_WAYS],
 )
 def test_sets_with_long_bonds_run(make_scene: MakeScene, tmp_path: Path, case: Case, tangential: float) -> None:
     """Normal and tangential stiffness differ, either way."""

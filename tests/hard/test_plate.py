@@ -53,9 +53,7 @@ def test_a_long_chain_has_few_bins(make_scene: MakeScene) -> None:
 
 
 @pytest.mark.parametrize("plate", [{"mass": 20.0, "damping": 0.3}, {"mass": 500.0, "damping": 2.0}])
-def test_a_plate_with_momentum_does_not_break_the_contact_too_early(
-    tmp_path: Path, plate: dict[str, float]
-) -> None:
+def test_a_plate_with_momentum_does_not_break_the_contact_too_early(tmp_path: Path, plate: dict[str, float]) -> None:
     """A weakly damped plate shoots past its place: the stated bracket still holds the pull-off force."""
     attraction, repulsion = (0.2, 0.5), (0.4, 0.25)
     scene = scene_from_dict(

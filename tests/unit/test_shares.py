@@ -11,7 +11,17 @@ from pathlib import Path
 import pytest
 
 from benchmarks.shares import LADDERS, SCENES
-from benchmarks.shares_choice import BEGIN, END, PART, TOGETHER, Row, chosen_shares, read_rows, shares_markdown
+from benchmarks.shares_choice import (
+    BEGIN,
+    END,
+    PART,
+    PROMISED,
+    TOGETHER,
+    Row,
+    chosen_shares,
+    read_rows,
+    shares_markdown,
+)
 from workflow.cost.advice import TARGETS
 from workflow.scene import Scene
 from workflow.settings import settings_for
@@ -79,7 +89,7 @@ def ladder(share: str, scene: str = "a", **added: float) -> list[Row]:
 
 
 def study(share: str, rows: list[Row]) -> dict[str, object]:
-    others = [row for name in LADDERS if name != share for row in ladder(name, _1=0.0, _2=0.0)]
+    others = [row for name in LADDERS if name != share for row in ladder(name, **{"_1e-5": 0.0, "_1e-4": 0.0})]
     found = chosen_shares([*rows, *others])["shares"][share]
     assert isinstance(found, dict)
     return found
@@ -112,6 +122,13 @@ def test_a_warning_or_a_failure_refuses_a_value() -> None:
     gone = {"added": math.nan, "error": math.nan, "cpu_s": math.nan, "trouble": "not converged: at 0.1 LU"}
     failed = [replace(row, **gone) if row.value == 3.0 else row for row in rows]
     assert study("cutoff", failed)["value"] == 1.0  # the next coarser one has no numbers
+
+
+def test_what_is_promised_beside_the_tolerance_is_kept() -> None:
+    values = {f"_{value}": 0.0 for value in ("1e-4", "1e-3", "1e-2", "1e-1")}
+    found = study("residual", ladder("residual", **values))
+    assert found["value"] == PROMISED["residual"][0]
+    assert found["next"] == f"0.01: {PROMISED['residual'][1]}"
 
 
 def test_what_costs_the_same_stays_fine() -> None:

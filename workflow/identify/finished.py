@@ -50,7 +50,5 @@ def scales_of_run(folder: Path, contact_modulus: float, surface_energy: float) -
     if not (force.value > 0.0 and radius.value > 0.0):
         raise FinishedRunError(f"{path}: F_A and a_0 must be positive; they are {force.value:g} and {radius.value:g}")
     scales = jkr_scales(force, radius, profile["radius"], contact_modulus, surface_energy)
-    quantities = {
-        name: entry for name, entry in results.items() if isinstance(entry, dict) and entry.get("unit") in SI
-    }
+    quantities = {name: entry for name, entry in results.items() if isinstance(entry, dict) and entry.get("unit") in SI}
     return scales, quantities

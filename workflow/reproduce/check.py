@@ -1,9 +1,9 @@
 """One statement that was checked: what it says, what this program finds, what it is held against, and the verdict.
 
-    PASS where  |ours − reference| ≤ tolerance · |reference|     ("relative")
-                |ours − reference| ≤ tolerance                   ("absolute")
-                ours ≤ reference                                 ("at most")
-                |ours − reference| ≤ uncertainty                 ("uncertainty": ours and the reference's together)
+PASS where  |ours − reference| ≤ tolerance · |reference|     ("relative")
+            |ours − reference| ≤ tolerance                   ("absolute")
+            ours ≤ reference                                 ("at most")
+            |ours − reference| ≤ uncertainty                 ("uncertainty": ours and the reference's together)
 """
 
 from __future__ import annotations

@@ -53,9 +53,7 @@ REDUCTIONS: tuple[Reduction, ...] = ("geike_popov", "mdr")
 SLOPE, EXPONENT, PUNCH = 0.05, 4.0, 20.0
 
 
-def reduction_scene(
-    reduction: Reduction, d: float, R: float, nu: float, h: float, tolerance: float = 1e-3
-) -> Scene:
+def reduction_scene(reduction: Reduction, d: float, R: float, nu: float, h: float, tolerance: float = 1e-3) -> Scene:
     """A sphere of two equal materials pressed by d [LU]; R the sphere's radius, h the spacing [LU]."""
     body = {"youngs_modulus": MODULUS, "poisson_ratio": nu}
     return scene_from_dict(

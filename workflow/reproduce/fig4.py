@@ -45,9 +45,7 @@ def judge(paper: Scene, runs: Runs, folder: Path) -> Findings:
     tension = -float(solver.min())
     rms = float(np.sqrt(np.mean((profile.pressure - solver) ** 2))) / tension
     save(
-        pressure_compared_figure(
-            profile.x, profile.pressure, model.places(), solver, run.value("zero_load_radius")
-        ),
+        pressure_compared_figure(profile.x, profile.pressure, model.places(), solver, run.value("zero_load_radius")),
         folder / "fig4.png",
     )
     against = "independent solver (energy minimisation with scipy)"

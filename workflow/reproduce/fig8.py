@@ -86,9 +86,7 @@ def local_counted(paper: Scene, count: int) -> Scene:
 def scenes_8a(paper: Scene) -> Scenes:
     """Curves of both meanings of N, and of the local limit."""
     fine = {refined_run(n): curve_scene(refined(paper, n), REFINED_DEEPEST, STEPS) for n in REFINED}
-    long = {
-        lengthened_run(n): curve_scene(changed(paper, f"bodies.particles={n}"), DEEPEST, STEPS) for n in LENGTHENED
-    }
+    long = {lengthened_run(n): curve_scene(changed(paper, f"bodies.particles={n}"), DEEPEST, STEPS) for n in LENGTHENED}
     pairs = {f"curve_local_N{n}": curve_scene(local_counted(paper, n), DEEPEST, STEPS) for n in LOCAL_COUNTS}
     return fine | long | pairs
 
