@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from analysis.curve import Column, Curve, curve_columns, profile_columns, write_columns
 from workflow.experiments import Outcome, in_words, unmet
-from workflow.experiments.outcome import radius_of
+from workflow.experiments.radii import radius_of
 from workflow.scales import scales_of, unfound
 from workflow.scene import Parabola, Scene
 from workflow.units import FORCE, LENGTH, LINE_PRESSURE, SI, Scales

@@ -27,6 +27,8 @@ NODES = 800
 """Points of the trapezoidal rule."""
 INVERSION_STEPS = 200
 """Limit on the bisection for the distance of a pair; the interval is at the round-off after about 60."""
+EDGE = 1e-9
+"""Distance from that gap over the longest range: round-off must not step over it."""
 SCAN = 100
 """Points of the first search for the largest tension."""
 
@@ -111,7 +113,7 @@ class IndependentPairs:
     def critical_displacement(self) -> float:
         """Return the d of the largest tension [LU], the root of dF/dd there."""
         reach = 10.0 * self.interaction.longest_range
-        deepest = self.interaction.force_free_distance() - float(self.undeformed_gap(0.0))
+        deepest = self._deepest()
         grid = np.linspace(-reach, min(reach, deepest), SCAN)
         lowest = int(np.argmin([self.force(float(d)) for d in grid]))
         lowest = min(max(lowest, 1), SCAN - 2)
@@ -132,7 +134,7 @@ class IndependentPairs:
             ValueError: if the force stays a tension until particles are pushed through each other.
         """
         low = self.critical_displacement()
-        high = self.interaction.force_free_distance() - float(self.undeformed_gap(0.0))
+        high = self._deepest()
         if self.force(high) <= 0.0:
             raise ValueError("the finite core gives way before the force is compressive")
         return float(brentq(self.force, low, high, xtol=1e-14))
@@ -140,6 +142,11 @@ class IndependentPairs:
     def zero_load_radius(self) -> float:
         """Return a_0, the radius of maximum tensile stress at F = 0 [LU]; proportional to sqrt(R)."""
         return self.contact_radius(self.zero_load_displacement())
+
+    def _deepest(self) -> float:
+        """Return the d at which the apexes are all but pushed through their finite core [LU]."""
+        gap = float(self.undeformed_gap(0.0)) + EDGE * self.interaction.longest_range
+        return self.interaction.force_free_distance() - gap
 
     def _integral(self, displacement: float, integrand: Callable[[Floats], Floats]) -> float:
         """Return (2 sqrt(2R)/s) int_0^inf h(r(G0 + y^2)) dy by the trapezoidal rule."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,7 @@ from analysis.pressure import Profile, interpenetration, pressure_profile, small
 from workflow.datafile import PARTICLES
 from workflow.deck import STEP_COLUMNS, Deck, Phase
 from workflow.engine import EngineError, Session
+from workflow.experiments.radii import radius_of
 from workflow.scene import Scene
 
 Array = NDArray[np.float64]
@@ -60,6 +62,7 @@ class Contact:
         self._phases: list[Phase] = []
         self._unfinished = ""
         self._states = 0
+        self._latest: Profile | None = None
         session.execute(deck.head, phase="setting up")
 
     @property
@@ -83,9 +86,18 @@ class Contact:
         phase = self._phases[-1]
         self._phases[-1] = Phase(phase.name, phase.step, (*phase.rows, values), begin=phase.begin)
         text = self._unfinished + self.deck.values(phase.step, values) + self.deck.row(phase.step)
-        reading = self.session.measure(text, self._values(), ("x", "f", "v_opposite_x", "v_opposite_z"))
+        arrays = ("x", "f", "v_opposite_x", "v_opposite_z")
+        reading = self.session.measure(text, self._values(), arrays, meanwhile=self._look_back)
         self._unfinished = self.deck.row_end + self.deck.forget(phase.step)
-        return self._state(phase.name, dict(zip(self._values(), reading.values, strict=True)), reading.atoms)
+        state = self._state(phase.name, dict(zip(self._values(), reading.values, strict=True)), reading.atoms)
+        self._latest = state.profile
+        return state
+
+    def _look_back(self) -> None:
+        """Work out the radius of the row before, which its profile then keeps: LAMMPS is busy with the next one."""
+        if self._latest is not None:
+            with suppress(ValueError):  # told where the radius is asked for
+                radius_of(self.scene, self._latest)
 
     def write_state(self) -> None:
         """Write the state that the last row left to states.lammpstrj; it ends the phase."""

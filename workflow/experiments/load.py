@@ -10,8 +10,9 @@ from workflow.deck import Phase
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import State
 from workflow.experiments.law import law_error
-from workflow.experiments.outcome import Outcome, Quantity, doubts, radius_of
+from workflow.experiments.outcome import Outcome, Quantity, doubts
 from workflow.experiments.quasistatic import approach
+from workflow.experiments.radii import radius_of
 from workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
 BESIDE = 0.02

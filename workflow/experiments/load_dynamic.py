@@ -14,7 +14,8 @@ from workflow.experiments.contact import Contact, State
 from workflow.experiments.dynamic import Held, chunk_steps, hold, overshoot, stiffness_under
 from workflow.experiments.law import law_error
 from workflow.experiments.load import load_outcome, moved_by
-from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, radius_of, require_trust
+from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, require_trust
+from workflow.experiments.radii import radius_of
 from workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
 CLOSE = 1e-3

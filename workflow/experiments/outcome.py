@@ -7,14 +7,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from analysis.pressure import Profile, end_pressure_share
-from analysis.radius import ContactRadius, compressive_radius, tensile_radius
 from workflow.deck import Phase
 from workflow.experiments.contact import State
 from workflow.experiments.law import law_share
 from workflow.experiments.pace import slowness
 from workflow.scene import FlatPunch, Scene
 from workflow.settings import Settings
-from workflow.shares import SHARES
 
 
 class UntrustedError(RuntimeError):
@@ -77,26 +75,6 @@ INSIDE = 0.5
 """The same from which on the end of the chain is inside the contact."""
 RESIDUAL_LIMIT = 0.1
 """Largest residual force of a particle over the force scale, per unit of tolerance, for a converged state."""
-
-
-def radius_of(scene: Scene, profile: Profile) -> ContactRadius | None:
-    """The contact radius as the contract defines it; None where the bodies do not touch."""
-    adhesive = scene.interaction is not None and scene.interaction.attraction is not None
-    sign = -1.0 if adhesive else 1.0
-    punch = isinstance(scene.bodies.profile, FlatPunch)
-    if not (sign * profile.pressure > 0.0).any() and not (punch and profile.pressure.any()):
-        return None
-    if punch:
-        edge = scene.bodies.reach
-        return ContactRadius(edge, 0.0, -edge, edge, reaches_end=False)
-    if adhesive:
-        return tensile_radius(profile)
-    return compressive_radius(profile, SHARES.residual * scene.accuracy.tolerance)
-
-
-def radius_or_spot(scene: Scene, profile: Profile) -> ContactRadius:
-    """The contact radius; 0 where no particle is in tension, as where F = 0 and a single pair touches."""
-    return radius_of(scene, profile) or ContactRadius(0.0, 0.5 * scene.bodies.spacing, 0.0, 0.0, reaches_end=False)
 
 
 def require_trust(scene: Scene, settings: Settings, state: State) -> None:

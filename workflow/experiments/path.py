@@ -12,7 +12,8 @@ from workflow.experiments.bench import Bench
 from workflow.experiments.contact import State
 from workflow.experiments.law import law_error
 from workflow.experiments.marks import Peak, crossing, largest_tension
-from workflow.experiments.outcome import Outcome, Quantity, doubts, radius_of, require_trust
+from workflow.experiments.outcome import Outcome, Quantity, doubts, require_trust
+from workflow.experiments.radii import radius_of
 from workflow.scene import Scene
 from workflow.settings import Settings
 from workflow.units import FORCE, LENGTH

@@ -20,7 +20,8 @@ from workflow.experiments.bench import Bench
 from workflow.experiments.contact import Contact, State
 from workflow.experiments.dynamic import Held, Start, hold, overshoot
 from workflow.experiments.marks import are_apart, through
-from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, radius_of, radius_or_spot
+from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts
+from workflow.experiments.radii import radius_of, radius_or_spot
 from workflow.scene import Scene
 from workflow.units import FORCE, LENGTH
 

@@ -19,14 +19,7 @@ from workflow.experiments.bench import Bench
 from workflow.experiments.contact import State
 from workflow.experiments.law import law_error
 from workflow.experiments.marks import Peak, largest_tension, rivals, smooth_crossing
-from workflow.experiments.outcome import (
-    Outcome,
-    Quantity,
-    UntrustedError,
-    doubts,
-    radius_or_spot,
-    require_trust,
-)
+from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, require_trust
 from workflow.experiments.pull_off_smooth import (
     LATTICE,
     MISPLACED,
@@ -36,6 +29,7 @@ from workflow.experiments.pull_off_smooth import (
     smooth_pass,
 )
 from workflow.experiments.quasistatic import approach, separate
+from workflow.experiments.radii import radius_or_spot
 from workflow.units import FORCE, LENGTH
 
 Array = NDArray[np.float64]

@@ -14,8 +14,9 @@ from workflow.deck import Phase
 from workflow.experiments.bench import Bench
 from workflow.experiments.contact import Contact, State
 from workflow.experiments.marks import Peak, largest_tension, smooth_crossing
-from workflow.experiments.outcome import UntrustedError, radius_or_spot
+from workflow.experiments.outcome import UntrustedError
 from workflow.experiments.quasistatic import approach, measured, separate
+from workflow.experiments.radii import radius_or_spot
 
 MOST_ROWS = 12
 """Rows at one mark after which the search gives up."""

@@ -11,7 +11,8 @@ from workflow.experiments.bench import Bench
 from workflow.experiments.contact import Contact, State
 from workflow.experiments.dynamic import chunk_steps, hold
 from workflow.experiments.load_dynamic import SETTLING, standard_error
-from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, radius_of, require_trust
+from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, doubts, require_trust
+from workflow.experiments.radii import radius_of
 from workflow.scene import Scene
 from workflow.settings import Settings
 from workflow.units import FORCE
