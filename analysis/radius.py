@@ -28,6 +28,10 @@ as well as the interpolation says, both over the spacing.
 Between them it is taken as a straight line. Over 6900 random contacts of independent pairs in closed form, with bodies
 as sharp as two spacings, it covers at least 94 % of the errors of every size of contact; without, 85 to 90 %.
 """
+ACROSS = 0.25
+"""Distance beyond the centre, over the spacing, from which on a largest tension is that of the other side."""
+TIE = 1e-5
+"""Difference of two pressures over the largest |p| that a minimiser leaves between mirror images."""
 SAME_PLACE = 1e-9
 """Distance of two edges over the spacing below which they are one and the same minimum: round-off."""
 
@@ -80,8 +84,7 @@ def tensile_radius(profile: Profile) -> ContactRadius:
     weight = np.abs(p) / largest
     centre = float(np.sum(weight * x) / np.sum(weight))
     spacing = float(x[-1] - x[0]) / (len(x) - 1)
-    left = place_of_minimum(x, p, np.flatnonzero(x <= centre + 0.5 * spacing))
-    right = place_of_minimum(x, p, np.flatnonzero(x >= centre - 0.5 * spacing))
+    left, right = (_edge(x, p, centre, side * spacing) for side in (-1, 1))
     found = _between(left, right)
     value = found.value if found.value > SAME_PLACE * spacing else 0.0
     return replace(found, value=value, uncertainty=max(found.uncertainty, SPOT * (spacing - value / TOLD)))
@@ -112,6 +115,21 @@ def compressive_radius(profile: Profile, residual: float = 0.0) -> ContactRadius
     right = _zero(x, p, int(loaded[0]), int(loaded[-1]), residual)
     mirrored = _zero(-x[::-1], p[::-1], len(x) - 1 - int(loaded[-1]), len(x) - 1 - int(loaded[0]), residual)
     return _between(Place(-mirrored.position, mirrored.uncertainty, mirrored.at_end), right)
+
+
+def _edge(x: Array, p: Array, centre: float, outwards: float) -> Place:
+    """The largest tension on one side of the centre; outwards: the spacing, negative for the left side [LU].
+
+    A particle just beyond the centre belongs to both sides, so that a single spot is found by both. Where it is no spot
+    at the centre but ties with its mirror image, the mirror image counts.
+    """
+    away = (x - centre) / outwards
+    reach, own = np.flatnonzero(away >= -0.5), np.flatnonzero(away >= 0.0)
+    place = place_of_minimum(x, p, reach)
+    across = (place.position - centre) / outwards < -ACROSS
+    if across and own.size and float(p[own].min()) <= float(p[reach].min()) + TIE * float(np.abs(p).max()):
+        return place_of_minimum(x, p, own)
+    return place
 
 
 def _check(profile: Profile) -> None:

@@ -107,6 +107,17 @@ def test_the_uncertainty_covers_the_error_of_a_noisy_profile(noise: float) -> No
     assert np.mean(error <= uncertainty) >= COVERED
 
 
+@pytest.mark.parametrize("tilt", [-1e-7, 0.0, 1e-7])
+def test_the_middle_particles_of_a_small_contact_may_tie(tilt: float) -> None:
+    """Its two largest tensions lie one spacing from the centre, and the particles at ±1/2 are lowest, and alike."""
+    narrow, wide = 0.05, 0.0525
+    x = np.arange(-19.5, 20.0)
+    tension = (1.0 + wide * x**2) * np.exp(-narrow * x**2)  # largest where x² = 1/narrow - 1/wide
+    assert tension.max() == pytest.approx(float(tension[19]), rel=1e-15)
+    found = tensile_radius(profile(x, -tension * (1.0 + tilt * x)))
+    assert found.value == pytest.approx(math.sqrt(1.0 / narrow - 1.0 / wide), rel=1e-4)
+
+
 def test_the_estimate_is_no_worse_than_a_parabola() -> None:
     rng = np.random.default_rng(13)
     ours, parabola = [], []
