@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from workflow.cli_paper import INTERRUPTED, RUN_FAILED, SCENE_IS_WRONG, stop
+from workflow.cli_paper import INTERRUPTED, RUN_FAILED, SCENE_IS_WRONG, not_written, stop
 
 
 def cost(
@@ -56,9 +56,12 @@ def cost(
         folder.mkdir(parents=True, exist_ok=True)
         record = cost_of(checked, scene.stem, folder, repeats, workers or cores(), progress)
         write_report(record, folder)
-    except (SettingsError, OSError) as error:
+    except SettingsError as error:
         progress.close()
         stop(str(error), SCENE_IS_WRONG)
+    except OSError as error:
+        progress.close()
+        stop(not_written(folder, error), SCENE_IS_WRONG)
     except (RunError, EngineError) as error:
         progress.close()
         stop(f"the study failed: {getattr(error, 'message', error)}", RUN_FAILED)

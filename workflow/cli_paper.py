@@ -23,6 +23,13 @@ def stop(message: str, code: int) -> NoReturn:
     raise typer.Exit(code)
 
 
+def not_written(folder: Path, error: OSError) -> str:
+    """Why nothing could be written to a folder, in words."""
+    if folder.exists() and not folder.is_dir():
+        return f"{folder} is a file; a folder is needed"
+    return f"{folder} cannot be written: {error.strerror}"
+
+
 def identify(
     contact_modulus: Annotated[float, typer.Option(metavar="PA", help="E* of the pair of bodies.", show_default=False)],
     surface_energy: Annotated[
@@ -179,14 +186,15 @@ def reproduce(
             meant = nearest(name, NAMES)
             hint = f"did you mean {meant}? " if meant else ""
             stop(f"--only {name}: no such study; {hint}there are {', '.join(NAMES)}", SCENE_IS_WRONG)
-    if out.exists() and not out.is_dir():
-        stop(f"{out} is a file; a folder is needed", SCENE_IS_WRONG)
     progress = choose_progress()
     try:
         record = do(out, only or (), workers, progress)
-    except (FolderError, OSError) as error:
+    except FolderError as error:
         progress.close()
         stop(str(error), SCENE_IS_WRONG)
+    except OSError as error:
+        progress.close()
+        stop(not_written(out, error), SCENE_IS_WRONG)
     except (RunError, IdentifyError) as error:
         progress.close()
         stop(f"the reproduction failed: {error}", RUN_FAILED)

@@ -1,4 +1,4 @@
-"""`contact1d identify` and `contact1d reproduce` as a person uses them."""
+"""`contact1d identify`, `reproduce` and `cost` as a person uses them."""
 
 from __future__ import annotations
 
@@ -98,3 +98,16 @@ def test_an_unknown_study_is_told_with_the_known_ones(tmp_path: Path) -> None:
     assert "did you mean fig4?" in done.stderr
     assert "jkr_or_barquins" in done.stderr
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("command", [("cost", PULL_OFF), ("reproduce",)], ids=["cost", "reproduce"])
+def test_a_place_that_is_no_folder_is_told(command: tuple[str | Path, ...], tmp_path: Path) -> None:
+    (tmp_path / "taken").write_text("mine")
+    for out, words in (
+        ("taken", "taken is a file; a folder is needed"),
+        ("taken/in", "taken/in cannot be written: Not a"),
+    ):
+        done = contact1d(*command, "--out", out, cwd=tmp_path)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert words in done.stderr
+    assert (tmp_path / "taken").read_text() == "mine"
