@@ -59,7 +59,7 @@ def curve(contact: str, setting: Setting) -> Curve:
     scene, unit, force_unit = identified(setting) if contact == "jkr" else (None, 1.0, 1.0)
     start_up = time.perf_counter() - began
     began = time.perf_counter()
-    data = _hertz(setting) if scene is None else scene.model_dump(by_alias=True, exclude_none=True)
+    data = hertz_tables(setting) if scene is None else scene.model_dump(by_alias=True, exclude_none=True)
     data["experiment"] = {"kind": "path", "displacements": [float(value) for value in d / unit]}
     with tempfile.TemporaryDirectory() as folder:
         finished = run(scene_from_dict(data), folder, figures=False)
@@ -72,7 +72,7 @@ def curve(contact: str, setting: Setting) -> Curve:
     )  # fmt: skip
 
 
-def _hertz(setting: Setting) -> dict[str, object]:
+def hertz_tables(setting: Setting) -> dict[str, object]:
     """The scene of the Hertz contact: the chain on a rigid plane, in nm and µN."""
     spacing = A_0 / setting.grid
     bodies = {

@@ -1,0 +1,107 @@
+"""Where the time of a quick run goes: the Hertz curve of `benchmarks.peers`, 50 points, as a later run in one process.
+
+    python -m benchmarks.breakdown
+
+writes the table between the markers of benchmarks/README.md. Medians over RUNS runs of wall times; functions are timed
+from outside, each without what it calls of the others.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections import defaultdict
+from collections.abc import Callable
+from pathlib import Path
+from statistics import median
+from time import perf_counter
+from typing import Any
+
+import workflow.campaign as campaign
+from benchmarks.peers.contact1d_peer import SETTINGS, hertz_tables
+from benchmarks.peers.contacts import displacements
+from workflow import scene_from_dict
+from workflow.experiments.contact import Contact
+from workflow.process import WorkerProcess
+from workflow.reproduce.markdown import table
+
+README = Path(__file__).parent / "README.md"
+BEGIN, END = "<!-- breakdown: begin -->\n", "<!-- breakdown: end -->\n"
+RUNS = 31
+LAMMPS = "LAMMPS: 50 minimisations, and the deck's head"
+ASKED = "the worker beside LAMMPS (per-atom arrays, LAMMPS opened and closed), and the pipe"
+RADII = "radii of contact, worked out while the worker is busy: not in the sum"
+REST = "all else"
+PARTS: dict[str, tuple[tuple[Any, str], ...]] = {
+    "settings": ((campaign, "settings_for"),),
+    "deck, data file and table": ((campaign, "_write"),),
+    ASKED: ((WorkerProcess, "ask"),),
+    RADII: ((Contact, "_look_back"),),
+    "states from per-atom arrays": ((Contact, "_state"),),
+    "results, tables and files": tuple(
+        (campaign, name) for name in ("write_whole", "curve_of", "write_tables", "results", "write_results")
+    ),
+}
+"""What is timed: where it is looked up, and its name."""
+
+
+class Clock:
+    """Wall times by part; of nested parts each has its own."""
+
+    def __init__(self) -> None:
+        """All at zero."""
+        self.spent: dict[str, float] = defaultdict(float)
+        self._inside: list[float] = []
+
+    def timed(self, part: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        """The same function, whose time counts for a part."""
+
+        def call(*arguments: Any, **named: Any) -> Any:
+            began = perf_counter()
+            self._inside.append(0.0)
+            try:
+                return function(*arguments, **named)
+            finally:
+                taken, inner = perf_counter() - began, self._inside.pop()
+                self.spent[part] += taken - (0.0 if part == ASKED else inner)  # what is done meanwhile costs no wait
+                if self._inside:
+                    self._inside[-1] += taken
+
+        return call
+
+
+def measured() -> list[dict[str, float]]:
+    """Seconds by part of each of RUNS runs."""
+    data = hertz_tables(next(one for one in SETTINGS["hertz"] if one.grid == 12))
+    data["experiment"] = {"kind": "path", "displacements": displacements("hertz").tolist()}
+    scene, clock, found = scene_from_dict(data), Clock(), []
+    for part, functions in PARTS.items():
+        for place, name in functions:
+            setattr(place, name, clock.timed(part, getattr(place, name)))
+    with tempfile.TemporaryDirectory() as folder:
+        for _ in range(RUNS + 2):
+            clock.spent.clear()
+            began = perf_counter()
+            lammps = campaign.run(scene, folder, figures=False).results["timing"]["lammps_s"]
+            total = perf_counter() - began
+            parts = dict(clock.spent)
+            parts[REST] = total - sum(value for name, value in parts.items() if name != RADII)
+            found.append({"whole run": total, LAMMPS: lammps} | parts | {ASKED: parts[ASKED] - lammps})
+    return found[2:]
+
+
+def main() -> None:
+    """Measure, print, and write the table."""
+    found = measured()
+    whole = median(one["whole run"] for one in found)
+    names = ["whole run", LAMMPS, ASKED, *(part for part in PARTS if part not in (ASKED, RADII)), REST, RADII]
+    times = {name: median(one[name] for one in found) for name in names}
+    rows = [(name, f"{1e3 * time:.1f} ms", f"{time / whole:.0%}") for name, time in times.items()]
+    text = table(("part", "wall time", "share"), rows)
+    before, begin, rest = README.read_text(encoding="utf-8").partition(BEGIN)
+    _, end, after = rest.partition(END)
+    README.write_text(f"{before}{begin}{text}{end}{after}", encoding="utf-8")
+    print(text)
+
+
+if __name__ == "__main__":
+    main()
