@@ -27,7 +27,7 @@ def not_written(folder: Path, error: OSError) -> str:
     """Why nothing could be written to a folder, in words."""
     if folder.exists() and not folder.is_dir():
         return f"{folder} is a file; a folder is needed"
-    return f"{folder} cannot be written: {error.strerror}"
+    return f"{folder} cannot be written: {error.strerror or error}"
 
 
 def identify(

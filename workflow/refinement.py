@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from workflow.deck import Deck
 from workflow.engine import EngineError
 from workflow.experiments import Bench, Outcome, UntrustedError, in_words, perform, unmet, write_system
-from workflow.experiments.outcome import Quantity, Refinement, doubts
+from workflow.experiments.outcome import Quantity, Refinement, doubts, left_open_by_spacing
 from workflow.scene import Accuracy, Scene
 from workflow.settings import SettingsError, settings_for
 
@@ -48,7 +48,8 @@ def refined(bench: Bench, outcome: Outcome) -> Refined:
         return Refined(deck, outcome)
     tolerance, count, ended = scene.accuracy.tolerance, 0, ""
     while open_ := unmet(scene, outcome.quantities):
-        left = _within_reach(scene, outcome, open_)
+        out_of_reach = left_open_by_spacing(scene, outcome, open_)
+        left = {name: share for name, share in open_.items() if name not in out_of_reach}
         if not left:
             ended = "; ".join(filter(None, (ended, "the spacing alone leaves that open")))
             break
@@ -87,12 +88,6 @@ def nested(coarse: Outcome, fine: Outcome) -> Outcome:
 
 def _after(count: int) -> str:
     return f"after {count} refinement{'' if count == 1 else 's'}"
-
-
-def _within_reach(scene: Scene, outcome: Outcome, shares: dict[str, float]) -> dict[str, float]:
-    """Those that finer settings may still bring within the tolerance: the spacing itself leaves open less."""
-    reach = {name: scene.accuracy.tolerance * abs(outcome.quantities[name].value) for name in shares}
-    return {name: share for name, share in shares.items() if outcome.lattice.get(name, 0.0) <= reach[name]}
 
 
 def _helped(names: dict[str, float], before: Outcome, after: Outcome) -> bool:

@@ -6,7 +6,7 @@ import json
 import math
 import os
 import platform
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from functools import cache
 from importlib.metadata import version
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from analysis.curve import Column, Curve, curve_columns, profile_columns, write_columns
 from workflow.experiments import Outcome, in_words, unmet
+from workflow.experiments.outcome import left_open_by_spacing
 from workflow.experiments.radii import radius_of
 from workflow.scales import scales_of, unfound
 from workflow.scene import Parabola, Scene
@@ -70,11 +71,10 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
     return quantities | {"accuracy": accuracy} | _frame(scene, "done", warnings, timing)
 
 
-def _what_helps(scene: Scene, outcome: Outcome, coarse: Mapping[str, float]) -> str:
+def _what_helps(scene: Scene, outcome: Outcome, coarse: Iterable[str]) -> str:
     """Against results that are known less well than asked for, by what limits them."""
-    reach = {name: scene.accuracy.tolerance * abs(outcome.quantities[name].value) for name in coarse}
     finer = "a smaller bodies.spacing at the same stiffness and energy per length"
-    if any(outcome.lattice.get(name, 0.0) > reach[name] for name in coarse):
+    if left_open_by_spacing(scene, outcome, coarse):
         return f"A radius is known no better than the spacing lets it: take {finer}"
     if scene.experiment.kind == "path":
         return f"What helps is more steps in experiment.displacements; for a radius {finer}, too"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from analysis.pressure import Profile, end_pressure_share
@@ -124,6 +124,12 @@ def unmet(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, float]:
         if name not in prescribed and (quantity.value != 0.0 or name.endswith("radius"))
     }
     return {name: share for name, share in shares.items() if share > scene.accuracy.tolerance}
+
+
+def left_open_by_spacing(scene: Scene, outcome: Outcome, names: Iterable[str]) -> set[str]:
+    """Those of the named results that the spacing alone leaves less certain than the tolerance."""
+    tolerance, known = scene.accuracy.tolerance, outcome.quantities
+    return {name for name in names if outcome.lattice.get(name, 0.0) > tolerance * abs(known[name].value)}
 
 
 def in_words(shares: Mapping[str, float]) -> str:

@@ -38,10 +38,10 @@ SPREAD = 2.0
 """Uncertainty of the extrapolation over the difference that one state less makes."""
 STRIDE = 0.8
 """Rise of a tension over what is left to the expected pull-off force, so that the last states lie near it, …"""
-EDGES = 2
-"""Pairs that let go together, one at each edge of the contact: by so much the tension falls after a snap."""
 NEAR = 3.0
 """… until that is this many times the distance at which both sides are tried."""
+EDGES = 2
+"""Pairs that let go together, one at each edge of the contact: by so much the tension falls after a snap."""
 GROWTH = 0.25
 """Rise of a tension over the one that held, where nothing better is known."""
 
