@@ -14,7 +14,7 @@ from workflow.deck import Deck
 from workflow.engine import EngineError
 from workflow.experiments import Bench, Outcome, UntrustedError, in_words, perform, unmet, write_system
 from workflow.experiments.outcome import Quantity, Refinement, doubts, left_open_by_spacing
-from workflow.scene import Accuracy, Scene
+from workflow.scene import Accuracy
 from workflow.settings import SettingsError, settings_for
 
 FINER = 5.0
