@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.pressure import Profile
+from contact1d.analysis.pressure import Profile
 
 Array = NDArray[np.float64]
 Column = Sequence[float] | Sequence[str] | Array

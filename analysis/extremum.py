@@ -23,7 +23,7 @@ import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
-from analysis.stencil import Array, Stencil, polynomial_minimum
+from contact1d.analysis.stencil import Array, Stencil, polynomial_minimum
 
 INTERPOLANT_SIZES = (7, 5)
 """Samples under the interpolating polynomial, and under the lower one that it is compared with."""

@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.curve import Curve
-from analysis.pressure import Profile
-from analysis.reference.jkr import jkr_reduced_force
-from analysis.reference.line_adhesion import barquins_reduced_force
-from analysis.reference.winkler import winkler_force
+from contact1d.analysis.curve import Curve
+from contact1d.analysis.pressure import Profile
+from contact1d.analysis.reference.jkr import jkr_reduced_force
+from contact1d.analysis.reference.line_adhesion import barquins_reduced_force
+from contact1d.analysis.reference.winkler import winkler_force
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

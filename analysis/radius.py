@@ -12,8 +12,8 @@ import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
-from analysis.extremum import Place, place_of_minimum
-from analysis.pressure import Profile
+from contact1d.analysis.extremum import Place, place_of_minimum
+from contact1d.analysis.pressure import Profile
 
 Array = NDArray[np.float64]
 

@@ -16,13 +16,13 @@ from statistics import median
 from time import perf_counter
 from typing import Any
 
-import workflow.campaign as campaign
+import contact1d.workflow.runs.campaign as campaign
 from benchmarks.peers.contact1d_peer import SETTINGS, hertz_tables
 from benchmarks.peers.contacts import displacements
-from workflow import scene_from_dict
-from workflow.experiments.contact import Contact
-from workflow.process import WorkerProcess
-from workflow.reproduce.markdown import table
+from contact1d import scene_from_dict
+from contact1d.workflow.engine.process import WorkerProcess
+from contact1d.workflow.experiments.running.contact import Contact
+from contact1d.workflow.reproduce.markdown import table
 
 README = Path(__file__).parent / "README.md"
 BEGIN, END = "<!-- breakdown: begin -->\n", "<!-- breakdown: end -->\n"

@@ -15,11 +15,11 @@ import sys
 import tempfile
 from pathlib import Path
 
-from workflow.campaign import write_deck
-from workflow.deck import Deck
-from workflow.engine import Engine, Session
-from workflow.scene import scene_from_dict
-from workflow.settings import settings_for
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.engine.session import Engine, Session
+from contact1d.workflow.runs.campaign import write_deck
+from contact1d.workflow.scene import scene_from_dict
+from contact1d.workflow.settings.settings import settings_for
 
 HAND = Path(__file__).parent / "hand"
 RESULTS = Path(__file__).parent / "results" / "deck_overhead.json"

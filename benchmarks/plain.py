@@ -27,17 +27,17 @@ from statistics import median
 from time import process_time
 from typing import Any
 
-from analysis.reference.pull_off import pull_off
-from workflow import read_scene, run, scene_from_dict
-from workflow.deck import Deck
-from workflow.experiments.bench import Bench, write_system
-from workflow.experiments.contact import Contact
-from workflow.experiments.dynamic import AT_REST, LOST, chunk_steps
-from workflow.progress import Silent
-from workflow.reproduce.oracles import chain_model
-from workflow.scene import PullOff, Scene
-from workflow.settings import settings_for
-from workflow.shares import SHARES
+from contact1d.analysis.reference.pull_off import pull_off
+from contact1d import read_scene, run, scene_from_dict
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.engine.progress import Silent
+from contact1d.workflow.experiments.running.contact import Contact
+from contact1d.workflow.experiments.running.holding import AT_REST, LOST, chunk_steps
+from contact1d.workflow.experiments.running.run_context import RunContext, write_system
+from contact1d.workflow.reproduce.oracles import chain_model
+from contact1d.workflow.scene import PullOff, Scene
+from contact1d.workflow.settings.calibration import CALIBRATION
+from contact1d.workflow.settings.settings import settings_for
 
 SCENE = Path(__file__).parents[1] / "lammps_inputs" / "scenes" / "paper.toml"
 RESULTS = Path(__file__).parent / "results" / "plain.json"
@@ -102,23 +102,23 @@ def plain(scene: Scene, tolerance: float, folder: Path, tuned: bool) -> tuple[fl
     if tuned:
         settings = replace(settings, damping=TUNED_DAMPING)
     else:
-        settings = replace(settings, time_step=settings.time_step * STEP / SHARES.still_step)
+        settings = replace(settings, time_step=settings.time_step * STEP / CALIBRATION.still_step)
     deck = Deck(timed, settings)
     folder.mkdir(parents=True, exist_ok=True)
     write_system(deck, folder)
-    bench = Bench(deck, folder, Silent(), TIME_LIMIT)
+    context = RunContext(deck, folder, Silent(), TIME_LIMIT)
     guess = deck.settings.estimate.pull_off_force()
     low, high = 0.0, 2.0 * guess
     while high - low > tolerance * high:
         tension = 0.5 * (low + high)
-        with bench.contact() as contact:
+        with context.contact() as contact:
             contact.begin("loading", "load")
             held(contact, preload, max(preload, guess))
             contact.begin("pulling", "load")
             holds = held(contact, -tension, max(preload, guess))
             contact.finish()
         low, high = (tension, high) if holds else (low, tension)
-    return 0.5 * (low + high), bench.lammps_cpu_seconds, bench.steps
+    return 0.5 * (low + high), context.lammps_cpu_seconds, context.steps
 
 
 def compared(scene: Scene, tolerance: float, folder: Path) -> list[Cost]:

@@ -31,8 +31,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from workflow import read_scene, run, scene_from_dict
-from workflow.scene import Scene
+from contact1d import read_scene, run, scene_from_dict
+from contact1d.workflow.scene import Scene
 
 SCENES = Path(__file__).parents[1] / "lammps_inputs" / "scenes"
 RESULTS = Path(__file__).parent / "results" / "scaling.json"

@@ -21,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
-from potentials.double_exponential import Array, DoubleExponential
+from contact1d.potentials.double_exponential import Array, DoubleExponential
 
 SECTION = "DOUBLE_EXPONENTIAL"
 FEWEST_POINTS = 2_000

@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-from workflow.deck import Deck
-from workflow.engine import Engine, Session
-from workflow.experiments import write_system
-from workflow.scene import Scene, scene_from_dict
-from workflow.settings import settings_for
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.engine.session import Engine, Session
+from contact1d.workflow.experiments import write_system
+from contact1d.workflow.scene import Scene, scene_from_dict
+from contact1d.workflow.settings.settings import settings_for
 
 SMALL: dict[str, Any] = {
     "title": "small",

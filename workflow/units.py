@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 LENGTH = "LU"
@@ -14,6 +15,33 @@ LINE_PRESSURE = "FU/LU"
 
 SI = {LENGTH: (1, 0, "m"), FORCE: (0, 1, "N"), MEAN_PRESSURE: (-2, 1, "Pa"), LINE_PRESSURE: (-1, 1, "N/m")}
 """For each model unit: powers of LU and FU in it, and its name in SI."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number with its uncertainty, both in `unit`."""
+
+    value: float
+    uncertainty: float
+    unit: str
+
+    def __float__(self) -> float:
+        """The value."""
+        return self.value
+
+    def __str__(self) -> str:
+        """`1.483400 ± 0.000029 FU`."""
+        return f"{rounded(self.value, self.uncertainty)} {self.unit}"
+
+
+def rounded(value: float, uncertainty: float) -> str:
+    """`value ± uncertainty`, the uncertainty with two digits and the value to the same place."""
+    if not math.isfinite(uncertainty) or uncertainty <= 0.0:
+        return f"{value:.10g} ± {uncertainty:.2g}"
+    place = 1 - math.floor(math.log10(uncertainty))
+    if not 0 <= place <= 10:
+        return f"{value:.6g} ± {uncertainty:.2g}"
+    return f"{value:.{place}f} ± {uncertainty:.{place}f}"
 
 
 @dataclass(frozen=True)

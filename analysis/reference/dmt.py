@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.reference.adhesive_pair import AdhesivePair
-from analysis.reference.interaction import Floats
+from contact1d.analysis.reference.adhesive_pair import AdhesivePair
+from contact1d.analysis.reference.interaction import Floats
 
 
 @dataclass(frozen=True)

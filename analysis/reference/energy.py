@@ -11,8 +11,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.reference.interaction import Floats
-from analysis.reference.model import ChainModel
+from contact1d.analysis.reference.interaction import Floats
+from contact1d.analysis.reference.model import ChainModel
 
 REACH = 40.0
 """Pairs further apart along the chain than this many ranges are left out: exp(-40) = 4e-18."""

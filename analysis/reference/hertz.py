@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from analysis.reference.interaction import Floats
+from contact1d.analysis.reference.interaction import Floats
 
 
 def hertz_force(displacement: Floats | float, radius: float, contact_modulus: float) -> Floats:

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from analysis.reference.interaction import Floats, PairInteraction
+from contact1d.analysis.reference.interaction import Floats, PairInteraction
 
 TAIL = 40.0
 """The integral ends where the undeformed gap exceeds the force-free one by this many ranges: exp(-40) = 4e-18."""

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.reference.adhesive_pair import AdhesivePair
-from analysis.reference.interaction import Floats
+from contact1d.analysis.reference.adhesive_pair import AdhesivePair
+from contact1d.analysis.reference.interaction import Floats
 
 CRITICAL_RADIUS_RATIO = 0.25 ** (1.0 / 3.0)
 """a_cr/a_0 where a fixed load pulls off, (1/4)^(1/3) = 0.630."""

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.reference.adhesive_pair import AdhesivePair
-from analysis.reference.interaction import Floats
+from contact1d.analysis.reference.adhesive_pair import AdhesivePair
+from contact1d.analysis.reference.interaction import Floats
 
 BARQUINS_FACTOR = 4.0 ** (4.0 / 3.0) / 3.0
 """2.1165: makes the minimum of factor * (x^2 - x^(1/2)), at x = 4^(-2/3) = 0.397, equal to -1."""

@@ -21,7 +21,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from analysis.reference.interaction import Floats
+from contact1d.analysis.reference.interaction import Floats
 
 LENNARD_JONES_STRESS = 16.0 / (9.0 * math.sqrt(3.0))
 """1.026: the largest tension of the 9-3 surface law of Lennard-Jones over W/z_0; taken as sigma_0."""

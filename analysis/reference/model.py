@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.reference.interaction import Floats, PairInteraction
+from contact1d.analysis.reference.interaction import Floats, PairInteraction
 
 
 @dataclass(frozen=True, eq=False)

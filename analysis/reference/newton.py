@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 
-from analysis.reference.interaction import Floats
+from contact1d.analysis.reference.interaction import Floats
 
 FIRST_SHIFT = 0.02
 """First trial of lambda over the mean curvature where H is indefinite."""

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.reference.interaction import Floats
-from analysis.reference.model import ChainModel
-from analysis.reference.solver import ChainSolver, State
-from analysis.reference.tension_radius import PARABOLA, state_radius
+from contact1d.analysis.reference.interaction import Floats
+from contact1d.analysis.reference.model import ChainModel
+from contact1d.analysis.reference.solver import ChainSolver, State
+from contact1d.analysis.reference.tension_radius import PARABOLA, state_radius
 
 STEP_IN_RANGES = 1.0 / 16.0
 """Coarse step of the displacement over the shortest range."""

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_banded
 
-from analysis.reference.interaction import Floats
+from contact1d.analysis.reference.interaction import Floats
 
 
 def contact_on_rigid_plane(gap: Floats, bulk_stiffness: float, neighbour_stiffness: float) -> tuple[Floats, Floats]:

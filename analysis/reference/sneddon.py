@@ -17,7 +17,7 @@ import numpy as np
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from analysis.reference.interaction import Floats
+from contact1d.analysis.reference.interaction import Floats
 
 ROOT = 4.0 * np.finfo(np.float64).eps
 """Relative tolerance of a root: the least that the root finder takes."""

@@ -18,11 +18,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.reference.energy import EnergySurface
-from analysis.reference.interaction import Floats
-from analysis.reference.model import ChainModel
-from analysis.reference.newton import Descent, minimise
-from analysis.reference.rigid_plane import contact_on_rigid_plane
+from contact1d.analysis.reference.energy import EnergySurface
+from contact1d.analysis.reference.interaction import Floats
+from contact1d.analysis.reference.model import ChainModel
+from contact1d.analysis.reference.newton import Descent, minimise
+from contact1d.analysis.reference.rigid_plane import contact_on_rigid_plane
 
 GRADIENT_TOLERANCE = 1e-10
 """Largest force left on a particle over bulk stiffness times the shortest range."""

@@ -17,7 +17,7 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
-from analysis.reference.maugis_dugdale import (
+from contact1d.analysis.reference.maugis_dugdale import (
     MaugisDugdale,
     dmt_contact_radius,
     jkr_contact_radius,

@@ -11,9 +11,9 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
-from analysis.reference.interaction import Floats
-from analysis.reference.model import ChainModel
-from analysis.reference.solver import State
+from contact1d.analysis.reference.interaction import Floats
+from contact1d.analysis.reference.model import ChainModel
+from contact1d.analysis.reference.solver import State
 
 PARABOLA = 3
 """Points of the interpolating polynomial by default."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from analysis.reference.interaction import Floats
+from contact1d.analysis.reference.interaction import Floats
 
 
 def winkler_force(displacement: Floats | float, radius: float, layer_stiffness: float) -> Floats:

@@ -24,8 +24,8 @@ from benchmarks.peers.contacts import (
 )  # fmt: skip
 
 if TYPE_CHECKING:
-    from analysis.reference.interaction import PairInteraction
-    from workflow.scene import Scene
+    from contact1d.analysis.reference.interaction import PairInteraction
+    from contact1d.workflow.scene import Scene
 
 NAME = "contact1d"
 SETTINGS = {
@@ -46,13 +46,11 @@ ROWS = 12
 
 def load() -> None:
     """Import the program; LAMMPS is loaded by the worker of the first run."""
-    import workflow.campaign
-    import workflow.identify  # noqa: F401
 
 
 def curve(contact: str, setting: Setting) -> Curve:
     """Return the curve of one run."""
-    from workflow import run, scene_from_dict
+    from contact1d import run, scene_from_dict
 
     d = displacements(contact, CHAIN_WAY)
     began = time.perf_counter()
@@ -85,7 +83,7 @@ def hertz_tables(setting: Setting) -> dict[str, object]:
 @lru_cache(maxsize=16)
 def identified(setting: Setting) -> tuple[Scene, float, float]:
     """Return the scene with which independent pairs have JKR's F_A and a_0, LU [nm] and FU [µN]."""
-    from workflow.identify import estimated, jkr_target, material_scene
+    from contact1d.workflow.identify import estimated, jkr_target, material_scene
 
     modulus, energy = CONTACT_MODULUS * PA, 0.5 * WORK_OF_ADHESION * NEWTON / METRE
     unit = A_0 / setting.grid
@@ -98,7 +96,7 @@ def identified(setting: Setting) -> tuple[Scene, float, float]:
 
 def pair_law(scene: Scene) -> PairInteraction:
     """Return the scene's law as the references write it."""
-    from analysis.reference.interaction import Exponential, PairInteraction
+    from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 
     assert scene.interaction is not None
     assert scene.interaction.attraction is not None

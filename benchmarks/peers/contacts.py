@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from analysis.reference.hertz import hertz_contact_radius, hertz_force
-from analysis.reference.jkr import FIXED_GRIPS_RADIUS_RATIO, Jkr
+from contact1d.analysis.reference.hertz import hertz_contact_radius, hertz_force
+from contact1d.analysis.reference.jkr import FIXED_GRIPS_RADIUS_RATIO, Jkr
 
 Array = NDArray[np.float64]
 

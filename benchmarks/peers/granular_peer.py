@@ -54,12 +54,12 @@ fix curve all print 1 "${{force}}" file force.txt screen no title ""
 
 def load() -> None:
     """Import the engine; LAMMPS is loaded by the worker of the first session."""
-    import workflow.engine  # noqa: F401
+    import contact1d.workflow.engine.session  # noqa: F401
 
 
 def curve(contact: str, setting: Setting) -> Curve:
     """Return the curve; `seconds` is LAMMPS's own loop time, the rest of the session is start-up."""
-    from workflow.engine import Engine
+    from contact1d.workflow.engine.session import Engine
 
     d = displacements(contact)
     modulus, energy = 2.0 * CONTACT_MODULUS, 0.5 * WORK_OF_ADHESION

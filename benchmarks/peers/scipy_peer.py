@@ -29,15 +29,15 @@ CHAIN = 2.8
 
 def load() -> None:
     """Import the solver."""
-    import analysis.reference.solver  # noqa: F401
+    import contact1d.analysis.reference.solver  # noqa: F401
 
 
 def curve(contact: str, setting: Setting) -> Curve:
     """Return the curve of one chain on a plane (Hertz), or of two chains with the law that contact1d identified."""
-    from analysis.reference.model import ChainModel
-    from analysis.reference.solver import trace
-    from analysis.reference.tension_radius import state_radius
     from benchmarks.peers.contact1d_peer import identified, own_limit, pair_law
+    from contact1d.analysis.reference.model import ChainModel
+    from contact1d.analysis.reference.solver import trace
+    from contact1d.analysis.reference.tension_radius import state_radius
 
     d = displacements(contact, CHAIN_WAY)
     began = time.perf_counter()

@@ -15,13 +15,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from workflow.deck import Deck, Phase
-from workflow.engine import Engine
-from workflow.experiments import write_system
-from workflow.experiments.bench import Bench
-from workflow.progress import Silent
-from workflow.scene import EFFECTS, Scene, SceneError
-from workflow.settings import settings_for
+from contact1d.workflow.deck.deck import Deck, Phase
+from contact1d.workflow.engine.progress import Silent
+from contact1d.workflow.engine.session import Engine
+from contact1d.workflow.experiments import write_system
+from contact1d.workflow.experiments.running.run_context import RunContext
+from contact1d.workflow.scene import EFFECTS, Scene, SceneError
+from contact1d.workflow.settings.settings import settings_for
 
 MakeScene = Callable[..., Scene]
 
@@ -138,8 +138,8 @@ def test_allowed_sets_run(make_scene: MakeScene, tmp_path: Path, case: Case) -> 
     assert scene.method == case[1]
     deck = Deck(scene, settings_for(scene))
     phases = phases_of(case[0], case[1])
-    bench = Bench(deck, prepared(deck, tmp_path / "rows"), Silent(), 60.0)
-    with bench.contact() as contact:
+    context = RunContext(deck, prepared(deck, tmp_path / "rows"), Silent(), 60.0)
+    with context.contact() as contact:
         states = contact.replay(phases)
     rows = [row for phase in phases for row in phase.rows]
     assert len(states) == len(rows)
@@ -167,7 +167,7 @@ LONG = [case for case in ALLOWED if case[3] >= {"horizontal", "neighbours"}]
 
 def run_a_little(scene: Scene, case: Case, folder: Path) -> None:
     deck = Deck(scene, settings_for(scene))
-    with Bench(deck, prepared(deck, folder / "rows"), Silent(), 60.0).contact() as contact:
+    with RunContext(deck, prepared(deck, folder / "rows"), Silent(), 60.0).contact() as contact:
         states = contact.replay(phases_of(case[0], case[1]))
     assert np.isfinite([state.force for state in states]).all()
 

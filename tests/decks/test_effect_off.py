@@ -15,11 +15,11 @@ from typing import Any
 
 import pytest
 
-from potentials.table import write_table
-from workflow.deck import Deck
-from workflow.experiments import planned, write_system
-from workflow.scene import EFFECTS, Scene
-from workflow.settings import Settings, settings_for
+from contact1d.potentials.table import write_table
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.experiments import planned, write_system
+from contact1d.workflow.scene import EFFECTS, Scene
+from contact1d.workflow.settings.settings import Settings, settings_for
 
 MakeScene = Callable[..., Scene]
 

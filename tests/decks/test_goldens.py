@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pytest
 
-from workflow.deck import Deck
-from workflow.experiments import planned
-from workflow.scene import read_scene
-from workflow.settings import settings_for
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.experiments import planned
+from contact1d.workflow.scene import read_scene
+from contact1d.workflow.settings.settings import settings_for
 
 ROOT = Path(__file__).parents[2]
 GOLDEN = Path(__file__).parent / "golden"

@@ -17,9 +17,9 @@ import pytest
 from numpy.typing import NDArray
 from typer.testing import CliRunner
 
-from workflow.campaign import Run, run
-from workflow.cli import app
-from workflow.scene import scene_from_dict
+from contact1d.workflow.cli.app import app
+from contact1d.workflow.runs.campaign import Run, run
+from contact1d.workflow.scene import scene_from_dict
 
 Array = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from workflow.engine import Engine, EngineError, Session
+from contact1d.workflow.engine.session import Engine, EngineError, Session
 
 PAIR = """
 units           lj

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from workflow.engine import Engine, EngineError
-from workflow.process import stop_idle
+from contact1d.workflow.engine.process import stop_idle
+from contact1d.workflow.engine.session import Engine, EngineError
 
 ROOT = Path(__file__).parents[2]
 
@@ -62,7 +62,7 @@ def test_a_fork_has_workers_of_its_own(tmp_path: Path) -> None:
 SCRIPT = f'''
 import os, signal, sys
 sys.path.insert(0, sys.argv[1])
-from workflow.engine import Engine
+from contact1d.workflow.engine.session import Engine
 ATOM = """{ATOM}"""
 with Engine.session(sys.argv[2]) as session:
     session.execute(ATOM)

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analysis.reference.interaction import Exponential, PairInteraction
-from analysis.reference.model import ChainModel
-from analysis.reference.pull_off import pull_off
-from workflow import Run, RunError, run, scene_from_dict
-from workflow.settings import SettingsError, settings_for
+from contact1d.analysis.reference.interaction import Exponential, PairInteraction
+from contact1d.analysis.reference.model import ChainModel
+from contact1d.analysis.reference.pull_off import pull_off
+from contact1d import Run, RunError, run, scene_from_dict
+from contact1d.workflow.settings.settings import SettingsError, settings_for
 
 LAW = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
 SHORT = {"repulsion": {"amplitude": 0.02, "range": 0.03}, "attraction": {"amplitude": 0.01, "range": 0.06}}

@@ -10,15 +10,15 @@ from typing import Any
 
 import pytest
 
-from analysis.reference.interaction import Exponential, PairInteraction
-from analysis.reference.model import ChainModel
-from analysis.reference.pull_off import pull_off
-from workflow import run
-from workflow.deck import Deck
-from workflow.engine import Session
-from workflow.experiments import planned
-from workflow.scene import Scene, scene_from_dict
-from workflow.settings import settings_for
+from contact1d.analysis.reference.interaction import Exponential, PairInteraction
+from contact1d.analysis.reference.model import ChainModel
+from contact1d.analysis.reference.pull_off import pull_off
+from contact1d import run
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.engine.session import Session
+from contact1d.workflow.experiments import planned
+from contact1d.workflow.scene import Scene, scene_from_dict
+from contact1d.workflow.settings.settings import settings_for
 
 MakeScene = Callable[..., Scene]
 OpenDeck = Callable[[Scene], tuple[Deck, Session]]

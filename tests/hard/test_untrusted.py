@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from analysis.reference.interaction import Exponential, PairInteraction
-from analysis.reference.model import ChainModel
-from analysis.reference.pull_off import pull_off
-from workflow import RunError, run, scene_from_dict
+from contact1d.analysis.reference.interaction import Exponential, PairInteraction
+from contact1d.analysis.reference.model import ChainModel
+from contact1d.analysis.reference.pull_off import pull_off
+from contact1d import RunError, run, scene_from_dict
 
 LAW = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
 
@@ -74,7 +74,7 @@ def spoil(monkeypatch: pytest.MonkeyPatch, **numbers: float) -> None:
     """Give a run settings that no scene can ask for."""
     from dataclasses import replace
 
-    from workflow import campaign
+    from contact1d.workflow.runs import campaign
 
     choose: Callable[..., Any] = campaign.settings_for
     monkeypatch.setattr(campaign, "settings_for", lambda scene: replace(choose(scene), **numbers))
@@ -133,7 +133,7 @@ def test_atoms_that_fly_apart_are_no_result(tmp_path: Path, monkeypatch: pytest.
 
 
 def test_a_minimisation_that_is_cut_short_is_no_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("workflow.deck.MINIMISER_ITERATIONS", 1)
+    monkeypatch.setattr("contact1d.workflow.deck.deck.MINIMISER_ITERATIONS", 1)
     with pytest.raises(RunError, match="not converged"):
         run(scene_from_dict(tables({"kind": "path", "displacements": [0.3]})), tmp_path / "run", figures=False)
     assert json.loads((tmp_path / "run" / "results.json").read_text())["status"] == "failed"

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis.atoms import atoms
-from analysis.curve import read_profiles
-from workflow.campaign import run
-from workflow.scene import scene_from_dict
+from contact1d.analysis.atoms import atoms
+from contact1d.analysis.curve import read_profiles
+from contact1d.workflow.runs.campaign import run
+from contact1d.workflow.scene import scene_from_dict
 
 ROUND_OFF = 1e-13  # the same doubles, divided by the spacing in between
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from benchmarks.scaling import ROWS, missed, scaled_scene, spread, steps_of
-from workflow.campaign import run
-from workflow.lattice import places
-from workflow.settings import settings_for
+from contact1d.workflow.deck.lattice import places
+from contact1d.workflow.runs.campaign import run
+from contact1d.workflow.settings.settings import settings_for
 
 ROUND_OFF = 1e-12
 

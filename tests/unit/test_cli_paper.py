@@ -15,7 +15,7 @@ PULL_OFF = Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "pull_off.to
 
 
 def contact1d(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "workflow.cli", *map(str, arguments)]
+    command = [sys.executable, "-m", "contact1d.workflow.cli.app", *map(str, arguments)]
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=300, check=False)
 
 

@@ -17,23 +17,23 @@ from typing import Any
 import numpy as np
 import pytest
 
-from workflow import read_scene
-from workflow.cost.advice import TARGETS, advise, choice, combinations
-from workflow.cost.change import Change, at_tolerance, base_change
-from workflow.cost.errors import judged, main_results
-from workflow.cost.knobs import knobs_of, left_out
-from workflow.cost.measure import Prepared, measure
-from workflow.cost.orders import Order, fit_order, pareto_front
-from workflow.cost.per_step import without_effects
-from workflow.cost.record import Advice, CostRecord, EffectCost, KnobRecord, VariantRecord, read_record
-from workflow.cost.report import COLUMNS, csv_text, effects_markdown, summary, write_report
-from workflow.cost.sampling import samplings
-from workflow.deck import Deck
-from workflow.estimate import row_force
-from workflow.experiments.outcome import Quantity
-from workflow.progress import Silent
-from workflow.scene import Scene
-from workflow.settings import interaction_law, settings_for
+from contact1d import read_scene
+from contact1d.workflow.cost.advice import TARGETS, advise, choice, combinations
+from contact1d.workflow.cost.change import Change, at_tolerance, base_change
+from contact1d.workflow.cost.errors import judged, main_results
+from contact1d.workflow.cost.knobs import knobs_of, left_out
+from contact1d.workflow.cost.measure import Prepared, measure
+from contact1d.workflow.cost.orders import Order, fit_order, pareto_front
+from contact1d.workflow.cost.per_step import without_effects
+from contact1d.workflow.cost.record import Advice, CostRecord, EffectCost, KnobRecord, VariantRecord, read_record
+from contact1d.workflow.cost.report import COLUMNS, csv_text, effects_markdown, summary, write_report
+from contact1d.workflow.cost.sampling import samplings
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.engine.progress import Silent
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.estimate import row_force
+from contact1d.workflow.settings.settings import interaction_law, settings_for
+from contact1d.workflow.units import Quantity
 
 MakeScene = Callable[..., Scene]
 ROOT = Path(__file__).parents[2]
@@ -395,7 +395,7 @@ def test_the_table_of_the_readme_is_what_the_kept_record_says() -> None:
 
 
 def contact1d(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "workflow.cli", *map(str, arguments)]
+    command = [sys.executable, "-m", "contact1d.workflow.cli.app", *map(str, arguments)]
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=300, check=False)
 
 

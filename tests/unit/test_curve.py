@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis import curve as curve_module
-from analysis.curve import Curve, curve_columns, profile_columns, read_curve, read_profiles, write_columns
-from analysis.pressure import Profile
+from contact1d.analysis import curve as curve_module
+from contact1d.analysis.curve import Curve, curve_columns, profile_columns, read_curve, read_profiles, write_columns
+from contact1d.analysis.pressure import Profile
 
 COLUMNS = "displacement,force,contact_radius,smallest_distance,branch,contact_radius_uncertainty"
 

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from workflow import datafile
-from workflow.datafile import System, assemble, write_data
-from workflow.deck import Deck
-from workflow.engine import Session
-from workflow.experiments import write_system
-from workflow.lattice import Body, bodies
-from workflow.scene import Scene
-from workflow.settings import settings_for
+from contact1d.workflow.deck import datafile
+from contact1d.workflow.deck.datafile import System, assemble, write_data
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.lattice import Body, bodies
+from contact1d.workflow.engine.session import Session
+from contact1d.workflow.experiments import write_system
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.settings import settings_for
 
 MakeScene = Callable[..., Scene]
 OpenDeck = Callable[[Scene], tuple[Deck, Session]]

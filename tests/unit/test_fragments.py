@@ -11,14 +11,14 @@ from pathlib import Path
 
 import pytest
 
-import workflow.fragments as fragments_module
-from workflow.deck import STEP_COLUMNS, Deck
-from workflow.effects import EFFECTS, Contribution, neighbours
-from workflow.effects import interaction as interaction_effect
-from workflow.fragments import DeckError, fragment
-from workflow.scene import EFFECTS as SCENE_EFFECTS
-from workflow.scene import Scene
-from workflow.settings import settings_for
+import contact1d.workflow.deck.fragments as fragments_module
+from contact1d.workflow.deck.deck import STEP_COLUMNS, Deck
+from contact1d.workflow.deck.effects import EFFECTS, Contribution, neighbours
+from contact1d.workflow.deck.effects import interaction as interaction_effect
+from contact1d.workflow.deck.fragments import DeckError, fragment
+from contact1d.workflow.scene import EFFECTS as SCENE_EFFECTS
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.settings import settings_for
 
 MakeScene = Callable[..., Scene]
 

@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from workflow import scene_from_dict
-from workflow.identify import IdentifyError, Target, identify, jkr_target, material_scene, require_reachable
-from workflow.scene import Scene
+from contact1d import scene_from_dict
+from contact1d.workflow.identify import IdentifyError, Target, identify, jkr_target, material_scene, require_reachable
+from contact1d.workflow.scene import Scene
 
 ROUND_OFF = 1e-13
 PRINTED = 5e-6

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from workflow.deck import Deck
-from workflow.engine import Session
-from workflow.lattice import bodies, neighbour_forces, places
-from workflow.scene import Scene
-from workflow.settings import settings_for
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.lattice import bodies, neighbour_forces, places
+from contact1d.workflow.engine.session import Session
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.settings import settings_for
 
 MakeScene = Callable[..., Scene]
 OpenDeck = Callable[[Scene], tuple[Deck, Session]]

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from potentials.table import Table
-from workflow.campaign import run
-from workflow.experiments.law import GIVES, law_error
-from workflow.scene import Scene, scene_from_dict
-from workflow.settings import Settings, settings_for
+from contact1d.potentials.table import Table
+from contact1d.workflow.experiments.running.law_error import GIVES, law_error
+from contact1d.workflow.runs.campaign import run
+from contact1d.workflow.scene import Scene, scene_from_dict
+from contact1d.workflow.settings.settings import Settings, settings_for
 
 SUM = 1e-9
 """Two sums over the same pairs, relative; the tail beyond its last range is in neither."""

@@ -11,11 +11,10 @@ from typing import Any
 
 import pytest
 
-from workflow import Run, run
-from workflow.experiments import Quantity
-from workflow.scales import jkr_scales, scales_of
-from workflow.scene import Elastic, Material, Problem, SceneError, scene_from_dict, scene_to_toml
-from workflow.units import Scales
+from contact1d import Run, run
+from contact1d.workflow.runs.scales import jkr_scales, scales_of
+from contact1d.workflow.scene import Elastic, Material, Problem, SceneError, scene_from_dict, scene_to_toml
+from contact1d.workflow.units import Quantity, Scales
 
 ROUND_OFF = 1e-13
 """Relative: a few operations each."""

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis import plots
-from analysis.curve import Curve
-from analysis.pressure import Profile
+from contact1d.analysis import plots
+from contact1d.analysis.curve import Curve
+from contact1d.analysis.pressure import Profile
 
 ROUND_OFF = 1e-12  # relative; closed forms of a few operations
 GRID = 2e-3  # of F_A; the theory is drawn with 400 points
@@ -160,7 +160,7 @@ def test_every_figure_is_a_whole_file(curve: Curve, tmp_path: Path) -> None:
 
 def test_figures_leave_no_global_state() -> None:
     code = (
-        "import sys; from analysis import plots; assert 'matplotlib' not in sys.modules;"
+        "import sys; from contact1d.analysis import plots; assert 'matplotlib' not in sys.modules;"
         "plots.new_figure((1, 1)); assert 'matplotlib.pyplot' not in sys.modules"
     )
     subprocess.run([sys.executable, "-W", "error", "-c", code], check=True)

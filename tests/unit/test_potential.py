@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from potentials import DoubleExponential, Exponential
+from contact1d.potentials import DoubleExponential, Exponential
 
 LAWS = [
     DoubleExponential(Exponential(0.18, 0.13), Exponential(0.09, 0.26)),

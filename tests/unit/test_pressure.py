@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from analysis.pressure import (
+from contact1d.analysis.pressure import (
     Profile,
     end_pressure_share,
     gap_to_lower,

@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from workflow import run
-from workflow.scene import Measured, Scene, SceneError, read_scene, scene_from_dict, scene_to_toml
-from workflow.scene.profile_file import ProfileFileError, read_profile
+from contact1d import run
+from contact1d.workflow.scene import Measured, Scene, SceneError, read_scene, scene_from_dict, scene_to_toml
+from contact1d.workflow.scene.profile_file import ProfileFileError, read_profile
 
 RADII, HEIGHTS = [0.0, 0.5, 1.0, 1.5, 2.0], [0.0, 0.25, 1.0, 2.25, 4.0]
 ROWS = [f"{r},{z}" for r, z in zip(RADII, HEIGHTS, strict=True)]

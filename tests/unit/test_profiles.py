@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.integrate import quad
 from scipy.interpolate import PchipInterpolator
 
-from workflow.scene import (
+from contact1d.workflow.scene import (
     Bodies,
     Circle,
     Cone,

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from analysis.pressure import Profile
-from analysis.radius import compressive_radius, tensile_radius
+from contact1d.analysis.pressure import Profile
+from contact1d.analysis.radius import compressive_radius, tensile_radius
 
 BODY_RADIUS = 1000.0  # LU
 CASES = 200

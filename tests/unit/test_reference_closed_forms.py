@@ -9,9 +9,9 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq, minimize_scalar
 
-from analysis.reference import hertz, jkr, line_adhesion, winkler
-from analysis.reference.independent_pairs import IndependentPairs
-from analysis.reference.interaction import Exponential, PairInteraction
+from contact1d.analysis.reference import hertz, jkr, line_adhesion, winkler
+from contact1d.analysis.reference.independent_pairs import IndependentPairs
+from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 
 ROUND_OFF = 1e-12
 QUADRATURE = 1e-9

@@ -11,15 +11,16 @@ from typing import Any
 
 import pytest
 
-import workflow.refinement as refinement
-from workflow.campaign import run
-from workflow.deck import Deck
-from workflow.experiments import Bench, Outcome, Quantity, UntrustedError
-from workflow.progress import Silent
-from workflow.refinement import FINER, MOST_REFINEMENTS, Refined, nested, refined
-from workflow.scene import Scene, read_scene, scene_from_dict
-from workflow.settings import settings_for
-from workflow.shares import SHARES
+import contact1d.workflow.runs.refinement as refinement
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.engine.progress import Silent
+from contact1d.workflow.experiments import Outcome, RunContext, UntrustedError
+from contact1d.workflow.runs.campaign import run
+from contact1d.workflow.runs.refinement import FINER, MOST_REFINEMENTS, Refined, nested, refined
+from contact1d.workflow.scene import Scene, read_scene, scene_from_dict
+from contact1d.workflow.settings.calibration import CALIBRATION
+from contact1d.workflow.settings.settings import settings_for
+from contact1d.workflow.units import Quantity
 
 TOLERANCE = 1e-4
 ROUND_OFF = 1e-12
@@ -61,23 +62,23 @@ def scene(**tables: Any) -> Scene:
 
 def refine(
     monkeypatch: pytest.MonkeyPatch, folder: Path, first: Outcome, *later: Outcome | Exception, of: Scene | None = None
-) -> tuple[Outcome, Bench]:
+) -> tuple[Outcome, RunContext]:
     """Refine `first`, the finer passes giving what comes later."""
     waiting = list(later)
     of = of or scene()
 
-    def finer(bench: Bench, tolerance: float) -> tuple[Deck, Outcome]:
+    def finer(context: RunContext, tolerance: float) -> tuple[Deck, Outcome]:
         found = waiting.pop(0)
         if isinstance(found, Exception):
             raise found
-        return bench.deck, found
+        return context.deck, found
 
     monkeypatch.setattr(refinement, "_pass", finer)
     monkeypatch.setattr(refinement, "doubts", lambda *_: {})
-    bench = Bench(Deck(of, settings_for(of)), folder, Heard(), 1.0)
-    done: Refined = refined(bench, first)
+    context = RunContext(Deck(of, settings_for(of)), folder, Heard(), 1.0)
+    done: Refined = refined(context, first)
     assert not waiting
-    return done.outcome, bench
+    return done.outcome, context
 
 
 def test_a_run_that_is_exact_enough_is_not_refined(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -87,13 +88,13 @@ def test_a_run_that_is_exact_enough_is_not_refined(monkeypatch: pytest.MonkeyPat
 
 def test_it_goes_on_until_the_tolerance_is_met(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     passes = [outcome(4 * TOLERANCE), outcome(2 * TOLERANCE), outcome(0.5 * TOLERANCE)]
-    found, bench = refine(monkeypatch, tmp_path, *passes)
+    found, context = refine(monkeypatch, tmp_path, *passes)
     assert found.quantities == passes[-1].quantities
     assert found.refinement is not None
     assert found.refinement.count == 2
     assert found.refinement.tolerance == pytest.approx(TOLERANCE / FINER**2, rel=ROUND_OFF)
-    assert isinstance(bench.progress, Heard)
-    assert bench.progress.notes[0] == "refining: critical_radius is known to 4.0e-04, asked 0.0001"
+    assert isinstance(context.progress, Heard)
+    assert context.progress.notes[0] == "refining: critical_radius is known to 4.0e-04, asked 0.0001"
 
 
 def test_it_ends_at_the_stated_limit(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -149,7 +150,9 @@ def test_passes_that_differ_by_more_than_they_claim_claim_more() -> None:
 
 def test_a_refined_run_is_one_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its folder holds the finest pass, the scene as it was asked for, and repeats; times are those of all passes."""
-    monkeypatch.setattr("workflow.settings.SHARES", replace(SHARES, cutoff=0.5))  # leaves out some times the tolerance
+    monkeypatch.setattr(
+        "contact1d.workflow.settings.settings.CALIBRATION", replace(CALIBRATION, cutoff=0.5)
+    )  # leaves out some times the tolerance
     asked, heard = scene(), Heard()
     finished = run(asked, tmp_path / "refined", figures=False, progress=heard)
     document = json.loads((finished.folder / "results.json").read_text())
@@ -186,6 +189,6 @@ def test_doubts_are_by_the_tolerance_that_was_asked_for(tmp_path: Path, monkeypa
     later = replace(outcome(0.5 * TOLERANCE), warnings={"chain_end": "too short", "no_peak": "none"})
     monkeypatch.setattr(refinement, "_pass", lambda *_: (finer, later))
     monkeypatch.setattr(refinement, "doubts", doubted)
-    bench = Bench(Deck(asked, settings_for(asked)), tmp_path, Silent(), 1.0)
-    assert refined(bench, outcome(4 * TOLERANCE)).outcome.warnings == {"no_peak": "none"}
+    context = RunContext(Deck(asked, settings_for(asked)), tmp_path, Silent(), 1.0)
+    assert refined(context, outcome(4 * TOLERANCE)).outcome.warnings == {"no_peak": "none"}
     assert strict == [TOLERANCE / FINER, TOLERANCE]

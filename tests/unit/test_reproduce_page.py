@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from workflow.reproduce.check import Check, Comparison, Verdict
-from workflow.reproduce.markdown import cell, readme_table, validation_markdown
-from workflow.reproduce.page import (
+from contact1d.workflow.reproduce.check import Check, Comparison, Verdict
+from contact1d.workflow.reproduce.markdown import cell, readme_table, validation_markdown
+from contact1d.workflow.reproduce.page import (
     duration,
     html_page,
     measured,
@@ -26,7 +26,7 @@ from workflow.reproduce.page import (
     symbols,
     tolerance,
 )
-from workflow.reproduce.record import RECORD, Record, StudyRecord, read_record
+from contact1d.workflow.reproduce.record import RECORD, Record, StudyRecord, read_record
 
 VOID = {"meta", "link", "img", "br", "hr", "input"}
 PNG = base64.b64decode(

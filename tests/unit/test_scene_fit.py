@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from workflow.scene import Problem, SceneError, scene_from_dict
+from contact1d.workflow.scene import Problem, SceneError, scene_from_dict
 
 BASE: dict[str, Any] = {
     "title": "base",

@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from workflow.scene import Problem, SceneError, scene_from_dict
-from workflow.scene.problems import as_toml, nearest, path_of, shown
+from contact1d.workflow.scene import Problem, SceneError, scene_from_dict
+from contact1d.workflow.scene.problems import as_toml, nearest, path_of, shown
 
 BASE: dict[str, Any] = {
     "title": "base",

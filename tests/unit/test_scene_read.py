@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from workflow.scene import Load, PullOff, SceneError, read_scene, scene_from_dict, scene_to_toml
+from contact1d.workflow.scene import Load, PullOff, SceneError, read_scene, scene_from_dict, scene_to_toml
 
 EVERYTHING = """
 title = "Pull-off of a curved body, R = 1000"

@@ -8,9 +8,9 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from workflow import scene as scenes
-from workflow.scene.quantities import Table, annotation_of, keys_of
-from workflow.scene.wording import statement
+from contact1d.workflow import scene as scenes
+from contact1d.workflow.scene.quantities import Table, annotation_of, keys_of
+from contact1d.workflow.scene.wording import statement
 
 PAGE = Path(__file__).parents[2] / "docs" / "scene.md"
 HEAD = """# Every key of a scene

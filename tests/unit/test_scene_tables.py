@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from workflow.scene import EFFECTS, Bodies, Parabola, Path, Plate, Scene, Slide, Span, Table, scene_from_dict
-from workflow.scene.quantities import annotation_of, keys_of
-from workflow.scene.wording import members, statement, table_of, unit_of
+from contact1d.workflow.scene import EFFECTS, Bodies, Parabola, Path, Plate, Scene, Slide, Span, Table, scene_from_dict
+from contact1d.workflow.scene.quantities import annotation_of, keys_of
+from contact1d.workflow.scene.wording import members, statement, table_of, unit_of
 
 BASE: dict[str, Any] = {
     "title": "base",
@@ -174,5 +174,5 @@ def test_the_scene_has_a_json_schema() -> None:
 
 
 def test_reading_a_scene_does_not_load_numpy() -> None:
-    code = "import sys, workflow.scene; sys.exit('numpy' in sys.modules)"
+    code = "import sys, contact1d.workflow.scene; sys.exit('numpy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -6,7 +6,7 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from workflow.scene import Scene, SceneError, scene_from_dict, scene_to_toml
+from contact1d.workflow.scene import Scene, SceneError, scene_from_dict, scene_to_toml
 
 
 def base(**tables: Any) -> dict[str, Any]:

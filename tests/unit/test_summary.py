@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from analysis.pressure import Profile
-from workflow.summary import pressure_plot, quantities, rounded
+from contact1d.analysis.pressure import Profile
+from contact1d.workflow.cli.summary import pressure_plot, quantities
+from contact1d.workflow.units import rounded
 
 
 @pytest.mark.parametrize(

@@ -10,10 +10,10 @@ import pytest
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from potentials import DoubleExponential, Exponential
-from potentials import table as table_module
-from potentials.table import MOST_POINTS, Table, table_for, write_table
-from workflow.engine import Session
+from contact1d.potentials import DoubleExponential, Exponential
+from contact1d.potentials import table as table_module
+from contact1d.potentials.table import MOST_POINTS, Table, table_for, write_table
+from contact1d.workflow.engine.session import Session
 
 Array = NDArray[np.float64]
 

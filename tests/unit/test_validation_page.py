@@ -8,9 +8,9 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from workflow.reproduce.markdown import readme_table, validation_markdown
-from workflow.reproduce.record import Record, read_record
-from workflow.reproduce.studies import NAMES
+from contact1d.workflow.reproduce.markdown import readme_table, validation_markdown
+from contact1d.workflow.reproduce.record import Record, read_record
+from contact1d.workflow.reproduce.studies import NAMES
 
 ROOT = Path(__file__).parents[2]
 KEPT = ROOT / "docs" / "reproduced"

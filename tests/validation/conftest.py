@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from workflow import Run, run, scene_from_dict
+from contact1d import Run, run, scene_from_dict
 
 RunTables = Callable[[dict[str, Any]], Run]
 

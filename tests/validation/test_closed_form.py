@@ -19,10 +19,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analysis.reference.independent_pairs import IndependentPairs
-from analysis.reference.interaction import Exponential, PairInteraction
-from workflow import Run
-from workflow.experiments import Quantity
+from contact1d.analysis.reference.independent_pairs import IndependentPairs
+from contact1d.analysis.reference.interaction import Exponential, PairInteraction
+from contact1d import Run
+from contact1d.workflow.units import Quantity
 
 FORCE = 2e-6
 """Relative; measured 4e-7: table, cutoff and rows, each chosen for far less than the tolerance of 1e-3."""

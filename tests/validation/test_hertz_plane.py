@@ -27,11 +27,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from analysis.reference.model import ChainModel
-from analysis.reference.solver import trace
-from analysis.reference.winkler import rigid_plane_sum, winkler_force, winkler_half_width
-from workflow import Run
-from workflow.experiments.contact import State
+from contact1d.analysis.reference.model import ChainModel
+from contact1d.analysis.reference.solver import trace
+from contact1d.analysis.reference.winkler import rigid_plane_sum, winkler_force, winkler_half_width
+from contact1d import Run
+from contact1d.workflow.experiments.running.contact import State
 
 RunTables = Callable[[dict[str, Any]], Run]
 Array = NDArray[np.float64]

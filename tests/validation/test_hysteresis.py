@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from workflow import Run
-from workflow.experiments.contact import State
+from contact1d import Run
+from contact1d.workflow.experiments.running.contact import State
 
 RunTables = Callable[[dict[str, Any]], Run]
 Array = NDArray[np.float64]

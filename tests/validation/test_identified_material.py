@@ -16,9 +16,9 @@ from pathlib import Path
 
 import pytest
 
-from workflow import run, scene_from_dict
-from workflow.identify import Identified, identify, jkr_target, material_scene
-from workflow.scene import scene_to_toml
+from contact1d import run, scene_from_dict
+from contact1d.workflow.identify import Identified, identify, jkr_target, material_scene
+from contact1d.workflow.scene import scene_to_toml
 
 ROUND_OFF = 1e-12
 STOP = 0.3

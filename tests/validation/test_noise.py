@@ -25,12 +25,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from workflow import scene_from_dict
-from workflow.deck import Deck
-from workflow.engine import Session
-from workflow.experiments import Bench, write_system
-from workflow.progress import Silent
-from workflow.settings import settings_for
+from contact1d import scene_from_dict
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.engine.progress import Silent
+from contact1d.workflow.engine.session import Session
+from contact1d.workflow.experiments import RunContext, write_system
+from contact1d.workflow.settings.settings import settings_for
 
 Array = NDArray[np.float64]
 
@@ -94,7 +94,7 @@ def sample(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Sample]:
         deck = Deck(checked, settings)
         folder = tmp_path_factory.mktemp("noise")
         write_system(deck, folder)
-        with Bench(deck, folder, Silent(), 300.0).contact() as contact:
+        with RunContext(deck, folder, Silent(), 300.0).contact() as contact:
             return drawn(contact.session, deck.settings.time_step, "no" if gjf else "yes")
 
     return taken

@@ -19,12 +19,12 @@ from typing import Any
 
 import pytest
 
-from analysis.reference.interaction import Exponential, PairInteraction
-from analysis.reference.model import ChainModel
-from analysis.reference.pull_off import pull_off
-from analysis.reference.solver import State
-from analysis.reference.tension_radius import tension_radius
-from workflow.experiments import Quantity
+from contact1d.analysis.reference.interaction import Exponential, PairInteraction
+from contact1d.analysis.reference.model import ChainModel
+from contact1d.analysis.reference.pull_off import pull_off
+from contact1d.analysis.reference.solver import State
+from contact1d.analysis.reference.tension_radius import tension_radius
+from contact1d.workflow.units import Quantity
 
 FORCE = 2e-5
 """Relative; measured 1.2e-5: mostly the tail of the attraction beyond the automatic cutoff."""

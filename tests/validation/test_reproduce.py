@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from workflow.reproduce.studies import NAMES, reproduce
+from contact1d.workflow.reproduce.studies import NAMES, reproduce
 
 QUICK = ("eq3", "fig4", "exponents", "table1", "mean_pressure")
 

@@ -12,9 +12,17 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from analysis.reference.hertz import hertz_contact_radius, hertz_force, hertz_peak_pressure
-from analysis.reference.mdr import ReducedContact
-from analysis.reference.sneddon import FlatPunch, PowerLaw, Sphere, cone, cone_pressure, galin_factor, paraboloid
+from contact1d.analysis.reference.hertz import hertz_contact_radius, hertz_force, hertz_peak_pressure
+from contact1d.analysis.reference.mdr import ReducedContact
+from contact1d.analysis.reference.sneddon import (
+    FlatPunch,
+    PowerLaw,
+    Sphere,
+    cone,
+    cone_pressure,
+    galin_factor,
+    paraboloid,
+)
 
 ROUND_OFF = 1e-12
 QUADRATURE = 1e-10

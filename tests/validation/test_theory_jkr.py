@@ -12,7 +12,12 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from analysis.reference.jkr import Jkr, identified_contact_modulus, identified_surface_energy, jkr_reduced_force
+from contact1d.analysis.reference.jkr import (
+    Jkr,
+    identified_contact_modulus,
+    identified_surface_energy,
+    jkr_reduced_force,
+)
 
 ROUND_OFF = 1e-12
 QUADRATURE = 1e-9

@@ -9,16 +9,16 @@ import math
 
 import pytest
 
-from analysis.reference.dmt import Dmt
-from analysis.reference.jkr import Jkr
-from analysis.reference.maugis_dugdale import (
+from contact1d.analysis.reference.dmt import Dmt
+from contact1d.analysis.reference.jkr import Jkr
+from contact1d.analysis.reference.maugis_dugdale import (
     MaugisDugdale,
     dmt_contact_radius,
     jkr_contact_radius,
     maugis_parameter_of_tabor,
 )
-from analysis.reference.mdr import edge_elongation
-from analysis.reference.tabor import (
+from contact1d.analysis.reference.mdr import edge_elongation
+from contact1d.analysis.reference.tabor import (
     DMT_TABOR,
     HERTZ_ADHESION_SHARE,
     JKR_TABOR,

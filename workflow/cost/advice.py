@@ -1,6 +1,7 @@
 """What `[accuracy] tolerance` does about it, what a scene could do for less, and combinations worth measuring.
 
-What a tolerance chooses is good in every scene of a study of many (`workflow.shares`); one scene may need less.
+What a tolerance chooses is good in every scene of a study of many (`workflow.settings.calibration`); one scene may
+need less.
 """
 
 from __future__ import annotations
@@ -8,11 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from workflow.cost.change import Change
-from workflow.cost.knobs import Knob
-from workflow.cost.record import Advice, VariantRecord
-from workflow.scene import Scene
-from workflow.settings import Settings
+from contact1d.workflow.cost.change import Change
+from contact1d.workflow.cost.knobs import Knob
+from contact1d.workflow.cost.record import Advice, VariantRecord
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.settings import Settings
 
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-5)
 SHARE = 0.25

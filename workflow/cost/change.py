@@ -8,11 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from potentials.table import Table
-from workflow.cost.row_law import row_law
-from workflow.scene import FlatPunch, Scene, scene_from_dict
-from workflow.scene.tables import TIMED
-from workflow.settings import Settings, interaction_law, settings_for
+from contact1d.potentials.table import Table
+from contact1d.workflow.cost.row_law import row_law
+from contact1d.workflow.scene import FlatPunch, Scene, scene_from_dict
+from contact1d.workflow.scene.tables import TIMED
+from contact1d.workflow.settings.settings import Settings, interaction_law, settings_for
 
 BASE_TOLERANCE = 1e-5
 """Of the base of a quasistatic scene; in time the scene's own is taken, since time costs by the tolerance."""

@@ -6,9 +6,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
-from workflow.cost.record import VariantRecord
-from workflow.experiments.outcome import Quantity
-from workflow.scene import Scene
+from contact1d.workflow.cost.record import VariantRecord
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.units import Quantity
 
 MAIN = {
     "load": ("displacement", "force", "contact_radius"),

@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from analysis.plots import THEORY, new_figure
-from workflow.cost.record import CostRecord, KnobRecord, VariantRecord
-from workflow.cost.study import AS_IT_IS, BASE, COMBINED
+from contact1d.analysis.plots import THEORY, new_figure
+from contact1d.workflow.cost.record import CostRecord, KnobRecord, VariantRecord
+from contact1d.workflow.cost.study import AS_IT_IS, BASE, COMBINED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

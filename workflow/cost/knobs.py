@@ -11,13 +11,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from workflow.cost.change import Change, at_tolerance, with_method
-from workflow.cost.errors import is_sampled
-from workflow.cost.row_law import row_law
-from workflow.cost.spacing import SPACING_FACTORS, at_spacing, spacing_is_physics
-from workflow.scene import FlatPunch, Scene
-from workflow.scene.experiments import Span
-from workflow.settings import Settings, settings_for
+from contact1d.workflow.cost.change import Change, at_tolerance, with_method
+from contact1d.workflow.cost.errors import is_sampled
+from contact1d.workflow.cost.row_law import row_law
+from contact1d.workflow.cost.spacing import SPACING_FACTORS, at_spacing, spacing_is_physics
+from contact1d.workflow.scene import FlatPunch, Scene
+from contact1d.workflow.scene.experiments import Span
+from contact1d.workflow.settings.settings import Settings, settings_for
 
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 TOLERANCE_FACTORS = (8.0, 4.0, 2.0, 1.0, 0.5)

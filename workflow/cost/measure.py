@@ -11,13 +11,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from statistics import median
 
-from workflow.campaign import FolderError, RunError, run
-from workflow.experiments.outcome import Quantity, unmet
-from workflow.fragments import DeckError
-from workflow.process import stop_idle
-from workflow.progress import Progress
-from workflow.scene import Scene
-from workflow.settings import Settings
+from contact1d.workflow.deck.fragments import DeckError
+from contact1d.workflow.engine.process import stop_idle
+from contact1d.workflow.engine.progress import Progress
+from contact1d.workflow.experiments.running.outcome import unmet
+from contact1d.workflow.runs.campaign import FolderError, RunError, run
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.settings import Settings
+from contact1d.workflow.units import Quantity
 
 LONG_RUN = 4.0
 """Wall time [s] from which on a run is not repeated: what disturbs a timing is short against it."""

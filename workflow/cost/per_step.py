@@ -11,13 +11,13 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from statistics import median, stdev
 
-from workflow.cost.change import Change
-from workflow.cost.record import EffectCost
-from workflow.deck import Deck
-from workflow.engine import Engine, Session
-from workflow.experiments import write_system
-from workflow.scene import Scene, SceneError
-from workflow.settings import settings_for
+from contact1d.workflow.cost.change import Change
+from contact1d.workflow.cost.record import EffectCost
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.engine.session import Engine, Session
+from contact1d.workflow.experiments import write_system
+from contact1d.workflow.scene import Scene, SceneError
+from contact1d.workflow.settings.settings import settings_for
 
 STEPS = 2_000
 TURNS = 7

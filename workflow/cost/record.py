@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from workflow.cost.orders import Order
+from contact1d.workflow.cost.orders import Order
 
 RECORD = "cost.json"
 

@@ -8,11 +8,11 @@ import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from workflow.cost.advice import power
-from workflow.cost.figure import cost_figure
-from workflow.cost.record import RECORD, CostRecord, EffectCost, KnobRecord, VariantRecord
-from workflow.cost.sampling import SAMPLING_COLUMNS, sampling_rows
-from workflow.report import write_whole
+from contact1d.workflow.cost.advice import power
+from contact1d.workflow.cost.figure import cost_figure
+from contact1d.workflow.cost.record import RECORD, CostRecord, EffectCost, KnobRecord, VariantRecord
+from contact1d.workflow.cost.sampling import SAMPLING_COLUMNS, sampling_rows
+from contact1d.workflow.runs.report import write_whole
 
 TABLE, FIGURE = "cost.csv", "cost.png"
 COLUMNS = (
@@ -25,7 +25,7 @@ def write_report(record: CostRecord, folder: Path) -> None:
     """Write cost.json, cost.csv and cost.png into `folder`."""
     write_whole(folder / RECORD, record.to_json())
     write_whole(folder / TABLE, csv_text(record))
-    from analysis.plots import save_figure
+    from contact1d.analysis.plots import save_figure
 
     save_figure(cost_figure(record), folder / FIGURE)
 

@@ -18,8 +18,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from potentials import DoubleExponential, Exponential
-from workflow.estimate import row_force
+from contact1d.potentials import DoubleExponential, Exponential
+from contact1d.workflow.settings.estimate import row_force
 
 Array = NDArray[np.float64]
 TERMS = 12

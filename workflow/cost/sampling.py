@@ -13,13 +13,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from workflow.cost.change import Change
-from workflow.cost.per_step import opened
-from workflow.cost.record import Sampling
-from workflow.deck import Deck
-from workflow.engine import Session
-from workflow.scene import Scene
-from workflow.settings import settings_for
+from contact1d.workflow.cost.change import Change
+from contact1d.workflow.cost.per_step import opened
+from contact1d.workflow.cost.record import Sampling
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.engine.session import Session
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.settings import settings_for
 
 Array = NDArray[np.float64]
 SCHEMES = ("langevin", "gjf")

@@ -5,8 +5,8 @@ The force that opposite rows exert per length is kept by another pair law, see `
 
 from __future__ import annotations
 
-from workflow.scene import FlatPunch, Scene
-from workflow.settings import Settings
+from contact1d.workflow.scene import FlatPunch, Scene
+from contact1d.workflow.settings.settings import Settings
 
 SPACING_FACTORS = {"particles": (4.0, 3.0, 2.0, 1.0, 0.5), "rigid_plane": (4.0, 2.0, 1.0, 0.5, 0.125)}
 """Over the scene's own, by the lower body: at a quarter no sum of exponentials keeps the row's force within 1e-4."""

@@ -8,21 +8,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from workflow.campaign import RunError
-from workflow.cost.advice import TARGETS, advise, choice, combinations
-from workflow.cost.change import Change, at_tolerance, base_change, with_method
-from workflow.cost.errors import is_sampled, judged, main_results
-from workflow.cost.knobs import Knob, knobs_of, left_out
-from workflow.cost.measure import Measured, Prepared, measure, run_once
-from workflow.cost.orders import fit_order, pareto_front
-from workflow.cost.per_step import effect_costs, without_effects
-from workflow.cost.record import CostRecord, EffectCost, KnobRecord, VariantRecord
-from workflow.cost.sampling import samplings
-from workflow.experiments.outcome import Quantity
-from workflow.progress import Progress
-from workflow.report import versions
-from workflow.scene import Scene, SceneError
-from workflow.settings import SettingsError, settings_for
+from contact1d.workflow.cost.advice import TARGETS, advise, choice, combinations
+from contact1d.workflow.cost.change import Change, at_tolerance, base_change, with_method
+from contact1d.workflow.cost.errors import is_sampled, judged, main_results
+from contact1d.workflow.cost.knobs import Knob, knobs_of, left_out
+from contact1d.workflow.cost.measure import Measured, Prepared, measure, run_once
+from contact1d.workflow.cost.orders import fit_order, pareto_front
+from contact1d.workflow.cost.per_step import effect_costs, without_effects
+from contact1d.workflow.cost.record import CostRecord, EffectCost, KnobRecord, VariantRecord
+from contact1d.workflow.cost.sampling import samplings
+from contact1d.workflow.engine.progress import Progress
+from contact1d.workflow.runs.campaign import RunError
+from contact1d.workflow.runs.report import versions
+from contact1d.workflow.scene import Scene, SceneError
+from contact1d.workflow.settings.settings import SettingsError, settings_for
+from contact1d.workflow.units import Quantity
 
 REFERENCE_TOLERANCES = (1e-7, 1e-6, 1e-5)
 """Tried in turn, without time where the scene is at rest without it."""

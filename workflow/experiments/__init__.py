@@ -1,19 +1,28 @@
 """Experiments: load, path, pull_off, slide; each a sequence of phases on one deck."""
 
-from workflow.experiments.bench import Bench, write_system
-from workflow.experiments.load import load_quasistatic
-from workflow.experiments.load_dynamic import load_dynamic
-from workflow.experiments.outcome import Outcome, Quantity, UntrustedError, in_words, unmet
-from workflow.experiments.pace import slowness
-from workflow.experiments.path import path
-from workflow.experiments.plan import planned
-from workflow.experiments.pull_off_dynamic import pull_off_dynamic
-from workflow.experiments.pull_off_quasistatic import pull_off_quasistatic
-from workflow.experiments.quasistatic import in_smaller_steps
-from workflow.experiments.slide import slide
+from contact1d.workflow.experiments.load.dynamic import load_dynamic
+from contact1d.workflow.experiments.load.quasistatic import load_quasistatic
+from contact1d.workflow.experiments.path.path import path
+from contact1d.workflow.experiments.planned_schedule import planned
+from contact1d.workflow.experiments.pull_off.dynamic import pull_off_dynamic
+from contact1d.workflow.experiments.pull_off.quasistatic import pull_off_quasistatic
+from contact1d.workflow.experiments.running.outcome import Outcome, UntrustedError, in_words, unmet
+from contact1d.workflow.experiments.running.prescribing import in_smaller_steps
+from contact1d.workflow.experiments.running.run_context import RunContext, write_system
+from contact1d.workflow.experiments.running.slowness import slowness
+from contact1d.workflow.experiments.slide.slide import slide
+from contact1d.workflow.units import Quantity
 
 __all__ = [
-    "Bench", "Outcome", "Quantity", "UntrustedError", "in_words", "perform", "planned", "unmet", "write_system",
+    "Outcome",
+    "Quantity",
+    "RunContext",
+    "UntrustedError",
+    "in_words",
+    "perform",
+    "planned",
+    "unmet",
+    "write_system",
 ]  # fmt: skip
 
 EXPERIMENTS = {
@@ -27,14 +36,14 @@ EXPERIMENTS = {
 }
 
 
-def perform(bench: Bench) -> Outcome:
+def perform(context: RunContext) -> Outcome:
     """Run the experiment that the scene names, with its method.
 
     Raises:
         UntrustedError: the result can't be trusted.
         EngineError: LAMMPS failed.
     """
-    scene = bench.deck.scene
-    if slow := slowness(scene, bench.deck.settings):
-        bench.progress.note(slow)
-    return EXPERIMENTS[scene.experiment.kind, scene.method](bench)
+    scene = context.deck.scene
+    if slow := slowness(scene, context.deck.settings):
+        context.progress.note(slow)
+    return EXPERIMENTS[scene.experiment.kind, scene.method](context)

@@ -6,10 +6,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from workflow.experiments import Quantity
-from workflow.report import RESULTS
-from workflow.scales import jkr_scales
-from workflow.units import SI, Scales
+from contact1d.workflow.runs.report import RESULTS
+from contact1d.workflow.runs.scales import jkr_scales
+from contact1d.workflow.units import SI, Quantity, Scales
 
 
 class FinishedRunError(ValueError):

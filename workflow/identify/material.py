@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from analysis.reference.jkr import Jkr, work_of_adhesion
-from workflow.identify.target import IdentifyError, Target, require_held
-from workflow.scene import Scene, scene_from_dict
+from contact1d.analysis.reference.jkr import Jkr, work_of_adhesion
+from contact1d.workflow.identify.target import IdentifyError, Target, require_held
+from contact1d.workflow.scene import Scene, scene_from_dict
 
 RESOLUTION = 28.5
 """Particles in a₀, unless the length unit is given: as in the first row of the paper's Table 1."""

@@ -14,11 +14,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from workflow.campaign import Run, run
-from workflow.identify.start import scaled, slopes, start
-from workflow.identify.target import IdentifyError, Target, require_reachable
-from workflow.progress import Progress
-from workflow.scene import Scene
+from contact1d.workflow.engine.progress import Progress
+from contact1d.workflow.identify.start import scaled, slopes, start
+from contact1d.workflow.identify.target import IdentifyError, Target, require_reachable
+from contact1d.workflow.runs.campaign import Run, run
+from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 MOST_RUNS = 8
@@ -55,7 +55,7 @@ def identify(scene: Scene, target: Target, folder: Path, progress: Progress | No
 
     Raises:
         IdentifyError: no interaction of this shape has the target, or the search does not end.
-        SettingsError, RunError: see `workflow.campaign.run`.
+        SettingsError, RunError: see `workflow.runs.campaign.run`.
     """
     require_reachable(scene, target)
     at = start(scene, target)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from workflow.scene import Parabola, PullOff, Scene
+from contact1d.workflow.scene import Parabola, PullOff, Scene
 
 BRITTLE = 4.0 / (9.0 * math.sqrt(3.0))
 """F_A R₁/(c a₀³) in the limit of a vanishing range."""

@@ -15,13 +15,13 @@ from pathlib import Path
 
 import numpy as np
 
-from analysis.reference import hertz, sneddon
-from workflow.reproduce.check import Check
-from workflow.reproduce.figures import ReductionPanel, reductions_figure, save
-from workflow.reproduce.page import share
-from workflow.reproduce.runs import Finished
-from workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
-from workflow.scene import Reduction, Scene, scene_from_dict
+from contact1d.analysis.reference import hertz, sneddon
+from contact1d.workflow.reproduce.check import Check
+from contact1d.workflow.reproduce.figures import ReductionPanel, reductions_figure, save
+from contact1d.workflow.reproduce.page import share
+from contact1d.workflow.reproduce.runs import Finished
+from contact1d.workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
+from contact1d.workflow.scene import Reduction, Scene, scene_from_dict
 
 STUDY = "eq3"
 row = checker(STUDY)

@@ -6,15 +6,15 @@ from pathlib import Path
 
 import numpy as np
 
-from analysis.reference.pull_off import pull_off
-from analysis.reference.tension_radius import state_radius
-from workflow.reproduce.check import Check
-from workflow.reproduce.figures import pressure_compared_figure, save
-from workflow.reproduce.oracles import chain_model, row_tension
-from workflow.reproduce.page import share
-from workflow.reproduce.runs import Finished
-from workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
-from workflow.scene import PullOff, Scene
+from contact1d.analysis.reference.pull_off import pull_off
+from contact1d.analysis.reference.tension_radius import state_radius
+from contact1d.workflow.reproduce.check import Check
+from contact1d.workflow.reproduce.figures import pressure_compared_figure, save
+from contact1d.workflow.reproduce.oracles import chain_model, row_tension
+from contact1d.workflow.reproduce.page import share
+from contact1d.workflow.reproduce.runs import Finished
+from contact1d.workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
+from contact1d.workflow.scene import PullOff, Scene
 
 NAME = "fig4"
 row = checker(NAME)

@@ -11,12 +11,12 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import brentq
 
-from workflow.reproduce.check import Check
-from workflow.reproduce.figures import Series, history_figure, save
-from workflow.reproduce.oracles import interaction
-from workflow.reproduce.paper import changed
-from workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
-from workflow.scene import Scene
+from contact1d.workflow.reproduce.check import Check
+from contact1d.workflow.reproduce.figures import Series, history_figure, save
+from contact1d.workflow.reproduce.oracles import interaction
+from contact1d.workflow.reproduce.paper import changed
+from contact1d.workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
+from contact1d.workflow.scene import Scene
 
 NAME = "fig6"
 row = checker(NAME)

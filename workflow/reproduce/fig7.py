@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import linregress, t
 
-from workflow.reproduce.check import Check
-from workflow.reproduce.figures import Series, save, scaling_figure
-from workflow.reproduce.oracles import independent_pairs
-from workflow.reproduce.page import share
-from workflow.reproduce.paper import local, with_radius
-from workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
-from workflow.scene import Scene
+from contact1d.workflow.reproduce.check import Check
+from contact1d.workflow.reproduce.figures import Series, save, scaling_figure
+from contact1d.workflow.reproduce.oracles import independent_pairs
+from contact1d.workflow.reproduce.page import share
+from contact1d.workflow.reproduce.paper import local, with_radius
+from contact1d.workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
+from contact1d.workflow.scene import Scene
 
 RADII = (500.0, 1000.0, 1600.0, 2000.0, 3000.0, 4000.0)
 """R [LU] of the paper's chain, those of Table 1 among them."""

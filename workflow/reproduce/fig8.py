@@ -14,14 +14,14 @@ from pathlib import Path
 
 import numpy as np
 
-from workflow.identify import Target, estimated
-from workflow.reproduce.check import Check
-from workflow.reproduce.figures import Series, closed_form_figure, reduced_figure, save
-from workflow.reproduce.oracles import distances, independent_pairs, reduced
-from workflow.reproduce.paper import TABLE_1, changed, curve_scene, local, with_radius
-from workflow.reproduce.runs import Finished, branch
-from workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
-from workflow.scene import Scene
+from contact1d.workflow.identify import Target, estimated
+from contact1d.workflow.reproduce.check import Check
+from contact1d.workflow.reproduce.figures import Series, closed_form_figure, reduced_figure, save
+from contact1d.workflow.reproduce.oracles import distances, independent_pairs, reduced
+from contact1d.workflow.reproduce.paper import TABLE_1, changed, curve_scene, local, with_radius
+from contact1d.workflow.reproduce.runs import Finished, branch
+from contact1d.workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
+from contact1d.workflow.scene import Scene
 
 DEEPEST, STEPS = 0.46, 56
 """Largest displacement [LU] of a curve, F/F_A some 2 in every scene, and its rows on the way back."""

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.plots import THEORY, new_figure, save_figure
-from analysis.reference.jkr import jkr_reduced_force
-from analysis.reference.line_adhesion import barquins_reduced_force, brittle_reduced_force
+from contact1d.analysis.plots import THEORY, new_figure, save_figure
+from contact1d.analysis.reference.jkr import jkr_reduced_force
+from contact1d.analysis.reference.line_adhesion import barquins_reduced_force, brittle_reduced_force
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -6,8 +6,8 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 
-from workflow.reproduce.check import Check
-from workflow.reproduce.page import (
+from contact1d.workflow.reproduce.check import Check
+from contact1d.workflow.reproduce.page import (
     EVIDENCE,
     failures,
     ours,
@@ -17,7 +17,7 @@ from workflow.reproduce.page import (
     share,
     tolerance,
 )
-from workflow.reproduce.record import Record, StudyRecord
+from contact1d.workflow.reproduce.record import Record, StudyRecord
 
 HEAD = """# Validation
 

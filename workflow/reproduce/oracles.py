@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.reference.independent_pairs import IndependentPairs
-from analysis.reference.interaction import Exponential, PairInteraction
-from analysis.reference.jkr import jkr_reduced_force
-from analysis.reference.line_adhesion import barquins_reduced_force
-from analysis.reference.model import ChainModel
-from workflow.scene import Parabola, Scene
+from contact1d.analysis.reference.independent_pairs import IndependentPairs
+from contact1d.analysis.reference.interaction import Exponential, PairInteraction
+from contact1d.analysis.reference.jkr import jkr_reduced_force
+from contact1d.analysis.reference.line_adhesion import barquins_reduced_force
+from contact1d.analysis.reference.model import ChainModel
+from contact1d.workflow.scene import Parabola, Scene
 
 Array = NDArray[np.float64]
 ROW_REACH, ROW_POINTS, ROW_HALF = 5.0, 4001, 20

@@ -17,9 +17,9 @@ from pathlib import Path
 
 from jinja2 import Environment, StrictUndefined
 
-from workflow.reproduce.check import Check, Evidence
-from workflow.reproduce.record import Record, StudyRecord
-from workflow.summary import rounded
+from contact1d.workflow.reproduce.check import Check, Evidence
+from contact1d.workflow.reproduce.record import Record, StudyRecord
+from contact1d.workflow.units import rounded
 
 EVIDENCE: dict[Evidence, str] = {
     "closed form": "an equation that is evaluated without any part of this program",
@@ -170,7 +170,7 @@ def html_page(record: Record, folder: Path) -> str:
         "anchor": anchor, "duration": duration, "ours": ours, "paragraphs": paragraphs, "passed": passed,
         "printed": printed, "ratio": ratio, "reference": reference, "symbols": symbols, "tolerance": tolerance,
     }  # fmt: skip
-    text = files("workflow.reproduce").joinpath("page.html").read_text(encoding="utf-8")
+    text = files("contact1d.workflow.reproduce").joinpath("page.html").read_text(encoding="utf-8")
     figures = {name: _figure(folder / name) for study in record.studies for name in study.figures}
     return environment.from_string(text).render(record=record, failures=failures(record), figures=figures)
 

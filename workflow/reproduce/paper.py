@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
-from workflow.identify import Target, identify
-from workflow.report import RESULTS, versions
-from workflow.scene import Scene, SceneError, read_scene, scene_from_dict
+from contact1d.workflow.identify import Target, identify
+from contact1d.workflow.runs.report import RESULTS, versions
+from contact1d.workflow.scene import Scene, SceneError, read_scene, scene_from_dict
 
 CONTACT_MODULUS = 200e9
 """E* of the paper's example [Pa]."""
@@ -48,7 +48,7 @@ def calibrated(folder: Path) -> Scene:
 
     An identification that is there already, of the same scene and versions, holds.
     """
-    scene = read_scene(Path(str(files("lammps_inputs") / "scenes" / "paper.toml")))
+    scene = read_scene(Path(str(files("contact1d.lammps_inputs") / "scenes" / "paper.toml")))
     first = TABLE_1[0]
     target = Target(first.adhesion_force, first.zero_load_radius)
     return _identified(scene, target, folder) or identify(scene, target, folder).scene

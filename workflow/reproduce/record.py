@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from workflow.reproduce.check import Check
+from contact1d.workflow.reproduce.check import Check
 
 RECORD = "reproduce.json"
 

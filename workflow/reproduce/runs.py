@@ -18,12 +18,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.curve import Curve, read_curve, read_profiles
-from analysis.pressure import Profile
-from workflow.campaign import RunError, run
-from workflow.progress import Progress
-from workflow.report import RESULTS, versions
-from workflow.scene import Scene
+from contact1d.analysis.curve import Curve, read_curve, read_profiles
+from contact1d.analysis.pressure import Profile
+from contact1d.workflow.engine.progress import Progress
+from contact1d.workflow.runs.campaign import RunError, run
+from contact1d.workflow.runs.report import RESULTS, versions
+from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 WATCH = 1.0

@@ -8,17 +8,17 @@ from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from workflow.campaign import FolderError
-from workflow.progress import Progress, Silent
-from workflow.report import versions, write_whole
-from workflow.reproduce import eq3, fig4, fig6, fig7, fig8, table1
-from workflow.reproduce.markdown import validation_markdown
-from workflow.reproduce.page import html_page
-from workflow.reproduce.paper import calibrated
-from workflow.reproduce.record import RECORD, Record, StudyRecord, read_record
-from workflow.reproduce.runs import Finished, finish
-from workflow.reproduce.study import Scenes, Study
-from workflow.scene import Scene
+from contact1d.workflow.engine.progress import Progress, Silent
+from contact1d.workflow.reproduce import eq3, fig4, fig6, fig7, fig8, table1
+from contact1d.workflow.reproduce.markdown import validation_markdown
+from contact1d.workflow.reproduce.page import html_page
+from contact1d.workflow.reproduce.paper import calibrated
+from contact1d.workflow.reproduce.record import RECORD, Record, StudyRecord, read_record
+from contact1d.workflow.reproduce.runs import Finished, finish
+from contact1d.workflow.reproduce.study import Scenes, Study
+from contact1d.workflow.runs.campaign import FolderError
+from contact1d.workflow.runs.report import versions, write_whole
+from contact1d.workflow.scene import Scene
 
 STUDIES: tuple[Study, ...] = (
     eq3.STUDY_EQ3,

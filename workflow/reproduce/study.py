@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from workflow.reproduce.check import Check
-from workflow.reproduce.runs import Finished
-from workflow.scene import Scene
+from contact1d.workflow.reproduce.check import Check
+from contact1d.workflow.reproduce.runs import Finished
+from contact1d.workflow.scene import Scene
 
 Scenes = dict[str, Scene]
 Runs = Mapping[str, Finished]

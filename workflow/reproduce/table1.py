@@ -1,6 +1,6 @@
 """Section 4: Table 1 and the mean pressure. The first row is what the interaction is identified by; the others follow.
 
-γ = F_A/3πR and E* = 3 F_A R/a₀³ (Eq. 9) with E* = 200 GPa, γ = 1 J/m² give LU and FU (`workflow.scales`).
+γ = F_A/3πR and E* = 3 F_A R/a₀³ (Eq. 9) with E* = 200 GPa, γ = 1 J/m² give LU and FU (`workflow.runs.scales`).
 """
 
 from __future__ import annotations
@@ -10,19 +10,18 @@ from pathlib import Path
 
 import numpy as np
 
-from analysis.reference.jkr import jkr_reduced_force
-from workflow.experiments import Quantity
-from workflow.reproduce.check import Check
-from workflow.reproduce.fig7 import paper_run
-from workflow.reproduce.fig8 import lengthened_run
-from workflow.reproduce.fig8 import scenes_8a as curves
-from workflow.reproduce.figures import pressure_radius_figure, save
-from workflow.reproduce.paper import CONTACT_MODULUS, SURFACE_ENERGY, TABLE_1, with_radius
-from workflow.reproduce.runs import branch
-from workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
-from workflow.scales import jkr_scales
-from workflow.scene import Scene
-from workflow.units import MEAN_PRESSURE, Scales
+from contact1d.analysis.reference.jkr import jkr_reduced_force
+from contact1d.workflow.reproduce.check import Check
+from contact1d.workflow.reproduce.fig7 import paper_run
+from contact1d.workflow.reproduce.fig8 import lengthened_run
+from contact1d.workflow.reproduce.fig8 import scenes_8a as curves
+from contact1d.workflow.reproduce.figures import pressure_radius_figure, save
+from contact1d.workflow.reproduce.paper import CONTACT_MODULUS, SURFACE_ENERGY, TABLE_1, with_radius
+from contact1d.workflow.reproduce.runs import branch
+from contact1d.workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
+from contact1d.workflow.runs.scales import jkr_scales
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.units import MEAN_PRESSURE, Quantity, Scales
 
 PRINTED = 0.015
 """Allowed deviation from a printed value, of three digits or two."""

@@ -1,12 +1,12 @@
 """The typed scene: TOML in, either a `Scene` whose tables fit together or every problem at once."""
 
-from workflow.scene.experiments import Experiment, Load, Method, Path, PullOff, Slide, Span
-from workflow.scene.material import Elastic, Material, Reduction
-from workflow.scene.problems import Problem, SceneError
-from workflow.scene.profiles import Circle, Cone, FlatPunch, Measured, Parabola, Power, Profile
-from workflow.scene.quantities import Table, Unit
-from workflow.scene.read import read_scene, scene_from_dict
-from workflow.scene.tables import (
+from contact1d.workflow.scene.experiments import Experiment, Load, Method, Path, PullOff, Slide, Span
+from contact1d.workflow.scene.material import Elastic, Material, Reduction
+from contact1d.workflow.scene.problems import Problem, SceneError
+from contact1d.workflow.scene.profiles import Circle, Cone, FlatPunch, Measured, Parabola, Power, Profile
+from contact1d.workflow.scene.quantities import Table, Unit
+from contact1d.workflow.scene.read import read_scene, scene_from_dict
+from contact1d.workflow.scene.tables import (
     EFFECTS,
     Accuracy,
     Bodies,
@@ -20,7 +20,7 @@ from workflow.scene.tables import (
     Plate,
     Scene,
 )
-from workflow.scene.write import scene_to_toml
+from contact1d.workflow.scene.write import scene_to_toml
 
 __all__ = [
     "EFFECTS",

@@ -13,10 +13,10 @@ from typing import Any, get_args
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from workflow.scene.problems import Problem, nearest, path_of, shown
-from workflow.scene.quantities import Table, annotation_of, keys_of
-from workflow.scene.tables import Scene
-from workflow.scene.wording import branches, kinds_of, members, statement, table_of, unwrapped, words_of
+from contact1d.workflow.scene.problems import Problem, nearest, path_of, shown
+from contact1d.workflow.scene.quantities import Table, annotation_of, keys_of
+from contact1d.workflow.scene.tables import Scene
+from contact1d.workflow.scene.wording import branches, kinds_of, members, statement, table_of, unwrapped, words_of
 
 Keys = tuple[str | int, ...]
 

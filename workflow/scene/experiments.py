@@ -12,7 +12,7 @@ from annotated_types import MinLen
 from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
-from workflow.scene.quantities import Compression, Displacement, Force, Length, StepCount, Table
+from contact1d.workflow.scene.quantities import Compression, Displacement, Force, Length, StepCount, Table
 
 Method = Literal["quasistatic", "dynamic"]
 _METHOD = (

@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from workflow.scene.problems import Problem, shown
-from workflow.scene.tables import EFFECTS, TIMED, Bodies, Plate, default_method
+from contact1d.workflow.scene.problems import Problem, shown
+from contact1d.workflow.scene.tables import EFFECTS, TIMED, Bodies, Plate, default_method
 
 EXCLUDED = {
     "load": {"cantilever": "only a slide is pulled through a spring"},

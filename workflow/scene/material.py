@@ -14,7 +14,7 @@ from typing import Annotated, Literal
 from annotated_types import Gt, Le
 from pydantic import Field
 
-from workflow.scene.quantities import Table, Unit
+from contact1d.workflow.scene.quantities import Table, Unit
 
 Reduction = Literal["geike_popov", "mdr"]
 LAYER_SHARE = {"geike_popov": 0.5, "mdr": 1.0}

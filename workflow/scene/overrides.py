@@ -7,8 +7,8 @@ import tomllib
 from collections.abc import Iterable
 from typing import Any
 
-from workflow.scene.problems import Problem, nearest, shown
-from workflow.scene.tables import EFFECTS
+from contact1d.workflow.scene.problems import Problem, nearest, shown
+from contact1d.workflow.scene.tables import EFFECTS
 
 
 def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Problem]:

@@ -6,7 +6,7 @@ import math
 import re
 from pathlib import Path
 
-from workflow.scene.profiles import FEWEST
+from contact1d.workflow.scene.profiles import FEWEST
 
 
 class ProfileFileError(ValueError):

@@ -21,7 +21,7 @@ from annotated_types import Ge, MinLen
 from pydantic import Discriminator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from workflow.scene.quantities import Height, Length, Ratio, Table, Unit
+from contact1d.workflow.scene.quantities import Height, Length, Ratio, Table, Unit
 
 if TYPE_CHECKING:
     import numpy as np

@@ -10,13 +10,13 @@ from os import PathLike, fspath
 from pathlib import Path as FilePath
 from typing import Any
 
-from workflow.scene.check import check_tables, mend_words
-from workflow.scene.fit import check_fit
-from workflow.scene.overrides import apply_overrides, remove_effects
-from workflow.scene.problems import Problem, SceneError, shown
-from workflow.scene.profile_file import ProfileFileError, read_profile
-from workflow.scene.quantities import Table
-from workflow.scene.tables import Scene
+from contact1d.workflow.scene.check import check_tables, mend_words
+from contact1d.workflow.scene.fit import check_fit
+from contact1d.workflow.scene.overrides import apply_overrides, remove_effects
+from contact1d.workflow.scene.problems import Problem, SceneError, shown
+from contact1d.workflow.scene.profile_file import ProfileFileError, read_profile
+from contact1d.workflow.scene.quantities import Table
+from contact1d.workflow.scene.tables import Scene
 
 MEANING = {
     "Cannot overwrite a value": "this key is given twice",

@@ -12,10 +12,10 @@ from annotated_types import MinLen
 from pydantic import AfterValidator, Field
 from pydantic_core import PydanticCustomError
 
-from workflow.scene.experiments import Experiment, Method, Slide
-from workflow.scene.material import Material, Reduction
-from workflow.scene.profiles import Profile
-from workflow.scene.quantities import (
+from contact1d.workflow.scene.experiments import Experiment, Method, Slide
+from contact1d.workflow.scene.material import Material, Reduction
+from contact1d.workflow.scene.profiles import Profile
+from contact1d.workflow.scene.quantities import (
     AutoDamping,
     AutoDampingOrZero,
     AutoLength,

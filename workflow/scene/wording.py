@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from annotated_types import Ge, Gt, Le
 from pydantic import Discriminator, Tag
 
-from workflow.scene.problems import as_toml
-from workflow.scene.quantities import Table, Unit, annotation_of, keys_of
+from contact1d.workflow.scene.problems import as_toml
+from contact1d.workflow.scene.quantities import Table, Unit, annotation_of, keys_of
 
 
 def unwrapped(annotation: object) -> tuple[Any, tuple[Any, ...]]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from workflow.scene.problems import as_toml
-from workflow.scene.tables import Scene
+from contact1d.workflow.scene.problems import as_toml
+from contact1d.workflow.scene.tables import Scene
 
 
 def scene_to_toml(scene: Scene) -> str:

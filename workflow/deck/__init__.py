@@ -1,0 +1,1 @@
+"""A scene as LAMMPS text: bodies, effects, schedule; pure, nothing runs here."""

@@ -1,0 +1,24 @@
+"""Effect [interaction]: V(r) = A exp(−r/a) − B exp(−r/b) between particles of opposite bodies, from a table."""
+
+from contact1d.workflow.deck.effects.base import Contribution, Stage, number
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.settings import Settings
+
+SKIN = 0.5
+"""Neighbour-list skin over the spacing: a row of a path moves a body by less, so a list lasts for a relaxation."""
+
+
+def interaction(scene: Scene, settings: Settings) -> Contribution:
+    """Shared slots: `pair_style`, and the tally of opposite forces in every measurement."""
+    assert settings.table is not None
+    points, style = settings.table.points, settings.table_style
+    size = points.bit_length() - 1 if style == "bitmap" else points  # a bitmap has 2^size entries
+    return Contribution(
+        "interaction",
+        Stage.SPRINGS,
+        ("interaction",),
+        {"interaction_skin": number(SKIN * scene.bodies.spacing)},
+        pair_style=f"table {style} {size}",
+        step_begin=("steps/measuring_opposite",),
+        step_end=("steps/measured_opposite",),
+    )

@@ -1,0 +1,12 @@
+"""Effect [neighbours]: F = k_n (u_{i+1} − u_i) along x and z between neighbours, u from the undeformed profile."""
+
+from contact1d.workflow.deck.effects.base import Contribution, Stage, number
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.settings import Settings
+
+
+def neighbours(scene: Scene, settings: Settings) -> Contribution:
+    """Shared slots: a bond type in system.data, and the places of the anchors (`workflow.deck.lattice`)."""
+    assert scene.neighbours is not None
+    coefficient = number(scene.neighbours.stiffness / 2)
+    return Contribution("neighbours", Stage.SPRINGS, ("neighbours",), {"neighbours_bond_coefficient": coefficient})

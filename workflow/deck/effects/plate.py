@@ -1,0 +1,22 @@
+"""Effect [plate]: the upper plate is a rigid body, M Z″ = F_contact − F_load − c Z′ (Eq. 5 of the paper)."""
+
+from contact1d.workflow.deck.effects.base import BINS, Contribution, Stage, number
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.settings import STAGGER, Settings
+
+
+def plate(scene: Scene, settings: Settings) -> Contribution:
+    """Shared slot: the mass of the anchors in system.data. The drag is shared out among them."""
+    assert scene.plate is not None
+    anchors = settings.particles * (1 if settings.far == 0.0 else 2)
+    variables = {
+        "plate_damping_per_anchor": number(settings.plate_damping / anchors),
+        "plate_free_x": "on" if "x" in scene.plate.free else "off",
+    }
+    fragments: tuple[str, ...] = ("plate",)
+    width = 2.0 * STAGGER * settings.particles * scene.bodies.spacing
+    own = max(settings.cutoff, settings.far / BINS)
+    if scene.interaction is not None and width / BINS > own:
+        fragments += ("wide",)
+        variables["wide_bin"] = number(width / BINS)
+    return Contribution("plate", Stage.PLATE, fragments, variables, integrates="plate")

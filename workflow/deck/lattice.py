@@ -1,0 +1,87 @@
+"""Geometry: where particles and anchors stand at displacement 0.
+
+Particle i stands at x_i = (i − (N−1)/2)·spacing; the lower body at z = 0, the upper one at z = rest + h(x). In LAMMPS
+the paper's z is z and the plane of motion is y = const: y = 0 for the lower body, y = ε for the upper one (see
+`potentials.table`).
+
+An anchor is a particle's place in its bulk. Neighbour springs of zero rest length, k_n (p_{i+1} − p_i), pull a chain's
+ends inward and a curved chain straight. Their force on the undeformed chain, r_i = k_n Σ_j (p_j − p_i) over the
+neighbours j of i, is cancelled exactly by moving each anchor by −r_i/k, k its bulk spring's: since that is linear and
+of zero rest length too, it is a constant force −r_i on particle i, and Σ r_i = 0 leaves the plate's force as it is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.settings import STAGGER, Settings
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Body:
+    """One body; positions [LU] of shape (N, 3), columns x, y (out of plane), z.
+
+    Attributes:
+        name: "lower" or "upper".
+        particles: undeformed places.
+        anchors: the bulk's ends of the bulk springs.
+        far_anchors: the bulk's ends of the long bonds, shape (N, 3), or (0, 3).
+    """
+
+    name: str
+    particles: Array
+    anchors: Array
+    far_anchors: Array
+
+
+def places(count: int, spacing: float) -> Array:
+    """x_i = (i − (N−1)/2)·spacing [LU], shape (count,)."""
+    return np.asarray((np.arange(count) - 0.5 * (count - 1)) * spacing, dtype=np.float64)
+
+
+def neighbour_forces(particles: Array, stiffness: float) -> Array:
+    """Forces r_i [FU] of zero-length neighbour springs on the chain `particles` (N, 3) [LU]; their sum is 0."""
+    pull = stiffness * np.diff(particles, axis=0)
+    force = np.zeros_like(particles)
+    force[:-1] += pull
+    force[1:] -= pull
+    return force
+
+
+def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
+    """The bodies of a scene, lower one first; on a rigid plane the upper one alone."""
+    x = places(settings.particles, scene.bodies.spacing)
+    flat = np.zeros_like(x)
+    offset = settings.table.plane_offset if settings.table is not None else 0.0
+    upper = np.column_stack([x, flat + offset, settings.rest + scene.bodies.height(x)])
+    if scene.bodies.lower == "rigid_plane":
+        return (_body("upper", upper, scene, settings),)
+    lower = np.column_stack([x, flat, flat])
+    return _body("lower", lower, scene, settings), _body("upper", upper, scene, settings)
+
+
+def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body:
+    tangential = scene.tangential_stiffness
+    softer = min(settings.bulk_stiffness, tangential) if settings.far else settings.bulk_stiffness
+    shift = np.zeros_like(particles)
+    if scene.neighbours is not None:
+        shift = -neighbour_forces(particles, scene.neighbours.stiffness) / softer
+        if scene.horizontal is None:
+            shift[:, 0] = 0.0
+    if scene.plate is not None and name == "upper":
+        shift[:, 1] = STAGGER * len(particles) * scene.bodies.spacing * (-1.0) ** np.arange(len(particles))
+    anchors = particles + shift
+    if settings.far == 0.0:
+        return Body(name, particles, anchors, np.empty((0, 3)))
+    away = np.zeros(3)
+    if tangential > settings.bulk_stiffness:
+        away[0] = -settings.far
+    else:
+        away[2] = settings.far if name == "upper" else -settings.far
+    return Body(name, particles, anchors, particles + away)

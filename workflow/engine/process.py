@@ -1,0 +1,254 @@
+"""The parent's end of a worker: start it, ask it, notice its death, keep it for the next session.
+
+ask(request, deadline) ──▶ worker ──▶ answer, or `WorkerLostError` with the cause in one sentence
+"""
+
+from __future__ import annotations
+
+import atexit
+import mmap
+import os
+import pickle
+import select
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Mapping
+from itertools import accumulate, pairwise
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+BOOT = """
+import sys, types
+for depth, name in enumerate(("contact1d", "contact1d.workflow", "contact1d.workflow.engine")):
+    package = types.ModuleType(name)
+    package.__path__ = [sys.argv[1 + depth]]
+    sys.modules[name] = package
+from contact1d.workflow.engine.worker import main
+main(*map(int, sys.argv[4:]))
+"""
+"""How a worker starts: from our files, whatever the current folder and the user's script are, and from no more of them
+than it needs: the packages' `__init__.py` do not run."""
+
+TICK = 0.2
+"""Seconds between two looks at the deadline and the progress while a worker is busy."""
+
+LAUNCHER_PREFIXES = ("PMI_", "PMIX_", "MPI_LOCAL")
+"""What mpiexec or srun tell their own ranks: a worker that read it would pose as one of them."""
+
+NODE_COUNTS = ("SLURM_STEP_NUM_NODES", "SLURM_NNODES", "SLURM_JOB_NUM_NODES")
+
+
+class WorkerLostError(Exception):
+    """The worker died or was killed; the text is the cause, one clause."""
+
+
+class OutOfTimeError(WorkerLostError):
+    """The worker was killed at the deadline."""
+
+
+def worker_environment(environ: Mapping[str, str]) -> dict[str, str]:
+    """Return the environment of a worker: one rank, one thread, no network listener on one node.
+
+    Args:
+        environ: the environment of the parent. A `UCX_TLS` in it is kept; without one, MPI may use only memory
+            (`self,sm`) unless Slurm says that the step has several nodes.
+    """
+    environment = {key: text for key, text in environ.items() if not key.startswith(LAUNCHER_PREFIXES)}
+    nodes = next((environ[key] for key in NODE_COUNTS if key in environ), "1")
+    if nodes == "1":
+        environment.setdefault("UCX_TLS", "self,sm")
+    return environment | {"OMP_NUM_THREADS": "1", "PYTHONSAFEPATH": "1"}
+
+
+def receive(connection: Connection) -> Any:
+    """Return what `workflow.engine.worker.send` sent, reading each array into the place where it stays.
+
+    Raises:
+        EOFError: the other end is gone.
+    """
+    head, sizes = connection.recv()
+    arrays = memoryview(bytearray(sum(sizes)))
+    left = arrays
+    while left:
+        count = os.readv(connection.fileno(), [left])
+        if not count:
+            raise EOFError
+        left = left[count:]
+    ends = list(accumulate(sizes, initial=0))
+    return pickle.loads(head, buffers=[arrays[start:end] for start, end in pairwise(ends)])
+
+
+class WorkerProcess:
+    """A running worker. After any failure it is dead, and stays so.
+
+    Attributes:
+        pid: its process id.
+        last_words: what it printed before it died; "" while it lives.
+    """
+
+    def __init__(self) -> None:
+        """Start a worker, which loads LAMMPS."""
+        self._connection, theirs = Pipe()
+        self._output = tempfile.TemporaryFile()  # noqa: SIM115 (open as long as the worker lives)
+        with tempfile.TemporaryFile() as file:
+            file.truncate(16)
+            self._board_map = mmap.mmap(file.fileno(), 16)
+            numbers = theirs.fileno(), file.fileno(), os.getpid()
+            packages = (str(parent) for parent in reversed(Path(__file__).parents[:3]))
+            command = [sys.executable, "-c", BOOT, *packages, *map(str, numbers)]
+            self._process = subprocess.Popen(
+                command,
+                pass_fds=(theirs.fileno(), file.fileno()),
+                stdin=subprocess.DEVNULL,
+                stdout=self._output,
+                stderr=subprocess.STDOUT,
+                env=worker_environment(os.environ),
+            )
+        theirs.close()
+        self._board = memoryview(self._board_map).cast("q")
+        self._ready = select.poll()
+        self._ready.register(self._connection.fileno(), select.POLLIN)
+        self.pid = self._process.pid
+        self.last_words, self._last_board = "", (0, 0)
+
+    @property
+    def alive(self) -> bool:
+        """Whether it can be asked."""
+        return not self._connection.closed and self._process.poll() is None
+
+    def board(self) -> tuple[int, int]:
+        """Return the timestep and the steps of the session, as of the last fifth of a second or of its death."""
+        return self._last_board if self._board_map.closed else (self._board[0], self._board[1])
+
+    def ask(
+        self,
+        request: tuple[Any, ...],
+        deadline: float,
+        tick: Callable[[], None] | None = None,
+        meanwhile: Callable[[], object] | None = None,
+    ) -> Any:
+        """Send a request and return the answer; any exception on the way kills the worker.
+
+        Args:
+            request: verb and arguments.
+            deadline: on the clock `time.monotonic` [s].
+            tick: called about five times a second while waiting.
+            meanwhile: called once, while the worker is busy.
+
+        Raises:
+            OutOfTimeError: the deadline passed.
+            WorkerLostError: it died.
+        """
+        try:
+            self._connection.send(request)
+            if meanwhile:
+                meanwhile()
+            while not self._ready.poll(1e3 * max(0.0, min(TICK, deadline - time.monotonic()))):
+                if time.monotonic() >= deadline:
+                    raise OutOfTimeError("it ran out of time")
+                if tick:
+                    tick()
+            return receive(self._connection)
+        except (EOFError, ConnectionError):
+            raise WorkerLostError(self._cause_of_death()) from None
+        except BaseException:
+            self.kill()
+            raise
+
+    def kill(self) -> None:
+        """End it at once and release everything that it held."""
+        self._process.kill()
+        self._release()
+
+    def stop(self) -> None:
+        """Let it leave by itself, which it does when its pipe closes; kill it after a second."""
+        self._connection.close()
+        try:
+            self._process.wait(1.0)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+        self._release()
+
+    def forget(self) -> None:
+        """After a fork, in the child: it belongs to the parent, leave it alone."""
+        self._connection.close()
+        self._output.close()
+        self._process.returncode = 0
+
+    def _release(self) -> None:
+        self._process.wait()
+        self._connection.close()
+        if not self._board_map.closed:
+            self._output.seek(0)
+            self.last_words = self._output.read(4000).decode(errors="replace").strip()
+            self._last_board = self._board[0], self._board[1]
+            self._board.release()
+            self._board_map.close()
+            self._output.close()
+
+    def _cause_of_death(self) -> str:
+        try:
+            self._process.wait(5.0)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+        self._release()
+        code = self._process.returncode
+        if code >= 0:
+            words = self.last_words.splitlines()[-1:] or ["no message"]
+            return f"the LAMMPS process ended by itself with exit code {code} ({words[0]})"
+        name = signal.Signals(-code).name
+        if name == "SIGKILL":
+            return "the LAMMPS process was killed (SIGKILL), most often because the machine was out of memory"
+        return f"the LAMMPS process crashed ({name})"
+
+
+_idle: list[WorkerProcess] = []
+_lock = threading.Lock()
+
+
+def borrow() -> WorkerProcess:
+    """Return a worker that nobody else uses: an idle one if it lives, otherwise a new one."""
+    with _lock:
+        while _idle:
+            worker = _idle.pop()
+            if worker.alive:
+                return worker
+            worker.kill()
+    return WorkerProcess()
+
+
+def start_ahead() -> None:
+    """Start the worker that the next `borrow` will return, so that LAMMPS loads while the caller prepares."""
+    give_back(borrow())
+
+
+def give_back(worker: WorkerProcess) -> None:
+    """Keep a worker without an open session for the next `borrow`."""
+    with _lock:
+        _idle.append(worker)
+
+
+def stop_idle() -> None:
+    """Stop the workers that wait for a session; runs when the interpreter exits."""
+    with _lock:
+        workers, _idle[:] = _idle[:], []
+    for worker in workers:
+        worker.stop()
+
+
+def _forget_idle() -> None:
+    global _lock
+    _lock = threading.Lock()
+    for worker in _idle:
+        worker.forget()
+    _idle.clear()
+
+
+atexit.register(stop_idle)
+os.register_at_fork(after_in_child=_forget_idle)

@@ -1,0 +1,226 @@
+"""LAMMPS for the rest of the program: one session per run folder, in a process of its own.
+
+    with Engine.session(folder) as session:
+        session.execute(text, phase="loading")
+        force = session.value("force")
+
+Whatever LAMMPS does (stop with an error, lose an atom, crash, hang, compute NaN), the caller gets an `EngineError` that
+says what, in which phase and at which step; the files of the folder stay, and the next session has a new process.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from numpy.typing import NDArray
+
+from contact1d.workflow.engine.failure import EngineError, plain_message
+from contact1d.workflow.engine.process import OutOfTimeError, WorkerLostError, WorkerProcess, borrow, give_back
+from contact1d.workflow.engine.progress import Progress, Silent
+
+LOG = "log.lammps"
+TAIL_LINES = 25
+LONGEST_LOG = 1_000_000
+HURRY = 5.0
+"""Seconds that LAMMPS has to close at the end of a session, past its time limit if need be."""
+
+Array = NDArray[Any]
+
+__all__ = ["Engine", "EngineError", "Installation", "Reading", "Session"]
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What LAMMPS was asked for at one moment.
+
+    Attributes:
+        values: one number per name, in the order of the names.
+        atoms: per-atom arrays by name, rows in the order of the atoms' ids.
+    """
+
+    values: tuple[float, ...]
+    atoms: dict[str, Array]
+
+
+@dataclass(frozen=True)
+class Installation:
+    """The LAMMPS that runs: version as YYYYMMDD, its packages, the MPI library, and which asked-for styles it lacks."""
+
+    version: int
+    packages: tuple[str, ...]
+    mpi: str
+    missing: tuple[tuple[str, str], ...]
+
+
+class Session:
+    """One LAMMPS instance in one run folder; made by `Engine.session`.
+
+    Attributes:
+        folder: the run folder, the current one for every file name in a command.
+        pid: process id of the worker.
+        phase: the phase that runs or ran last.
+        timestep: LAMMPS's step counter after the last request.
+        steps: timesteps run and minimiser iterations, summed over the session.
+        lammps_seconds: wall time spent inside LAMMPS [s].
+        lammps_cpu_seconds: processor time spent there [s].
+    """
+
+    def __init__(self, worker: WorkerProcess, folder: Path, time_limit: float, progress: Progress) -> None:
+        """Open a fresh instance in the folder. Use `Engine.session`, which also closes it."""
+        self.folder, self.pid, self.phase = folder, worker.pid, "start"
+        self.timestep = self.steps = 0
+        self.lammps_seconds = self.lammps_cpu_seconds = 0.0
+        self._worker, self._progress = worker, progress
+        self._time_limit, self._deadline = time_limit, time.monotonic() + time_limit
+        self._shown, self._over, self._commands = 0, "", ""
+        self._ask("open", str(folder))
+
+    def execute(self, text: str, phase: str | None = None, expected_steps: int | None = None) -> None:
+        """Run LAMMPS commands.
+
+        Args:
+            text: any number of lines; `&` continues one, triple quotes may span several.
+            phase: name of what they do, for errors and progress; kept until the next one. None: as before.
+            expected_steps: steps of the whole phase, for the progress; None where unknown.
+
+        Raises:
+            EngineError: LAMMPS failed, ran out of time or left a position that is not finite.
+        """
+        self._enter(phase, expected_steps)
+        self.measure(text)
+
+    def run_file(self, name: str, phase: str | None = None, expected_steps: int | None = None) -> None:
+        """Run the LAMMPS file `name` of the folder, in which `label`, `next` and `jump SELF` work. See `execute`."""
+        self._enter(phase, expected_steps)
+        path = self.folder / name
+        self._commands = path.read_text(errors="replace") if path.is_file() else ""
+        self._ask("measure", "", name, (), ())
+
+    def value(self, name: str) -> float:
+        """Return one number: an equal-style variable by its name, or a LAMMPS formula such as "f_hold[3]" or "pe"."""
+        return self.measure("", (name,)).values[0]
+
+    def values(self, *names: str) -> tuple[float, ...]:
+        """Return several numbers (see `value`) in one round trip."""
+        return self.measure("", names).values
+
+    def atoms(self, *names: str) -> dict[str, Array]:
+        """Return copies of per-atom arrays by name, rows in the order of the ids; "id" and "type" are always there.
+
+        Args:
+            names: properties ("x", "v", "f", "molecule"), computes ("c_opposite", "c_opposite[1]"), fixes ("f_…")
+                and atom-style variables ("v_…").
+        """
+        return self.measure("", (), ("id", *names)).atoms
+
+    def measure(
+        self,
+        text: str,
+        values: Sequence[str] = (),
+        atoms: Sequence[str] = (),
+        meanwhile: Callable[[], object] | None = None,
+    ) -> Reading:
+        """Run commands and return values and per-atom arrays, all in one round trip: one point of a curve.
+
+        What `meanwhile` does costs no time of its own, as long as LAMMPS takes longer.
+
+        Raises:
+            EngineError: as `execute`, or a number that was asked for is unknown or not finite.
+        """
+        self._commands = text
+        numbers, arrays = self._ask("measure", text, "", tuple(values), tuple(atoms), meanwhile=meanwhile)
+        return Reading(tuple(numbers), arrays)
+
+    def about(self, styles: Sequence[tuple[str, str]] = ()) -> Installation:
+        """Return what this LAMMPS is, and which of the styles, pairs such as ("fix", "rigid"), it lacks."""
+        facts = self._ask("about", tuple(styles))
+        return Installation(facts["version"], tuple(facts["packages"]), facts["mpi"], tuple(facts["missing"]))
+
+    def close(self) -> None:
+        """Close the instance and leave the process to the next session, unless it failed. Use `Engine.session`."""
+        if not self._over:
+            self._deadline = max(self._deadline, time.monotonic() + HURRY)
+            self._ask("close")
+            self._over = "it was closed"
+            give_back(self._worker)
+
+    def _enter(self, phase: str | None, expected_steps: int | None) -> None:
+        if phase is not None and (phase != self.phase or expected_steps is not None):
+            self.phase = phase
+            self._progress.phase(phase, expected_steps)
+
+    def _ask(self, *request: Any, meanwhile: Callable[[], object] | None = None) -> Any:
+        if self._over:
+            raise EngineError(f"the session is over: {self._over}", self.phase, self.timestep, self.folder, "")
+        try:
+            reply = self._worker.ask(request, self._deadline, self._tick, meanwhile)
+        except WorkerLostError as lost:
+            late = f"the run took longer than its time limit of {self._time_limit:g} s"
+            self.timestep, self.steps = self._worker.board()
+            raise self._failure(late if isinstance(lost, OutOfTimeError) else str(lost)) from None
+        except BaseException as error:
+            self._over = f"it was interrupted by {type(error).__name__}"
+            raise
+        outcome, payload, self.timestep, self.steps, self.lammps_seconds, self.lammps_cpu_seconds = reply
+        self._advance(self.steps)
+        if outcome == "done":
+            return payload
+        self._worker.kill()
+        raise self._failure(plain_message(payload, self._log(), self._commands) if outcome == "lammps" else payload)
+
+    def _tick(self) -> None:
+        self._advance(self._worker.board()[1])
+
+    def _advance(self, steps: int) -> None:
+        if steps > self._shown:
+            self._progress.advance(steps - self._shown)
+            self._shown = steps
+
+    def _failure(self, message: str) -> EngineError:
+        self._over = message
+        lines = self._log().splitlines()[-TAIL_LINES:] + self._worker.last_words.splitlines()
+        tail = "\n".join(lines)
+        return EngineError(message, self.phase, self.timestep, self.folder, tail)
+
+    def _log(self) -> str:
+        log = self.folder / LOG
+        if self.phase == "start" or not log.is_file():  # before the start a log is an older run's
+            return ""
+        with log.open("rb") as file:
+            file.seek(max(0, log.stat().st_size - LONGEST_LOG))
+            return file.read().decode(errors="replace")
+
+
+class Engine:
+    """The way to LAMMPS. Worker processes are kept for later sessions and end with the program."""
+
+    @staticmethod
+    @contextmanager
+    def session(folder: Path, time_limit: float = 3600.0, progress: Progress | None = None) -> Iterator[Session]:
+        """Open a LAMMPS instance in a run folder for the length of a `with` block.
+
+        Args:
+            folder: an existing folder; LAMMPS writes `log.lammps` there.
+            time_limit: wall time from now on after which LAMMPS is killed [s].
+            progress: who hears of phases and steps; nobody by default. It is not closed here.
+
+        Raises:
+            NotADirectoryError: there is no such folder.
+            EngineError: LAMMPS does not start, or fails later.
+        """
+        folder = Path(folder).resolve()
+        if not folder.is_dir():
+            raise NotADirectoryError(f"the run folder {folder} does not exist")
+        session = Session(borrow(), folder, time_limit, progress or Silent())
+        try:
+            yield session
+        except BaseException:
+            with suppress(EngineError):
+                session.close()
+            raise
+        session.close()

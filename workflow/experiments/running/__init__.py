@@ -1,0 +1,1 @@
+"""What all experiments share: a contact under way, searches, trust, and what they hand over."""

@@ -1,0 +1,170 @@
+"""A contact under way: rows of a schedule go to LAMMPS one by one, and each comes back as a measured state."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.analysis.pressure import Profile, interpenetration, pressure_profile, smallest_distance
+from contact1d.workflow.deck.datafile import PARTICLES
+from contact1d.workflow.deck.deck import STEP_COLUMNS, Deck, Phase
+from contact1d.workflow.engine.session import EngineError, Session
+from contact1d.workflow.experiments.running.radii import radius_of
+from contact1d.workflow.scene import Scene
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class State:
+    """One measured state.
+
+    Attributes:
+        phase: name of its phase.
+        displacement: [LU].
+        force: of the contact on the plate, compression positive [FU]: the sum over the upper particles.
+        profile: pressure and shear along x.
+        smallest_distance: between particles of opposite bodies, or of a particle from the plane [LU].
+        depth: how far an upper particle lies below the lower surface [LU]; 0 where none does.
+        residual: largest unbalanced force of a particle along a direction in which it may move [FU].
+        plate_velocity: [LU/TU], 0 where the plate's place is prescribed.
+        plate_x: place of the plate along x [LU].
+        cantilever_force: [FU].
+        step: LAMMPS timestep.
+    """
+
+    phase: str
+    displacement: float
+    force: float
+    profile: Profile
+    smallest_distance: float
+    depth: float
+    residual: float
+    plate_velocity: float = 0.0
+    plate_x: float = 0.0
+    cantilever_force: float = 0.0
+    step: float = 0.0
+
+
+class Contact:
+    """A deck that is being run. It keeps its schedule: `phases` is what in.lammps must hold to repeat it."""
+
+    def __init__(self, deck: Deck, session: Session) -> None:
+        """Run the deck's head: bodies, effects, method."""
+        self.deck = deck
+        self.scene: Scene = deck.scene
+        self.settings = deck.settings
+        self.session = session
+        self._phases: list[Phase] = []
+        self._unfinished = ""
+        self._states = 0
+        self._latest: Profile | None = None
+        session.execute(deck.head, phase="setting up")
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """The schedule so far."""
+        return tuple(self._phases)
+
+    def begin(self, name: str, step: str, fragments: tuple[str, ...] = (), expected_steps: int | None = None) -> None:
+        """Begin a phase whose rows are of the kind `step`."""
+        self._phases.append(Phase(name, step, (), begin=fragments))
+        end = "variable        row_phase delete\n" if len(self._phases) > 1 else ""
+        self._unfinished += end + self.deck.begin(name, fragments)
+        self.session.execute("", phase=name, expected_steps=expected_steps)
+
+    def row(self, *values: float) -> State:
+        """Run one row of the current phase and measure.
+
+        Raises:
+            EngineError: LAMMPS failed, or lost particles.
+        """
+        phase = self._phases[-1]
+        self._phases[-1] = Phase(phase.name, phase.step, (*phase.rows, values), begin=phase.begin)
+        text = self._unfinished + self.deck.values(phase.step, values) + self.deck.row(phase.step)
+        arrays = ("x", "f", "v_opposite_x", "v_opposite_z")
+        reading = self.session.measure(text, self._values(), arrays, meanwhile=self._look_back)
+        self._unfinished = self.deck.row_end + self.deck.forget(phase.step)
+        state = self._state(phase.name, dict(zip(self._values(), reading.values, strict=True)), reading.atoms)
+        self._latest = state.profile
+        return state
+
+    def _look_back(self) -> None:
+        """Work out the radius of the row before, which its profile then keeps: LAMMPS is busy with the next one."""
+        if self._latest is not None:
+            with suppress(ValueError):  # told where the radius is asked for
+                radius_of(self.scene, self._latest)
+
+    def write_state(self) -> None:
+        """Write the state that the last row left to states.lammpstrj; it ends the phase."""
+        phase = self._phases[-1]
+        self._phases[-1] = Phase(phase.name, phase.step, phase.rows, True, phase.begin)
+        self._unfinished += self.deck.state(first=self._states == 0)
+        self._states += 1
+
+    def finish(self) -> None:
+        """Run what is left of the last row."""
+        self.session.execute(self._unfinished, phase=self._phases[-1].name)
+        self._unfinished = ""
+
+    def replay(self, phases: Sequence[Phase]) -> list[State]:
+        """Run a whole schedule."""
+        states = []
+        for phase in phases:
+            timed = "row_steps" in STEP_COLUMNS[phase.step]
+            steps = int(sum(row[1] for row in phase.rows)) if timed else None
+            self.begin(phase.name, phase.step, phase.begin, steps)
+            states += [self.row(*values) for values in phase.rows]
+            if phase.state:
+                self.write_state()
+        self.finish()
+        return states
+
+    def _values(self) -> tuple[str, ...]:
+        names = ["plate_displacement", "step"]
+        if self.scene.plate is not None:
+            names.append("plate_velocity")
+        if self.scene.cantilever is not None:
+            names += ["cantilever_plate", "cantilever_force"]
+        return tuple(names)
+
+    def _state(self, phase: str, numbers: dict[str, float], atoms: dict[str, Array]) -> State:
+        upper = atoms["type"] == PARTICLES["upper"]
+        lower = atoms["type"] == PARTICLES["lower"]
+        here = int(upper.sum() + lower.sum())
+        if here < self.settings.particles * (1 if self.scene.bodies.lower == "rigid_plane" else 2):
+            # LAMMPS looks for lost atoms when it makes a new neighbour list, and a row may end before.
+            message = f"atoms are missing: only {here} particles are left in the box"
+            raise EngineError(message, phase, int(numbers["step"]), self.session.folder, "")
+        place, force = atoms["x"], atoms["f"]
+        x, z = place[upper, 0], place[upper, 2]
+        if lower.any():
+            x_low, z_low = place[lower, 0], place[lower, 2]
+            closest = smallest_distance(x, z, x_low, z_low)
+            depth = interpenetration(x, z, x_low, z_low).depth
+            z_below = np.interp(x, x_low, z_low)
+        else:
+            # The plane's own softness lets a particle dip into it: the surface is where the particle is.
+            closest, depth = float(max(z.min(), 0.0)), 0.0
+            z_below = np.minimum(z, 0.0)
+        profile = pressure_profile(
+            x, z, z_below, atoms["v_opposite_x"][upper], atoms["v_opposite_z"][upper], self.scene.bodies.spacing
+        )
+        free = [0, 2] if self.scene.horizontal is not None else [2]
+        return State(
+            phase=phase,
+            displacement=numbers["plate_displacement"],
+            force=float(atoms["v_opposite_z"][upper].sum()),
+            profile=profile,
+            smallest_distance=closest,
+            depth=depth,
+            residual=float(np.abs(force[upper | lower][:, free]).max()),
+            plate_velocity=-numbers.get("plate_velocity", 0.0),
+            plate_x=numbers.get("cantilever_plate", 0.0),
+            cantilever_force=numbers.get("cantilever_force", 0.0),
+            step=numbers["step"],
+        )

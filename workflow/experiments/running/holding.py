@@ -1,0 +1,172 @@
+"""Force control in time, the paper's way: hold a load until all is at rest, or until the bodies part.
+
+LAMMPS itself looks every few timesteps whether the plate is at rest or out of reach, and stops there; only then a state
+is measured. With automatic damping each load has the drag that is critical for the contact's stiffness under it: the
+stiffness falls to zero towards the pull-off, and one drag for all makes the last tensions creep. Where pairs snap, it
+does not fall: F(d) is a row of teeth, each as stiff as the pairs that still hold, and a plate that swings past one
+lets go of pairs that would have held.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import IntEnum
+
+from contact1d.workflow.experiments.running.contact import Contact, State
+from contact1d.workflow.experiments.running.outcome import UntrustedError, require_trust
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.dynamics import SOFTENING
+from contact1d.workflow.settings.settings import Settings
+
+CHUNK = 0.25
+"""Time between two samples of a thermal contact over the settling time."""
+FEWEST_STEPS = 20
+PATIENCE = 10.0
+"""Time of one row over the settling time, after which a state is measured in any case."""
+MOST_ROWS = 50
+"""Rows under one load after which it counts as never coming to rest."""
+AT_REST = 0.1
+"""Unbalanced load over the load scale and the tolerance."""
+CALMER = 0.5
+"""Factor on the threshold of a plate that stood still while its contact did not."""
+LOST = 0.7
+"""Tension over what is pulled with, below which a plate that moves off counts as lost."""
+PARTED = 0.6
+"""The same of the estimate's largest tension, where LAMMPS stops: the first place at which to look for it."""
+
+
+class Start(IntEnum):
+    """Where a load begins."""
+
+    BACK = -1
+    """Where the load before began."""
+    HERE = 0
+    KEPT = 1
+    """Here, and the place is kept to come back to."""
+
+
+@dataclass(frozen=True)
+class Held:
+    """What a load led to.
+
+    Attributes:
+        load: compression positive [FU].
+        states: measured on the way.
+        held: whether the contact carries it at rest.
+        unbalance: |contact force − load| at the end [FU].
+    """
+
+    load: float
+    states: tuple[State, ...]
+    held: bool
+    unbalance: float
+
+    @property
+    def last(self) -> State:
+        """The last state."""
+        return self.states[-1]
+
+
+def chunk_steps(settings: Settings) -> int:
+    """Timesteps between two samples of a thermal contact."""
+    return max(FEWEST_STEPS, math.ceil(CHUNK * settings.settle_time / settings.time_step))
+
+
+def stiffness_under(settings: Settings, load: float) -> float:
+    """Contact stiffness [FU/LU] under a load [FU]; where pairs snap, that of all that are stuck when deepest."""
+    if settings.estimate.snaps:
+        return settings.estimate.stuck_stiffness(settings.largest_displacement)
+    return settings.estimate.stiffness_under(load)
+
+
+def damping_under(settings: Settings, load: float) -> float:
+    """Coefficient of a particle [FU·TU/LU]; an automatic one is critical for the contact's stiffness under the load."""
+    if settings.damped_stiffness == 0.0:
+        return settings.damping
+    stiffer = stiffness_under(settings, load) / settings.damped_stiffness
+    return settings.damping * math.sqrt(min(stiffer, 1.0 / SOFTENING))
+
+
+def overshoot(settings: Settings, mass: float, load: float, next_load: float) -> float:
+    """How far a plate at rest under `load` shoots past its place under `next_load` at most, over the way there.
+
+    exp(−πζ/√(1 − ζ²)) of a linear oscillator with the stiffness of the beginning, the largest one under tension.
+    """
+    moving = settings.plate_mass + settings.particles * mass
+    drag = settings.particles * damping_under(settings, next_load) + settings.plate_damping
+    ratio = drag / (2.0 * math.sqrt(stiffness_under(settings, load) * moving))
+    return math.exp(-math.pi * ratio / math.sqrt(1.0 - ratio**2)) if ratio < 1.0 else 0.0
+
+
+def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start: Start) -> tuple[float, ...]:
+    """The values of a `hold` row, which ends where the contact's force is within `at_rest` of the load.
+
+    With M the plate's mass, N m that of the particles that move with it and c the drag on both, the contact's force
+    misses the load by (M + N m) Z″ + c Z′; LAMMPS knows M Z″ and Z′.
+    """
+    damping = damping_under(settings, load)
+    inertia = 1.0 + settings.particles * scene.bodies.mass / settings.plate_mass
+    drag = settings.particles * damping + settings.plate_damping
+    parted = settings.estimate.parted(PARTED) if load < 0.0 else _apart(settings)
+    steps = max(FEWEST_STEPS, math.ceil(PATIENCE * settings.settle_time / settings.time_step))
+    rest = at_rest(scene, scale) / inertia
+    return int(start), load, damping, drag / inertia, rest, parted, _through(settings), steps
+
+
+def at_rest(scene: Scene, scale: float) -> float:
+    """Unbalanced force [FU] at which a contact counts as at rest; `scale` is the force in question [FU]."""
+    return AT_REST * scene.accuracy.tolerance * scale
+
+
+def hold(contact: Contact, load: float, scale: float, start: Start = Start.KEPT) -> Held:
+    """Apply a load to a `hold` phase and run until it is held at rest, or lost.
+
+    At rest means that the contact's force balances the load within `at_rest(scene, scale)`, and that the plate's motion
+    keeps it there (see `hold_row`).
+
+    Raises:
+        UntrustedError: the contact neither comes to rest nor is lost, or see `require_trust`.
+    """
+    settings = contact.settings
+    near = at_rest(contact.scene, scale)
+    _, _, damping, drag, rest, parted, through, steps = hold_row(contact.scene, settings, load, scale, start)
+    states: list[State] = []
+    for _ in range(MOST_ROWS):
+        state = contact.row(int(start), load, damping, drag, rest, parted, through, steps)
+        states.append(state)
+        unbalance, calm = abs(state.force - load), drag * abs(state.plate_velocity) <= rest
+        if calm and unbalance <= near:
+            require_trust(contact.scene, settings, state)
+            return Held(load, tuple(states), True, unbalance)
+        if state.displacement < parted:
+            if _lost(contact, state, load):
+                return Held(load, tuple(states), False, unbalance)
+            parted = _apart(settings)
+        if state.displacement > through:
+            require_trust(contact.scene, settings, state)
+            raise UntrustedError(f"under {load:.4g} FU the plate went on to {state.displacement:.4g} LU")
+        rest *= CALMER if calm else 1.0
+        start = Start.HERE
+    raise UntrustedError(
+        f"the contact did not come to rest under {load:.4g} FU within {MOST_ROWS * steps} timesteps "
+        f"(phase {state.phase}): {unbalance:.2g} FU are unbalanced. More [damping] or [plate] damping settles it sooner"
+    )
+
+
+def _apart(settings: Settings) -> float:
+    """Displacement [LU] at which the bodies are certainly out of each other's reach."""
+    return settings.rest - settings.cutoff - settings.estimate.spacing
+
+
+def _through(settings: Settings) -> float:
+    """Displacement [LU] beyond what a plate without any damping would shoot to: the bodies went through each other."""
+    way = settings.largest_displacement - settings.rest + settings.cutoff
+    return settings.largest_displacement + 2.0 * max(way, settings.estimate.spacing)
+
+
+def _lost(contact: Contact, state: State, load: float) -> bool:
+    """Out of reach, or moving off with a tension that has fallen below what is pulled with."""
+    if contact.settings.law is not None and state.smallest_distance > contact.settings.cutoff:
+        return True
+    return load < 0.0 and state.plate_velocity < 0.0 and -state.force < -LOST * load

@@ -1,0 +1,139 @@
+"""Prescribed displacement: approach a force from below, and unload until the bodies separate."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.experiments.running.contact import Contact, State
+from contact1d.workflow.experiments.running.outcome import Outcome, ThroughError, UntrustedError, require_trust
+from contact1d.workflow.experiments.running.run_context import RunContext
+
+MOST_ROWS = 2_000
+"""Rows of one branch of a search; a search that needs more has no end in sight."""
+APPROACH = 1e-3
+"""How near to a wanted force a search must come, over the tolerance."""
+SEPARATED = 0.02
+"""Tension over the largest one at which bodies that move apart count as separated."""
+PAST_PEAK = 0.5
+"""Tension over the largest one below which increments may grow."""
+GROWTH, SMOOTH_GROWTH = 1.2, 1.6
+OVERSHOOT = 1.02
+"""Secant steps aim a little beyond, so that a bracket forms instead of a slow approach from one side."""
+SAME_PLACE = 1e-12
+"""Displacements [LU] nearer than this are the same place: a force that still differs has jumped."""
+SMALLER = (1 / 4, 1 / 16)
+"""Parts of the increments that are tried where bodies went through each other: a body that moves by much of its
+particles' distance from the opposite ones, or by which their force changes much, lets the minimiser put one beyond."""
+
+
+def in_smaller_steps(search: Callable[[RunContext], Outcome]) -> Callable[[RunContext], Outcome]:
+    """The same search, which begins anew in smaller steps where the bodies went through each other.
+
+    Raises:
+        ThroughError: they do so in the smallest steps, too, so that it is the load and not the way there.
+    """
+
+    def searched(context: RunContext) -> Outcome:
+        deck = context.deck
+        try:
+            return search(context)
+        except ThroughError as error:
+            latest = error
+        for part in SMALLER:
+            context.progress.note(f"the bodies went through each other: again from the start in steps of {part:g}")
+            context.deck = Deck(deck.scene, deck.settings.in_smaller_steps(part))
+            try:
+                return search(context)
+            except ThroughError as error:
+                latest = error
+            finally:
+                context.deck = deck
+        raise ThroughError(f"{latest}. Steps {1 / SMALLER[-1]:g} times smaller did not help")
+
+    return searched
+
+
+def approach(contact: Contact, force: float, start: float, direction: int = 1) -> list[State]:
+    """Rows of growing displacement (direction 1; falling: −1) from `start` [LU] until the force is `force` [FU].
+
+    Increments are those of the settings at most and follow the secant of the last two rows near the end. The last
+    state's force is within APPROACH·tolerance of the wanted one.
+
+    Raises:
+        UntrustedError: see `require_trust`; also where the wanted force cannot be held.
+    """
+    scale = max(abs(force), contact.settings.force_scale)
+    near = APPROACH * contact.scene.accuracy.tolerance * scale
+    states = [measured(contact, start)]
+    before, beyond = None, None
+    while abs(states[-1].force - force) > near:
+        last = states[-1]
+        if direction * (last.force - force) > 0:
+            beyond = last
+        else:
+            before = last
+        if before is None:
+            raise UntrustedError(
+                f"{force:.4g} FU cannot be approached: the force starts at {last.force:.4g} FU, "
+                f"{'below' if direction < 0 else 'above'} it already. Take a force beyond that, or "
+                'kind = "path" to see the curve'
+            )
+        if beyond is not None and abs(beyond.displacement - before.displacement) < SAME_PLACE:
+            raise UntrustedError(
+                f"the force jumps past {force:.4g} FU at displacement {before.displacement:.6g} LU, from "
+                f"{before.force:.4g} to {beyond.force:.4g} FU: particles snap or slip there, and no state on this way "
+                'has the force. Take a force outside of the jump, kind = "path" to see all of it, or stiffer springs '
+                "or a longer range, with which particles do not snap"
+            )
+        if len(states) > MOST_ROWS or (direction < 0 and last.smallest_distance > contact.settings.cutoff):
+            raise UntrustedError(f"{force:.4g} FU is never reached: the largest tension is smaller")
+        step = contact.settings.increment(last.smallest_distance if direction > 0 else math.inf)
+        states.append(measured(contact, _next(before, beyond, states, force, direction * step)))
+    return states
+
+
+def _next(before: State, beyond: State | None, states: list[State], force: float, step: float) -> float:
+    """The secant's place, kept inside the bracket or within one step."""
+    if beyond is not None:
+        part = (force - before.force) / (beyond.force - before.force)
+        return before.displacement + min(max(part, 0.05), 0.95) * (beyond.displacement - before.displacement)
+    ahead = 1.0
+    if len(states) > 1 and states[-1].force != states[-2].force:
+        slope = (states[-1].force - states[-2].force) / (states[-1].displacement - states[-2].displacement)
+        needed = OVERSHOOT * (force - before.force) / slope / step
+        ahead = min(1.0, needed) if needed > 0 else 1.0
+    return before.displacement + ahead * step
+
+
+def separate(contact: Contact, start: float, largest: float = 0.0) -> list[State]:
+    """Rows of falling displacement from `start` [LU] until the tension has passed its largest value and is gone.
+
+    `largest` is what the tension has been before [FU].
+    """
+    displacement, states = start, [measured(contact, start)]
+    step = contact.settings.increment()
+    growth = SMOOTH_GROWTH if contact.settings.is_smooth else GROWTH
+    for _ in range(MOST_ROWS):
+        displacement -= step
+        state = measured(contact, displacement)
+        states.append(state)
+        largest = max(largest, -state.force)
+        if largest > 0.0 and -state.force < PAST_PEAK * largest and state.force <= 0.0:
+            step *= growth
+        if _apart(contact, state, largest):
+            return states
+    raise UntrustedError(f"the bodies did not separate within {MOST_ROWS} increments of the displacement")
+
+
+def _apart(contact: Contact, state: State, largest: float) -> bool:
+    gone = largest > 0.0 and abs(state.force) < SEPARATED * largest
+    return gone or state.smallest_distance > contact.settings.cutoff
+
+
+def measured(contact: Contact, displacement: float) -> State:
+    """One row at a displacement [LU]. Raises UntrustedError, see `require_trust`."""
+    state = contact.row(displacement)
+    require_trust(contact.scene, contact.settings, state)
+    return state

@@ -1,0 +1,1 @@
+"""A normal force, and a cantilever that pulls."""

@@ -1,0 +1,1 @@
+"""From a scene to a finished run folder: passes, files, figures, scales."""

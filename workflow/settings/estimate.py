@@ -1,0 +1,235 @@
+"""What a contact will roughly look like, before LAMMPS runs: independent opposite pairs under the undeformed profile.
+
+A particle on each side, each on its spring k, at the actual distance r have the undeformed gap
+
+    G(r) = r − 2 f(r)/k,       f(r) = Σ_j f_pair(√(r² + (js)²)) r/√(r² + (js)²)
+
+with f the force of a whole straight row of opposite particles. F(d) = Σ_i f(r_i) with G(r_i) = r₀ + h(x_i) − d, where
+h is the profile. This chooses chain lengths, first steps and time scales; no result depends on it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.potentials import DoubleExponential
+
+Array = NDArray[np.float64]
+GRID = 4000
+CONTACT_POINTS = 401
+BRANCH_POINTS, COARSE_POINTS = 400, 40
+CUTS, PARTS = 5, 17
+"""How often the bracket of a displacement is cut, and at how many places: then the force is straight in it to 1e-10.
+`scipy.optimize.brentq` would do it too, but its import takes a quarter of the time of a whole small run."""
+DIFFERENCE = 1e-3
+"""Difference of two displacements whose forces give a stiffness, over the way since the bodies feel each other."""
+FLAT = 1e-6
+"""Rise of a gap over the mean one below which the grid is level there: made monotone, where a pair snaps."""
+SOFTEST = 0.998
+"""Tension over the largest one at which a contact counts as softest: at the largest itself it has no stiffness left."""
+PLACES, NEAR = 1000, 0.01
+"""Places at which a profile is tabulated, and the first one beyond its apex over the spacing."""
+ROUNDS, SHARES = 12, np.linspace(0.0, 1.0, 33)[:, None]
+"""How often a bracket is cut, and where: one step of a bisection takes as long, and 60 are needed for all digits."""
+
+
+class Profile(Protocol):
+    """The undeformed shape of the upper body."""
+
+    def height(self, x: Array) -> Array:
+        """Height [LU] at x [LU]."""
+
+    @property
+    def reach(self) -> float:
+        """Half-width [LU] of the body."""
+
+
+@dataclass(frozen=True)
+class Tabulated:
+    """A profile that was asked once for its `heights` [LU] at rising `places` [LU] from 0, with straight lines between.
+
+    For a measured one, whose transform takes long: an estimate asks thousands of times.
+    """
+
+    places: Array
+    heights: Array
+
+    def height(self, x: Array) -> Array:
+        """Height [LU] at x [LU]."""
+        return np.interp(np.abs(x), self.places, self.heights)
+
+    @property
+    def reach(self) -> float:
+        """Half-width [LU] of the body."""
+        return float(self.places[-1])
+
+
+def tabulated(profile: Profile, spacing: float) -> Tabulated:
+    """The profile, which must have an end, at places in a geometric row: those of a parabola within 1e-4 of its height.
+
+    That holds up to a reach of 1e10 spacings [LU]; nearer to the apex than NEAR spacings it is a line.
+    """
+    places = np.concatenate([[0.0], np.geomspace(min(NEAR * spacing, 0.5 * profile.reach), profile.reach, PLACES)])
+    return Tabulated(places, profile.height(places))
+
+
+@dataclass(frozen=True)
+class ContactEstimate:
+    """Independent pairs under a profile.
+
+    Attributes:
+        gap: undeformed gap G [LU] over a grid of distances, made monotone where pairs would snap.
+        force: force [FU] of one particle on that grid.
+        rest: distance r₀ [LU] of the apexes at displacement 0.
+        profile: the upper body's shape.
+        spacing: [LU].
+        stiffness: contact stiffness of one particle [FU/LU], both springs in series.
+        snaps: whether pairs snap: G(r) falls somewhere, so that loading and unloading differ.
+    """
+
+    gap: Array
+    force: Array
+    rest: float
+    profile: Profile
+    spacing: float
+    stiffness: float
+    snaps: bool = False
+
+    def contact_force(self, displacement: float) -> float:
+        """F(d) [FU], compression positive."""
+        return float(self.contact_forces(np.asarray([displacement]))[0])
+
+    def contact_forces(self, displacements: Array) -> Array:
+        """F(d) [FU] at each of the displacements [LU], compression positive."""
+        half = self.half_widths(displacements, self.gap[-1])
+        x = np.linspace(-half, half, CONTACT_POINTS)
+        gap = self.rest + self.profile.height(x.ravel()).reshape(x.shape) - displacements
+        per_particle = np.interp(gap, self.gap, self.force, right=0.0)
+        return np.asarray(np.trapezoid(per_particle, x, axis=0)) / self.spacing
+
+    def half_width(self, displacement: float, gap: float) -> float:
+        """`half_widths` at one displacement."""
+        return float(self.half_widths(np.asarray([displacement]), gap)[0])
+
+    def half_widths(self, displacements: Array, gap: float) -> Array:
+        """Half-widths [LU] within which the undeformed gap is below `gap` [LU] at these displacements [LU].
+
+        At most the body's own.
+        """
+        height, reach = gap - self.rest + displacements, self.profile.reach
+        inner, outer = np.zeros_like(height), np.full_like(height, min(self.spacing, reach))
+        while (short := (outer < reach) & (self.profile.height(outer) < height)).any():
+            inner[short], outer[short] = outer[short], np.minimum(2 * outer[short], reach)
+        column = np.arange(len(height))
+        for _ in range(ROUNDS):
+            places = inner + (outer - inner) * SHARES
+            places[-1] = outer
+            cell = (self.profile.height(places[1:-1]) < height).sum(axis=0)
+            inner, outer = places[cell, column], places[cell + 1, column]
+        whole = reach < np.inf and self.profile.height(np.asarray([reach]))[0] < height
+        return np.where(height <= 0, self.spacing, np.where(whole, reach, outer))
+
+    def pull_off_force(self) -> float:
+        """Largest tension of the estimate [FU]; 0 without attraction."""
+        return max(0.0, self._largest_tension[1])
+
+    def stiffness_under(self, force: float) -> float:
+        """Contact stiffness dF/dd [FU/LU] under a force [FU]; a tension above SOFTEST of the largest counts as that."""
+        if force > 0.0:
+            deepest = self.displacement_at(force)
+            step = DIFFERENCE * (deepest - self.rest + float(self.gap[-1]))
+            return (self.contact_force(deepest) - self.contact_force(deepest - step)) / step
+        places, forces = self._tensions
+        top = int(forces.argmin())
+        stiffness = np.gradient(forces, places)[top:]
+        return float(np.interp(max(force, SOFTEST * forces[top]), forces[top:], stiffness))
+
+    @cached_property
+    def snap(self) -> tuple[float, float]:
+        """(undeformed gap [LU] at which a pair lets go, tension [FU] that it loses then); the end, 0 if none does."""
+        level = np.flatnonzero(np.diff(self.gap) < FLAT * float(np.ptp(self.gap)) / self.gap.size)
+        if level.size == 0:
+            return float(self.gap[-1]), 0.0
+        return float(self.gap[level[0]]), float(self.force[level[-1] + 1] - self.force[level[0]])
+
+    def stuck_stiffness(self, displacement: float) -> float:
+        """Contact stiffness [FU/LU] of all pairs together that have not let go at a displacement [LU]; one at least."""
+        width = 2.0 * self.half_width(displacement, self.snap[0])
+        return max(1.0, width / self.spacing) * self.stiffness
+
+    def parted(self, share: float) -> float:
+        """Displacement [LU] beyond the largest tension at which the tension has fallen to this share of it."""
+        places, forces = self._tensions
+        top = int(forces.argmin())
+        gone = forces[:top] > share * forces[top]
+        return float(places[:top][gone][-1]) if gone.any() else float(places[0])
+
+    @cached_property
+    def _largest_tension(self) -> tuple[float, float]:
+        """(displacement [LU], tension [FU]) where the tension is largest, looked for twice, the second time nearby."""
+        low, high = self.rest - float(self.gap[-1]), self.rest
+        for _ in range(2):
+            places = np.linspace(low, high, COARSE_POINTS)
+            forces = self.contact_forces(places)
+            top = int(forces.argmin())
+            low, high = float(places[max(top - 1, 0)]), float(places[min(top + 1, COARSE_POINTS - 1)])
+        return float(places[top]), -float(forces[top])
+
+    @cached_property
+    def _tensions(self) -> tuple[Array, Array]:
+        """Displacements [LU] from where nothing is felt to F = 0, and forces [FU]."""
+        places = np.linspace(self.rest - float(self.gap[-1]), self.displacement_at(0.0), BRANCH_POINTS)
+        return places, self.contact_forces(places)
+
+    def displacement_at(self, force: float) -> float:
+        """Displacement [LU] at which F(d) reaches a compressive force [FU] ≥ 0."""
+        low = self._largest_tension[0]  # where the force begins to rise
+        high = max(1.0, 2 * self.rest)
+        while self.contact_force(high) < force:
+            high *= 2
+        for _ in range(CUTS):
+            places = np.linspace(low, high, PARTS)
+            forces = self.contact_forces(places)
+            cell = int(np.clip(np.searchsorted(forces, force), 1, PARTS - 1))
+            low, high = float(places[cell - 1]), float(places[cell])
+        return float(np.interp(force, forces, places))
+
+
+def row_force(law: DoubleExponential, r: Array, spacing: float, cutoff: float) -> Array:
+    """Force [FU] of a straight row of opposite particles on the one facing it, at distances r [LU], shape (n,)."""
+    reach = int(cutoff / spacing)
+    offsets = spacing * np.arange(-reach, reach + 1)
+    distance = np.hypot(r[:, None], offsets[None, :])
+    forces = np.where(distance <= cutoff, law.force(distance), 0.0) * r[:, None] / distance
+    return np.asarray(forces.sum(axis=1))
+
+
+def particles_estimate(
+    law: DoubleExponential,
+    profile: Profile,
+    spacing: float,
+    stiffness: float,
+    cutoff: float,
+    rest: float,
+    points: int = GRID,
+) -> ContactEstimate:
+    """The estimate for two chains whose particles are held by springs `stiffness` [FU/LU] each."""
+    r = np.linspace(cutoff / points, cutoff, points)
+    force = row_force(law, r, spacing, cutoff)
+    undeformed = r - 2 * force / stiffness
+    gap = np.maximum.accumulate(undeformed)
+    gap += np.arange(points) * 1e-12 * cutoff
+    snaps = bool((np.diff(undeformed) < 0.0).any())
+    return ContactEstimate(gap, force, rest, profile, spacing, stiffness / 2, snaps)
+
+
+def plane_estimate(profile: Profile, spacing: float, stiffness: float) -> ContactEstimate:
+    """The estimate for one chain on a rigid plane: one-sided springs `stiffness` [FU/LU]."""
+    deepest = 1e6 * spacing
+    gap = np.asarray([-deepest, 0.0])
+    return ContactEstimate(gap, -stiffness * gap, 0.0, profile, spacing, stiffness)

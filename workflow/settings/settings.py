@@ -1,0 +1,269 @@
+"""Every number that a scene leaves open: chain length, cutoff, table, time step, thresholds, increments.
+
+Each is derived from `[accuracy] tolerance` (relative, on the main results): by its measured share of it
+(`workflow.settings.calibration`), or by the rule stated beside it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from contact1d.potentials import DoubleExponential, Exponential
+from contact1d.potentials.table import Table, table_for
+from contact1d.workflow.scene import Measured, Scene
+from contact1d.workflow.settings.calibration import CALIBRATION, Calibration
+from contact1d.workflow.settings.chain import SettingsError as SettingsError
+from contact1d.workflow.settings.chain import chain_length, require_body, require_room
+from contact1d.workflow.settings.dynamics import dynamics_of
+from contact1d.workflow.settings.estimate import ContactEstimate, particles_estimate, plane_estimate, tabulated
+
+TABLE_MARGIN = 0.8
+"""Distance from which on a table is to follow the law, over the expected smallest one. Measured: the smallest distance
+is 0.93 to 1.004 of what the estimate of independent pairs says."""
+CLOSEST_SHARE = 0.2
+"""Smallest distance that is looked after over the force-free one (with attraction) or the repulsion's range."""
+LIKELY = 5.0
+"""Standard deviations by which a particle's thermal motion brings it nearer."""
+MOVE_SHARE = 0.25
+"""Longest move of a body between two states at rest, over the smallest distance: particles stay in order, down to r
+near 0."""
+NEAR_SHARE = 0.2
+"""Least distance down to which a table follows the law and a search comes down in ever smaller moves, over `closest`: a
+table that is smoothed any earlier lets bodies through that the law still carries."""
+FAR_SHARE = 10.0
+"""Length of a long bond over the spacing, per 1/tolerance: a sideways move u bends its force by u/2L."""
+STAGGER = 5e-4
+"""Shift of a plate's anchors out of the plane, to and fro, over the chain's length.
+
+No force acts in that direction, but `fix rigid` refuses a body that is nearly a line ("Bad principal moments"): the
+least moment of inertia must be more than 1e-7 of the largest, and is 12 STAGGER² = 3e-6 of it.
+"""
+MOST_PARTICLES = 10_000_000
+
+
+@dataclass(frozen=True)
+class Settings:
+    """The numbers of one run; units as in the scene.
+
+    Attributes:
+        particles: per body.
+        rest: apex distance at displacement 0 [LU].
+        law, cutoff, table, table_from: the interaction, its cutoff [LU], its table, and the distance [LU] from which on
+            the table was chosen to follow the law; None or 0 on a rigid plane.
+        closest: smallest distance for which moves and time step are chosen [LU].
+        bulk_stiffness: normal bond of a particle to its anchor [FU/LU]; on a rigid plane such that plane and bond in
+            series have the scene's value.
+        plane_stiffness: one-sided stiffness of the rigid plane [FU/LU]; 0 without one.
+        far: length of the long bond that makes normal and tangential stiffness differ [LU]; 0 where they do not.
+        force_scale: force of one particle [FU] against which residuals are judged.
+        force_tolerance: norm of the residual forces at which a minimisation stops [FU].
+        displacement_step: increment of a search where pairs snap, and on a rigid plane [LU].
+        smooth_step: increment of a search elsewhere, where the force is a smooth function of the displacement [LU].
+        time_step: [TU].
+        damping: coefficient of a particle [FU·TU/LU].
+        damped_stiffness: of the contact [FU/LU], for which that is critical; 0 where it is the same under every load.
+        plate_mass, plate_damping: [MU], [FU·TU/LU].
+        settle_time: about one period of the plate on its contact [TU].
+        longest_move: of a body between two states at rest [LU], inf on a rigid plane: a body that is moved by more than
+            its particles' distance from the opposite ones is put behind them. A search may come nearer than `closest`,
+            in moves down to NEAR_SHARE of this.
+        largest_displacement: what the estimate expects [LU].
+        table_style: of `pair_style table`. "spline" is the only one that decks have by themselves; others are for
+            `contact1d cost`, which measures that none of them is cheaper at an equal error.
+        thermostat: scheme of [noise], "langevin" or "gjf"; the latter for cost studies too.
+    """
+
+    particles: int
+    rest: float
+    law: DoubleExponential | None
+    cutoff: float
+    table: Table | None
+    table_from: float
+    closest: float
+    bulk_stiffness: float
+    plane_stiffness: float
+    far: float
+    force_scale: float
+    force_tolerance: float
+    displacement_step: float
+    smooth_step: float
+    longest_move: float
+    time_step: float
+    damping: float
+    damped_stiffness: float
+    plate_mass: float
+    plate_damping: float
+    settle_time: float
+    largest_displacement: float
+    estimate: ContactEstimate
+    table_style: str = "spline"
+    thermostat: str = "langevin"
+
+    @property
+    def is_smooth(self) -> bool:
+        """Whether the force is a smooth function of the displacement: particles, and none of them snaps."""
+        return self.law is not None and not self.estimate.snaps
+
+    def increment(self, smallest_distance: float = math.inf) -> float:
+        """Longest increment [LU] of a search from a state with this smallest distance [LU]; unloading has no such."""
+        if not self.is_smooth:
+            return self.displacement_step
+        return min(self.smooth_step, max(NEAR_SHARE * self.longest_move, MOVE_SHARE * smallest_distance))
+
+    def in_smaller_steps(self, part: float) -> Settings:
+        """The same, with increments of a search and moves that are this part as long; nothing else changes."""
+        return replace(
+            self,
+            displacement_step=part * self.displacement_step,
+            smooth_step=part * self.smooth_step,
+            longest_move=part * self.longest_move,
+        )
+
+
+def interaction_law(scene: Scene) -> DoubleExponential | None:
+    """The scene's law, or None on a rigid plane."""
+    if scene.interaction is None:
+        return None
+    terms = scene.interaction
+    attraction = None if terms.attraction is None else Exponential(terms.attraction.amplitude, terms.attraction.range)
+    return DoubleExponential(Exponential(terms.repulsion.amplitude, terms.repulsion.range), attraction)
+
+
+def settings_for(scene: Scene, law: DoubleExponential | None = None, shares: Calibration | None = None) -> Settings:
+    """Choose every open number of a scene.
+
+    Args:
+        scene: with its tolerance.
+        law: in place of the scene's own, for cost studies.
+        shares: in place of those that were measured, for the study that measures them.
+
+    Raises:
+        SettingsError: the numbers are so far apart that no chain, table or time step comes out of them.
+    """
+    try:
+        with np.errstate(over="raise", invalid="raise", divide="raise"):
+            chosen = _chosen(scene, law or interaction_law(scene), shares or CALIBRATION)
+    except (OverflowError, FloatingPointError, ZeroDivisionError, MemoryError) as error:
+        raise SettingsError(
+            f"the scene's numbers are too far apart to compute with ({error}): compare its lengths (spacing, ranges, "
+            "radius), its energies (amplitudes) and its stiffnesses with each other"
+        ) from None
+    if chosen.particles > MOST_PARTICLES:
+        raise SettingsError(
+            f"the contact would need {chosen.particles:.3g} particles per body, more than {MOST_PARTICLES:.0e}: a "
+            "wider bodies.spacing, a smaller radius, load or displacement needs fewer"
+        )
+    return chosen
+
+
+def _chosen(scene: Scene, law: DoubleExponential | None, shares: Calibration) -> Settings:
+    tolerance = scene.accuracy.tolerance
+    bodies = scene.bodies
+    require_room(bodies)
+    shape = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
+    plane = _plane_stiffness(scene)
+    bond = scene.bulk_stiffness if law is not None else 1.0 / (1.0 / scene.bulk_stiffness - 1.0 / plane)
+    cutoff, rest, closest = 0.0, 0.0, 0.0
+    if law is None:
+        estimate = plane_estimate(shape, bodies.spacing, scene.bulk_stiffness)
+    else:
+        cutoff = _cutoff(scene, law, shares.cutoff)
+        rest = law.force_free_distance() if law.attraction is not None else cutoff
+        closest = CLOSEST_SHARE * (rest if law.attraction is not None else law.repulsion.range)
+        estimate = particles_estimate(law, shape, bodies.spacing, scene.bulk_stiffness, cutoff, rest)
+    largest = _largest_displacement(scene, estimate)
+    particles = bodies.particles
+    if particles == "auto":
+        particles = chain_length(scene, estimate, largest, shares.chain * tolerance)
+    require_body(bodies, largest, particles)
+    force_scale = _force_scale(scene, law, largest)
+    table_from, table = 0.0, None
+    if law is not None:
+        nearest = closest if scene.noise is not None else NEAR_SHARE * closest
+        table_from = max(nearest, TABLE_MARGIN * (_distance(estimate, cutoff, largest) - _thermal_motion(scene)))
+        table = table_for(law, cutoff, table_from, shares.table * tolerance * force_scale)
+    motion = dynamics_of(scene, law, closest, plane, estimate, largest, particles, shares.still_step)
+    different = scene.horizontal is not None and scene.tangential_stiffness != scene.bulk_stiffness
+    return Settings(
+        particles=particles,
+        rest=rest,
+        law=law,
+        cutoff=cutoff,
+        table=table,
+        table_from=table_from,
+        closest=closest,
+        bulk_stiffness=bond,
+        plane_stiffness=plane,
+        far=FAR_SHARE / tolerance * bodies.spacing if different else 0.0,
+        force_scale=force_scale,
+        force_tolerance=shares.residual * tolerance * force_scale,
+        displacement_step=_displacement_step(law, bodies.spacing, shares.loading_increment * largest, closest),
+        smooth_step=shares.smooth_increment * law.longest_range if law is not None else 0.0,
+        longest_move=MOVE_SHARE * closest if law is not None else math.inf,
+        largest_displacement=largest,
+        estimate=estimate,
+        **motion,
+    )
+
+
+def _plane_stiffness(scene: Scene) -> float:
+    """One-sided stiffness of the rigid plane.
+
+    In series with a bond it is exact for a particle on its own (bond and plane 2k each give k). Neighbour springs and
+    thermal motion see the bond alone, so with them the plane is 1/tolerance times stiffer than the chain.
+    """
+    if scene.bodies.lower != "rigid_plane":
+        return 0.0
+    stiffness = scene.bulk_stiffness
+    if scene.neighbours is None and scene.noise is None:
+        return 2.0 * stiffness
+    neighbours = 0.0 if scene.neighbours is None else scene.neighbours.stiffness
+    return (stiffness + 4.0 * neighbours) / scene.accuracy.tolerance
+
+
+def _cutoff(scene: Scene, law: DoubleExponential, share: float) -> float:
+    assert scene.interaction is not None
+    if scene.interaction.cutoff != "auto":
+        return scene.interaction.cutoff
+    return law.cutoff_for(share * scene.accuracy.tolerance)
+
+
+def _distance(estimate: ContactEstimate, cutoff: float, displacement: float) -> float:
+    """Distance [LU] of the estimate's innermost pair at a displacement [LU]; its grid ends at the cutoff [LU]."""
+    grid = cutoff / estimate.gap.size * np.arange(1, estimate.gap.size + 1)
+    return float(np.interp(estimate.rest - displacement, estimate.gap, grid))
+
+
+def _thermal_motion(scene: Scene) -> float:
+    """By how much noise brings two particles on their springs nearer to each other [LU]: LIKELY √(2 k_BT/k)."""
+    return 0.0 if scene.noise is None else LIKELY * math.sqrt(2.0 * scene.noise.temperature / scene.bulk_stiffness)
+
+
+def _largest_displacement(scene: Scene, estimate: ContactEstimate) -> float:
+    experiment = scene.experiment
+    match experiment.kind:
+        case "load":
+            return estimate.displacement_at(max(experiment.force, 0.0))
+        case "pull_off":
+            return estimate.displacement_at(experiment.preload)
+        case "slide":
+            return estimate.displacement_at(experiment.normal_force)
+        case _:
+            return max(experiment.values())
+
+
+def _force_scale(scene: Scene, law: DoubleExponential | None, largest: float) -> float:
+    """The largest tension of one pair, or without attraction the force of the deepest particle."""
+    if law is not None and law.attraction is not None:
+        r = law.force_free_distance() + law.longest_range * np.linspace(0.0, 5.0, 2001)
+        return float(-law.force(r).min())
+    return max(largest, 1e-3 * scene.bodies.spacing) * scene.bulk_stiffness / 2
+
+
+def _displacement_step(law: DoubleExponential | None, spacing: float, step: float, closest: float) -> float:
+    """The `step` [LU] if it is > 0, never more than a quarter of the longest range or than the longest move."""
+    limit = min(0.25 * law.longest_range, MOVE_SHARE * closest) if law is not None else 0.1 * spacing
+    return min(step, limit) if step > 0 else limit
