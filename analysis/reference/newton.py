@@ -29,6 +29,9 @@ SLOPE_BOUND = 0.9
 """Where round-off hides the decrease: how far the slope behind a step may rise, over the slope before it."""
 ROUND_OFF = 1e-14
 """Relative uncertainty of the energy of some thousand terms."""
+NEAR = 1e-6
+"""Newton steps over the step limit below which the gradient alone judges them: energies that nearly cancel are too
+coarse to show so small a decrease."""
 POWER_STEPS = 12
 """Inverse iterations for the softest direction."""
 
@@ -80,7 +83,13 @@ def minimise(
             energy, gradient = energy_gradient(u)
             continue
         step = -cho_solve_banded((factor, True), gradient) if factor is not None else _way_down(band, gradient, descent)
-        step *= min(1.0, descent.step_limit / np.max(np.abs(step)))
+        longest = float(np.max(np.abs(step)))
+        if factor is not None and longest < NEAR * descent.step_limit:
+            new_energy, new_gradient = energy_gradient(u + step)
+            if np.linalg.norm(new_gradient) < np.linalg.norm(gradient):
+                u, energy, gradient = u + step, new_energy, new_gradient
+                continue
+        step *= min(1.0, descent.step_limit / longest)
         u, energy, gradient = _search(energy_gradient, u, step, energy, gradient)
     raise RuntimeError(f"no minimum within {descent.iterations} steps, gradient {np.max(np.abs(gradient)):.3g}")
 
