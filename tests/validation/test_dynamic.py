@@ -18,12 +18,12 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from contact1d import Run
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.analysis.reference.solver import ChainSolver, State, trace
 from contact1d.analysis.reference.tension_radius import tension_radius
-from contact1d import Run
 
 RunTables = Callable[[dict[str, Any]], Run]
 Term = tuple[float, float]

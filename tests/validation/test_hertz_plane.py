@@ -27,10 +27,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from contact1d import Run
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.solver import trace
 from contact1d.analysis.reference.winkler import rigid_plane_sum, winkler_force, winkler_half_width
-from contact1d import Run
 from contact1d.workflow.experiments.running.contact import State
 
 RunTables = Callable[[dict[str, Any]], Run]

@@ -24,9 +24,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from contact1d import Run, scene_from_dict
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import compressive_radius
-from contact1d import Run, scene_from_dict
 from contact1d.workflow.experiments.running.contact import State
 
 RunTables = Callable[[dict[str, Any]], Run]

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from contact1d import Scene, read_scene, run
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.analysis.reference.solver import ChainSolver, trace
 from contact1d.analysis.reference.winkler import rigid_plane_sum
-from contact1d import Scene, read_scene, run
 from contact1d.workflow.settings.settings import settings_for
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"

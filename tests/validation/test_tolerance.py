@@ -19,12 +19,12 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 from scipy.stats import binom
 
+from contact1d import RunError, run, scene_from_dict
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.analysis.reference.solver import ChainSolver, State
 from contact1d.analysis.reference.tension_radius import band_limited_radius
-from contact1d import RunError, run, scene_from_dict
 
 SEED, SCENES, QUICK = 20071, 60, 12
 WITHIN_TOLERANCE, WITHIN_UNCERTAINTY = 0.99, 0.95
