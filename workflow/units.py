@@ -12,8 +12,15 @@ LENGTH = "LU"
 FORCE = "FU"
 MEAN_PRESSURE = "FU/LU²"
 LINE_PRESSURE = "FU/LU"
+ENERGY = "FU·LU"
 
-SI = {LENGTH: (1, 0, "m"), FORCE: (0, 1, "N"), MEAN_PRESSURE: (-2, 1, "Pa"), LINE_PRESSURE: (-1, 1, "N/m")}
+SI = {
+    LENGTH: (1, 0, "m"),
+    FORCE: (0, 1, "N"),
+    MEAN_PRESSURE: (-2, 1, "Pa"),
+    LINE_PRESSURE: (-1, 1, "N/m"),
+    ENERGY: (1, 1, "J"),
+}
 """For each model unit: powers of LU and FU in it, and its name in SI."""
 
 

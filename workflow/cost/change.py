@@ -49,7 +49,7 @@ class Change:
         """The settings of the changed `scene`. Raises SettingsError where it has none."""
         own = interaction_law(scene)
         keeps = self.row_spacing is not None and own is not None
-        settings = settings_for(scene, row_law(own, self.row_spacing, scene.bodies.spacing) if keeps else None)
+        settings = settings_for(scene, law=row_law(own, self.row_spacing, scene.bodies.spacing) if keeps else None)
         fields: dict[str, Any] = dict(self.settings)
         points = fields.pop("table_points", None)
         if points is not None and settings.law is not None:

@@ -7,26 +7,19 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from contact1d.workflow.cost.record import VariantRecord
+from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import Quantity
-
-MAIN = {
-    "load": ("displacement", "force", "contact_radius"),
-    "path": ("adhesion_force", "zero_load_radius", "critical_radius", "largest_force", "largest_radius"),
-    "pull_off": ("adhesion_force", "zero_load_radius", "critical_radius"),
-    "slide": ("mean_friction", "static_friction"),
-}
-"""Main results of each experiment, as far as a scene has them."""
 
 
 def is_sampled(scene: Scene) -> bool:
     """Whether results are averages over a motion, whose uncertainty is a standard error: with noise, and of a slide."""
-    return scene.noise is not None or scene.experiment.kind == "slide"
+    return scene.noise is not None or scene.experiment.motion_is_result
 
 
 def main_results(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Quantity]:
     """Those that have a relative error: present and not 0. With noise the force that a load holds is no result."""
-    names = [name for name in MAIN[scene.experiment.kind] if scene.noise is None or name != "force"]
+    names = [name for name in kind_of(scene).main_results if scene.noise is None or name != "force"]
     named = {name: quantities[name] for name in names if name in quantities}
     return {name: one for name, one in named.items() if one.value != 0.0 and math.isfinite(one.value)}
 

@@ -106,7 +106,7 @@ def left_out(scene: Scene) -> dict[str, str]:
         reasons["spacing"] = reason
     if isinstance(scene.bodies.profile, FlatPunch):
         reasons["chain length"] = "a flat punch is as long as it is wide"
-    if scene.noise is not None or scene.experiment.kind == "slide":
+    if scene.noise is not None or scene.experiment.motion_is_result:
         reasons["method"] = "what is asked for exists in time only"
     return reasons
 
@@ -212,7 +212,7 @@ def _increment(scene: Scene, own: Settings, base: Settings) -> Iterator[Knob]:
 
 
 def _method(scene: Scene) -> Iterator[Knob]:
-    if scene.noise is not None or scene.experiment.kind == "slide":
+    if scene.noise is not None or scene.experiment.motion_is_result:
         return
     other = "dynamic" if scene.method == "quasistatic" else "quasistatic"
     change = with_method(scene, other)

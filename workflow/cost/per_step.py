@@ -14,8 +14,8 @@ from statistics import median, stdev
 from contact1d.workflow.cost.change import Change
 from contact1d.workflow.cost.record import EffectCost
 from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import Engine, Session
-from contact1d.workflow.experiments import write_system
 from contact1d.workflow.scene import Scene, SceneError
 from contact1d.workflow.settings.settings import settings_for
 
@@ -27,7 +27,7 @@ MEDIAN_ERROR = 1.25
 
 def without_effects(scene: Scene) -> tuple[dict[str, Change], dict[str, str]]:
     """How to leave out each effect that can be, by its name; and why others cannot."""
-    method = () if scene.experiment.kind == "slide" else (f"experiment.method={scene.method}",)
+    method = () if scene.experiment.motion_is_result else (f"experiment.method={scene.method}",)
     changes, reasons = {}, {}
     for effect in scene.effects:
         change = Change(method, (effect,))

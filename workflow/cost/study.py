@@ -122,7 +122,7 @@ def reference_of(scene: Scene, folder: Path) -> tuple[str, dict[str, Quantity]]:
     if scene.noise is not None:
         seed = Change((f"noise.seed={scene.noise.seed + 1}",))
         candidates.append(("with noise of another seed", at_tolerance(scene, NOISY_SHARE * own) + seed))
-    elif scene.experiment.kind != "slide":
+    elif not scene.experiment.motion_is_result:
         still = with_method(scene, "quasistatic") if scene.method == "dynamic" else Change()
         candidates += [("quasistatic", at_tolerance(scene, t) + still) for t in REFERENCE_TOLERANCES if t < own]
     if scene.noise is None and scene.method == "dynamic":

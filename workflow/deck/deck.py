@@ -14,6 +14,7 @@ from functools import cached_property
 from contact1d.workflow.deck.effects import Contribution, Stage, contributions
 from contact1d.workflow.deck.effects.base import number
 from contact1d.workflow.deck.fragments import DeckError, Fragment, fragment
+from contact1d.workflow.deck.steps import STEPS, Phase, Row
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 
@@ -22,33 +23,7 @@ PLANE_DEPTH = 1e3
 MINIMISER_ITERATIONS = 20_000
 RELAXATION = 0.1
 """First step of a relaxation over the time step of a run in time: ten times as much is 0.5/ω_max."""
-STEP_COLUMNS = {
-    "displace": ("row_displacement",),
-    "displace_dynamic": ("row_displacement", "row_steps"),
-    "load": ("row_load", "row_steps"),
-    "hold": ("row_start", "row_load", "row_damping", "row_drag", "row_rest", "row_parted", "row_through", "row_steps"),
-}
-"""What a row of each kind of step prescribes, in order."""
 NUMBERS_PER_LINE = 6
-
-
-@dataclass(frozen=True)
-class Phase:
-    """A named part of a schedule.
-
-    Attributes:
-        name: what happens, one word.
-        step: the kind of its rows, a key of STEP_COLUMNS.
-        rows: the values of each row, in the order of STEP_COLUMNS.
-        state: whether every atom's place and force are written after the last row.
-        begin: fragments that come before the first row.
-    """
-
-    name: str
-    step: str
-    rows: tuple[tuple[float, ...], ...]
-    state: bool = False
-    begin: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -89,77 +64,103 @@ class Deck:
 
     def begin(self, phase: str, fragments: Sequence[str] = ()) -> str:
         """What comes before a phase's rows."""
-        return f"variable        row_phase index {phase}\n" + "".join(fragment(name).commands for name in fragments)
+        return f"variable        row_phase index {phase}\n" + _commands(fragments)
 
-    def row(self, step: str) -> str:
+    def row(self, kind: type[Row]) -> str:
         """One row up to its measurement: move or load, then measure."""
-        return fragment(f"steps/{step}").commands + self._measuring + fragment("steps/line").commands
-
-    @property
-    def _measuring(self) -> str:
-        begin = "".join(fragment(name).commands for part in self.parts for name in part.step_begin)
-        return begin + fragment("steps/measuring").commands
+        return _commands((f"steps/{kind.step}", *self._measuring, "steps/line"))
 
     @property
     def row_end(self) -> str:
         """The end of every measurement."""
-        end = "".join(fragment(name).commands for part in self.parts for name in part.step_end)
-        return fragment("steps/measured").commands + end
+        return _commands(self._measured)
 
-    def values(self, step: str, row: Sequence[float]) -> str:
+    def values(self, row: Row) -> str:
         """The variables of one row."""
-        columns = STEP_COLUMNS[step]
-        return "".join(f"variable        {c} index {_text(v)}\n" for c, v in zip(columns, row, strict=True))
+        return "".join(f"variable        {c} index {v}\n" for c, v in zip(row.columns(), row.texts(), strict=True))
 
-    def forget(self, step: str) -> str:
+    def forget(self, kind: type[Row]) -> str:
         """Delete the variables of a row, as `next` does after the last one."""
-        return "".join(f"variable        {c} delete\n" for c in STEP_COLUMNS[step])
+        return "".join(f"variable        {c} delete\n" for c in kind.columns())
 
     def state(self, first: bool) -> str:
         """Write the state that the last row left."""
         append = f"variable        state_append index {'no' if first else 'yes'}\n"
-        written = self._measuring + fragment("steps/state").commands + self.row_end
+        written = _commands((*self._measuring, "steps/state", *self._measured))
         return append + written + "variable        state_append delete\n"
 
     def text(self, phases: Sequence[Phase]) -> str:
-        """in.lammps: the head and a loop for each phase."""
+        """in.lammps: the head and a loop for each phase.
+
+        Raises:
+            DeckError: if fragments and variables do not fit together, in the head or on the way through the phases.
+        """
+        passed = [phase for phase in phases if phase.rows]
+        self._check_schedule(passed)
         blocks = [self.head]
         first = True
-        for phase in phases:
+        for phase in passed:
             blocks.append(self._loop(phase) + (self.state(first) if phase.state else ""))
             first = first and not phase.state
         return "\n".join(blocks)
 
+    @property
+    def _measuring(self) -> tuple[str, ...]:
+        return (*(name for part in self.parts for name in part.step_begin), "steps/measuring")
+
+    @property
+    def _measured(self) -> tuple[str, ...]:
+        return ("steps/measured", *(name for part in self.parts for name in part.step_end))
+
     def _loop(self, phase: Phase) -> str:
-        columns = STEP_COLUMNS[phase.step]
-        lists = "".join(_index(name, [row[i] for row in phase.rows]) for i, name in enumerate(columns))
+        kind = type(phase.rows[0])
+        values = zip(*(row.texts() for row in phase.rows), strict=True)
+        lists = "".join(_index(name, texts) for name, texts in zip(kind.columns(), values, strict=True))
         return (
             f"# phase {phase.name}: {len(phase.rows)} rows\n{self.begin(phase.name, phase.begin)}{lists}"
-            f"label           {phase.name}\n{self.row(phase.step)}{self.row_end}"
-            f"next            {' '.join(columns)}\njump            SELF {phase.name}\n"
+            f"label           {phase.name}\n{self.row(kind)}{self.row_end}"
+            f"next            {' '.join(kind.columns())}\njump            SELF {phase.name}\n"
             "variable        row_phase delete\n"
         )
 
-    def _check(self) -> None:
-        """Every variable is defined once, and used; every ID is defined once; no group has two integrators."""
+    def _check(self) -> dict[str, str]:
+        """Return who defines each name of the head.
+
+        Every variable is defined once, before it is needed, and used; every ID is defined once; there is one
+        `pair_style` at most, and no group has two integrators.
+        """
+        styles = [part.name for part in self.parts if part.pair_style]
+        if len(styles) > 1:
+            raise DeckError(f"each brings a pair_style, of which a deck has one: {', '.join(styles)}")
         moved = [part.integrates for part in self.parts if part.integrates]
         doubly = sorted({group for group in moved if moved.count(group) > 1})
         if doubly:
             raise DeckError(f"integrated twice: {', '.join(doubly)}")
-        used: list[Fragment] = [fragment(name) for part in self.parts for name in part.fragments]
-        given = [name for part in self.parts for name in part.variables]
-        defined = given + [name for piece in used for name in piece.defines]
-        twice = sorted({name for name in defined if defined.count(name) > 1})
-        if twice:
-            raise DeckError(f"defined twice: {', '.join(twice)}")
-        needed = {name for piece in used for name in piece.needs}
-        steps = {f"steps/{step}" for step in STEP_COLUMNS}
-        needed_later = {name for step in steps for name in fragment(step).needs}
-        if needed - set(defined):
-            raise DeckError(f"used but not defined: {', '.join(sorted(needed - set(defined)))}")
-        unused = set(given) - needed - needed_later
+        owners: dict[str, str] = {}
+        needed = {name for kind in STEPS for name in fragment(f"steps/{kind.step}").needs}
+        for part in self.parts:
+            for name in part.variables:
+                _own(owners, name, f"[{part.name}]")
+            for piece in map(fragment, part.fragments):
+                _pass(owners, piece)
+                needed |= set(piece.needs)
+        unused = {name for part in self.parts for name in part.variables} - needed
         if unused:
             raise DeckError(f"defined but not used: {', '.join(sorted(unused))}")
+        return owners
+
+    def _check_schedule(self, phases: Sequence[Phase]) -> None:
+        """Go through the phases as LAMMPS does: what a step needs is defined by then, what it redefines, too."""
+        owners = self._check()
+        for phase in phases:
+            given = dict.fromkeys(("row_phase", *type(phase.rows[0]).columns()), "the row")
+            last = ("steps/state",) if phase.state else ()
+            kept = {"state_append": "the state"} if phase.state else {}
+            row = (f"steps/{type(phase.rows[0]).step}", *self._measuring, "steps/line", *self._measured)
+            here = owners | given | kept
+            for name in (*phase.begin, *row, *row, *last):
+                _pass(here, fragment(name))
+            owners = {name: owner for name, owner in here.items() if name not in given and name not in kept}
 
     def _bodies(self) -> Contribution:
         coefficient = (
@@ -205,12 +206,27 @@ def _block(name: str, variables: dict[str, str]) -> str:
     return comments + lines + piece.text[len(comments) :]
 
 
-def _text(value: float) -> str:
-    return str(value) if isinstance(value, int) else number(value)
+def _commands(names: Sequence[str]) -> str:
+    """The commands of fragments, one after the other."""
+    return "".join(fragment(name).commands for name in names)
 
 
-def _index(name: str, values: Sequence[float]) -> str:
+def _own(owners: dict[str, str], name: str, owner: str) -> None:
+    """Note who defines a name. Raises DeckError where somebody else does already."""
+    if owners.setdefault(name, owner) != owner:
+        raise DeckError(f"defined twice: {name}, by {owners[name]} and by {owner}")
+
+
+def _pass(owners: dict[str, str], piece: Fragment) -> None:
+    """Note what a fragment defines. Raises DeckError where it needs or redefines what nothing before it has defined."""
+    missing = sorted({*piece.needs, *piece.redefines} - owners.keys())
+    if missing:
+        raise DeckError(f"used but not defined: {', '.join(missing)}, in {piece.name}")
+    for name in piece.defines:
+        _own(owners, name, piece.name)
+
+
+def _index(name: str, texts: Sequence[str]) -> str:
     """`variable … index` over several lines."""
-    texts = [_text(value) for value in values]
     lines = [" ".join(texts[i : i + NUMBERS_PER_LINE]) for i in range(0, len(texts), NUMBERS_PER_LINE)]
     return f"variable        {name} index " + " &\n                ".join(lines) + "\n"

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from importlib.resources import files
 
 VARIABLE_USE = re.compile(r"\$\{(\w+)\}|\bv_(\w+)")
 KEYS = ("Purpose", "Formula", "Needs", "Defines")
+REDEFINES = "Redefines"
+"""Optional in a header: names that an earlier fragment has defined, and that stand for something else from here on."""
 
 
 class DeckError(RuntimeError):
@@ -27,14 +29,16 @@ class Fragment:
         text: the whole file.
         needs: names of the LAMMPS variables that must be defined before it.
         defines: IDs and names that it defines.
+        redefines: those that it defines anew.
     """
 
     name: str
     text: str
     needs: tuple[str, ...]
     defines: tuple[str, ...]
+    redefines: tuple[str, ...] = ()
 
-    @property
+    @cached_property
     def commands(self) -> str:
         """The text without its comments."""
         return "".join(line for line in self.text.splitlines(keepends=True) if not line.startswith("#"))
@@ -49,17 +53,15 @@ def fragment(name: str) -> Fragment:
             needed and not used.
     """
     text = files("contact1d.lammps_inputs").joinpath("fragments", *f"{name}.lmp".split("/")).read_text(encoding="utf-8")
-    header = {key: re.search(rf"^# {key}: (.+)$", text, re.MULTILINE) for key in KEYS}
-    missing = [key for key, found in header.items() if found is None]
+    header = {key: re.search(rf"^# {key}: (.+)$", text, re.MULTILINE) for key in (*KEYS, REDEFINES)}
+    missing = [key for key in KEYS if header[key] is None]
     if missing:
         raise DeckError(f"fragment {name}: the header has no line '# {missing[0]}: …'")
-    needs = _names(header["Needs"])
-    defines = _names(header["Defines"])
-    read = Fragment(name, text, needs, defines)
+    needs, defines, redefines = (_names(header[key]) for key in ("Needs", "Defines", REDEFINES))
+    read = Fragment(name, text, needs, defines, redefines)
     used = used_variables(read.commands)
     for variable in sorted(used - set(needs) - set(defines)):
-        if not _shared(variable):
-            raise DeckError(f"fragment {name}: uses {variable}, which its header neither needs nor defines")
+        raise DeckError(f"fragment {name}: uses {variable}, which its header neither needs nor defines")
     for variable in sorted(set(needs) - used):
         raise DeckError(f"fragment {name}: its header needs {variable}, which its text does not use")
     return read
@@ -71,10 +73,6 @@ def used_variables(commands: str) -> set[str]:
 
 
 def _names(found: re.Match[str] | None) -> tuple[str, ...]:
-    assert found is not None
+    if found is None:
+        return ()
     return tuple(word for word in re.sub(r"\([^)]*\)", " ", found[1]).split() if word != "-")
-
-
-def _shared(variable: str) -> bool:
-    """Variables that the two lower bodies or the plate define and every step may read."""
-    return variable in {"opposite_x", "opposite_z", "plate_rest", "plate_displacement"}

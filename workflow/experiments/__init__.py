@@ -1,39 +1,31 @@
-"""Experiments: load, path, pull_off, slide; each a sequence of phases on one deck."""
+"""Experiments: each kind is a folder with its record; a sequence of phases on one deck."""
 
-from contact1d.workflow.experiments.load.dynamic import load_dynamic
-from contact1d.workflow.experiments.load.quasistatic import load_quasistatic
-from contact1d.workflow.experiments.path.path import path
-from contact1d.workflow.experiments.planned_schedule import planned
-from contact1d.workflow.experiments.pull_off.dynamic import pull_off_dynamic
-from contact1d.workflow.experiments.pull_off.quasistatic import pull_off_quasistatic
-from contact1d.workflow.experiments.running.outcome import Outcome, UntrustedError, in_words, unmet
-from contact1d.workflow.experiments.running.prescribing import in_smaller_steps
-from contact1d.workflow.experiments.running.run_context import RunContext, write_system
+from contact1d.workflow.deck.steps import Phase
+from contact1d.workflow.experiments.load import LOAD
+from contact1d.workflow.experiments.path import PATH
+from contact1d.workflow.experiments.pull_off import PULL_OFF
+from contact1d.workflow.experiments.running.kind import ExperimentKind
+from contact1d.workflow.experiments.running.outcome import Outcome
+from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.slowness import slowness
-from contact1d.workflow.experiments.slide.slide import slide
-from contact1d.workflow.units import Quantity
+from contact1d.workflow.experiments.slide import SLIDE
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.settings import Settings
 
-__all__ = [
-    "Outcome",
-    "Quantity",
-    "RunContext",
-    "UntrustedError",
-    "in_words",
-    "perform",
-    "planned",
-    "unmet",
-    "write_system",
-]  # fmt: skip
+__all__ = ["KINDS", "kind_of", "perform", "planned"]
 
-EXPERIMENTS = {
-    ("load", "quasistatic"): in_smaller_steps(load_quasistatic),
-    ("load", "dynamic"): load_dynamic,
-    ("path", "quasistatic"): in_smaller_steps(path),
-    ("path", "dynamic"): path,
-    ("pull_off", "quasistatic"): in_smaller_steps(pull_off_quasistatic),
-    ("pull_off", "dynamic"): pull_off_dynamic,
-    ("slide", "dynamic"): slide,
-}
+KINDS: dict[str, ExperimentKind] = {"load": LOAD, "path": PATH, "pull_off": PULL_OFF, "slide": SLIDE}
+"""By the word that a scene has for it."""
+
+
+def kind_of(scene: Scene) -> ExperimentKind:
+    """The record of the scene's experiment."""
+    return KINDS[scene.experiment.kind]
+
+
+def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+    """A schedule without a search."""
+    return kind_of(scene).planned(scene, settings)
 
 
 def perform(context: RunContext) -> Outcome:
@@ -46,4 +38,4 @@ def perform(context: RunContext) -> Outcome:
     scene = context.deck.scene
     if slow := slowness(scene, context.deck.settings):
         context.progress.note(slow)
-    return EXPERIMENTS[scene.experiment.kind, scene.method](context)
+    return kind_of(scene).run[scene.method](context)

@@ -12,9 +12,13 @@ from pathlib import Path
 from typing import Any
 
 from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.engine.session import EngineError
-from contact1d.workflow.experiments import Outcome, RunContext, UntrustedError, perform, planned, write_system
+from contact1d.workflow.experiments import perform, planned
+from contact1d.workflow.experiments.running.outcome import Outcome
+from contact1d.workflow.experiments.running.run_context import RunContext
+from contact1d.workflow.experiments.running.trust import UntrustedError
 from contact1d.workflow.runs.refinement import Refined, refined
 from contact1d.workflow.runs.report import (
     FILES,

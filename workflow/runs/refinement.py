@@ -11,10 +11,12 @@ import shutil
 from dataclasses import dataclass, replace
 
 from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import EngineError
-from contact1d.workflow.experiments import Outcome, RunContext, UntrustedError, in_words, perform, unmet, write_system
-from contact1d.workflow.experiments.running.outcome import Refinement, doubts, left_open_by_spacing
-from contact1d.workflow.scene import Accuracy
+from contact1d.workflow.experiments import perform
+from contact1d.workflow.experiments.running.outcome import Outcome, Refinement, in_words, left_open_by_spacing, unmet
+from contact1d.workflow.experiments.running.run_context import RunContext
+from contact1d.workflow.experiments.running.trust import UntrustedError, doubts
 from contact1d.workflow.settings.settings import SettingsError, settings_for
 from contact1d.workflow.units import Quantity
 
@@ -23,9 +25,6 @@ FINER = 5.0
 MOST_REFINEMENTS = 2
 HELPS = 0.8
 """Uncertainty of a result over that of the pass before from which on a refinement counts as no help."""
-REFINED = ("load", "pull_off")
-"""Experiments whose rows the program chooses; those of a path are the scene's, and they limit what it finds. With noise
-a load goes on sampling until it is known well enough, which is its own refinement (`load_dynamic`)."""
 FOLDER = ".refined"
 """Of a pass under way, in the run folder: its files replace those of the pass before only when it is done."""
 
@@ -42,13 +41,14 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
     """Refine a run that gave `outcome` as long as that helps, at most MOST_REFINEMENTS times.
 
     Time and steps of all passes are added to those of `context`. A finer pass that fails is no failure of the run: what
-    was found before stands, and the refinement says how it ended.
+    was found before stands, and the refinement says how it ended. A way that the scene gives is not refined: its rows
+    limit what is found. With noise a load goes on sampling until it is known well enough, which is its own refinement.
     """
     scene, deck = context.deck.scene, context.deck
-    if scene.noise is not None or scene.experiment.kind not in REFINED:
+    if scene.noise is not None or scene.experiment.way_is_given:
         return Refined(deck, outcome)
     tolerance, count, ended = scene.accuracy.tolerance, 0, ""
-    while open_ := unmet(scene, outcome.quantities):
+    while open_ := unmet(scene, outcome):
         out_of_reach = left_open_by_spacing(scene, outcome, open_)
         left = {name: share for name, share in open_.items() if name not in out_of_reach}
         if not left:
@@ -66,13 +66,13 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
         tolerance, count = tolerance / FINER, count + 1
         before, deck, outcome = outcome, finer_deck, nested(outcome, finer)
         ended = _after(count)
-        if unmet(scene, outcome.quantities) and not _helped(left, before, outcome):
+        if unmet(scene, outcome) and not _helped(left, before, outcome):
             ended += ", the last of which did not help"
             break
     # What a pass doubts by its own tolerance is no doubt of a run that was asked for less.
     stricter = doubts(deck.scene, deck.settings, outcome.states)
     warnings = {name: text for name, text in outcome.warnings.items() if name not in stricter}
-    warnings |= doubts(scene, deck.settings, outcome.states)
+    warnings |= doubts(scene, replace(deck.settings, tolerance=scene.accuracy.tolerance), outcome.states)
     return Refined(deck, replace(outcome, warnings=warnings, refinement=Refinement(tolerance, count, ended)))
 
 
@@ -101,8 +101,8 @@ def _helped(names: dict[str, float], before: Outcome, after: Outcome) -> bool:
 
 def _pass(context: RunContext, tolerance: float) -> tuple[Deck, Outcome]:
     """One pass with the settings of a tolerance; its files then replace those in the run folder."""
-    scene = context.deck.scene.model_copy(update={"accuracy": Accuracy(tolerance=tolerance)})
-    deck = Deck(scene, settings_for(scene))
+    scene = context.deck.scene
+    deck = Deck(scene, settings_for(scene, tolerance))
     folder = context.folder / FOLDER
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()

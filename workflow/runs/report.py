@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve import Column, Curve, curve_columns, profile_columns, write_columns
-from contact1d.workflow.experiments import Outcome, in_words, unmet
-from contact1d.workflow.experiments.running.outcome import left_open_by_spacing
-from contact1d.workflow.experiments.running.radii import radius_of
+from contact1d.workflow.experiments import kind_of
+from contact1d.workflow.experiments.running.kind import FINER_SPACING
+from contact1d.workflow.experiments.running.outcome import Outcome, in_words, left_open_by_spacing, unmet
 from contact1d.workflow.runs.scales import scales_of, unfound
 from contact1d.workflow.scene import Parabola, Scene
 from contact1d.workflow.units import FORCE, LENGTH, LINE_PRESSURE, SI, Scales
@@ -51,7 +51,7 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
             entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
         quantities["units"] = {unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE)}
     doubts = dict(outcome.warnings)
-    if coarse := unmet(scene, outcome.quantities):
+    if coarse := unmet(scene, outcome):
         ended = "" if outcome.refinement is None else f" ({outcome.refinement.ended})"
         doubts["tolerance"] = (
             f"{in_words(coarse)}, which is more than the tolerance of {scene.accuracy.tolerance:g} that was asked for"
@@ -73,15 +73,9 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
 
 def _what_helps(scene: Scene, outcome: Outcome, coarse: Iterable[str]) -> str:
     """Against results that are known less well than asked for, by what limits them."""
-    finer = "a smaller bodies.spacing at the same stiffness and energy per length"
     if left_open_by_spacing(scene, outcome, coarse):
-        return f"A radius is known no better than the spacing lets it: take {finer}"
-    if scene.experiment.kind == "path":
-        return f"What helps is more steps in experiment.displacements; for a radius {finer}, too"
-    if scene.method == "dynamic":
-        since = ", since force control never sees the pull-off itself" if scene.experiment.kind == "pull_off" else ""
-        return f'What helps is method = "quasistatic"{since}'
-    return f'What helps is to leave interaction.cutoff and bodies.particles "auto"; for a radius {finer}, too'
+        return f"A radius is known no better than the spacing lets it: take {FINER_SPACING}"
+    return kind_of(scene).advice(scene)
 
 
 def failure(scene: Scene, error: Mapping[str, object], timing: Mapping[str, float]) -> dict[str, Any]:
@@ -117,13 +111,13 @@ def write_results(folder: Path, document: Mapping[str, Any]) -> None:
 def curve_of(scene: Scene, outcome: Outcome) -> Curve:
     """The measured states in order; the radius is NaN where the bodies do not touch."""
     states = outcome.states
-    radii = [radius_of(scene, state.profile) for state in states]
+    radii = [state.radius for state in states]
     return Curve(
         displacement=[s.displacement for s in states],
         force=[s.force for s in states],
         contact_radius=[math.nan if r is None else r.value for r in radii],
         smallest_distance=[s.smallest_distance for s in states],
-        branch=["loading" if s.phase.startswith(("loading", "settling")) else "unloading" for s in states],
+        branch=[kind_of(scene).branch(s.phase) for s in states],
         contact_radius_uncertainty=[math.nan if r is None else r.uncertainty for r in radii],
     )
 
@@ -177,9 +171,8 @@ def _theory(scene: Scene, marks: Mapping[str, float]) -> tuple[str, Array, Array
     if _adheres_over_a_width(marks):
         curve = plots.jkr_curve(marks["adhesion_force"], marks["zero_load_radius"], radius)
         return "JKR, same $F_A$ and $a_0$", *curve
-    if scene.interaction is None and scene.experiment.kind == "path":
-        largest = max(scene.experiment.values())
-        return "Hertz", *plots.hertz_curve(largest, radius, scene.bulk_stiffness / bodies.spacing)
+    if scene.interaction is None and (places := scene.experiment.places()):
+        return "Hertz", *plots.hertz_curve(max(places), radius, scene.bulk_stiffness / bodies.spacing)
     return None
 
 

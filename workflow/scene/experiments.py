@@ -6,7 +6,7 @@ A prescribed path from d₀ to d₁ in n steps holds d_i = (d₀ (n − i) + d�
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from annotated_types import MinLen
 from pydantic import Discriminator, Field, Tag, model_validator
@@ -52,41 +52,92 @@ _Listed = Annotated[tuple[Displacement, ...], Field(strict=False), MinLen(1), Ta
 Displacements = Annotated[_Listed | Annotated[Span, Tag("table")], Discriminator(_list_or_table)]
 
 
-class Load(Table):
+class Kind(Table):
+    """What is done. Each kind says here what other rooms must know of it.
+
+    Attributes:
+        way_is_given: the scene prescribes the whole way, so that nothing is searched for and no state is ambiguous.
+        motion_is_result: the motion itself is looked at, so that the scene exists in time only and its drag is its own.
+    """
+
+    way_is_given: ClassVar[bool] = False
+    motion_is_result: ClassVar[bool] = False
+
+    @property
+    def compression(self) -> float | None:
+        """Largest force [FU] that presses the bodies together; None where displacements are prescribed."""
+        return None
+
+    def places(self) -> list[float]:
+        """Prescribed displacements [LU] in order, none where a force is prescribed."""
+        return []
+
+    @property
+    def way(self) -> float:
+        """How far [LU] the bodies are drawn along each other."""
+        return 0.0
+
+
+class Load(Kind):
     """Equilibrium under a normal force."""
 
     kind: Literal["load"] = Field(description="equilibrium under a force")
     force: Force = Field(description="normal force on the upper body, compression positive")
     method: Method | None = Field(default=None, description=_METHOD)
 
+    @property
+    def compression(self) -> float:
+        """The force, if it compresses."""
+        return max(self.force, 0.0)
 
-class Path(Table):
+
+class Path(Kind):
     """Prescribed displacements of the upper body."""
+
+    way_is_given: ClassVar[bool] = True
 
     kind: Literal["path"] = Field(description="prescribed displacement, there and back")
     displacements: Displacements = Field(description="displacements, compression positive: a list or an even span")
     method: Method | None = Field(default=None, description=_METHOD)
 
-    def values(self) -> list[float]:
+    def places(self) -> list[float]:
         """Displacements [LU] in the order in which they are visited, the turning point of a span once."""
         listed = self.displacements
         return listed.values() if isinstance(listed, Span) else list(listed)
 
 
-class PullOff(Table):
+class PullOff(Kind):
     """Compression by a preload, then the largest tension that the contact holds."""
 
     kind: Literal["pull_off"] = Field(description="compress by the preload, then the largest tension held")
     preload: Compression = Field(description="compressive force F_D before the pull")
     method: Method | None = Field(default=None, description=_METHOD)
 
+    @property
+    def compression(self) -> float:
+        """F_D."""
+        return self.preload
 
-class Slide(Table):
+
+class Slide(Kind):
     """Sliding under a normal force, pulled through the cantilever; always dynamic."""
+
+    way_is_given: ClassVar[bool] = True
+    motion_is_result: ClassVar[bool] = True
 
     kind: Literal["slide"] = Field(description="normal force and cantilever; always dynamic")
     normal_force: Compression = Field(description="compressive force held while sliding")
     distance: Length = Field(description="way of the driven end of the cantilever")
+
+    @property
+    def compression(self) -> float:
+        """The normal force."""
+        return self.normal_force
+
+    @property
+    def way(self) -> float:
+        """The way of the driven end."""
+        return self.distance
 
 
 Experiment = Annotated[Load | Path | PullOff | Slide, Discriminator("kind")]

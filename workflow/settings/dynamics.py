@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from dataclasses import dataclass
 
-from contact1d.potentials import DoubleExponential
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.estimate import ContactEstimate
 
@@ -21,29 +20,34 @@ SOFTENING = 0.6
 """Stiffness of the contact under tension over that under the preload: automatic damping is critical for the former."""
 
 
+@dataclass(frozen=True)
+class Dynamics:
+    """What `Settings` has of the same names."""
+
+    time_step: float
+    damping: float
+    damped_stiffness: float
+    plate_mass: float
+    plate_damping: float
+    settle_time: float
+
+
 def dynamics_of(
     scene: Scene,
-    law: DoubleExponential | None,
-    closest: float,
-    plane: float,
+    tolerance: float,
     estimate: ContactEstimate,
     largest: float,
     particles: int,
+    stiffest: float,
     still_step: float,
-) -> dict[str, Any]:
+) -> Dynamics:
     """Time step, damping, plate mass and settling time from the stiffest and the softest motion of the scene."""
     bodies = scene.bodies
-    stiffest = max(scene.bulk_stiffness, scene.tangential_stiffness) + plane
-    if law is not None:
-        rows = 1.0 + 2.0 * law.repulsion.range / bodies.spacing
-        stiffest += 2.0 * rows * float(law.stiffness(closest))
-    if scene.neighbours is not None:
-        stiffest += 4.0 * scene.neighbours.stiffness
     product = still_step if scene.method == "dynamic" else RELAXING_STEP
-    if scene.experiment.kind == "slide":
+    if scene.experiment.motion_is_result:
         product = MOVING_STEP
     if scene.noise is not None:
-        product = min(product, math.sqrt(scene.accuracy.tolerance / NOISE_BIAS))
+        product = min(product, math.sqrt(tolerance / NOISE_BIAS))
     touching = 2.0 * estimate.half_width(max(largest, 0.0), estimate.rest) / bodies.spacing
     contact = max(touching, 1.0) * estimate.stiffness
     plate_mass = 0.0
@@ -56,8 +60,8 @@ def dynamics_of(
         automatic = critical / particles if scene.plate is not None else math.sqrt(scene.bulk_stiffness * bodies.mass)
         given = scene.damping.coefficient
         damping = automatic if given == "auto" else given
-        # The drag on a slide is part of what is measured, so it is one and the same throughout.
-        damped_stiffness = SOFTENING * contact if given == "auto" and scene.experiment.kind != "slide" else 0.0
+        # The drag on a motion is part of what is looked at, so it is one and the same throughout.
+        damped_stiffness = SOFTENING * contact if given == "auto" and not scene.experiment.motion_is_result else 0.0
     plate_damping = 0.0
     if scene.plate is not None:
         given = scene.plate.damping
@@ -69,11 +73,4 @@ def dynamics_of(
     if plate_mass > 0.0:
         step = min(step, product / math.sqrt(particles * scene.bulk_stiffness / plate_mass))
         step = min(step, DRAG_STEP * plate_mass / max(plate_damping, 1e-300))
-    return {
-        "time_step": step,
-        "damping": damping,
-        "damped_stiffness": damped_stiffness,
-        "plate_mass": plate_mass,
-        "plate_damping": plate_damping,
-        "settle_time": 2.0 * math.pi / math.sqrt(slowest),
-    }
+    return Dynamics(step, damping, damped_stiffness, plate_mass, plate_damping, 2.0 * math.pi / math.sqrt(slowest))

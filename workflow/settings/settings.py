@@ -49,6 +49,7 @@ class Settings:
     """The numbers of one run; units as in the scene.
 
     Attributes:
+        tolerance: that all of this is for; that of a refined pass is smaller than the scene's.
         particles: per body.
         rest: apex distance at displacement 0 [LU].
         law, cutoff, table, table_from: the interaction, its cutoff [LU], its table, and the distance [LU] from which on
@@ -76,6 +77,7 @@ class Settings:
         thermostat: scheme of [noise], "langevin" or "gjf"; the latter for cost studies too.
     """
 
+    tolerance: float
     particles: int
     rest: float
     law: DoubleExponential | None
@@ -132,20 +134,26 @@ def interaction_law(scene: Scene) -> DoubleExponential | None:
     return DoubleExponential(Exponential(terms.repulsion.amplitude, terms.repulsion.range), attraction)
 
 
-def settings_for(scene: Scene, law: DoubleExponential | None = None, shares: Calibration | None = None) -> Settings:
+def settings_for(
+    scene: Scene,
+    tolerance: float | None = None,
+    law: DoubleExponential | None = None,
+    calibration: Calibration = CALIBRATION,
+) -> Settings:
     """Choose every open number of a scene.
 
     Args:
-        scene: with its tolerance.
+        scene: whose numbers are left open.
+        tolerance: in place of the scene's own, for a refined pass.
         law: in place of the scene's own, for cost studies.
-        shares: in place of those that were measured, for the study that measures them.
+        calibration: in place of the one that was measured, for the study that measures it.
 
     Raises:
         SettingsError: the numbers are so far apart that no chain, table or time step comes out of them.
     """
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
-            chosen = _chosen(scene, law or interaction_law(scene), shares or CALIBRATION)
+            chosen = _chosen(scene, tolerance or scene.accuracy.tolerance, law or interaction_law(scene), calibration)
     except (OverflowError, FloatingPointError, ZeroDivisionError, MemoryError) as error:
         raise SettingsError(
             f"the scene's numbers are too far apart to compute with ({error}): compare its lengths (spacing, ranges, "
@@ -159,35 +167,36 @@ def settings_for(scene: Scene, law: DoubleExponential | None = None, shares: Cal
     return chosen
 
 
-def _chosen(scene: Scene, law: DoubleExponential | None, shares: Calibration) -> Settings:
-    tolerance = scene.accuracy.tolerance
+def _chosen(scene: Scene, tolerance: float, law: DoubleExponential | None, calibration: Calibration) -> Settings:
     bodies = scene.bodies
     require_room(bodies)
     shape = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
-    plane = _plane_stiffness(scene)
+    plane = _plane_stiffness(scene, tolerance)
     bond = scene.bulk_stiffness if law is not None else 1.0 / (1.0 / scene.bulk_stiffness - 1.0 / plane)
     cutoff, rest, closest = 0.0, 0.0, 0.0
     if law is None:
         estimate = plane_estimate(shape, bodies.spacing, scene.bulk_stiffness)
     else:
-        cutoff = _cutoff(scene, law, shares.cutoff)
+        cutoff = _cutoff(scene, law, calibration.cutoff * tolerance)
         rest = law.force_free_distance() if law.attraction is not None else cutoff
         closest = CLOSEST_SHARE * (rest if law.attraction is not None else law.repulsion.range)
         estimate = particles_estimate(law, shape, bodies.spacing, scene.bulk_stiffness, cutoff, rest)
     largest = _largest_displacement(scene, estimate)
     particles = bodies.particles
     if particles == "auto":
-        particles = chain_length(scene, estimate, largest, shares.chain * tolerance)
+        particles = chain_length(scene, estimate, largest, calibration.chain * tolerance)
     require_body(bodies, largest, particles)
     force_scale = _force_scale(scene, law, largest)
     table_from, table = 0.0, None
     if law is not None:
         nearest = closest if scene.noise is not None else NEAR_SHARE * closest
         table_from = max(nearest, TABLE_MARGIN * (_distance(estimate, cutoff, largest) - _thermal_motion(scene)))
-        table = table_for(law, cutoff, table_from, shares.table * tolerance * force_scale)
-    motion = dynamics_of(scene, law, closest, plane, estimate, largest, particles, shares.still_step)
+        table = table_for(law, cutoff, table_from, calibration.table * tolerance * force_scale)
+    stiffest = _stiffest(scene, law, closest, plane)
+    dynamics = dynamics_of(scene, tolerance, estimate, largest, particles, stiffest, calibration.still_step)
     different = scene.horizontal is not None and scene.tangential_stiffness != scene.bulk_stiffness
     return Settings(
+        tolerance=tolerance,
         particles=particles,
         rest=rest,
         law=law,
@@ -199,17 +208,22 @@ def _chosen(scene: Scene, law: DoubleExponential | None, shares: Calibration) ->
         plane_stiffness=plane,
         far=FAR_SHARE / tolerance * bodies.spacing if different else 0.0,
         force_scale=force_scale,
-        force_tolerance=shares.residual * tolerance * force_scale,
-        displacement_step=_displacement_step(law, bodies.spacing, shares.loading_increment * largest, closest),
-        smooth_step=shares.smooth_increment * law.longest_range if law is not None else 0.0,
+        force_tolerance=calibration.residual * tolerance * force_scale,
+        displacement_step=_displacement_step(law, bodies.spacing, calibration.loading_increment * largest, closest),
+        smooth_step=calibration.smooth_increment * law.longest_range if law is not None else 0.0,
         longest_move=MOVE_SHARE * closest if law is not None else math.inf,
         largest_displacement=largest,
         estimate=estimate,
-        **motion,
+        time_step=dynamics.time_step,
+        damping=dynamics.damping,
+        damped_stiffness=dynamics.damped_stiffness,
+        plate_mass=dynamics.plate_mass,
+        plate_damping=dynamics.plate_damping,
+        settle_time=dynamics.settle_time,
     )
 
 
-def _plane_stiffness(scene: Scene) -> float:
+def _plane_stiffness(scene: Scene, tolerance: float) -> float:
     """One-sided stiffness of the rigid plane.
 
     In series with a bond it is exact for a particle on its own (bond and plane 2k each give k). Neighbour springs and
@@ -221,14 +235,25 @@ def _plane_stiffness(scene: Scene) -> float:
     if scene.neighbours is None and scene.noise is None:
         return 2.0 * stiffness
     neighbours = 0.0 if scene.neighbours is None else scene.neighbours.stiffness
-    return (stiffness + 4.0 * neighbours) / scene.accuracy.tolerance
+    return (stiffness + 4.0 * neighbours) / tolerance
+
+
+def _stiffest(scene: Scene, law: DoubleExponential | None, closest: float, plane: float) -> float:
+    """Largest stiffness [FU/LU] that a particle feels: its springs, the plane, and a row of opposite ones nearby."""
+    stiffest = max(scene.bulk_stiffness, scene.tangential_stiffness) + plane
+    if law is not None:
+        rows = 1.0 + 2.0 * law.repulsion.range / scene.bodies.spacing
+        stiffest += 2.0 * rows * float(law.stiffness(closest))
+    if scene.neighbours is not None:
+        stiffest += 4.0 * scene.neighbours.stiffness
+    return stiffest
 
 
 def _cutoff(scene: Scene, law: DoubleExponential, share: float) -> float:
     assert scene.interaction is not None
     if scene.interaction.cutoff != "auto":
         return scene.interaction.cutoff
-    return law.cutoff_for(share * scene.accuracy.tolerance)
+    return law.cutoff_for(share)
 
 
 def _distance(estimate: ContactEstimate, cutoff: float, displacement: float) -> float:
@@ -243,16 +268,8 @@ def _thermal_motion(scene: Scene) -> float:
 
 
 def _largest_displacement(scene: Scene, estimate: ContactEstimate) -> float:
-    experiment = scene.experiment
-    match experiment.kind:
-        case "load":
-            return estimate.displacement_at(max(experiment.force, 0.0))
-        case "pull_off":
-            return estimate.displacement_at(experiment.preload)
-        case "slide":
-            return estimate.displacement_at(experiment.normal_force)
-        case _:
-            return max(experiment.values())
+    compression = scene.experiment.compression
+    return max(scene.experiment.places()) if compression is None else estimate.displacement_at(compression)
 
 
 def _force_scale(scene: Scene, law: DoubleExponential | None, largest: float) -> float:

@@ -33,6 +33,8 @@ class Contribution:
         pair_style: its part of the shared slot `pair_style`, or "".
         step_begin, step_end: fragments around every measurement.
         integrates: the atom group whose motion its fragment integrates, or "": a group has one integrator at most.
+        pushes: the LAMMPS variable of the force [FU] with which it presses the upper body onto the lower one, beside
+            contact and load, or "".
     """
 
     name: str
@@ -43,6 +45,7 @@ class Contribution:
     step_begin: tuple[str, ...] = ()
     step_end: tuple[str, ...] = ()
     integrates: str = ""
+    pushes: str = ""
 
 
 def number(value: float) -> str:

@@ -3,30 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contact1d.analysis.pressure import Profile, mean_pressure
+from contact1d.analysis.pressure import mean_pressure
+from contact1d.workflow.deck.steps import UnderLoad
 from contact1d.workflow.experiments.load.quasistatic import load_outcome, moved_by
 from contact1d.workflow.experiments.running.contact import Contact, State
-from contact1d.workflow.experiments.running.holding import Held, chunk_steps, hold, overshoot, stiffness_under
+from contact1d.workflow.experiments.running.holding import Held, hold, overshoot, stiffness_under
 from contact1d.workflow.experiments.running.law_error import law_error
-from contact1d.workflow.experiments.running.outcome import Outcome, UntrustedError, doubts, require_trust
-from contact1d.workflow.experiments.running.radii import radius_of
+from contact1d.workflow.experiments.running.outcome import Outcome
+from contact1d.workflow.experiments.running.radii import RadiusRule
 from contact1d.workflow.experiments.running.run_context import RunContext
+from contact1d.workflow.experiments.running.sampling import BLOCKS, SETTLING, chunk_steps, mean_profile, standard_error
+from contact1d.workflow.experiments.running.trust import UntrustedError, doubts, require_trust
+from contact1d.workflow.scene import Load
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE, Quantity
 
 CLOSE = 1e-3
 """Steps towards a tension, over the largest one that is expected, below which the tension itself is tried."""
-SETTLING = 40
-"""Looks (of a quarter of a settling time each) that a thermal contact has to forget its start."""
 SAMPLES = 200
 """Samples taken before the statistics are judged for the first time, and again each time they are not good enough."""
 MOST_SAMPLES = 2_000
-BLOCKS = 20
-"""Blocks whose means give the standard error: each is long against the settling time."""
 BALANCE = 5.0
 """Standard errors by which the mean force may miss the load."""
 
@@ -38,7 +36,7 @@ def load_dynamic(context: RunContext) -> Outcome:
         UntrustedError: see `hold` and `require_trust`; with noise, also where the mean force misses the load.
     """
     scene = context.deck.scene
-    assert scene.experiment.kind == "load"
+    assert isinstance(scene.experiment, Load)
     load = scene.experiment.force
     with context.contact() as contact:
         if scene.noise is not None:
@@ -56,11 +54,11 @@ def _settled(context: RunContext, contact: Contact, load: float) -> tuple[list[S
     """Hold the load; a tension is approached from a held F = 0, so gently that the plate's momentum breaks nothing."""
     settings = context.deck.settings
     scale, largest = max(abs(load), settings.force_scale), settings.estimate.pull_off_force()
-    contact.begin("loading", "hold")
+    contact.begin("loading")
     held = hold(contact, max(load, 0.0), scale)
     states = list(held.states)
     if load < 0.0 and held.held:
-        contact.begin("unloading", "hold")
+        contact.begin("unloading")
     while held.held and held.load > load:
         past = overshoot(settings, contact.scene.bodies.mass, held.load, -largest)
         gentle = (past * held.load - largest) / (1.0 + past)
@@ -75,20 +73,21 @@ def _settled(context: RunContext, contact: Contact, load: float) -> tuple[list[S
 def _thermal(context: RunContext, contact: Contact, load: float) -> Outcome:
     scene, settings = context.deck.scene, context.deck.settings
     steps = chunk_steps(settings)
-    contact.begin("settling", "load", expected_steps=SETTLING * steps)
-    settling = [_joined(contact, contact.row(load, steps)) for _ in range(SETTLING)]
-    contact.begin("sampling", "load", expected_steps=SAMPLES * steps)
+    contact.begin("settling", expected_steps=SETTLING * steps)
+    settling = [_joined(contact, contact.row(UnderLoad(load, steps))) for _ in range(SETTLING)]
+    contact.begin("sampling", expected_steps=SAMPLES * steps)
     samples: list[State] = []
-    goal = scene.accuracy.tolerance * max(settings.rest, abs(settings.largest_displacement))
+    goal = settings.tolerance * max(settings.rest, abs(settings.largest_displacement))
     while len(samples) < MOST_SAMPLES:
-        samples += [_joined(contact, contact.row(load, steps)) for _ in range(SAMPLES)]
+        samples += [_joined(contact, contact.row(UnderLoad(load, steps))) for _ in range(SAMPLES)]
         if standard_error([s.displacement for s in samples]) <= goal:
             break
     contact.write_state()
     contact.finish()
     for state in samples:
         require_trust(scene, settings, state)
-    mean_force, force_error = float(np.mean([s.force for s in samples])), standard_error([s.force for s in samples])
+    carried = [s.carried for s in samples]
+    mean_force, force_error = float(np.mean(carried)), standard_error(carried)
     if abs(mean_force - load) > BALANCE * force_error:
         raise UntrustedError(
             f"not in equilibrium: the mean force {mean_force:.4g} FU misses the load {load:.4g} FU by "
@@ -128,11 +127,12 @@ def _thermal_outcome(
             f"{MOST_SAMPLES} samples give the displacement within {error:.2g} LU only, not the {goal:.2g} LU asked for"
         )
     mean = mean_profile([s.profile for s in samples])
-    radius = radius_of(scene, mean)
+    rule = RadiusRule(scene, context.deck.settings.tolerance)
+    radius = rule.of(mean)
     if radius is None:
         warnings["no_radius"] = "the bodies do not touch over a width, so there is no contact radius"
     else:
-        blocks = [radius_of(scene, mean_profile([s.profile for s in block])) for block in _blocks(samples)]
+        blocks = [rule.of(mean_profile([s.profile for s in block])) for block in _blocks(samples)]
         values = [block.value for block in blocks if block is not None]
         spread = float(np.std(values, ddof=1) / math.sqrt(len(values))) if len(values) > 1 else radius.value
         pressure = mean_pressure(mean, scene.bodies.spacing, radius.value)
@@ -141,21 +141,6 @@ def _thermal_outcome(
         quantities["mean_pressure"] = Quantity(pressure, abs(pressure) * share, MEAN_PRESSURE)
     radii = {"final": math.nan if radius is None else radius.value}
     return Outcome(quantities, states, {"final": mean}, radii, contact.phases, warnings)
-
-
-def standard_error(samples: Sequence[float]) -> float:
-    """Standard error of the mean of a correlated series, from the means of BLOCKS blocks."""
-    means = [float(np.mean(block)) for block in np.array_split(np.asarray(samples), BLOCKS)]
-    return float(np.std(means, ddof=1) / math.sqrt(BLOCKS))
-
-
-def mean_profile(profiles: Sequence[Profile]) -> Profile:
-    """The average over time, particle by particle."""
-
-    def mean(name: str) -> NDArray[np.float64]:
-        return np.asarray(np.mean([getattr(profile, name) for profile in profiles], axis=0))
-
-    return Profile(*(mean(name) for name in ("x", "z_lower", "z_upper", "pressure", "shear")))
 
 
 def _blocks(samples: list[State]) -> list[list[State]]:

@@ -6,15 +6,18 @@ import math
 from collections.abc import Sequence
 
 from contact1d.analysis.pressure import mean_pressure
-from contact1d.workflow.deck.deck import Phase
+from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.law_error import law_error
-from contact1d.workflow.experiments.running.outcome import Outcome, doubts
+from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.prescribing import approach
-from contact1d.workflow.experiments.running.radii import radius_of
 from contact1d.workflow.experiments.running.run_context import RunContext
+from contact1d.workflow.experiments.running.trust import doubts
+from contact1d.workflow.scene import Load
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE, Quantity
 
+NOTHING_CARRIED = frozenset({"force", "mean_pressure"})
+"""What is no result of a contact that is to carry nothing."""
 BESIDE = 0.02
 """Distance of two displacements over the whole way from which on a change is more than interpolation error."""
 
@@ -28,18 +31,18 @@ def load_quasistatic(context: RunContext) -> Outcome:
         UntrustedError: see `require_trust`; also where the contact cannot hold the force.
     """
     scene, settings = context.deck.scene, context.deck.settings
-    assert scene.experiment.kind == "load"
+    assert isinstance(scene.experiment, Load)
     force = scene.experiment.force
     with context.contact() as contact:
-        contact.begin("loading", "displace")
+        contact.begin("loading")
         states = approach(contact, max(force, 0.0), 0.0)
         if force < 0.0:
-            contact.begin("unloading", "displace")
+            contact.begin("unloading")
             states += approach(contact, force, states[-1].displacement, direction=-1)
         contact.write_state()
         contact.finish()
     final = states[-1]
-    unbalance = abs(final.force - force) + final.residual * settings.particles
+    unbalance = abs(final.carried - force) + final.residual * settings.particles
     unbalance += law_error(scene, settings, final)
     moved = moved_by(states, unbalance, _stiffness(states))
     return load_outcome(context, tuple(states), contact.phases, unbalance, moved)
@@ -54,12 +57,13 @@ def load_outcome(
 ) -> Outcome:
     """The results of a load from its last state."""
     scene, final = context.deck.scene, states[-1]
+    assert isinstance(scene.experiment, Load)
     quantities = {
         "displacement": Quantity(final.displacement, displacement_uncertainty, LENGTH),
         "force": Quantity(final.force, force_uncertainty, FORCE),
     }
     warnings = doubts(scene, context.deck.settings, states)
-    radius = radius_of(scene, final.profile)
+    radius = final.radius
     if radius is None or radius.value == 0.0:
         warnings["no_radius"] = "the bodies do not touch over a width, so there is no contact radius"
     else:
@@ -70,10 +74,19 @@ def load_outcome(
         quantities["contact_radius"] = Quantity(radius.value, spread, LENGTH)
         quantities["mean_pressure"] = Quantity(pressure, abs(pressure) * share, MEAN_PRESSURE)
     radii = {"final": math.nan if radius is None else radius.value}
-    lattice = {} if radius is None else {"contact_radius": radius.uncertainty}
+    by_spacing = {} if radius is None else {"contact_radius": radius.uncertainty}
     if "mean_pressure" in quantities and radius is not None:
-        lattice["mean_pressure"] = 2 * radius.uncertainty / radius.value * abs(quantities["mean_pressure"].value)
-    return Outcome(quantities, states, {"final": final.profile}, radii, phases, warnings, lattice=lattice)
+        by_spacing["mean_pressure"] = 2 * radius.uncertainty / radius.value * abs(quantities["mean_pressure"].value)
+    return Outcome(
+        quantities,
+        states,
+        {"final": final.profile},
+        radii,
+        phases,
+        warnings,
+        spacing_uncertainty=by_spacing,
+        prescribed=NOTHING_CARRIED if scene.experiment.force == 0.0 else frozenset(),
+    )
 
 
 def beside(states: Sequence[State]) -> list[State]:
@@ -126,9 +139,9 @@ def _radius_spread(context: RunContext, states: Sequence[State], radius: float, 
     Where no state beside the last tells da/dd, a/F for da/dF, F at least the expected pull-off force: that of a
     straight line, above that of a curved body.
     """
-    scene, final = context.deck.scene, states[-1]
+    final = states[-1]
     near = beside(states)[:1]
-    other = radius_of(scene, near[0].profile) if near else None
+    other = near[0].radius if near else None
     if other is None:
         return errors[0] * radius / max(abs(final.force), context.deck.settings.estimate.pull_off_force())
     return errors[1] * abs((other.value - radius) / (near[0].displacement - final.displacement))

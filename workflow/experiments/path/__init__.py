@@ -1,1 +1,5 @@
 """Prescribed displacement."""
+
+from contact1d.workflow.experiments.path.kind import PATH
+
+__all__ = ["PATH"]

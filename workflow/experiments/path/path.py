@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 
 import numpy as np
 
 from contact1d.analysis.curve_marks import Peak, crossing, largest_tension
-from contact1d.workflow.deck.deck import Phase
+from contact1d.analysis.loop import loop_of
+from contact1d.workflow.experiments.path.schedule import places, schedule
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.law_error import law_error
-from contact1d.workflow.experiments.running.outcome import Outcome, doubts, require_trust
-from contact1d.workflow.experiments.running.radii import radius_of
+from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
-from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import Settings
-from contact1d.workflow.units import FORCE, LENGTH, Quantity
+from contact1d.workflow.experiments.running.trust import doubts, require_trust
+from contact1d.workflow.units import ENERGY, FORCE, LENGTH, Quantity
 
-RELAXATIONS = 14.0
-"""Time that a dynamic path gives the particles at each displacement, over the time constant of their slowest decay."""
-ROUND_OFF = 1e-9
 PLACE = 0.1
 """How well a parabola places a maximum, over the increment of the displacement."""
 
@@ -28,7 +23,8 @@ PLACE = 0.1
 def path(context: RunContext) -> Outcome:
     """F_A, a₀ and a_cr of a scene with `[experiment] kind = "path"`, read off the branch that unloads last.
 
-    A quantity that the path does not reach (no tension, no crossing of F = 0) is left out, and a warning says so.
+    A path that ends where it begins has the energy that it dissipates besides, the area of its loop. A quantity that
+    the path does not reach (no tension, no crossing of F = 0) is left out, and a warning says so.
 
     Raises:
         UntrustedError: see `require_trust`.
@@ -39,79 +35,39 @@ def path(context: RunContext) -> Outcome:
         passed = contact.replay(phases)
     for state in passed:
         require_trust(scene, settings, state)
-    asked = [wanted for _, wanted in _places(scene, settings)]
+    asked = [wanted for _, wanted in places(scene, settings)]
     states = [state for state, wanted in zip(passed, asked, strict=True) if wanted]
     adhesive = scene.interaction is not None and scene.interaction.attraction is not None
     branch = [s for s in states if s.phase == phases[-1].name]
     quantities, warnings = _adhesion(context, branch) if adhesive else (_largest(context, states), {})
-    ends = {"deepest": max(states, key=lambda s: s.displacement).profile, "final": states[-1].profile}
-    radii = {name: radius_of(scene, profile) for name, profile in ends.items()}
+    ends = {"deepest": max(states, key=lambda s: s.displacement), "final": states[-1]}
+    radii = {name: state.radius for name, state in ends.items()}
+    loop = loop_of(*zip(*((s.displacement, s.force) for s in passed[asked.index(True) :]), strict=True))
+    if loop is not None:
+        error = loop.uncertainty + loop.length * max(_noise(context, state) for state in states)
+        quantities["dissipated_energy"] = Quantity(loop.area, error, ENERGY)
     return Outcome(
         quantities,
         tuple(states),
-        ends,
+        {name: state.profile for name, state in ends.items()},
         {name: math.nan if radius is None else radius.value for name, radius in radii.items()},
         phases,
         warnings | doubts(scene, settings, tuple(states)),
+        compared_with={} if loop is None else {"dissipated_energy": loop.whole},
     )
-
-
-def schedule(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-    """One phase for each stretch of rising ("loading") or falling ("unloading") displacement."""
-    dynamic = scene.method == "dynamic"
-    rest = (math.ceil(RELAXATIONS * _decay(scene, settings) / settings.time_step),) if dynamic else ()
-    values = [value for value, _ in _places(scene, settings)]
-    stretches: list[tuple[str, list[float]]] = [("loading", [values[0]])]
-    for before, value in pairwise(values):
-        branch = "loading" if value > before else "unloading"
-        if stretches[-1][0] != branch:
-            stretches.append((branch, []))
-        stretches[-1][1].append(value)
-    stretches = [(branch, rows) for branch, rows in stretches if rows]
-    counts: dict[str, int] = {}
-    phases = []
-    for branch, rows in stretches:
-        counts[branch] = counts.get(branch, 0) + 1
-        name = branch if counts[branch] == 1 else f"{branch}_{counts[branch]}"
-        kind = "displace_dynamic" if dynamic else "displace"
-        phases.append(Phase(name, kind, tuple((float(d), *rest) for d in rows), state=True))
-    return tuple(phases)
-
-
-def _places(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
-    """Displacements [LU] of all rows, and whether the scene asks for them or they lie on the way between two of those.
-
-    The way starts at 0, where the bodies stand in system.data, unless the first displacement draws them apart.
-    """
-    assert scene.experiment.kind == "path"
-    places: list[tuple[float, bool]] = []
-    before = 0.0
-    for value in scene.experiment.values():
-        moves = max(1, math.ceil((value - before) / settings.longest_move - ROUND_OFF))
-        places += [(before + (value - before) * i / moves, False) for i in range(1, moves)]
-        places.append((value, True))
-        before = value
-    return places
-
-
-def _decay(scene: Scene, settings: Settings) -> float:
-    """Time constant [TU] with which a particle on its bulk spring comes to rest: 2m/γ, overdamped γ/k."""
-    mass, stiffness = scene.bodies.mass, scene.bulk_stiffness
-    return max(2.0 * mass / settings.damping, settings.damping / stiffness)
 
 
 def _largest(context: RunContext, states: list[State]) -> dict[str, Quantity]:
     """Without adhesion: force and radius where the displacement is largest."""
     deepest = max(states, key=lambda s: s.displacement)
     quantities = {"largest_force": Quantity(deepest.force, _noise(context, deepest), FORCE)}
-    radius = radius_of(context.deck.scene, deepest.profile)
+    radius = deepest.radius
     if radius is not None:
         quantities["largest_radius"] = Quantity(radius.value, radius.uncertainty, LENGTH)
     return quantities
 
 
 def _adhesion(context: RunContext, branch: list[State]) -> tuple[dict[str, Quantity], dict[str, str]]:
-    scene = context.deck.scene
     displacement, force = [s.displacement for s in branch], [s.force for s in branch]
     quantities: dict[str, Quantity] = {}
     warnings: dict[str, str] = {}
@@ -120,7 +76,7 @@ def _adhesion(context: RunContext, branch: list[State]) -> tuple[dict[str, Quant
         quantities["adhesion_force"] = Quantity(
             peak.smooth, peak.uncertainty + _noise(context, branch[peak.index]), FORCE
         )
-        critical = _critical_radius(scene, branch, peak)
+        critical = _critical_radius(branch, peak)
         if critical is not None:
             quantities["critical_radius"] = critical
     else:
@@ -128,7 +84,7 @@ def _adhesion(context: RunContext, branch: list[State]) -> tuple[dict[str, Quant
             "the largest tension lies at an end of the last branch, so the path gives no adhesion_force: "
             'go further back, or use kind = "pull_off"'
         )
-    zero = _zero_load(context, branch, displacement, force)
+    zero = _zero_load(branch, displacement, force)
     if zero is None:
         warnings["no_zero_load"] = "the force does not pass 0 on the last branch, so there is no zero_load_radius"
     else:
@@ -136,10 +92,10 @@ def _adhesion(context: RunContext, branch: list[State]) -> tuple[dict[str, Quant
     return quantities, warnings
 
 
-def _critical_radius(scene: Scene, branch: list[State], peak: Peak) -> Quantity | None:
+def _critical_radius(branch: list[State], peak: Peak) -> Quantity | None:
     """a at the vertex of a smooth maximum, linear between the rows beside it; at the last row before a snap."""
     rows = branch[peak.index - 1 : peak.index + 2]
-    radii = [radius_of(scene, row.profile) for row in rows]
+    radii = [row.radius for row in rows]
     if radii[1] is None:
         return None
     if radii[0] is None or radii[2] is None:
@@ -153,14 +109,12 @@ def _critical_radius(scene: Scene, branch: list[State], peak: Peak) -> Quantity 
     return Quantity(value, radii[1].uncertainty + bend + PLACE * abs(values[0] - values[2]), LENGTH)
 
 
-def _zero_load(
-    context: RunContext, branch: list[State], displacement: list[float], force: list[float]
-) -> Quantity | None:
+def _zero_load(branch: list[State], displacement: list[float], force: list[float]) -> Quantity | None:
     try:
         index, place = crossing(displacement, force, 0.0)
     except ValueError:
         return None
-    first, second = (radius_of(context.deck.scene, branch[i].profile) for i in (index, min(index + 1, len(branch) - 1)))
+    first, second = (branch[i].radius for i in (index, min(index + 1, len(branch) - 1)))
     if first is None or second is None:
         return None
     gap = displacement[min(index + 1, len(branch) - 1)] - displacement[index]

@@ -16,13 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import are_apart, through
-from contact1d.workflow.deck.deck import Deck, Phase
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.steps import Phase
+from contact1d.workflow.experiments.pull_off.marked import marked_outcome
 from contact1d.workflow.experiments.running.contact import Contact, State
 from contact1d.workflow.experiments.running.holding import Held, Start, hold, overshoot
-from contact1d.workflow.experiments.running.outcome import Outcome, UntrustedError, doubts
-from contact1d.workflow.experiments.running.radii import radius_of, radius_or_spot
+from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.experiments.running.trust import UntrustedError, doubts
+from contact1d.workflow.scene import PullOff
 from contact1d.workflow.units import FORCE, LENGTH, Quantity
 
 MOST_LEVELS = 60
@@ -112,21 +114,21 @@ def pull_off_dynamic(context: RunContext) -> Outcome:
         UntrustedError: see `hold`.
     """
     scene = context.deck.scene
-    assert scene.experiment.kind == "pull_off"
+    assert isinstance(scene.experiment, PullOff)
     preload = scene.experiment.preload
     guess = context.deck.settings.estimate.pull_off_force()
     with context.contact() as contact:
-        contact.begin("loading", "hold")
+        contact.begin("loading")
         loaded = hold(contact, preload, max(preload, guess))
-        contact.begin("unloading", "hold")
+        contact.begin("unloading")
         zero = hold(contact, 0.0, max(preload, guess))
         if not (loaded.held and zero.held):
             raise UntrustedError("the contact is lost before any tension is applied: the bodies do not stick")
         contact.write_state()
-        search = Search(scene.accuracy.tolerance, guess, partial(_overshoot, context.deck, guess), [zero])
-        contact.begin("pulling", "hold")
+        search = Search(context.deck.settings.tolerance, guess, partial(_overshoot, context.deck, guess), [zero])
+        contact.begin("pulling")
         _pull(contact, search)
-        contact.begin("critical", "hold")
+        contact.begin("critical")
         critical = hold(contact, -search.best, guess, Start.BACK)
         contact.write_state()
         contact.finish()
@@ -158,16 +160,15 @@ def _pull(contact: Contact, search: Search) -> None:
 
 def _outcome(context: RunContext, search: Search, loaded: Held, critical: Held, phases: tuple[Phase, ...]) -> Outcome:
     scene, settings = context.deck.scene, context.deck.settings
-    assert scene.experiment.kind == "pull_off"
     zero = search.held[0].last
     adhesion = 0.5 * (search.best + search.broken)
     half = 0.5 * (search.broken - search.best) + critical.unbalance + _swung_past(context.deck, search)
     rest = (*(h.last for h in search.held[:-1]), critical.last)
-    zero_radius = radius_or_spot(scene, zero.profile)
+    zero_radius = zero.radius_or_spot
     if settings.estimate.snaps:
         critical_radius, spread = _radius_between_snaps(context, critical.last, zero_radius.value, half / adhesion)
     else:
-        critical_radius, spread = _critical_radius(scene, rest)
+        critical_radius, spread = _critical_radius(rest)
     slope = abs(critical_radius.value - zero_radius.value) / adhesion
     at_zero = abs(zero.force)
     if settings.estimate.snaps:
@@ -179,11 +180,10 @@ def _outcome(context: RunContext, search: Search, loaded: Held, critical: Held, 
         "zero_load_radius": Quantity(zero_radius.value, zero_radius.uncertainty + slope * at_zero, LENGTH),
         "preload": Quantity(loaded.last.force, loaded.unbalance, FORCE),
     }
-    profiles = {"zero_load": zero.profile, "critical": critical.last.profile}
-    radii = {name: radius_or_spot(scene, profile).value for name, profile in profiles.items()}
-    lattice = {"critical_radius": spread, "zero_load_radius": zero_radius.uncertainty}
+    marked = {"zero_load": zero, "critical": critical.last}
+    by_spacing = {"critical_radius": spread, "zero_load_radius": zero_radius.uncertainty}
     states = (loaded.last, *rest)
-    return Outcome(quantities, states, profiles, radii, phases, doubts(scene, settings, states), lattice=lattice)
+    return marked_outcome(quantities, states, marked, phases, doubts(scene, settings, states), by_spacing)
 
 
 def _swung_past(deck: Deck, search: Search) -> float:
@@ -200,7 +200,7 @@ def _radius_between_snaps(
     share `missed` of the tension is left to it: the teeth's tops lie near F = F_A (1 − y²), y = (a − a_cr)/(a₀ − a_cr).
     Also the part of the uncertainty [LU] that the spacing leaves.
     """
-    radius = radius_or_spot(context.deck.scene, critical.profile)
+    radius = critical.radius_or_spot
     spread = radius.uncertainty + context.deck.scene.bodies.spacing
     beyond = abs(zero_radius - radius.value) * math.sqrt(2.0 * missed)
     return Quantity(radius.value, spread + beyond, LENGTH), spread
@@ -225,14 +225,14 @@ def top_of(states: Sequence[State]) -> tuple[float, float] | None:
     return float(place[-1]) + width * nearest, float(tension(nearest))
 
 
-def _critical_radius(scene: Scene, held: Sequence[State]) -> tuple[Quantity, float]:
+def _critical_radius(held: Sequence[State]) -> tuple[Quantity, float]:
     """Radius at the pull-off itself, which force control never sees: extrapolated over the displacement.
 
     The largest tension is that of a cubic through the last four states at rest, the radius goes there as a parabola
     through the last three; the largest tension of a parabola through those three says how far both can be trusted.
     Also the part of the uncertainty [LU] that the spacing leaves.
     """
-    radii = [radius_of(scene, state.profile) for state in held[1 - FEWEST_HELD :]]
+    radii = [state.radius for state in held[1 - FEWEST_HELD :]]
     last = radii[-1]
     if last is None:
         raise UntrustedError("no contact radius: no particle is in tension")

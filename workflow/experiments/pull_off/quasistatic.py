@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import Peak, largest_tension, rivals, smooth_crossing
-from contact1d.workflow.deck.deck import Phase
+from contact1d.workflow.deck.steps import Phase, displacements
+from contact1d.workflow.experiments.pull_off.marked import marked_outcome
 from contact1d.workflow.experiments.pull_off.smooth import (
     LATTICE,
     MISPLACED,
@@ -26,10 +27,11 @@ from contact1d.workflow.experiments.pull_off.smooth import (
 )
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.law_error import law_error
-from contact1d.workflow.experiments.running.outcome import Outcome, UntrustedError, doubts, require_trust
+from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.prescribing import approach, separate
-from contact1d.workflow.experiments.running.radii import radius_or_spot
 from contact1d.workflow.experiments.running.run_context import RunContext
+from contact1d.workflow.experiments.running.trust import UntrustedError, doubts, require_trust
+from contact1d.workflow.scene import PullOff
 from contact1d.workflow.units import FORCE, LENGTH, Quantity
 
 Array = NDArray[np.float64]
@@ -93,8 +95,8 @@ def pull_off_quasistatic(context: RunContext) -> Outcome:
     """
     scene, settings = context.deck.scene, context.deck.settings
     experiment = scene.experiment
-    assert experiment.kind == "pull_off"
-    tolerance = SHARE * scene.accuracy.tolerance
+    assert isinstance(experiment, PullOff)
+    tolerance = SHARE * settings.tolerance
     if settings.is_smooth:
         smooth = smooth_pass(context, experiment.preload, tolerance)
         return _outcome(context, smooth, experiment.preload, smooth.missed)
@@ -104,22 +106,22 @@ def pull_off_quasistatic(context: RunContext) -> Outcome:
         before = latest
         latest = _replay(context, experiment.preload, _refined(before, experiment.preload, window))
         window *= ZOOM
-        if _agree(context, before, latest, experiment.preload, tolerance):
+        if _agree(before, latest, experiment.preload, tolerance):
             excess = max(rivals([s.force for s in latest.falling], latest.peak).values(), default=0.0)
             missed = abs(latest.peak.smooth - before.peak.smooth) + max(0.0, excess)
             return _outcome(context, latest, experiment.preload, missed)
     raise UntrustedError(
         f"the pull-off force still changes from {before.peak.tension:.6g} to {latest.peak.tension:.6g} FU after "
-        f"{MOST_PASSES} refinements of the path, by more than a tolerance of {scene.accuracy.tolerance:g} allows: take "
+        f"{MOST_PASSES} refinements of the path, by more than a tolerance of {settings.tolerance:g} allows: take "
         "a larger [accuracy] tolerance, or stiffer springs or a longer range, with which particles do not snap"
     )
 
 
 def _first(context: RunContext, preload: float) -> Pass:
     with context.contact("looking for the path") as contact:
-        contact.begin("loading", "displace")
+        contact.begin("loading")
         loading = approach(contact, preload, 0.0)
-        contact.begin("unloading", "displace")
+        contact.begin("unloading")
         unloading = separate(contact, loading[-1].displacement)
         contact.finish()
         return Pass(preload, contact.phases, False, loading, unloading)
@@ -142,10 +144,8 @@ def _refined(known: Pass, preload: float, window: float) -> tuple[Phase, ...]:
         "pulling": [d for d in falling if peak <= d < zero],
         "separating": [d for d in falling if d < peak],
     }
-    later = [
-        Phase(name, "displace", tuple((d,) for d in rows), state=name != "separating") for name, rows in parts.items()
-    ]
-    return (Phase("loading", "displace", tuple((d,) for d in loading)), *later)
+    later = [Phase(name, displacements(rows), state=name != "separating") for name, rows in parts.items()]
+    return (Phase("loading", displacements(loading)), *later)
 
 
 def _window(known: Pass, peak: float, window: float) -> Array:
@@ -179,16 +179,16 @@ def _replay(context: RunContext, wanted: float, phases: tuple[Phase, ...]) -> Pa
     return Pass(wanted, phases, True, states[:climbed], states[climbed:])
 
 
-def _agree(context: RunContext, before: Pass, latest: Pass, preload: float, tolerance: float) -> bool:
+def _agree(before: Pass, latest: Pass, preload: float, tolerance: float) -> bool:
     """Whether two passes give the same results, and the latest has its marked states where they belong."""
-    tension, radius = latest.peak.smooth, radius_or_spot(context.deck.scene, latest.critical.profile)
+    tension, radius = latest.peak.smooth, latest.critical.radius_or_spot
     return (
         abs(tension - before.peak.smooth) <= tolerance * tension
         and latest.peak.uncertainty <= tolerance * tension
         and abs(latest.preload - preload) <= tolerance * preload
         and abs(latest.zero.force) <= tolerance * tension
         and tension + latest.critical.force <= tolerance * tension
-        and abs(critical_shift(context, latest.unloading, latest.critical, latest.peak))
+        and abs(critical_shift(latest.unloading, latest.critical, latest.peak))
         <= max(tolerance * radius.value, LATTICE * radius.uncertainty)
     )
 
@@ -199,16 +199,16 @@ def _outcome(context: RunContext, found: Pass | SmoothPass, preload: float, miss
     zero, critical, peak = found.zero, found.critical, found.peak
     residual = critical.residual * settings.particles
     states = (*found.loading, *found.unloading)
-    critical_radius, zero_radius = (radius_or_spot(scene, state.profile) for state in (critical, zero))
-    shift = critical_shift(context, found.unloading, critical, peak)
+    critical_radius, zero_radius = critical.radius_or_spot, zero.radius_or_spot
+    shift = critical_shift(found.unloading, critical, peak)
     slope = abs(zero_radius.value - critical_radius.value) / peak.smooth
     loaded = found.loading[-1].force
     missed = max(missed, peak.uncertainty) + residual + law_error(scene, settings, critical)
     at_zero = abs(zero.force) + law_error(scene, settings, zero)
-    rate = abs(radius_rate(context, found.unloading, critical))
+    rate = abs(radius_rate(found.unloading, critical))
     at_critical = abs(shift) + MISPLACED * rate * peak.misplaced + slope * law_error(scene, settings, critical)
     if isinstance(found, Pass):
-        at_critical += _rival_radius(context, found, critical_radius.value, missed)
+        at_critical += _rival_radius(found, critical_radius.value, missed)
     quantities = {
         "adhesion_force": Quantity(peak.smooth, missed, FORCE),
         "critical_radius": Quantity(
@@ -217,16 +217,15 @@ def _outcome(context: RunContext, found: Pass | SmoothPass, preload: float, miss
         "zero_load_radius": Quantity(zero_radius.value, zero_radius.uncertainty + slope * at_zero, LENGTH),
         "preload": Quantity(loaded, abs(loaded - preload), FORCE),
     }
-    profiles = {"zero_load": zero.profile, "critical": critical.profile}
-    radii = {"zero_load": zero_radius.value, "critical": critical_radius.value}
-    lattice = {"critical_radius": critical_radius.uncertainty, "zero_load_radius": zero_radius.uncertainty}
+    marked = {"zero_load": zero, "critical": critical}
+    by_spacing = {"critical_radius": critical_radius.uncertainty, "zero_load_radius": zero_radius.uncertainty}
     warnings = doubts(scene, settings, states)
-    return Outcome(quantities, states, profiles, radii, found.phases, warnings, lattice=lattice)
+    return marked_outcome(quantities, states, marked, found.phases, warnings, by_spacing)
 
 
-def _rival_radius(context: RunContext, found: Pass, radius: float, missed: float) -> float:
+def _rival_radius(found: Pass, radius: float, missed: float) -> float:
     """How far [LU] the radius a_cr may be off because another tooth is the highest: by `missed` [FU] it may be."""
     falling = found.falling
     higher = rivals([s.force for s in falling], found.peak)
     teeth = [falling[i] for i, excess in higher.items() if excess > -missed]
-    return max((abs(radius_or_spot(context.deck.scene, s.profile).value - radius) for s in teeth), default=0.0)
+    return max((abs(s.radius_or_spot.value - radius) for s in teeth), default=0.0)

@@ -11,14 +11,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from contact1d.analysis.curve_marks import Peak, largest_tension, smooth_crossing
-from contact1d.workflow.deck.deck import Phase
+from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.running.contact import Contact, State
-from contact1d.workflow.experiments.running.outcome import UntrustedError
 from contact1d.workflow.experiments.running.prescribing import approach, measured, separate
-from contact1d.workflow.experiments.running.radii import radius_or_spot
 from contact1d.workflow.experiments.running.run_context import RunContext
+from contact1d.workflow.experiments.running.trust import UntrustedError
 
-MOST_ROWS = 12
+MOST_TRIES = 12
 """Rows at one mark after which the search gives up."""
 PAST = 3
 """Rows beyond the largest tension that its polynomials need."""
@@ -71,15 +70,15 @@ def smooth_pass(context: RunContext, preload: float, tolerance: float) -> Smooth
         UntrustedError: see `require_trust`; a mark is not found, or a larger tension comes after it.
     """
     with context.contact() as contact:
-        contact.begin("loading", "displace")
+        contact.begin("loading")
         loading = approach(contact, preload, 0.0)
-        contact.begin("unloading", "displace")
+        contact.begin("unloading")
         unloaded = _to_zero(contact, loading, tolerance)
         contact.write_state()
-        contact.begin("pulling", "displace")
+        contact.begin("pulling")
         pulled, missed = _to_largest_tension(contact, unloaded, tolerance)
         contact.write_state()
-        contact.begin("separating", "displace")
+        contact.begin("separating")
         apart = separate(contact, min(s.displacement for s in pulled), -min(s.force for s in pulled))
         contact.finish()
         phases = contact.phases
@@ -103,7 +102,7 @@ def _to_zero(contact: Contact, loading: list[State], tolerance: float) -> list[S
         states.append(measured(contact, at))
         if len(states) > MOST_PULLS:
             raise UntrustedError("the force stays compressive: nothing holds the bodies together")
-    for _ in range(MOST_ROWS):
+    for _ in range(MOST_TRIES):
         if abs(states[-1].force) <= tolerance * scale:
             return states[1:]
         states.append(measured(contact, _zero([*loading, *states])))
@@ -129,12 +128,12 @@ def _to_largest_tension(contact: Contact, unloaded: list[State], tolerance: floa
         if len(states) > MOST_PULLS:
             raise UntrustedError("the largest tension is never passed")
     expected, closer = _peak([*unloaded, *states]), iter(CLOSER)
-    for _ in range(MOST_ROWS):
+    for _ in range(MOST_TRIES):
         states.append(measured(contact, expected.position))
         found = _peak([*unloaded, *states])
         missed = abs(found.smooth - expected.smooth)
-        if missed <= tolerance * found.smooth and _near(contact, states, found, tolerance):
-            beside = None if _placed(contact, states, found, tolerance) else next(closer, None)
+        if missed <= tolerance * found.smooth and _near(states, found, tolerance):
+            beside = None if _placed(states, found, tolerance) else next(closer, None)
             if beside is None:
                 return states, max(missed, abs(found.smooth + states[-1].force))
             states += [measured(contact, found.position + side * beside * step) for side in (1.0, -1.0)]
@@ -143,34 +142,33 @@ def _to_largest_tension(contact: Contact, unloaded: list[State], tolerance: floa
     raise UntrustedError(f"the largest tension is not found near {expected.position:.6g} LU: {JUMPS}")
 
 
-def _near(contact: Contact, states: list[State], peak: Peak, tolerance: float) -> bool:
+def _near(states: list[State], peak: Peak, tolerance: float) -> bool:
     """Whether the contact radius of the last state is that of the maximum."""
-    return abs(critical_shift(contact, states, states[-1], peak)) <= _allowed(contact, states[-1], tolerance)
+    return abs(critical_shift(states, states[-1], peak)) <= _allowed(states[-1], tolerance)
 
 
-def _placed(contact: Contact, states: list[State], peak: Peak, tolerance: float) -> bool:
+def _placed(states: list[State], peak: Peak, tolerance: float) -> bool:
     """Whether the maximum itself is placed so well that the contact radius there is known."""
-    rate = abs(radius_rate(contact, states, states[-1]))
-    return MISPLACED * rate * peak.misplaced <= _allowed(contact, states[-1], tolerance)
+    rate = abs(radius_rate(states, states[-1]))
+    return MISPLACED * rate * peak.misplaced <= _allowed(states[-1], tolerance)
 
 
-def _allowed(contact: Contact, critical: State, tolerance: float) -> float:
+def _allowed(critical: State, tolerance: float) -> float:
     """Error [LU] that is left to the contact radius of the critical state."""
-    radius = radius_or_spot(contact.scene, critical.profile)
+    radius = critical.radius_or_spot
     return max(tolerance * radius.value, LATTICE * radius.uncertainty)
 
 
-def critical_shift(contact: Contact | RunContext, states: list[State], critical: State, peak: Peak) -> float:
+def critical_shift(states: list[State], critical: State, peak: Peak) -> float:
     """By how much a changes from the critical state to where the curve has its maximum [LU]."""
-    return radius_rate(contact, states, critical) * (peak.position - critical.displacement)
+    return radius_rate(states, critical) * (peak.position - critical.displacement)
 
 
-def radius_rate(contact: Contact | RunContext, states: list[State], critical: State) -> float:
+def radius_rate(states: list[State], critical: State) -> float:
     """da/dd at the critical state, from the nearest other row."""
-    scene = contact.deck.scene
     others = (s for s in states if s.displacement != critical.displacement)
     near = min(others, key=lambda s: abs(s.displacement - critical.displacement))
-    change = radius_or_spot(scene, near.profile).value - radius_or_spot(scene, critical.profile).value
+    change = near.radius_or_spot.value - critical.radius_or_spot.value
     return change / (near.displacement - critical.displacement)
 
 

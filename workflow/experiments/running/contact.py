@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.pressure import Profile, interpenetration, pressure_profile, smallest_distance
+from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.deck.datafile import PARTICLES
-from contact1d.workflow.deck.deck import STEP_COLUMNS, Deck, Phase
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.steps import Phase, Row
 from contact1d.workflow.engine.session import EngineError, Session
-from contact1d.workflow.experiments.running.radii import radius_of
+from contact1d.workflow.experiments.running.radii import RadiusRule
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
@@ -31,6 +33,8 @@ class State:
         smallest_distance: between particles of opposite bodies, or of a particle from the plane [LU].
         depth: how far an upper particle lies below the lower surface [LU]; 0 where none does.
         residual: largest unbalanced force of a particle along a direction in which it may move [FU].
+        rule: what the contact radius is.
+        pushed: force of other effects that presses the upper body onto the lower one [FU].
         plate_velocity: [LU/TU], 0 where the plate's place is prescribed.
         plate_x: place of the plate along x [LU].
         cantilever_force: [FU].
@@ -44,10 +48,27 @@ class State:
     smallest_distance: float
     depth: float
     residual: float
+    rule: RadiusRule = field(repr=False, compare=False)
+    pushed: float = 0.0
     plate_velocity: float = 0.0
     plate_x: float = 0.0
     cantilever_force: float = 0.0
     step: float = 0.0
+
+    @property
+    def carried(self) -> float:
+        """The load that the state balances [FU]: what the contact carries and nothing else presses."""
+        return self.force - self.pushed
+
+    @cached_property
+    def radius(self) -> ContactRadius | None:
+        """The contact radius; None where the bodies do not touch."""
+        return self.rule.of(self.profile)
+
+    @property
+    def radius_or_spot(self) -> ContactRadius:
+        """The contact radius; 0 where no particle is in tension."""
+        return self.radius or self.rule.or_spot(self.profile)
 
 
 class Contact:
@@ -62,7 +83,8 @@ class Contact:
         self._phases: list[Phase] = []
         self._unfinished = ""
         self._states = 0
-        self._latest: Profile | None = None
+        self._rule = RadiusRule(deck.scene, deck.settings.tolerance)
+        self._pushes = tuple(part.pushes for part in deck.parts if part.pushes)
         session.execute(deck.head, phase="setting up")
 
     @property
@@ -70,39 +92,30 @@ class Contact:
         """The schedule so far."""
         return tuple(self._phases)
 
-    def begin(self, name: str, step: str, fragments: tuple[str, ...] = (), expected_steps: int | None = None) -> None:
-        """Begin a phase whose rows are of the kind `step`."""
-        self._phases.append(Phase(name, step, (), begin=fragments))
-        end = "variable        row_phase delete\n" if len(self._phases) > 1 else ""
+    def begin(self, name: str, fragments: tuple[str, ...] = (), expected_steps: int | None = None) -> None:
+        """Begin a phase."""
+        end = "variable        row_phase delete\n" if self._phases else ""
+        self._phases.append(Phase(name, (), begin=fragments))
         self._unfinished += end + self.deck.begin(name, fragments)
         self.session.execute("", phase=name, expected_steps=expected_steps)
 
-    def row(self, *values: float) -> State:
+    def row(self, row: Row) -> State:
         """Run one row of the current phase and measure.
 
         Raises:
             EngineError: LAMMPS failed, or lost particles.
         """
         phase = self._phases[-1]
-        self._phases[-1] = Phase(phase.name, phase.step, (*phase.rows, values), begin=phase.begin)
-        text = self._unfinished + self.deck.values(phase.step, values) + self.deck.row(phase.step)
-        arrays = ("x", "f", "v_opposite_x", "v_opposite_z")
-        reading = self.session.measure(text, self._values(), arrays, meanwhile=self._look_back)
-        self._unfinished = self.deck.row_end + self.deck.forget(phase.step)
-        state = self._state(phase.name, dict(zip(self._values(), reading.values, strict=True)), reading.atoms)
-        self._latest = state.profile
-        return state
-
-    def _look_back(self) -> None:
-        """Work out the radius of the row before, which its profile then keeps: LAMMPS is busy with the next one."""
-        if self._latest is not None:
-            with suppress(ValueError):  # told where the radius is asked for
-                radius_of(self.scene, self._latest)
+        self._phases[-1] = replace(phase, rows=(*phase.rows, row))
+        text = self._unfinished + self.deck.values(row) + self.deck.row(type(row))
+        names = self._values()
+        reading = self.session.measure(text, names, ("x", "f", "v_opposite_x", "v_opposite_z"))
+        self._unfinished = self.deck.row_end + self.deck.forget(type(row))
+        return self._state(phase.name, dict(zip(names, reading.values, strict=True)), reading.atoms)
 
     def write_state(self) -> None:
         """Write the state that the last row left to states.lammpstrj; it ends the phase."""
-        phase = self._phases[-1]
-        self._phases[-1] = Phase(phase.name, phase.step, phase.rows, True, phase.begin)
+        self._phases[-1] = replace(self._phases[-1], state=True)
         self._unfinished += self.deck.state(first=self._states == 0)
         self._states += 1
 
@@ -115,10 +128,9 @@ class Contact:
         """Run a whole schedule."""
         states = []
         for phase in phases:
-            timed = "row_steps" in STEP_COLUMNS[phase.step]
-            steps = int(sum(row[1] for row in phase.rows)) if timed else None
-            self.begin(phase.name, phase.step, phase.begin, steps)
-            states += [self.row(*values) for values in phase.rows]
+            steps = sum(getattr(row, "steps", 0) for row in phase.rows)
+            self.begin(phase.name, phase.begin, steps or None)
+            states += [self.row(row) for row in phase.rows]
             if phase.state:
                 self.write_state()
         self.finish()
@@ -130,7 +142,7 @@ class Contact:
             names.append("plate_velocity")
         if self.scene.cantilever is not None:
             names += ["cantilever_plate", "cantilever_force"]
-        return tuple(names)
+        return (*names, *self._pushes)
 
     def _state(self, phase: str, numbers: dict[str, float], atoms: dict[str, Array]) -> State:
         upper = atoms["type"] == PARTICLES["upper"]
@@ -163,6 +175,8 @@ class Contact:
             smallest_distance=closest,
             depth=depth,
             residual=float(np.abs(force[upper | lower][:, free]).max()),
+            rule=self._rule,
+            pushed=float(sum(numbers[name] for name in self._pushes)),
             plate_velocity=-numbers.get("plate_velocity", 0.0),
             plate_x=numbers.get("cantilever_plate", 0.0),
             cantilever_force=numbers.get("cantilever_force", 0.0),

@@ -10,21 +10,21 @@ lets go of pairs that would have held.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from enum import IntEnum
 
+from contact1d.workflow.deck.steps import Hold, Phase
 from contact1d.workflow.experiments.running.contact import Contact, State
-from contact1d.workflow.experiments.running.outcome import UntrustedError, require_trust
+from contact1d.workflow.experiments.running.trust import UntrustedError, require_trust
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.dynamics import SOFTENING
 from contact1d.workflow.settings.settings import Settings
 
-CHUNK = 0.25
-"""Time between two samples of a thermal contact over the settling time."""
 FEWEST_STEPS = 20
 PATIENCE = 10.0
 """Time of one row over the settling time, after which a state is measured in any case."""
-MOST_ROWS = 50
+MOST_HOLDS = 50
 """Rows under one load after which it counts as never coming to rest."""
 AT_REST = 0.1
 """Unbalanced load over the load scale and the tolerance."""
@@ -54,7 +54,7 @@ class Held:
         load: compression positive [FU].
         states: measured on the way.
         held: whether the contact carries it at rest.
-        unbalance: |contact force − load| at the end [FU].
+        unbalance: |carried − load| at the end [FU].
     """
 
     load: float
@@ -66,11 +66,6 @@ class Held:
     def last(self) -> State:
         """The last state."""
         return self.states[-1]
-
-
-def chunk_steps(settings: Settings) -> int:
-    """Timesteps between two samples of a thermal contact."""
-    return max(FEWEST_STEPS, math.ceil(CHUNK * settings.settle_time / settings.time_step))
 
 
 def stiffness_under(settings: Settings, load: float) -> float:
@@ -99,8 +94,8 @@ def overshoot(settings: Settings, mass: float, load: float, next_load: float) ->
     return math.exp(-math.pi * ratio / math.sqrt(1.0 - ratio**2)) if ratio < 1.0 else 0.0
 
 
-def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start: Start) -> tuple[float, ...]:
-    """The values of a `hold` row, which ends where the contact's force is within `at_rest` of the load.
+def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start: Start) -> Hold:
+    """A `hold` row, which ends where the contact's force is within `at_rest` of the load.
 
     With M the plate's mass, N m that of the particles that move with it and c the drag on both, the contact's force
     misses the load by (M + N m) Z″ + c Z′; LAMMPS knows M Z″ and Z′.
@@ -110,46 +105,52 @@ def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start:
     drag = settings.particles * damping + settings.plate_damping
     parted = settings.estimate.parted(PARTED) if load < 0.0 else _apart(settings)
     steps = max(FEWEST_STEPS, math.ceil(PATIENCE * settings.settle_time / settings.time_step))
-    rest = at_rest(scene, scale) / inertia
-    return int(start), load, damping, drag / inertia, rest, parted, _through(settings), steps
+    rest = at_rest(settings, scale) / inertia
+    return Hold(int(start), load, damping, drag / inertia, rest, parted, _through(settings), steps)
 
 
-def at_rest(scene: Scene, scale: float) -> float:
+def held_phase(
+    name: str, scene: Scene, settings: Settings, loads: Sequence[float], scale: float, state: bool = False
+) -> Phase:
+    """A planned phase that holds loads [FU] one after the other."""
+    return Phase(name, tuple(hold_row(scene, settings, load, scale, Start.KEPT) for load in loads), state)
+
+
+def at_rest(settings: Settings, scale: float) -> float:
     """Unbalanced force [FU] at which a contact counts as at rest; `scale` is the force in question [FU]."""
-    return AT_REST * scene.accuracy.tolerance * scale
+    return AT_REST * settings.tolerance * scale
 
 
 def hold(contact: Contact, load: float, scale: float, start: Start = Start.KEPT) -> Held:
     """Apply a load to a `hold` phase and run until it is held at rest, or lost.
 
-    At rest means that the contact's force balances the load within `at_rest(scene, scale)`, and that the plate's motion
-    keeps it there (see `hold_row`).
+    At rest means that what the contact carries balances the load within `at_rest(settings, scale)`, and that the
+    plate's motion keeps it there (see `hold_row`).
 
     Raises:
         UntrustedError: the contact neither comes to rest nor is lost, or see `require_trust`.
     """
     settings = contact.settings
-    near = at_rest(contact.scene, scale)
-    _, _, damping, drag, rest, parted, through, steps = hold_row(contact.scene, settings, load, scale, start)
+    near = at_rest(settings, scale)
+    row = hold_row(contact.scene, settings, load, scale, start)
     states: list[State] = []
-    for _ in range(MOST_ROWS):
-        state = contact.row(int(start), load, damping, drag, rest, parted, through, steps)
+    for _ in range(MOST_HOLDS):
+        state = contact.row(row)
         states.append(state)
-        unbalance, calm = abs(state.force - load), drag * abs(state.plate_velocity) <= rest
+        unbalance, calm = abs(state.carried - load), row.drag * abs(state.plate_velocity) <= row.rest
         if calm and unbalance <= near:
             require_trust(contact.scene, settings, state)
             return Held(load, tuple(states), True, unbalance)
-        if state.displacement < parted:
+        if state.displacement < row.parted:
             if _lost(contact, state, load):
                 return Held(load, tuple(states), False, unbalance)
-            parted = _apart(settings)
-        if state.displacement > through:
+            row = replace(row, parted=_apart(settings))
+        if state.displacement > row.through:
             require_trust(contact.scene, settings, state)
             raise UntrustedError(f"under {load:.4g} FU the plate went on to {state.displacement:.4g} LU")
-        rest *= CALMER if calm else 1.0
-        start = Start.HERE
+        row = replace(row, start=int(Start.HERE), rest=row.rest * (CALMER if calm else 1.0))
     raise UntrustedError(
-        f"the contact did not come to rest under {load:.4g} FU within {MOST_ROWS * steps} timesteps "
+        f"the contact did not come to rest under {load:.4g} FU within {MOST_HOLDS * row.steps} timesteps "
         f"(phase {state.phase}): {unbalance:.2g} FU are unbalanced. More [damping] or [plate] damping settles it sooner"
     )
 

@@ -6,11 +6,13 @@ import math
 from collections.abc import Callable
 
 from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.steps import Displace
 from contact1d.workflow.experiments.running.contact import Contact, State
-from contact1d.workflow.experiments.running.outcome import Outcome, ThroughError, UntrustedError, require_trust
+from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
+from contact1d.workflow.experiments.running.trust import ThroughError, UntrustedError, require_trust
 
-MOST_ROWS = 2_000
+MOST_INCREMENTS = 2_000
 """Rows of one branch of a search; a search that needs more has no end in sight."""
 APPROACH = 1e-3
 """How near to a wanted force a search must come, over the tolerance."""
@@ -23,6 +25,8 @@ OVERSHOOT = 1.02
 """Secant steps aim a little beyond, so that a bracket forms instead of a slow approach from one side."""
 SAME_PLACE = 1e-12
 """Displacements [LU] nearer than this are the same place: a force that still differs has jumped."""
+LOADING_STEPS = 24
+"""Rows of a planned way down, where a run would search."""
 SMALLER = (1 / 4, 1 / 16)
 """Parts of the increments that are tried where bodies went through each other: a body that moves by much of its
 particles' distance from the opposite ones, or by which their force changes much, lets the minimiser put one beyond."""
@@ -65,29 +69,29 @@ def approach(contact: Contact, force: float, start: float, direction: int = 1) -
         UntrustedError: see `require_trust`; also where the wanted force cannot be held.
     """
     scale = max(abs(force), contact.settings.force_scale)
-    near = APPROACH * contact.scene.accuracy.tolerance * scale
+    near = APPROACH * contact.settings.tolerance * scale
     states = [measured(contact, start)]
     before, beyond = None, None
-    while abs(states[-1].force - force) > near:
+    while abs(states[-1].carried - force) > near:
         last = states[-1]
-        if direction * (last.force - force) > 0:
+        if direction * (last.carried - force) > 0:
             beyond = last
         else:
             before = last
         if before is None:
             raise UntrustedError(
-                f"{force:.4g} FU cannot be approached: the force starts at {last.force:.4g} FU, "
+                f"{force:.4g} FU cannot be approached: the force starts at {last.carried:.4g} FU, "
                 f"{'below' if direction < 0 else 'above'} it already. Take a force beyond that, or "
                 'kind = "path" to see the curve'
             )
         if beyond is not None and abs(beyond.displacement - before.displacement) < SAME_PLACE:
             raise UntrustedError(
                 f"the force jumps past {force:.4g} FU at displacement {before.displacement:.6g} LU, from "
-                f"{before.force:.4g} to {beyond.force:.4g} FU: particles snap or slip there, and no state on this way "
-                'has the force. Take a force outside of the jump, kind = "path" to see all of it, or stiffer springs '
-                "or a longer range, with which particles do not snap"
+                f"{before.carried:.4g} to {beyond.carried:.4g} FU: particles snap or slip there, and no state on this "
+                'way has the force. Take a force outside of the jump, kind = "path" to see all of it, or stiffer '
+                "springs or a longer range, with which particles do not snap"
             )
-        if len(states) > MOST_ROWS or (direction < 0 and last.smallest_distance > contact.settings.cutoff):
+        if len(states) > MOST_INCREMENTS or (direction < 0 and last.smallest_distance > contact.settings.cutoff):
             raise UntrustedError(f"{force:.4g} FU is never reached: the largest tension is smaller")
         step = contact.settings.increment(last.smallest_distance if direction > 0 else math.inf)
         states.append(measured(contact, _next(before, beyond, states, force, direction * step)))
@@ -97,12 +101,12 @@ def approach(contact: Contact, force: float, start: float, direction: int = 1) -
 def _next(before: State, beyond: State | None, states: list[State], force: float, step: float) -> float:
     """The secant's place, kept inside the bracket or within one step."""
     if beyond is not None:
-        part = (force - before.force) / (beyond.force - before.force)
+        part = (force - before.carried) / (beyond.carried - before.carried)
         return before.displacement + min(max(part, 0.05), 0.95) * (beyond.displacement - before.displacement)
     ahead = 1.0
-    if len(states) > 1 and states[-1].force != states[-2].force:
-        slope = (states[-1].force - states[-2].force) / (states[-1].displacement - states[-2].displacement)
-        needed = OVERSHOOT * (force - before.force) / slope / step
+    if len(states) > 1 and states[-1].carried != states[-2].carried:
+        slope = (states[-1].carried - states[-2].carried) / (states[-1].displacement - states[-2].displacement)
+        needed = OVERSHOOT * (force - before.carried) / slope / step
         ahead = min(1.0, needed) if needed > 0 else 1.0
     return before.displacement + ahead * step
 
@@ -115,7 +119,7 @@ def separate(contact: Contact, start: float, largest: float = 0.0) -> list[State
     displacement, states = start, [measured(contact, start)]
     step = contact.settings.increment()
     growth = SMOOTH_GROWTH if contact.settings.is_smooth else GROWTH
-    for _ in range(MOST_ROWS):
+    for _ in range(MOST_INCREMENTS):
         displacement -= step
         state = measured(contact, displacement)
         states.append(state)
@@ -124,7 +128,7 @@ def separate(contact: Contact, start: float, largest: float = 0.0) -> list[State
             step *= growth
         if _apart(contact, state, largest):
             return states
-    raise UntrustedError(f"the bodies did not separate within {MOST_ROWS} increments of the displacement")
+    raise UntrustedError(f"the bodies did not separate within {MOST_INCREMENTS} increments of the displacement")
 
 
 def _apart(contact: Contact, state: State, largest: float) -> bool:
@@ -134,6 +138,6 @@ def _apart(contact: Contact, state: State, largest: float) -> bool:
 
 def measured(contact: Contact, displacement: float) -> State:
     """One row at a displacement [LU]. Raises UntrustedError, see `require_trust`."""
-    state = contact.row(displacement)
+    state = contact.row(Displace(displacement))
     require_trust(contact.scene, contact.settings, state)
     return state

@@ -2,27 +2,36 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius, compressive_radius, tensile_radius
 from contact1d.workflow.scene import FlatPunch, Scene
 from contact1d.workflow.settings.calibration import CALIBRATION
 
 
-def radius_of(scene: Scene, profile: Profile) -> ContactRadius | None:
-    """The contact radius as the contract defines it; None where the bodies do not touch."""
-    adhesive = scene.interaction is not None and scene.interaction.attraction is not None
-    sign = -1.0 if adhesive else 1.0
-    punch = isinstance(scene.bodies.profile, FlatPunch)
-    if not (sign * profile.pressure > 0.0).any() and not (punch and profile.pressure.any()):
-        return None
-    if punch:
-        edge = scene.bodies.reach
-        return ContactRadius(edge, 0.0, -edge, edge, reaches_end=False)
-    if adhesive:
-        return tensile_radius(profile)
-    return compressive_radius(profile, CALIBRATION.residual * scene.accuracy.tolerance)
+@dataclass(frozen=True)
+class RadiusRule:
+    """What the contact radius of a scene is; `tolerance` tells how exact a minimiser leaves a pressure."""
 
+    scene: Scene
+    tolerance: float
 
-def radius_or_spot(scene: Scene, profile: Profile) -> ContactRadius:
-    """The contact radius; 0 where no particle is in tension, as where F = 0 and a single pair touches."""
-    return radius_of(scene, profile) or ContactRadius(0.0, 0.5 * scene.bodies.spacing, 0.0, 0.0, reaches_end=False)
+    def of(self, profile: Profile) -> ContactRadius | None:
+        """The contact radius as the contract defines it; None where the bodies do not touch."""
+        scene = self.scene
+        adhesive = scene.interaction is not None and scene.interaction.attraction is not None
+        sign = -1.0 if adhesive else 1.0
+        punch = isinstance(scene.bodies.profile, FlatPunch)
+        if not (sign * profile.pressure > 0.0).any() and not (punch and profile.pressure.any()):
+            return None
+        if punch:
+            edge = scene.bodies.reach
+            return ContactRadius(edge, 0.0, -edge, edge, reaches_end=False)
+        if adhesive:
+            return tensile_radius(profile)
+        return compressive_radius(profile, CALIBRATION.residual * self.tolerance)
+
+    def or_spot(self, profile: Profile) -> ContactRadius:
+        """The contact radius; 0 where no particle is in tension, as where F = 0 and a single pair touches."""
+        return self.of(profile) or ContactRadius(0.0, 0.5 * self.scene.bodies.spacing, 0.0, 0.0, reaches_end=False)

@@ -17,13 +17,13 @@ SLOW = 10.0
 
 def slowness(scene: Scene, settings: Settings) -> str:
     """What makes the scene slow, in words; empty where nothing does, or where time is what is looked at (a slide)."""
-    if scene.method != "dynamic" or scene.damping is None or scene.experiment.kind == "slide":
+    if scene.method != "dynamic" or scene.damping is None or scene.experiment.motion_is_result:
         return ""
     plate = None if scene.plate is None else Plate(free=scene.plate.free)
     same = scene.model_copy(update={"damping": Damping(coefficient="auto"), "plate": plate})
     if same == scene:
         return ""
-    automatic = settings_for(same)
+    automatic = settings_for(same, settings.tolerance)
     times = _steps(scene, settings) / _steps(same, automatic)
     if times < SLOW:
         return ""

@@ -6,14 +6,14 @@ import math
 
 import numpy as np
 
-from contact1d.workflow.deck.deck import Phase
-from contact1d.workflow.experiments.load.dynamic import SETTLING, standard_error
+from contact1d.workflow.deck.steps import Phase, UnderLoad
 from contact1d.workflow.experiments.running.contact import Contact, State
-from contact1d.workflow.experiments.running.holding import chunk_steps, hold
-from contact1d.workflow.experiments.running.outcome import Outcome, UntrustedError, doubts, require_trust
-from contact1d.workflow.experiments.running.radii import radius_of
+from contact1d.workflow.experiments.running.holding import hold
+from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.experiments.running.sampling import SETTLING, chunk_steps, standard_error
+from contact1d.workflow.experiments.running.trust import UntrustedError, doubts, require_trust
+from contact1d.workflow.scene import Scene, Slide
 from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.units import FORCE, Quantity
 
@@ -38,12 +38,12 @@ def slide(context: RunContext) -> Outcome:
     """
     scene, settings = context.deck.scene, context.deck.settings
     experiment = scene.experiment
-    assert experiment.kind == "slide"
+    assert isinstance(experiment, Slide)
     rows, stride = slide_rows(scene, settings)
     with context.contact() as contact:
         loaded = _loaded(contact, experiment.normal_force)
-        contact.begin("sliding", "load", ("steps/drive",), expected_steps=rows * stride)
-        states = [contact.row(experiment.normal_force, stride) for _ in range(rows)]
+        contact.begin("sliding", ("steps/drive",), expected_steps=rows * stride)
+        states = [contact.row(UnderLoad(experiment.normal_force, stride)) for _ in range(rows)]
         contact.write_state()
         contact.finish()
     for state in states:
@@ -54,17 +54,17 @@ def slide(context: RunContext) -> Outcome:
 def _loaded(contact: Contact, force: float) -> State:
     """At rest under the normal force; with noise, after it has forgotten its start."""
     if contact.scene.noise is None:
-        contact.begin("loading", "hold")
+        contact.begin("loading")
         return hold(contact, force, force).last
     steps = chunk_steps(contact.settings)
-    contact.begin("loading", "load", expected_steps=SETTLING * steps)
-    return [contact.row(force, steps) for _ in range(SETTLING)][-1]
+    contact.begin("loading", expected_steps=SETTLING * steps)
+    return [contact.row(UnderLoad(force, steps)) for _ in range(SETTLING)][-1]
 
 
 def slide_rows(scene: Scene, settings: Settings) -> tuple[int, int]:
     """(rows, timesteps of each) that bring the drive over the distance of a slide."""
     experiment, cantilever = scene.experiment, scene.cantilever
-    assert experiment.kind == "slide"
+    assert isinstance(experiment, Slide)
     assert cantilever is not None
     rows = max(20, math.ceil(ROWS_PER_SPACING * experiment.distance / scene.bodies.spacing))
     return rows, max(1, round(experiment.distance / cantilever.velocity / settings.time_step / rows))
@@ -105,7 +105,7 @@ def _outcome(context: RunContext, loaded: State, states: list[State], phases: tu
         "cantilever_force": tuple(s.cantilever_force for s in states),
     }
     last = states[-1]
-    radius = radius_of(scene, last.profile)
+    radius = last.radius
     radii = {"final": math.nan if radius is None else radius.value}
     warnings = doubts(scene, settings, tuple(states))
     return Outcome(quantities, (loaded, *states), {"final": last.profile}, radii, phases, warnings, columns)

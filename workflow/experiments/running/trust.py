@@ -1,0 +1,106 @@
+"""Which states are no result, and what limits those that are."""
+
+from __future__ import annotations
+
+from contact1d.analysis.pressure import Profile, end_pressure_share
+from contact1d.workflow.experiments.running.contact import State
+from contact1d.workflow.experiments.running.law_error import law_share
+from contact1d.workflow.experiments.running.slowness import slowness
+from contact1d.workflow.scene import FlatPunch, Scene
+from contact1d.workflow.settings.settings import Settings
+
+
+class UntrustedError(RuntimeError):
+    """The run ended, but its result can't be trusted; the message says why and what to do."""
+
+
+class ThroughError(UntrustedError):
+    """The bodies went through each other, which may be the way there and not the load (`in_smaller_steps`)."""
+
+
+END_SHARE_LIMIT = 1.0
+"""Pressure at a chain's end over the largest one, per unit of tolerance, from which on the chain cuts the contact."""
+INSIDE = 0.5
+"""The same from which on the end of the chain is inside the contact."""
+RESIDUAL_LIMIT = 0.1
+"""Largest residual force of a particle over the force scale, per unit of tolerance, for a converged state."""
+
+
+def require_trust(scene: Scene, settings: Settings, state: State) -> None:
+    """Refuse a state that is no result.
+
+    Raises:
+        UntrustedError: bodies that went through each other, particles not at rest, a contact that reaches the end of
+            a chain.
+    """
+    at = f"at displacement {state.displacement:.4g} LU (phase {state.phase})"
+    if state.depth > 0.0:
+        raise ThroughError(
+            f"the bodies went through each other {at}: a particle lies {state.depth:.3g} LU below the opposite "
+            "surface. One layer of particles cannot carry this load: lower the load or the displacement, take a "
+            "stronger repulsion, a range nearer to the spacing, or stiffer neighbour springs"
+        )
+    limit = RESIDUAL_LIMIT * settings.tolerance * settings.force_scale
+    if scene.plate is None and state.residual > limit:
+        raise UntrustedError(
+            f"not converged {at}: a particle is left with a force of {state.residual:.2g} FU, above the {limit:.2g} FU "
+            f"that a tolerance of {settings.tolerance:g} allows. What helps is "
+            + ("more [damping]" if scene.method == "dynamic" else "a smaller load or smaller displacements")
+            + ", or a larger [accuracy] tolerance"
+        )
+    if _reaches_end(scene, state.profile):
+        raise UntrustedError(
+            f"the contact reaches the end of the chain {at}: take more bodies.particles than {settings.particles} "
+            '(or "auto"), or a smaller load'
+        )
+
+
+def _reaches_end(scene: Scene, profile: Profile) -> bool:
+    """Whether the contact's edge, the largest tension or else the last loaded particle, is a chain's last particle.
+
+    That of a flat punch is meant to be.
+    """
+    if isinstance(scene.bodies.profile, FlatPunch):
+        return False
+    pressure = profile.pressure
+    if scene.interaction is not None and scene.interaction.attraction is not None:
+        largest = float(pressure.min())
+        inside = end_pressure_share(profile) > INSIDE  # the chain is shorter than the compressed middle
+        return inside or (largest < 0.0 and largest in (pressure[0], pressure[-1]))
+    return bool(max(pressure[0], pressure[-1]) > 0.0)
+
+
+def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:
+    """Named warnings about states that are results, but limited ones."""
+    found = {}
+    share = max(end_pressure_share(state.profile) for state in states)
+    if not isinstance(scene.bodies.profile, FlatPunch) and share > END_SHARE_LIMIT * settings.tolerance:
+        found["chain_end"] = (
+            f"the outermost particles carry up to {share:.2g} of the largest pressure, so the chain of "
+            f'{settings.particles} particles cuts the contact: take more bodies.particles, or "auto"'
+        )
+    share = law_share(scene, settings)
+    if share > settings.tolerance:
+        found["cutoff"] = (
+            f"what is left out of the law (beyond a cutoff of {settings.cutoff:.3g} LU, by a table of particles that "
+            f"all but stand on each other, or of a plane not quite rigid) changes a force by a share of up to "
+            f'{share:.1g}, and the radii with it: take a longer interaction.cutoff, or "auto", or a smaller load'
+        )
+    if slow := slowness(scene, settings):
+        found["slow"] = slow
+    if settings.estimate.snaps and not scene.experiment.way_is_given:
+        found["snaps"] = (
+            "the attraction of a pair of particles is steeper than its springs are stiff, so that pairs can snap "
+            "together and apart: there are several equilibria under one load, and which one is reached depends on the "
+            "way there. The uncertainties are those of this way; another preload or method may end in another "
+            "equilibrium, a few particles wider or narrower. Stiffer springs or a longer range of the interaction "
+            "leave one equilibrium only"
+        )
+    closest = min(state.smallest_distance for state in states)
+    if settings.table is not None and closest < settings.table_from:
+        error = settings.table.error_beyond(max(closest, settings.table.core))
+        found["table_core"] = (
+            f"opposite particles came as close as {closest:.3g} LU; the table was chosen for {settings.table_from:.3g} "
+            f"LU and follows the law within {error:.1e} FU there"
+        )
+    return found
