@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 CLOSED = 1e-9
-"""Distance of the path's ends over its width up to which it is closed: round-off of displacements."""
+"""Distance of two displacements over the width of the path up to which they are one: round-off."""
 
 
 @dataclass(frozen=True)
@@ -40,11 +40,12 @@ def loop_of(displacement: Sequence[float], force: Sequence[float]) -> Loop | Non
     same curve as the way there, so that there the difference of the two is what counts.
     """
     d, f = np.asarray(displacement, dtype=np.float64), np.asarray(force, dtype=np.float64)
-    if len(d) < 3 or abs(d[-1] - d[0]) > CLOSED * float(np.ptp(d)):
+    same = CLOSED * float(np.ptp(d))
+    if len(d) < 3 or abs(d[-1] - d[0]) > same:
         return None
     h, mean = np.diff(d), 0.5 * (f[1:] + f[:-1])
     half = len(d) // 2
-    if np.array_equal(d, d[::-1]) and (np.diff(np.sign(h)) != 0.0).sum() == 1:
+    if np.abs(d - d[::-1]).max() <= same and (np.diff(np.sign(h)) != 0.0).sum() == 1:
         uncertainty = _missed(np.abs(h[:half]), np.diff(f[: half + 1] - f[half:][::-1]))
     else:
         turns = np.flatnonzero(np.diff(np.sign(h)) != 0.0) + 1

@@ -29,13 +29,11 @@ BEGIN, END = "<!-- breakdown: begin -->\n", "<!-- breakdown: end -->\n"
 RUNS = 31
 LAMMPS = "LAMMPS: 50 minimisations, and the deck's head"
 ASKED = "the worker beside LAMMPS (per-atom arrays, LAMMPS opened and closed), and the pipe"
-RADII = "radii of contact, worked out while the worker is busy: not in the sum"
 REST = "all else"
 PARTS: dict[str, tuple[tuple[Any, str], ...]] = {
     "settings": ((campaign, "settings_for"),),
     "deck, data file and table": ((campaign, "_write"),),
     ASKED: ((WorkerProcess, "ask"),),
-    RADII: ((Contact, "_look_back"),),
     "states from per-atom arrays": ((Contact, "_state"),),
     "results, tables and files": tuple(
         (campaign, name) for name in ("write_whole", "curve_of", "write_tables", "results", "write_results")
@@ -62,7 +60,7 @@ class Clock:
                 return function(*arguments, **named)
             finally:
                 taken, inner = perf_counter() - began, self._inside.pop()
-                self.spent[part] += taken - (0.0 if part == ASKED else inner)  # what is done meanwhile costs no wait
+                self.spent[part] += taken - inner
                 if self._inside:
                     self._inside[-1] += taken
 
@@ -84,7 +82,7 @@ def measured() -> list[dict[str, float]]:
             lammps = campaign.run(scene, folder, figures=False).results["timing"]["lammps_s"]
             total = perf_counter() - began
             parts = dict(clock.spent)
-            parts[REST] = total - sum(value for name, value in parts.items() if name != RADII)
+            parts[REST] = total - sum(parts.values())
             found.append({"whole run": total, LAMMPS: lammps} | parts | {ASKED: parts[ASKED] - lammps})
     return found[2:]
 
@@ -93,7 +91,7 @@ def main() -> None:
     """Measure, print, and write the table."""
     found = measured()
     whole = median(one["whole run"] for one in found)
-    names = ["whole run", LAMMPS, ASKED, *(part for part in PARTS if part not in (ASKED, RADII)), REST, RADII]
+    names = ["whole run", LAMMPS, ASKED, *(part for part in PARTS if part != ASKED), REST]
     times = {name: median(one[name] for one in found) for name in names}
     rows = [(name, f"{1e3 * time:.1f} ms", f"{time / whole:.0%}") for name, time in times.items()]
     text = table(("part", "wall time", "share"), rows)

@@ -86,7 +86,9 @@ def studied(name: str, shares: Mapping[str, Sequence[Calibration]]) -> list[Row]
         _, reference = reference_of(scene, Path(place))
         for tolerance in TARGETS:
             asked = at_tolerance(scene, tolerance).scene(scene)
-            chosen = {(share, one): settings_for(asked, shares=one) for share, many in shares.items() for one in many}
+            chosen = {
+                (share, one): settings_for(asked, calibration=one) for share, many in shares.items() for one in many
+            }
             same = {key: _effective(asked, settings) for key, settings in chosen.items()}
             ready = {same[key]: Prepared(same[key], asked, settings) for key, settings in chosen.items()}
             progress = choose_progress()

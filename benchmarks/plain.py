@@ -30,10 +30,13 @@ from typing import Any
 from contact1d import read_scene, run, scene_from_dict
 from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.steps import UnderLoad
+from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.experiments.running.contact import Contact
-from contact1d.workflow.experiments.running.holding import AT_REST, LOST, chunk_steps
-from contact1d.workflow.experiments.running.run_context import RunContext, write_system
+from contact1d.workflow.experiments.running.holding import AT_REST, LOST
+from contact1d.workflow.experiments.running.run_context import RunContext
+from contact1d.workflow.experiments.running.sampling import chunk_steps
 from contact1d.workflow.reproduce.oracles import chain_model
 from contact1d.workflow.scene import PullOff, Scene
 from contact1d.workflow.settings.calibration import CALIBRATION
@@ -81,10 +84,10 @@ def quasistatic(scene: Scene, tolerance: float) -> Scene:
 def held(contact: Contact, load: float, scale: float) -> bool:
     """Whether the contact comes to rest under a load [FU], or is lost."""
     settings, largest = contact.settings, 0.0
-    near = AT_REST * contact.scene.accuracy.tolerance * scale
+    near = AT_REST * contact.settings.tolerance * scale
     stiffness = scale / settings.largest_displacement
     while True:
-        state = contact.row(load, chunk_steps(settings))
+        state = contact.row(UnderLoad(load, chunk_steps(settings)))
         if max(abs(state.force - load), abs(state.plate_velocity) * settings.settle_time * stiffness) <= near:
             return True
         largest = max(largest, -state.force)
@@ -112,9 +115,9 @@ def plain(scene: Scene, tolerance: float, folder: Path, tuned: bool) -> tuple[fl
     while high - low > tolerance * high:
         tension = 0.5 * (low + high)
         with context.contact() as contact:
-            contact.begin("loading", "load")
+            contact.begin("loading")
             held(contact, preload, max(preload, guess))
-            contact.begin("pulling", "load")
+            contact.begin("pulling")
             holds = held(contact, -tension, max(preload, guess))
             contact.finish()
         low, high = (tension, high) if holds else (low, tension)

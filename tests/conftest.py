@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import Engine, Session
-from contact1d.workflow.experiments import write_system
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 

@@ -15,10 +15,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d.workflow.deck.deck import Deck, Phase
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.steps import DisplaceInTime, Phase, UnderLoad, displacements
+from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Engine
-from contact1d.workflow.experiments import write_system
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.scene import EFFECTS, Scene, SceneError
 from contact1d.workflow.settings.settings import settings_for
@@ -108,19 +109,19 @@ def phases_of(kind: str, method: str) -> tuple[Phase, ...]:
     """A few rows of each kind of step that the experiment uses, forth and back, with a state after each phase."""
     if method == "quasistatic":
         return (
-            Phase("loading", "displace", ((0.0,), (0.02,), (0.05,)), state=True),
-            Phase("unloading", "displace", ((0.01,), (-0.02,)), state=True),
+            Phase("loading", displacements((0.0, 0.02, 0.05)), state=True),
+            Phase("unloading", displacements((0.01, -0.02)), state=True),
         )
     if kind == "path":
         return (
-            Phase("loading", "displace_dynamic", ((0.0, STEPS), (0.03, STEPS)), state=True),
-            Phase("unloading", "displace_dynamic", ((0.01, STEPS),), state=True),
+            Phase("loading", (DisplaceInTime(0.0, STEPS), DisplaceInTime(0.03, STEPS)), state=True),
+            Phase("unloading", (DisplaceInTime(0.01, STEPS),), state=True),
         )
     begin = ("steps/drive",) if kind == "slide" else ()
     name = "sliding" if kind == "slide" else "unloading"
     return (
-        Phase("loading", "load", ((0.1, STEPS), (0.1, STEPS)), state=True),
-        Phase(name, "load", ((0.05, STEPS), (0.0, STEPS)), state=True, begin=begin),
+        Phase("loading", (UnderLoad(0.1, STEPS),) * 2, state=True),
+        Phase(name, (UnderLoad(0.05, STEPS), UnderLoad(0.0, STEPS)), state=True, begin=begin),
     )
 
 
@@ -146,7 +147,7 @@ def test_allowed_sets_run(make_scene: MakeScene, tmp_path: Path, case: Case) -> 
     for state in states:
         assert np.isfinite([state.displacement, state.force, state.residual, state.smallest_distance]).all()
     if case[1] == "quasistatic" or case[0] == "path":
-        assert [state.displacement for state in states] == pytest.approx([row[0] for row in rows], abs=1e-12)
+        assert [state.displacement for state in states] == pytest.approx([row.displacement for row in rows], abs=1e-12)
     folder = prepared(deck, tmp_path / "deck")
     (folder / "in.lammps").write_text(deck.text(phases), encoding="utf-8")
     with Engine.session(folder) as session:

@@ -30,8 +30,8 @@ def test_no_row_comes_in_between(method: str) -> None:
     """So the number of rows is what ROWS says, there and back, and the first."""
     for count, rows in ROWS.items():
         scene = scaled_scene(count, method)
-        assert len(scene.experiment.values()) == 2 * rows + 1
-        assert max(scene.experiment.values()) < settings_for(scene).longest_move
+        assert len(scene.experiment.places()) == 2 * rows + 1
+        assert max(scene.experiment.places()) < settings_for(scene).longest_move
 
 
 def test_steps_are_what_lammps_says(tmp_path: Path) -> None:

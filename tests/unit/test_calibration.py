@@ -65,16 +65,19 @@ def test_all_shares_together_keep_the_tolerance_in_every_scene() -> None:
 def test_settings_follow_their_share(share: str, field: str, make_scene: MakeScene) -> None:
     scene = make_scene()
     double = replace(CALIBRATION, **{share: 2.0 * getattr(CALIBRATION, share)})
-    assert getattr(settings_for(scene, shares=double), field) == 2.0 * getattr(settings_for(scene), field)
+    assert getattr(settings_for(scene, calibration=double), field) == 2.0 * getattr(settings_for(scene), field)
 
 
 def test_a_longer_share_of_the_law_or_of_the_pressure_shortens(make_scene: MakeScene) -> None:
     scene = make_scene(bodies={"particles": "auto"})
     usual = settings_for(scene)
-    assert settings_for(scene, shares=replace(CALIBRATION, cutoff=10.0 * CALIBRATION.cutoff)).cutoff < usual.cutoff
-    assert settings_for(scene, shares=replace(CALIBRATION, chain=100.0 * CALIBRATION.chain)).particles < usual.particles
+    assert settings_for(scene, calibration=replace(CALIBRATION, cutoff=10.0 * CALIBRATION.cutoff)).cutoff < usual.cutoff
+    assert (
+        settings_for(scene, calibration=replace(CALIBRATION, chain=100.0 * CALIBRATION.chain)).particles
+        < usual.particles
+    )
     fine, rough = (
-        settings_for(scene, shares=replace(CALIBRATION, table=f * CALIBRATION.table)).table for f in (1e-4, 1.0)
+        settings_for(scene, calibration=replace(CALIBRATION, table=f * CALIBRATION.table)).table for f in (1e-4, 1.0)
     )
     assert fine is not None
     assert rough is not None

@@ -12,12 +12,13 @@ import pytest
 from contact1d.analysis.pressure import Profile
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.progress import Silent
-from contact1d.workflow.experiments import Outcome, RunContext, in_words, unmet
 from contact1d.workflow.experiments.load.quasistatic import beside, moved_by
 from contact1d.workflow.experiments.running.contact import State
-from contact1d.workflow.experiments.running.outcome import ThroughError
+from contact1d.workflow.experiments.running.outcome import Outcome, in_words, unmet
 from contact1d.workflow.experiments.running.prescribing import SMALLER, in_smaller_steps
+from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.slowness import slowness
+from contact1d.workflow.experiments.running.trust import ThroughError
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import settings_for
 from contact1d.workflow.units import Quantity
@@ -26,11 +27,12 @@ MakeScene = Callable[..., Scene]
 ROUND_OFF = 1e-6  # relative: at the vertex itself a square root is left with half of the digits
 NOTHING = np.zeros(3)
 PROFILE = Profile(NOTHING, NOTHING, NOTHING, NOTHING, NOTHING)
+RULE: Any = None  # no radius is asked for here
 LOAD = {"kind": "load", "force": 0.1}
 
 
 def states(force: Callable[[float], float], *places: float) -> list[State]:
-    return [State("pulling", d, force(d), PROFILE, 1.0, 0.0, 0.0) for d in places]
+    return [State("pulling", d, force(d), PROFILE, 1.0, 0.0, 0.0, RULE) for d in places]
 
 
 def bench_of(scene: Scene, folder: Path) -> RunContext:
@@ -63,7 +65,10 @@ def test_states_that_all_but_coincide_are_not_beside_each_other() -> None:
 def test_a_radius_of_nothing_is_known_to_nothing(make_scene: MakeScene) -> None:
     scene = make_scene(experiment={"kind": "pull_off", "preload": 0.1})
     known = {"critical_radius": Quantity(0.0, 1.0, "LU"), "adhesion_force": Quantity(1.0, 1e-9, "FU")}
-    assert in_words(unmet(scene, known)) == "critical_radius cannot be told from 0 and is known to 1 or worse"
+    assert (
+        in_words(unmet(scene, Outcome(known, (), {}, {}, ())))
+        == "critical_radius cannot be told from 0 and is known to 1 or worse"
+    )
 
 
 @pytest.mark.parametrize("carried", [*SMALLER, 0.0])

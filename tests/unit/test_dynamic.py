@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -25,6 +26,7 @@ from contact1d.workflow.settings.settings import Settings, settings_for
 
 NOTHING = np.zeros(3)
 PROFILE = Profile(NOTHING, NOTHING, NOTHING, NOTHING, NOTHING)
+RULE: Any = None  # no radius is asked for here
 TIMED = {
     "title": "timed",
     "bodies": {
@@ -44,7 +46,7 @@ TIMED = {
 
 
 def at(displacement: float, force: float) -> State:
-    return State("pulling", displacement, force, PROFILE, 1.0, 0.0, 0.0)
+    return State("pulling", displacement, force, PROFILE, 1.0, 0.0, 0.0, RULE)
 
 
 def answer(tension: float, low: float, exact: float, past: float) -> Held:

@@ -12,10 +12,11 @@ from pathlib import Path
 import pytest
 
 import contact1d.workflow.deck.fragments as fragments_module
-from contact1d.workflow.deck.deck import STEP_COLUMNS, Deck
+from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.effects import EFFECTS, Contribution, neighbours
 from contact1d.workflow.deck.effects import interaction as interaction_effect
 from contact1d.workflow.deck.fragments import DeckError, fragment
+from contact1d.workflow.deck.steps import STEPS, Displace, Hold, Phase, UnderLoad
 from contact1d.workflow.scene import EFFECTS as SCENE_EFFECTS
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import settings_for
@@ -25,13 +26,7 @@ MakeScene = Callable[..., Scene]
 ROOT = Path(__file__).parents[2] / "lammps_inputs" / "fragments"
 NAMES = sorted(path.relative_to(ROOT).with_suffix("").as_posix() for path in ROOT.rglob("*.lmp"))
 DEFINITION = re.compile(r'(?:^|then +")(variable|group|fix|compute)\s+(\w+)\s+(\w+)', re.MULTILINE)
-AGAIN = {
-    "steps/load": {"plate_load"},
-    "steps/hold": {"plate_load", "damping_viscous"},
-    "steps/drive": {"cantilever_start"},
-}
-"""What a step defines anew on purpose; the first definition is the effect's."""
-LOOP_VARIABLES = {"row_phase", "state_append", *(c for columns in STEP_COLUMNS.values() for c in columns)}
+LOOP_VARIABLES = {"row_phase", "state_append", *(column for kind in STEPS for column in kind.columns())}
 """Variables that the schedule defines around the steps."""
 
 
@@ -48,8 +43,8 @@ def commands_of(name: str) -> str:
 def header_of(name: str, key: str) -> set[str]:
     """Words of one header line, explanations in brackets left out."""
     lines = [line for line in text_of(name).splitlines() if line.startswith(f"# {key}: ")]
-    assert len(lines) == 1, f"{name} has {len(lines)} lines {key}"
-    return set(re.sub(r"\(.*?\)", "", lines[0].split(": ", 1)[1]).split()) - {"-"}
+    assert len(lines) == 1 or (key == "Redefines" and not lines), f"{name} has {len(lines)} lines {key}"
+    return {word for line in lines for word in re.sub(r"\(.*?\)", "", line.split(": ", 1)[1]).split()} - {"-"}
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -69,17 +64,12 @@ def test_header_agrees_with_the_text(name: str) -> None:
     commands = commands_of(name)
     read = set(re.findall(r"\$\{(\w+)\}", commands)) | set(re.findall(r"\bv_(\w+)", commands))
     defined = [found[1] for found in DEFINITION.findall(commands) if found[2] != "delete"]
-    assert header_of(name, "Needs") == read - set(defined) - shared()
-    assert set(defined) - AGAIN.get(name, set()) == header_of(name, "Defines") - AGAIN.get(name, set())
+    assert header_of(name, "Needs") == read - set(defined)
+    assert set(defined) == header_of(name, "Defines") | header_of(name, "Redefines")
     assert [word for word, count in Counter(defined).items() if count > 1] == []
     assert set(fragment(name).needs) == header_of(name, "Needs")
     assert set(fragment(name).defines) == header_of(name, "Defines")
-
-
-def shared() -> set[str]:
-    """What the bodies and either kind of lower body define for every later fragment."""
-    plane, particles = header_of("rigid_plane", "Defines"), header_of("interaction", "Defines")
-    return {"plate_rest", "plate_displacement"} & header_of("bodies", "Defines") | (plane & particles)
+    assert set(fragment(name).redefines) == header_of(name, "Redefines")
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -87,18 +77,19 @@ def test_fixes_and_computes_are_named_after_their_fragment(name: str) -> None:
     """`<effect>_<role>`; a step may redefine an effect's."""
     owner = name.split("/")[-1].removesuffix("_opposite")
     for kind, identity, _ in DEFINITION.findall(commands_of(name)):
-        if kind in ("fix", "compute") and identity not in AGAIN.get(name, set()):
+        if kind in ("fix", "compute") and identity not in header_of(name, "Redefines"):
             assert identity.startswith(f"{owner}_")
 
 
 def test_steps_need_nothing_that_no_part_defines() -> None:
     """What a step needs is a column of its rows, a loop variable, or of the method or plate that has the step."""
     of_method = {"force_tolerance", "minimiser_iterations", "plate_force", "plate_velocity"}
+    of_bodies = {"plate_rest", "plate_displacement", "opposite_x", "opposite_z"}
     for name in NAMES:
         if name.startswith("steps/"):
-            assert header_of(name, "Needs") <= LOOP_VARIABLES | of_method
-    for step, columns in STEP_COLUMNS.items():
-        assert set(columns) <= header_of(f"steps/{step}", "Needs")
+            assert header_of(name, "Needs") <= LOOP_VARIABLES | of_method | of_bodies
+    for kind in STEPS:
+        assert set(kind.columns()) <= header_of(f"steps/{kind.step}", "Needs")
 
 
 def test_no_id_is_defined_by_two_fragments_that_meet() -> None:
@@ -108,7 +99,6 @@ def test_no_id_is_defined_by_two_fragments_that_meet() -> None:
         for word in header_of(name, "Defines"):
             owners.setdefault(word, []).append(name)
     twice = {word: who for word, who in owners.items() if len(who) > 1}
-    assert twice.pop("cantilever_start", None) in (None, ["cantilever", "steps/drive"])
     assert set(map(tuple, twice.values())) <= {("interaction", "rigid_plane")}
 
 
@@ -229,5 +219,43 @@ def test_one_interaction_and_one_plane_do_not_meet(make_scene: MakeScene, monkey
     both = make_scene()
     part = interaction_effect(both, settings_for(both))
     with_part(monkeypatch, lambda *_: part)
-    with pytest.raises(DeckError, match="defined twice: opposite_x, opposite_z"):
+    with pytest.raises(DeckError, match="defined twice: opposite_x"):
         Deck(scene, settings_for(scene)).head  # noqa: B018 (rendering it is the test)
+
+
+def test_two_pair_styles_raise(make_scene: MakeScene, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The later one would silently take the place of the first."""
+    scene = make_scene(neighbours={"stiffness": 0.3})
+    with_part(monkeypatch, lambda s, t: replace(neighbours(s, t), pair_style="zero 1.0"))
+    with pytest.raises(DeckError, match="a pair_style, of which a deck has one: interaction, neighbours"):
+        Deck(scene, settings_for(scene)).head  # noqa: B018 (rendering it is the test)
+
+
+def test_a_step_that_needs_what_the_head_does_not_define_raises(make_scene: MakeScene) -> None:
+    """A plate is held by its force, which only [plate] knows."""
+    scene = make_scene()
+    hold = Phase("loading", (Hold(1, 0.1, 0.1, 0.1, 0.1, -1.0, 1.0, 10),))
+    with pytest.raises(DeckError, match="used but not defined: damping_viscous, plate_force, plate_load,"):
+        Deck(scene, settings_for(scene)).text((hold,))
+
+
+def test_a_step_that_redefines_without_a_word_raises(make_scene: MakeScene, fakes: Path) -> None:
+    change(fakes / "steps/load.lmp", "# Redefines: plate_load (fix)\n", "")
+    change(fakes / "steps/load.lmp", "# Defines: -", "# Defines: plate_load (fix)")
+    scene = make_scene(damping={"coefficient": "auto"}, plate={}, experiment={"kind": "load", "force": 0.1})
+    with pytest.raises(DeckError, match="defined twice: plate_load, by plate and by steps/load"):
+        Deck(scene, settings_for(scene)).text((Phase("loading", (UnderLoad(0.1, 10),)),))
+
+
+def test_a_step_that_redefines_what_is_not_there_raises(make_scene: MakeScene) -> None:
+    """A drive without a cantilever."""
+    scene = make_scene()
+    with pytest.raises(DeckError, match="used but not defined: cantilever_start, in steps/drive"):
+        Deck(scene, settings_for(scene)).text((Phase("sliding", (Displace(0.0),), begin=("steps/drive",)),))
+
+
+def test_a_phase_without_rows_is_left_out(make_scene: MakeScene) -> None:
+    scene = make_scene()
+    deck = Deck(scene, settings_for(scene))
+    rows = Phase("loading", (Displace(0.0),))
+    assert deck.text((rows, Phase("separating", ()))) == deck.text((rows,))

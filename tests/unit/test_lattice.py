@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import bodies, neighbour_forces, places
+from contact1d.workflow.deck.steps import Displace
 from contact1d.workflow.engine.session import Session
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import settings_for
@@ -193,7 +194,7 @@ def test_particles_in_a_rigid_plane_have_the_series_stiffness(make_scene: MakeSc
     scene_tables = tables("curved", False, "equal", interaction=None, neighbours=None)
     scene_tables["bodies"]["lower"] = "rigid_plane"
     deck, session = open_deck(make_scene(**scene_tables))
-    session.execute(deck.values("displace", (0.3,)) + deck.begin("down") + deck.row("displace"))
+    session.execute(deck.values(Displace(0.3)) + deck.begin("down") + deck.row(Displace))
     read = session.atoms("x", "v_opposite_z")
     x = (np.arange(PARTICLES) - 9.5) * 1.0
     wanted = NORMAL * np.maximum(0.0, 0.3 - x**2 / 120.0)

@@ -14,12 +14,14 @@ import pytest
 import contact1d.workflow.runs.refinement as refinement
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.progress import Silent
-from contact1d.workflow.experiments import Outcome, RunContext, UntrustedError
+from contact1d.workflow.experiments.running.outcome import Outcome
+from contact1d.workflow.experiments.running.run_context import RunContext
+from contact1d.workflow.experiments.running.trust import UntrustedError
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.refinement import FINER, MOST_REFINEMENTS, Refined, nested, refined
 from contact1d.workflow.scene import Scene, read_scene, scene_from_dict
 from contact1d.workflow.settings.calibration import CALIBRATION
-from contact1d.workflow.settings.settings import settings_for
+from contact1d.workflow.settings.settings import Settings, settings_for
 from contact1d.workflow.units import Quantity
 
 TOLERANCE = 1e-4
@@ -53,7 +55,7 @@ class Heard(Silent):
 
 def outcome(uncertainty: float, value: float = 1.0, lattice: float = 0.0) -> Outcome:
     radius = Quantity(value, uncertainty, "LU")
-    return Outcome({"critical_radius": radius}, (), {}, {}, (), lattice={"critical_radius": lattice})
+    return Outcome({"critical_radius": radius}, (), {}, {}, (), spacing_uncertainty={"critical_radius": lattice})
 
 
 def scene(**tables: Any) -> Scene:
@@ -181,11 +183,11 @@ def test_doubts_are_by_the_tolerance_that_was_asked_for(tmp_path: Path, monkeypa
     asked = scene()
     strict: list[float] = []
 
-    def doubted(scene: Scene, *_: Any) -> dict[str, str]:
-        strict.append(scene.accuracy.tolerance)
-        return {"chain_end": "too short"} if scene.accuracy.tolerance < TOLERANCE else {}
+    def doubted(_: Scene, settings: Settings, *__: Any) -> dict[str, str]:
+        strict.append(settings.tolerance)
+        return {"chain_end": "too short"} if settings.tolerance < TOLERANCE else {}
 
-    finer = Deck(scene(accuracy={"tolerance": TOLERANCE / FINER}), settings_for(asked))
+    finer = Deck(asked, settings_for(asked, TOLERANCE / FINER))
     later = replace(outcome(0.5 * TOLERANCE), warnings={"chain_end": "too short", "no_peak": "none"})
     monkeypatch.setattr(refinement, "_pass", lambda *_: (finer, later))
     monkeypatch.setattr(refinement, "doubts", doubted)

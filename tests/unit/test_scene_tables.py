@@ -141,7 +141,7 @@ def test_free_directions_have_one_order() -> None:
 def test_path_lists_what_it_was_given() -> None:
     path = scene_from_dict(BASE, ['experiment={ kind = "path", displacements = [0, 2.5, -1] }']).experiment
     assert isinstance(path, Path)
-    assert path.values() == [0.0, 2.5, -1.0]
+    assert path.places() == [0.0, 2.5, -1.0]
 
 
 def test_span_goes_there_and_back_with_the_turning_point_once() -> None:
@@ -164,7 +164,7 @@ def test_path_of_a_span_has_the_values_of_the_span() -> None:
     path = scene_from_dict(BASE, ['experiment={kind="path", displacements={from=0, to=1, steps=2}}']).experiment
     assert isinstance(path, Path)
     assert isinstance(path.displacements, Span)
-    assert path.values() == path.displacements.values() == [0.0, 0.5, 1.0, 0.5, 0.0]
+    assert path.places() == path.displacements.values() == [0.0, 0.5, 1.0, 0.5, 0.0]
 
 
 def test_the_scene_has_a_json_schema() -> None:

@@ -138,7 +138,7 @@ def settings_for(
     scene: Scene,
     tolerance: float | None = None,
     law: DoubleExponential | None = None,
-    calibration: Calibration = CALIBRATION,
+    calibration: Calibration | None = None,
 ) -> Settings:
     """Choose every open number of a scene.
 
@@ -153,7 +153,8 @@ def settings_for(
     """
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
-            chosen = _chosen(scene, tolerance or scene.accuracy.tolerance, law or interaction_law(scene), calibration)
+            law = law or interaction_law(scene)
+            chosen = _chosen(scene, tolerance or scene.accuracy.tolerance, law, calibration or CALIBRATION)
     except (OverflowError, FloatingPointError, ZeroDivisionError, MemoryError) as error:
         raise SettingsError(
             f"the scene's numbers are too far apart to compute with ({error}): compare its lengths (spacing, ranges, "
