@@ -23,6 +23,7 @@ from scipy.optimize import brentq
 
 from contact1d import Run
 from contact1d.workflow.experiments.running.contact import State
+from contact1d.workflow.units import Quantity
 
 RunTables = Callable[[dict[str, Any]], Run]
 Array = NDArray[np.float64]
@@ -33,6 +34,8 @@ DIFFER = 0.5
 """The same for springs of a quarter of the critical stiffness; measured 0.97."""
 AREA = 0.01
 """Relative, of the energy lost in a round; measured 1e-3: some sixty particles jump, each up to an increment late."""
+NOTHING = 1e-3
+"""Claimed for an area that is none, over the work of the way there: residual forces and what the table leaves."""
 A, RANGE_A, B, RANGE_B = 0.0024, 0.015, 0.0012, 0.03
 """Ranges short against the spacing, so that every particle feels its opposite alone."""
 
@@ -83,8 +86,10 @@ def fold(stiffness: float) -> Fold:
     return Fold(on, off, work(far, beyond) - work(before, near))
 
 
-def round_trip(run_tables: RunTables, stiffness: float, lowest: float, steps: int) -> tuple[list[State], list[State]]:
-    """Loading and unloading states of a path there and back, both by rising displacement."""
+def round_trip(
+    run_tables: RunTables, stiffness: float, lowest: float, steps: int
+) -> tuple[list[State], list[State], Quantity]:
+    """Loading and unloading states of a path there and back, both by rising displacement, and what it dissipates."""
     scene: dict[str, Any] = {
         "bodies": {
             "particles": "auto",
@@ -102,17 +107,20 @@ def round_trip(run_tables: RunTables, stiffness: float, lowest: float, steps: in
             "displacements": {"from": lowest, "to": 0.1, "steps": steps, "return": True},
         },
     }
-    states = run_tables(scene).outcome.states
+    outcome = run_tables(scene).outcome
+    states = outcome.states
     loading = [state for state in states if state.phase == "loading"]
     unloading = [state for state in states if state.phase == "unloading"]
-    return loading, [*unloading[::-1], loading[-1]]
+    return loading, [*unloading[::-1], loading[-1]], outcome.quantities["dissipated_energy"]
 
 
 def test_stiff_springs_have_one_curve(run_tables: RunTables) -> None:
-    loading, unloading = round_trip(run_tables, 1.2 * CRITICAL_STIFFNESS, -0.15, 80)
+    loading, unloading, energy = round_trip(run_tables, 1.2 * CRITICAL_STIFFNESS, -0.15, 80)
     there, back = (np.array([state.force for state in branch]) for branch in (loading, unloading))
     assert [s.displacement for s in loading] == pytest.approx([s.displacement for s in unloading], abs=1e-12)
     assert np.abs(there - back).max() < COINCIDE * -back.min()
+    assert abs(energy.value) <= energy.uncertainty
+    assert energy.uncertainty < NOTHING * np.trapezoid(np.abs(there), [s.displacement for s in loading])
 
 
 def test_soft_springs_have_two(run_tables: RunTables) -> None:
@@ -120,7 +128,7 @@ def test_soft_springs_have_two(run_tables: RunTables) -> None:
     stiffness = 0.25 * CRITICAL_STIFFNESS
     pair = fold(stiffness)
     assert pair.off > pair.on
-    loading, unloading = round_trip(run_tables, stiffness, -0.4, 400)
+    loading, unloading, energy = round_trip(run_tables, stiffness, -0.4, 400)
     d = np.array([state.displacement for state in loading])
     there, back = (np.array([state.force for state in branch]) for branch in (loading, unloading))
     assert np.all(there - back > -COINCIDE * -back.min())
@@ -129,3 +137,6 @@ def test_soft_springs_have_two(run_tables: RunTables) -> None:
     rest = float(np.log(A * RANGE_B / (B * RANGE_A)) / (1.0 / RANGE_A - 1.0 / RANGE_B))
     snapped = np.count_nonzero(rest + x**2 / 4000.0 - d[-1] < pair.on)
     assert np.trapezoid(there - back, d) == pytest.approx(snapped * pair.area, rel=AREA)
+    assert energy.unit == "FU·LU"
+    assert energy.value == pytest.approx(snapped * pair.area, rel=AREA)
+    assert abs(energy.value - snapped * pair.area) <= energy.uncertainty < 0.1 * energy.value

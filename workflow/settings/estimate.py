@@ -34,7 +34,7 @@ SOFTEST = 0.998
 """Tension over the largest one at which a contact counts as softest: at the largest itself it has no stiffness left."""
 PLACES, NEAR = 1000, 0.01
 """Places at which a profile is tabulated, and the first one beyond its apex over the spacing."""
-ROUNDS, SHARES = 12, np.linspace(0.0, 1.0, 33)[:, None]
+ROUNDS, FRACTIONS = 12, np.linspace(0.0, 1.0, 33)[:, None]
 """How often a bracket is cut, and where: one step of a bisection takes as long, and 60 are needed for all digits."""
 
 
@@ -127,7 +127,7 @@ class ContactEstimate:
             inner[short], outer[short] = outer[short], np.minimum(2 * outer[short], reach)
         column = np.arange(len(height))
         for _ in range(ROUNDS):
-            places = inner + (outer - inner) * SHARES
+            places = inner + (outer - inner) * FRACTIONS
             places[-1] = outer
             cell = (self.profile.height(places[1:-1]) < height).sum(axis=0)
             inner, outer = places[cell, column], places[cell + 1, column]

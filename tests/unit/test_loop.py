@@ -1,0 +1,77 @@
+"""The area of a loop: exact where chords are, covered by its uncertainty where they are not, none where none closes."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from contact1d.analysis.loop import loop_of
+
+ROUND_OFF = 1e-12
+
+
+def there_and_back(rows: int) -> np.ndarray:
+    leg = np.linspace(-1.0, 1.0, rows)
+    return np.concatenate([leg, leg[-2::-1]])
+
+
+def test_a_parallelogram_has_its_area() -> None:
+    """Straight sides: nothing is missed but at the two jumps of its ends, half a row's change each."""
+    d = there_and_back(21)
+    force = 0.3 * d + np.where(np.arange(len(d)) < 21, 0.5, -0.5)
+    loop = loop_of(d, force)
+    assert loop is not None
+    ends = 0.5 * 0.1 * 1.0  # the last chord there and the first one back join at the turn
+    assert loop.area == pytest.approx(2.0 * 1.0 - ends, rel=ROUND_OFF)
+    assert loop.length == pytest.approx(4.0, rel=ROUND_OFF)
+    assert abs(loop.area - 2.0) <= loop.uncertainty
+
+
+@pytest.mark.parametrize("rows", [11, 41, 161])
+def test_one_smooth_curve_there_and_back_loses_nothing_and_claims_nothing(rows: int) -> None:
+    d = there_and_back(rows)
+    loop = loop_of(d, np.exp(d))
+    assert loop is not None
+    assert abs(loop.area) <= ROUND_OFF * loop.whole
+    assert loop.uncertainty <= ROUND_OFF * loop.whole
+    assert loop.whole == pytest.approx(2.0 * (math.e - 1.0 / math.e), rel=0.01)
+
+
+@pytest.mark.parametrize("rows", [21, 81, 321])
+def test_a_smooth_loop_is_within_its_claim_which_falls_with_the_square_of_the_rows(rows: int) -> None:
+    """An ellipse-like loop: F = ± (1 - d^2), area 8/3."""
+    d = there_and_back(rows)
+    force = np.where(np.arange(len(d)) < rows, 1.0, -1.0) * (1.0 - d**2)
+    loop = loop_of(d, force)
+    assert loop is not None
+    assert abs(loop.area - 8.0 / 3.0) <= loop.uncertainty
+    assert loop.uncertainty < 6.0 / rows**2 * loop.area
+
+
+def test_jumps_anywhere_between_rows_are_covered() -> None:
+    """A square loop whose jumps lie anywhere: half an increment more or less for each."""
+    rng = np.random.default_rng(7)
+    for _ in range(200):
+        d = there_and_back(41)
+        on, off = rng.uniform(-0.2, 0.8), rng.uniform(-0.9, -0.3)
+        there, back = np.where(d[:41] > on, 1.0, 0.0), np.where(d[41:] > off, 1.0, 0.0)
+        loop = loop_of(d, np.concatenate([there, back]))
+        assert loop is not None
+        assert abs(loop.area + (on - off)) <= loop.uncertainty
+        assert loop.uncertainty <= 1.5 * 2 * 0.5 * 0.05 * 2
+
+
+def test_several_turns_make_one_loop() -> None:
+    """A path 0, 1, 0.5, 1, 0 on one straight line, by other places each time."""
+    d = np.concatenate([np.linspace(0, 1, 11), np.linspace(1, 0.5, 8)[1:], np.linspace(0.5, 1, 5)[1:], [0.3, 0.0]])
+    loop = loop_of(d, 2.0 * d)
+    assert loop is not None
+    assert loop.area == pytest.approx(0.0, abs=ROUND_OFF)
+    assert loop.uncertainty == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("d", [[0.0, 1.0, 0.5], [0.0, 0.0], [0.3]])
+def test_what_does_not_close_is_no_loop(d: list[float]) -> None:
+    assert loop_of(d, [0.0] * len(d)) is None
