@@ -42,7 +42,7 @@ def path(context: RunContext) -> Outcome:
     quantities, warnings = _adhesion(context, branch) if adhesive else (_largest(context, states), {})
     ends = {"deepest": max(states, key=lambda s: s.displacement), "final": states[-1]}
     radii = {name: state.radius for name, state in ends.items()}
-    loop = loop_of(*zip(*((s.displacement, s.force) for s in passed[asked.index(True) :]), strict=True))
+    loop = loop_of([s.displacement for s in states], [s.force for s in states])
     if loop is not None:
         quantities["dissipated_energy"] = _dissipated(context, states, loop)
     return Outcome(
