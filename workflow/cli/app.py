@@ -97,7 +97,7 @@ def deck(
     Where a run searches (load, pull_off), the deck holds an estimated schedule; the deck that `run` leaves behind holds
     the one that its search ended with.
     """
-    with command("the deck", out, quiet=True):
+    with command("writing the deck", out, quiet=True):
         checked = read(scene, set_, without)
         from contact1d.workflow.runs.campaign import write_deck
 

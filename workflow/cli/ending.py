@@ -109,7 +109,7 @@ def _of_system(error: BaseException, what: str, folder: Path | None, left: list[
             return f"{place} is a file; a folder is needed", CALL_IS_WRONG
         if error.errno in BAD_PLACE and place:
             return f"{place} cannot be written: {reason}", CALL_IS_WRONG
-        reason += f" ({place})" if place else ""
+        reason += f" ({place})" if error.filename else ""
     elif isinstance(error, BrokenProcessPool):
         reason = "a process of it was killed, most often because the machine was out of memory"
     elif isinstance(error, MemoryError):

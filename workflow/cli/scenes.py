@@ -29,7 +29,7 @@ def new(
     if name.name in ("", ".."):
         stop(f"{name} is a folder; give the file a name", CALL_IS_WRONG)
     path = name if name.suffix == ".toml" else name.with_name(name.name + ".toml")
-    with command("the scene file", quiet=True):
+    with command("writing the scene", quiet=True):
         from contact1d.workflow.cli.starter import starter
 
         _write(path, starter(kind.value, str(path)), "choose another name")
@@ -44,7 +44,7 @@ def schema(
     For taplo, or Even Better TOML in VS Code: `contact1d schema --out scene.schema.json` beside your scenes, and in
     each of them the first line `#:schema scene.schema.json`.
     """
-    with command("the schema", quiet=True):
+    with command("writing the schema", quiet=True):
         from contact1d.workflow.scene.schema import schema_text
 
         text = schema_text()
@@ -64,3 +64,6 @@ def _write(path: Path, text: str, instead: str) -> None:
             file.write(text)
     except FileExistsError:
         stop(f"{path} is there already and stays as it is; {instead}", CALL_IS_WRONG)
+    except OSError:
+        path.unlink(missing_ok=True)  # whole or not at all
+        raise
