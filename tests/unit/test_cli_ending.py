@@ -122,6 +122,16 @@ def test_a_full_disk_behind_the_standard_output_is_told(tmp_path: Path) -> None:
     assert (done.returncode, done.stderr) == (3, "writing the schema failed: the disk is full\n")
 
 
+@pytest.mark.parametrize("arguments", [["run", str(SCENES / "load.toml")], ["doctor"]], ids=lambda words: words[0])
+def test_a_package_that_is_missing_is_told_with_exit_code_1(arguments: list[str], tmp_path: Path) -> None:
+    code = "import sys; sys.modules['numpy'] = None; from contact1d.workflow.cli.app import main; main()"
+    command = [sys.executable, "-c", code, *arguments]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 1
+    assert "numpy" in (done.stderr if arguments[0] == "run" else done.stdout)
+    assert "Traceback" not in done.stderr
+
+
 def test_an_interrupted_run_says_what_is_left(tmp_path: Path) -> None:
     command = [*CONTACT1D, "run", str(SCENES / "pull_off_dynamic.toml"), "--out", "out"]
     with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True) as process:

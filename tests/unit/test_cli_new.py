@@ -28,7 +28,7 @@ def contact1d(*arguments: str | Path) -> Result:
 
 def everything(kind: str) -> dict[str, Any]:
     """The scene file with the # taken away from every key and table that is not set."""
-    return tomllib.loads(re.sub(r"^#(?=[a-z\[])", "", starter(kind, "x.toml"), flags=re.MULTILINE))
+    return tomllib.loads(re.sub(r"^#(?=[a-z\[])", "", starter(kind), flags=re.MULTILINE))
 
 
 def test_there_is_a_file_for_each_experiment() -> None:
@@ -54,7 +54,7 @@ def test_a_new_scene_runs(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_key_of_every_table_is_there_with_its_meaning(kind: str) -> None:
-    document, text = everything(kind), re.sub(r"\n#   *", " ", starter(kind, "x.toml"))
+    document, text = everything(kind), re.sub(r"\n#   *", " ", starter(kind))
     assert document.keys() == keys_of(Scene).keys()
     for name, keys in document.items():
         for choice in members(annotation_of(Scene, name)):

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from contact1d.workflow.scene import Scene, SceneError
 
 FAILS = 1
-"""A row of a reproduction fails, or the installation is not whole."""
+"""A row of `reproduce` fails, or the installation is not whole."""
 CALL_IS_WRONG = 2
 """The scene, an option or a folder is wrong; nothing was written."""
 RUN_FAILED = 3
@@ -96,11 +96,13 @@ def command(
 
 
 def _of_system(error: BaseException, what: str, folder: Path | None, left: list[str]) -> tuple[str, int] | None:
-    """Sentence and exit code of what came from outside: a key, the disk, the memory; None for anything else."""
+    """Sentence and exit code of what came from outside: a key, the disk, a package; None for anything else."""
     from concurrent.futures.process import BrokenProcessPool
 
     if isinstance(error, KeyboardInterrupt):
         return "; ".join(["interrupted", *left]), INTERRUPTED
+    if isinstance(error, ImportError) and not (error.name or "").startswith("contact1d"):
+        return f"this installation is not whole ({error}): `contact1d doctor` says what to do", FAILS
     reason = ""
     if isinstance(error, OSError) and error.errno != errno.EPIPE:  # a reader that went away is no error: typer ends
         place = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else str(folder or "")

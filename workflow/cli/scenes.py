@@ -32,7 +32,7 @@ def new(
     with command("writing the scene", quiet=True):
         from contact1d.workflow.cli.starter import starter
 
-        _write(path, starter(kind.value, str(path)), "choose another name")
+        _write(path, starter(kind.value), "choose another name")
     typer.echo(f"{path}: run it with contact1d run {quote(str(path))}")
 
 

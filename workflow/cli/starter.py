@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator, Mapping
-from shlex import quote
 from typing import Any
 
 from contact1d.workflow.scene import Scene, Table
@@ -19,7 +18,7 @@ from contact1d.workflow.scene.wording import kinds_of, members, table_of
 WIDTH = 118
 """Characters of a line of comment."""
 HEAD = (
-    "A scene of contact1d. Run it with: contact1d run {name}",
+    "A scene of contact1d: `contact1d run` and the name of this file runs it.",
     "A # with a letter or a [ right behind it begins a key or a table that is not set: take the # away to set it.",
     "Units: LU length, FU force, MU mass, TU = √(MU·LU/FU). What tables need of each other is told when it runs.",
 )
@@ -72,11 +71,11 @@ EXAMPLES: dict[str, dict[str, Any]] = {
 """Values of keys that are not set and have no default."""
 
 
-def starter(kind: str, name: str) -> str:
-    """The text of a scene file called `name` for an experiment of this kind. Raises KeyError for an unknown kind."""
+def starter(kind: str) -> str:
+    """The text of a scene file for an experiment of this kind. Raises KeyError for an unknown kind."""
     scene = SCENES[kind]
     experiment = _table_of_kind(annotation_of(Scene, "experiment"), kind)
-    lines = [line for head in HEAD for line in _comment(head.format(name=quote(name)))]
+    lines = [line for head in HEAD for line in _comment(head)]
     lines.append(f"title = {as_toml((experiment.__doc__ or kind).strip().rstrip('.'))}")
     for key in keys_of(Scene):
         annotation = annotation_of(Scene, key)
