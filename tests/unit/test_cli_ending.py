@@ -119,7 +119,7 @@ def test_a_file_that_finds_no_place_is_told_with_exit_code_3(arguments: tuple[st
 def test_a_full_disk_behind_the_standard_output_is_told(tmp_path: Path) -> None:
     with Path("/dev/full").open("w") as full:
         done = subprocess.run([*CONTACT1D, "schema"], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
-    assert (done.returncode, done.stderr) == (3, "writing the schema failed: the disk is full\n")
+    assert (done.returncode, done.stderr) == (3, "contact1d failed: the disk is full\n")
 
 
 @pytest.mark.parametrize("arguments", [["run", str(SCENES / "load.toml")], ["doctor"]], ids=lambda words: words[0])

@@ -72,7 +72,7 @@ def test_every_key_of_every_table_is_there_with_its_meaning(kind: str) -> None:
         ("there.toml", "there.toml is there already"),
         ("no/such/my", "there is no folder no/such; make it first: mkdir -p no/such"),
         (".", ". is a folder; give the file a name"),
-        ("there.toml/my", "there is no folder there.toml"),
+        ("there.toml/my", "there.toml is a file; a folder is needed"),
     ],
 )
 def test_nothing_is_overwritten_and_no_folder_made(

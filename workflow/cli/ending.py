@@ -36,7 +36,7 @@ BAD_PLACE = (
 
 
 class Commands(typer.core.TyperGroup):
-    """All commands: what goes wrong in one of them outside of its own `command` ends in words, too."""
+    """All commands: one that has nothing to add when it ends, and what another prints at last, ends in words here."""
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command that was asked for."""

@@ -86,8 +86,7 @@ def _units_of_run(folder: Path, contact_modulus: float, surface_energy: float) -
     from contact1d.workflow.cli.summary import quantities
     from contact1d.workflow.identify.finished import scales_of_run
 
-    with command("the identification", quiet=True):
-        scales, results = scales_of_run(folder, contact_modulus, surface_energy)
+    scales, results = scales_of_run(folder, contact_modulus, surface_energy)
     for entry in results.values():
         entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
     units = {unit: scales.in_si(1.0, 0.0, unit) for unit in ("LU", "FU")}

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from contact1d.workflow.cli.ending import CALL_IS_WRONG, command, stop
+from contact1d.workflow.cli.ending import CALL_IS_WRONG, stop
 
 
 class Kind(StrEnum):
@@ -29,10 +29,9 @@ def new(
     if name.name in ("", ".."):
         stop(f"{name} is a folder; give the file a name", CALL_IS_WRONG)
     path = name if name.suffix == ".toml" else name.with_name(name.name + ".toml")
-    with command("writing the scene", quiet=True):
-        from contact1d.workflow.cli.starter import starter
+    from contact1d.workflow.cli.starter import starter
 
-        _write(path, starter(kind.value), "choose another name")
+    _write(path, starter(kind.value), "choose another name")
     typer.echo(f"{path}: run it with contact1d run {quote(str(path))}")
 
 
@@ -44,19 +43,19 @@ def schema(
     For taplo, or Even Better TOML in VS Code: `contact1d schema --out scene.schema.json` beside your scenes, and in
     each of them the first line `#:schema scene.schema.json`.
     """
-    with command("writing the schema", quiet=True):
-        from contact1d.workflow.scene.schema import schema_text
+    from contact1d.workflow.scene.schema import schema_text
 
-        text = schema_text()
-        if out is None:
-            typer.echo(text, nl=False)
-            return
-        _write(out, text, "remove it first, or choose another name")
+    if out is None:
+        typer.echo(schema_text(), nl=False)
+        return
+    _write(out, schema_text(), "remove it first, or choose another name")
     typer.echo(f"{out}: in a scene file beside it, write as first line #:schema {out.name}")
 
 
 def _write(path: Path, text: str, instead: str) -> None:
     """Write a file that is not there yet."""
+    if path.parent.is_file():
+        stop(f"{path.parent} is a file; a folder is needed", CALL_IS_WRONG)
     if not path.parent.is_dir():
         stop(f"there is no folder {path.parent}; make it first: mkdir -p {quote(str(path.parent))}", CALL_IS_WRONG)
     try:
