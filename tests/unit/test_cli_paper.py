@@ -78,6 +78,16 @@ def test_a_run_without_adhesion_is_no_material(tmp_path: Path) -> None:
     assert "no adhesion_force and no zero_load_radius" in done.stderr
 
 
+@pytest.mark.parametrize("scene", [None, {}, {"bodies": "two"}])
+def test_a_run_that_does_not_say_its_scene_is_told(scene: object, tmp_path: Path) -> None:
+    one = {"value": 1.0, "uncertainty": 0.0, "unit": "FU"}
+    document = {"status": "done", "adhesion_force": one, "zero_load_radius": one}
+    (tmp_path / "results.json").write_text(json.dumps(document if scene is None else document | {"scene": scene}))
+    done = contact1d("identify", "--contact-modulus", "1e9", "--surface-energy", "1", "--run", ".", cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "results.json does not say what scene it is of; run that scene anew\n"
+
+
 def test_one_study_leaves_record_page_and_figure_and_resumes(tmp_path: Path) -> None:
     done = contact1d("reproduce", "--only", "fig4", "--out", "here", cwd=tmp_path)
     assert done.returncode == 0, done.stderr

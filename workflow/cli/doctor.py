@@ -12,10 +12,14 @@ import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from packaging.requirements import Requirement
 
-from contact1d.workflow.engine.session import Engine, EngineError, Installation, Session
+from contact1d.workflow.engine.failure import EngineError
+
+if TYPE_CHECKING:
+    from contact1d.workflow.engine.session import Installation, Session
 
 DISTRIBUTION = "contact1d"
 OLDEST_PYTHON = (3, 11)
@@ -76,11 +80,15 @@ def checks() -> list[Check]:
     """Return all checks in the order in which a defect should be mended; starts LAMMPS once, in a temporary folder."""
     found = [_python(), *_dependencies(), *_machine()]
     try:
+        from contact1d.workflow.engine.session import Engine
+
         with tempfile.TemporaryDirectory() as folder, Engine.session(Path(folder), time_limit=60.0) as session:
             found += _lammps(session)
     except (EngineError, OSError) as error:
         cause = error.message if isinstance(error, EngineError) else str(error)
         found.append(Check("LAMMPS runs", False, cause, REINSTALL))
+    except ImportError as error:
+        found.append(Check("LAMMPS runs", False, str(error), "install contact1d anew: pip install -e . in its folder"))
     return found
 
 

@@ -39,7 +39,10 @@ def scales_of_run(folder: Path, contact_modulus: float, surface_energy: float) -
     missing = [name for name in ("adhesion_force", "zero_load_radius") if name not in results]
     if missing:
         raise FinishedRunError(f"{path} has no {' and no '.join(missing)}: use a run of kind pull_off")
-    profile = results["scene"]["bodies"]["profile"]
+    try:
+        profile = results["scene"]["bodies"]["profile"]
+    except (KeyError, TypeError):
+        raise FinishedRunError(f"{path} does not say what scene it is of; run that scene anew") from None
     if profile["kind"] not in ("parabola", "circle"):
         raise FinishedRunError(f"{path}: the profile is a {profile['kind']}, and JKR is for a sphere")
     force, radius = (

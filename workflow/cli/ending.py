@@ -1,0 +1,142 @@
+"""How every command ends: done, or in words on standard error and with an exit code. The one reader of scene files."""
+
+from __future__ import annotations
+
+import errno
+import os
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import typer
+import typer.core
+
+if TYPE_CHECKING:
+    from contact1d.workflow.engine.progress import Progress
+    from contact1d.workflow.scene import Scene, SceneError
+
+FAILS = 1
+"""A row of `reproduce` fails, or the installation is not whole."""
+CALL_IS_WRONG = 2
+"""The scene, an option or a folder is wrong; nothing was written."""
+RUN_FAILED = 3
+INTERRUPTED = 130
+
+FULL = {
+    errno.ENOSPC: "the disk is full",
+    errno.EDQUOT: "the disk quota is used up",
+    errno.EFBIG: "a file would be larger than is allowed (ulimit -f)",
+}
+BAD_PLACE = (
+    errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.EEXIST, errno.ENAMETOOLONG,
+    errno.ELOOP,
+)  # fmt: skip
+"""What the system says about a place that the caller should choose otherwise."""
+
+
+class Commands(typer.core.TyperGroup):
+    """All commands: one that has nothing to add when it ends, and what another prints at last, ends in words here."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command that was asked for."""
+        with command(ctx.info_name, quiet=True):
+            return super().invoke(ctx)
+
+
+def stop(message: str, code: int) -> NoReturn:
+    """Say what is wrong and end with this exit code."""
+    typer.secho(message, err=True, fg="red")
+    raise SystemExit(code)
+
+
+def read(path: Path, overrides: list[str] | None, without: list[str] | None) -> Scene:
+    """The scene in a file as the options change it; with every problem told, the end of the command."""
+    from contact1d.workflow.scene import SceneError, read_scene
+
+    try:
+        return read_scene(path, tuple(overrides or ()), tuple(without or ()))
+    except SceneError as error:
+        stop(_problems(str(path), error), CALL_IS_WRONG)
+
+
+def _problems(where: str, error: SceneError) -> str:
+    count = len(error.problems)
+    return "\n".join([f"{where}: {count} problem{'s' if count > 1 else ''}", *(f"  {one}" for one in error.problems)])
+
+
+@contextmanager
+def command(
+    what: str, folder: Path | None = None, kept: str = "", quiet: bool = False, blame: int = CALL_IS_WRONG
+) -> Iterator[Progress]:
+    """Do the work of a command; what goes wrong in it ends it in words and with the exit code that belongs to it.
+
+    Args:
+        what: is done, for "… failed".
+        folder: where files are; named if it is there when the work breaks off.
+        kept: what is left then, and what to do, as words.
+        quiet: whether nobody is told how far the work is.
+        blame: the exit code of a scene that leads to no system: RUN_FAILED where it is not the caller's own.
+    """
+    from contact1d.workflow.engine.progress import Silent, choose_progress
+
+    try:
+        with closing(Silent() if quiet else choose_progress()) as progress:
+            yield progress
+    except typer.Exit:
+        raise
+    except (Exception, KeyboardInterrupt) as error:
+        left = [kept] if kept else []
+        if folder is not None and os.path.isdir(folder):
+            left.append(f"files are kept in {folder}")
+        ended = _of_system(error, what, folder, left) or _of_program(error, what, blame)
+        if ended is None:
+            raise
+        stop(*ended)
+
+
+def _of_system(error: BaseException, what: str, folder: Path | None, left: list[str]) -> tuple[str, int] | None:
+    """Sentence and exit code of what came from outside: a key, the disk, a package; None for anything else."""
+    from concurrent.futures.process import BrokenProcessPool
+
+    if isinstance(error, KeyboardInterrupt):
+        return "; ".join(["interrupted", *left]), INTERRUPTED
+    if isinstance(error, ImportError) and not (error.name or "").startswith("contact1d"):
+        return f"this installation is not whole ({error}): `contact1d doctor` says what to do", FAILS
+    reason = ""
+    if isinstance(error, OSError) and error.errno != errno.EPIPE:  # a reader that went away is no error: typer ends
+        place = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else str(folder or "")
+        reason = FULL.get(error.errno or 0, error.strerror or str(error))
+        if error.errno in (errno.EEXIST, errno.ENOTDIR) and os.path.isfile(place):
+            return f"{place} is a file; a folder is needed", CALL_IS_WRONG
+        if error.errno in BAD_PLACE and place:
+            return f"{place} cannot be written: {reason}", CALL_IS_WRONG
+        reason += f" ({place})" if error.filename else ""
+    elif isinstance(error, BrokenProcessPool):
+        reason = "a process of it was killed, most often because the machine was out of memory"
+    elif isinstance(error, MemoryError):
+        reason = "the machine is out of memory"
+    return ("; ".join([f"{what} failed: {reason}", *left]), RUN_FAILED) if reason else None
+
+
+def _of_program(error: BaseException, what: str, blame: int) -> tuple[str, int] | None:
+    """Sentence and exit code of an error that the program raises for the person; None for a defect of its own."""
+    if not type(error).__module__.startswith("contact1d."):
+        return None
+    from contact1d.workflow.scene import SceneError
+
+    if isinstance(error, SceneError):
+        return _problems("the scene", error), blame
+    from contact1d.workflow.engine.failure import EngineError
+    from contact1d.workflow.identify import IdentifyError
+    from contact1d.workflow.identify.finished import FinishedRunError
+    from contact1d.workflow.runs.campaign import FolderError, RunError
+    from contact1d.workflow.settings.settings import SettingsError
+
+    if isinstance(error, FolderError | FinishedRunError):
+        return str(error), CALL_IS_WRONG
+    if isinstance(error, SettingsError | IdentifyError):
+        return (str(error) if blame == CALL_IS_WRONG else f"{what} failed: {error}"), blame
+    if isinstance(error, RunError | EngineError):  # a folder that stood for a while only is not named
+        return f"{what} failed: {error if error.folder.is_dir() else error.message}", RUN_FAILED
+    return None
