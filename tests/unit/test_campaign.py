@@ -40,7 +40,7 @@ def test_a_run_leaves_a_complete_folder(tmp_path: Path) -> None:
     assert present >= ALWAYS
     assert not any(name.endswith(".part") for name in present)
     document = json.loads((finished.folder / "results.json").read_text())
-    assert document == finished.results
+    assert document == finished.document
     assert document["status"] == "done"
     assert document["effects"] == []
     assert document["force"].keys() == {"value", "uncertainty", "unit"}
@@ -88,7 +88,7 @@ def test_many_runs_come_back_in_order_with_failures_among_them(tmp_path: Path) -
     assert isinstance(second, RunError)
     assert not isinstance(first, RunError)
     assert not isinstance(third, RunError)
-    assert first.results["force"]["value"] > third.results["force"]["value"]
+    assert first.document["force"]["value"] > third.document["force"]["value"]
 
 
 def test_a_run_error_survives_the_way_between_processes() -> None:

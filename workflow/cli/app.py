@@ -84,7 +84,7 @@ def run(
 
     start_ahead()  # LAMMPS loads while numpy and the rest of the program do
     from contact1d.workflow.engine.progress import Silent, choose_progress
-    from contact1d.workflow.runs.campaign import FolderError, RunError
+    from contact1d.workflow.errors import FolderError, RunError
     from contact1d.workflow.runs.campaign import run as run_scene
     from contact1d.workflow.settings.settings import SettingsError
 
@@ -102,10 +102,11 @@ def run(
     progress.close()
     from contact1d.workflow.cli.summary import pressure_plot, quantities
 
-    typer.echo("\n".join(quantities(finished.results)))
-    for warning in finished.results["warnings"]:
+    typer.echo("\n".join(quantities(finished.document)))
+    for warning in finished.document["warnings"]:
         typer.secho(f"warning {warning['name']}: {warning['message']}", err=True, fg="yellow")
     if not quiet:
+        assert finished.outcome is not None
         name, profile = next(iter(finished.outcome.profiles.items()))
         typer.echo(f"\npressure, {name.replace('_', ' ')} state:")
         typer.echo("\n".join(pressure_plot(profile, finished.outcome.radii[name])))
@@ -125,7 +126,8 @@ def deck(
     the one that its search ended with.
     """
     checked = _read(scene, set_, without)
-    from contact1d.workflow.runs.campaign import FolderError, write_deck
+    from contact1d.workflow.errors import FolderError
+    from contact1d.workflow.runs.campaign import write_deck
     from contact1d.workflow.settings.settings import SettingsError
 
     try:

@@ -45,8 +45,8 @@ def cost(
     from contact1d.workflow.cost.study import cost_of
     from contact1d.workflow.engine.progress import choose_progress
     from contact1d.workflow.engine.session import EngineError
-    from contact1d.workflow.reproduce.studies import cores
-    from contact1d.workflow.runs.campaign import RunError
+    from contact1d.workflow.errors import RunError
+    from contact1d.workflow.runs.cores import cores
     from contact1d.workflow.settings.settings import SettingsError, settings_for
 
     folder = out if out is not None else Path("costs") / scene.stem

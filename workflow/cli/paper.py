@@ -116,9 +116,9 @@ def _scene_of_material(
 ) -> None:
     """Identify, run, and say what came out."""
     from contact1d.workflow.engine.progress import choose_progress
+    from contact1d.workflow.errors import FolderError, RunError
     from contact1d.workflow.identify import IdentifyError, material_scene
     from contact1d.workflow.identify import identify as search
-    from contact1d.workflow.runs.campaign import FolderError, RunError
     from contact1d.workflow.settings.settings import SettingsError
 
     progress: Progress = choose_progress()
@@ -141,7 +141,7 @@ def _scene_of_material(
 def _say(found: Identified, target: Target) -> None:
     from contact1d.workflow.cli.summary import in_si, quantities
 
-    results = found.run.results
+    results = found.run.document
     lines = [f"identified in {found.runs} run{'s' if found.runs > 1 else ''}"]
     for name, wanted, unit in (
         ("adhesion_force", target.adhesion_force, "N"), ("zero_load_radius", target.zero_load_radius, "m"),
@@ -175,10 +175,10 @@ def reproduce(
     the other studies of an earlier record stay in it. Exit code 1: a row fails.
     """
     from contact1d.workflow.engine.progress import choose_progress
+    from contact1d.workflow.errors import FolderError, RunError
     from contact1d.workflow.identify import IdentifyError
     from contact1d.workflow.reproduce.studies import NAMES, PAGE
     from contact1d.workflow.reproduce.studies import reproduce as do
-    from contact1d.workflow.runs.campaign import FolderError, RunError
     from contact1d.workflow.scene.problems import nearest
 
     for name in only or ():
