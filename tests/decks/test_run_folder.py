@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import pickle
 import re
 import shutil
 import subprocess
 import sys
 from collections import Counter
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +21,7 @@ from typer.testing import CliRunner
 
 from contact1d.workflow.cli.app import app
 from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.runs.finished import Run
+from contact1d.workflow.runs.finished import Run, load_run
 from contact1d.workflow.scene import scene_from_dict
 
 Array = NDArray[np.float64]
@@ -196,6 +198,26 @@ def test_the_folder_has_nothing_left_over(finished: Run) -> None:
     assert {"in.lammps", "system.data", "curve.txt", "states.lammpstrj", "curve.csv", "results.json"} <= names
     assert ("interaction.table" in names) == ("interaction" in finished.document["effects"])
     assert json.loads((finished.folder / "results.json").read_text()) == finished.document
+
+
+def test_a_run_read_from_its_folder_is_the_one_that_was_made(finished: Run) -> None:
+    """From memory, from the files and through a pickle it has one face, to the last bit."""
+    for loaded in (load_run(str(finished.folder)), pickle.loads(pickle.dumps(finished))):
+        assert loaded == finished
+        for name in ("scene", "status", "results", "warnings", "timing"):
+            assert getattr(loaded, name) == getattr(finished, name), name
+        assert (repr(loaded), loaded._repr_html_()) == (repr(finished), finished._repr_html_())
+        assert list(loaded.profiles) == list(finished.profiles)
+        assert list(loaded.friction) == list(finished.friction)
+        pairs = zip(
+            (loaded.curve, *loaded.profiles.values()), (finished.curve, *finished.profiles.values()), strict=True
+        )
+        for one, other in pairs:
+            for field in fields(one):
+                np.testing.assert_array_equal(getattr(one, field.name), getattr(other, field.name))
+        for name, column in finished.friction.items():
+            np.testing.assert_array_equal(loaded.friction[name], column)
+        assert [axis.get_title() for axis in loaded.plot().axes] == [axis.get_title() for axis in finished.plot().axes]
 
 
 QUICK = {

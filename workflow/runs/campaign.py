@@ -127,7 +127,7 @@ def prepare(folder: Path) -> Path:
     if folder.exists() and not folder.is_dir():
         raise FolderError(f"{folder} is a file; a run needs a folder")
     if folder.is_dir() and any(folder.iterdir()) and not any((folder / name).exists() for name in ("in.lammps", LOCK)):
-        raise FolderError(f"{folder} holds files that are not of a run; choose another folder with --out")
+        raise FolderError(f"{folder} holds files that are not of a run; choose another folder")
     try:
         folder.mkdir(parents=True, exist_ok=True)
         (folder / LOCK).touch()
@@ -143,7 +143,7 @@ def _alone(folder: Path) -> Iterator[None]:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
-            raise FolderError(f"another run is at work in {folder}; choose another folder with --out") from None
+            raise FolderError(f"another run is at work in {folder}; choose another folder") from None
         try:
             yield
         finally:

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Drawings = dict[str, Callable[[], "Figure"]]
-RADII = {"zero_load": "zero_load_radius", "critical": "critical_radius", "final": "contact_radius"}
-"""The result that is the radius of a reported state; of others it is read off the profile."""
 
 
 def drawings(
@@ -40,7 +38,7 @@ def drawings(
         values: of the results.
         curve, profiles, friction: as in `Run`.
     """
-    radii = {state: _radius(scene, values, state, profile) for state, profile in profiles.items()}
+    radii = {state: _radius(scene, profile) for state, profile in profiles.items()}
     pressure: Drawings = {"pressure": partial(plots.pressure_figure, profiles, radii)}
     if friction:
         return {"friction": partial(plots.friction_figure, friction), **pressure}
@@ -67,9 +65,7 @@ def draw(
         plots.save_figure(figure(), folder / f"{name}.png")
 
 
-def _radius(scene: Scene, values: Mapping[str, float], state: str, profile: Profile) -> float:
-    if RADII.get(state, "") in values:
-        return values[RADII[state]]
+def _radius(scene: Scene, profile: Profile) -> float:
     found = radius_of(scene, profile)
     return nan if found is None else found.value
 

@@ -31,8 +31,8 @@ def run_many(
 
     Returns:
         One entry for each pair, in the order given: a `Run`, or a `RunError` whatever went wrong, with the message of
-        the error that `run` raised and the folder. One that cannot be, or whose process dies, keeps no other from
-        running.
+        the error that `run` raised and the folder. None keeps another from running, but that a process that is killed
+        takes its executor with it: what has not run by then comes back as errors.
     """
     pairs = list(scenes)
     if executor is None:

@@ -62,9 +62,7 @@ def read_scene(source: AnyScene, overrides: Iterable[str] = (), without: Iterabl
         return scene_from_dict(_tables(source, "scene"), overrides, without)
     if not isinstance(source, str | PathLike):
         given = type(source).__name__
-        raise SceneError(
-            [Problem("scene", f"must be a path, TOML text, tables or a Scene; this is of the type {given}")]
-        )
+        raise SceneError([Problem("scene", f"must be a path, TOML text, tables or a Scene, not {given}")])
     return scene_from_dict(_parsed(fspath(source)), overrides, without, FilePath(source).parent)
 
 
