@@ -89,7 +89,7 @@ def test_a_process_that_is_killed_leaves_the_entries_that_were_done(plane: MakeS
     assert isinstance(again, Run)
     for entry in (*lost, *others, *later):
         assert isinstance(entry, RunError)
-        assert "has died" in entry.message
+        assert "was killed" in entry.message
     assert [entry.folder.name for entry in lost] == ["1", "2"]
 
 
@@ -99,6 +99,17 @@ def test_an_executor_that_takes_no_more_gives_errors(plane: MakeScene, tmp_path:
     (entry,) = run_many([(plane(), tmp_path / "run")], executor)
     assert isinstance(entry, RunError)
     assert "after shutdown" in entry.message
+
+
+@pytest.mark.parametrize("way", ["file", "pipe"])
+def test_a_script_needs_no_guard(way: str, plane: MakeScene, tmp_path: Path) -> None:
+    """It is run once, whether Python reads it from a file or from a pipe."""
+    (tmp_path / "scene.toml").write_text(str(plane()))
+    script = "import contact1d; (one,) = contact1d.run_many([('scene.toml', 'run')]); print(one.status)\n"
+    (tmp_path / "script.py").write_text(script)
+    command = [sys.executable, "script.py" if way == "file" else "-"]
+    done = subprocess.run(command, input=script, cwd=tmp_path, capture_output=True, text=True, timeout=PATIENCE)
+    assert (done.stdout, done.stderr) == ("done\n", "")
 
 
 def test_two_runs_never_share_a_folder(plane: MakeScene, tmp_path: Path) -> None:

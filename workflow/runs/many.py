@@ -25,8 +25,7 @@ def run_many(
 
     Args:
         scenes: scenes as `run` takes them, each with a folder of its own.
-        executor: anything with the interface of `concurrent.futures`; None: processes on this machine. A script that
-            leaves it to these calls `run_many` under `if __name__ == "__main__":`, as for every process of Python's.
+        executor: anything with the interface of `concurrent.futures`; None: processes on this machine.
         workers: runs at a time on this machine; None: as many as there are processors.
 
     Returns:
@@ -77,9 +76,8 @@ def _entry(scene: AnyScene, folder: Path) -> Entry:
 
 
 def _no_answer(error: Exception, folder: Path) -> RunError:
-    died = (
-        "the process that was to run it has died: killed, most often because the machine was out of memory; or the "
-        'script that calls run_many does so outside of `if __name__ == "__main__":`'
-    )
-    message = died if isinstance(error, BrokenExecutor) else f"it was not run: {type(error).__name__} {error}"
+    if isinstance(error, BrokenExecutor):
+        message = "the process that was to run it was killed, most often because the machine was out of memory"
+    else:
+        message = f"it was not run: {type(error).__name__}: {error}"
     return RunError(message, folder, kept=False)
