@@ -29,4 +29,4 @@ class RunError(Contact1dError, RuntimeError):
 
     def __str__(self) -> str:
         """Return the message, and where the files are or would have been."""
-        return f"{self.message}\n{'files kept in' if self.kept else 'no run in'} {self.folder}"
+        return f"{self.message}\n{'files kept in' if self.kept else 'run folder:'} {self.folder}"

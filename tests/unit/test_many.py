@@ -136,7 +136,7 @@ def test_a_mistake_in_the_program_is_an_entry_that_says_where(
 def test_a_run_error_survives_the_way_between_processes() -> None:
     error = pickle.loads(pickle.dumps(RunError("why", Path("somewhere"), kept=False)))
     assert (error.message, error.folder, error.kept) == ("why", Path("somewhere"), False)
-    assert str(error) == "why\nno run in somewhere"
+    assert str(error) == "why\nrun folder: somewhere"
 
 
 def test_processes_end_with_a_block_that_fails() -> None:
