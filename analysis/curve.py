@@ -5,15 +5,15 @@ from __future__ import annotations
 import csv
 import io
 import math
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from contact1d.analysis.pressure import Profile
+from contact1d.files import whole
 
 Array = NDArray[np.float64]
 Column = Sequence[float] | Sequence[str] | Array
@@ -21,40 +21,52 @@ CHUNK = 100_000
 """Rows that are turned into text at a time."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, init=False)
 class Curve:
-    """Measured states in the order in which they were passed; sequences of equal length.
+    """Measured states in the order in which they were passed; arrays (n,). Two are equal if they are the same object.
 
     displacement [LU], force [FU], compression positive; contact_radius [LU] and its uncertainty, NaN where there is
     none; smallest_distance between particles of opposite bodies [LU]; branch: "loading" or "unloading".
     """
 
-    displacement: Sequence[float]
-    force: Sequence[float]
-    contact_radius: Sequence[float]
-    smallest_distance: Sequence[float]
-    branch: Sequence[str]
-    contact_radius_uncertainty: Sequence[float]
+    displacement: Array
+    force: Array
+    contact_radius: Array
+    smallest_distance: Array
+    branch: NDArray[np.str_]
+    contact_radius_uncertainty: Array
 
-    def __post_init__(self) -> None:
-        """Check lengths."""
+    def __init__(
+        self,
+        displacement: ArrayLike,
+        force: ArrayLike,
+        contact_radius: ArrayLike,
+        smallest_distance: ArrayLike,
+        branch: ArrayLike,
+        contact_radius_uncertainty: ArrayLike,
+    ) -> None:
+        """Keep the columns as arrays. Raises ValueError for unequal lengths."""
+        columns = (displacement, force, contact_radius, smallest_distance, branch, contact_radius_uncertainty)
+        for field, column in zip(fields(self), columns, strict=True):
+            kind = np.str_ if field.name == "branch" else np.float64
+            object.__setattr__(self, field.name, np.asarray(column, dtype=kind))
         lengths = {len(getattr(self, field.name)) for field in fields(self)}
         if len(lengths) != 1:
             raise ValueError(f"the columns of a curve must be equally long, got lengths {sorted(lengths)}")
 
 
 PROFILE_COLUMNS = ("x", "z_lower", "z_upper", "pressure", "shear")
+FRICTION_COLUMNS = ("time", "drive", "plate_x", "plate_z", "friction", "normal_force", "cantilever_force")
+"""Of a slide: times [TU], places [LU], forces [FU]."""
 
 
 def write_columns(path: Path, columns: Mapping[str, Column]) -> None:
     """Write a CSV file with a header; numbers with 17 digits, NaN as an empty cell."""
-    part = path.with_name(path.name + ".part")
-    with part.open("w", newline="", encoding="utf-8") as file:
+    with whole(path) as part, part.open("w", newline="", encoding="utf-8") as file:
         csv.writer(file, lineterminator="\n").writerow(columns)
         for start in range(0, max(map(len, columns.values())), CHUNK):
             cells = [_cells(column[start : start + CHUNK]) for column in columns.values()]
             file.writelines(f"{','.join(row)}\n" for row in zip(*cells, strict=True))
-    os.replace(part, path)
 
 
 def curve_columns(curve: Curve) -> dict[str, Column]:
@@ -69,8 +81,13 @@ def read_curve(path: Path) -> Curve:
         ValueError: if a column is missing or a cell is no number.
     """
     columns = _read(path, [field.name for field in fields(Curve)])
-    numbers = {name: [_number(cell) for cell in cells] for name, cells in columns.items() if name != "branch"}
+    numbers = {name: _numbers(cells) for name, cells in columns.items() if name != "branch"}
     return Curve(**numbers, branch=columns["branch"])
+
+
+def read_friction(path: Path) -> dict[str, Array]:
+    """Read friction.csv: FRICTION_COLUMNS by name. Raises ValueError as `read_curve`."""
+    return {name: _numbers(cells) for name, cells in _read(path, FRICTION_COLUMNS).items()}
 
 
 def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Column]:
@@ -82,11 +99,11 @@ def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Column]:
 
 
 def read_profiles(path: Path) -> dict[str, Profile]:
-    """Read profile.csv: profiles by the names of their states."""
+    """Read profile.csv: profiles by the names of their states. Raises ValueError as `read_curve`."""
     columns = _read(path, [*PROFILE_COLUMNS, "state"])
     states = list(dict.fromkeys(columns["state"]))
     chosen = np.asarray(columns["state"])
-    arrays = {name: np.asarray([_number(cell) for cell in columns[name]]) for name in PROFILE_COLUMNS}
+    arrays = {name: _numbers(columns[name]) for name in PROFILE_COLUMNS}
     return {state: Profile(*(arrays[name][chosen == state] for name in PROFILE_COLUMNS)) for state in states}
 
 
@@ -107,14 +124,15 @@ def _quoted(word: str) -> str:
     return row.getvalue().removesuffix(",0\n")
 
 
-def _number(cell: str) -> float:
-    return math.nan if cell == "" else float(cell)
+def _numbers(cells: Sequence[str]) -> Array:
+    return np.asarray([math.nan if cell == "" else float(cell) for cell in cells])
 
 
-def _read(path: Path, names: Sequence[str]) -> dict[str, list[str]]:
+def _read(path: Path, names: Sequence[str]) -> dict[str, Sequence[str]]:
     with path.open(newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    missing = [name for name in names if rows and name not in rows[0]]
+        header, *rows = [*csv.reader(file)] or [[]]
+    missing = [name for name in names if rows and name not in header]
     if missing or not rows:
         raise ValueError(f"{path}: {'no rows' if not rows else 'no column ' + ', '.join(missing)}")
-    return {name: [row[name] for row in rows] for name in names}
+    columns = dict(zip(header, zip(*rows, strict=True), strict=True))
+    return {name: columns[name] for name in names}

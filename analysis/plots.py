@@ -1,14 +1,12 @@
 """Figures of a run, drawn as the paper's: pressure profile (Fig. 4), force over displacement and over radius (Fig. 8).
 
 References in them: JKR, F̃ = 4ã³ − 4ã^{3/2} (Eq. 8); Barquins' cylinder, F̃ = 2.1165 (ã² − √ã). Both are scaled on the
-run's own F_A and a₀, so that only the shapes are compared. Each drawing function returns its figure; `plot_…` also
-saves it.
+run's own F_A and a₀, so that only the shapes are compared. Each drawing function returns its figure.
 """
 
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,6 +19,7 @@ from contact1d.analysis.pressure import Profile
 from contact1d.analysis.reference.jkr import jkr_reduced_force
 from contact1d.analysis.reference.line_adhesion import barquins_reduced_force
 from contact1d.analysis.reference.winkler import winkler_force
+from contact1d.files import whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -86,9 +85,9 @@ def force_displacement_figure(
     """Force over displacement, loading and unloading; beside it a theory: its name, displacement and force."""
     figure = new_figure(SIZE)
     axis = figure.subplots()
-    displacement, force = np.asarray(curve.displacement), np.asarray(curve.force)
+    displacement, force = curve.displacement, curve.force
     for branch, colour, style in (("loading", LOADING, "-"), ("unloading", UNLOADING, "-")):
-        chosen = np.asarray(curve.branch) == branch
+        chosen = curve.branch == branch
         if chosen.any():
             order = np.argsort(displacement[chosen], kind="stable")
             d, f = displacement[chosen][order], force[chosen][order]
@@ -118,9 +117,9 @@ def force_radius_figure(curve: Curve, adhesion_force: float, zero_load_radius: f
     """F/F_A over a/a₀ of the unloading branch beside JKR and Barquins (the paper's Fig. 8)."""
     figure = new_figure(SIZE)
     axis = figure.subplots()
-    radius = np.asarray(curve.contact_radius) / zero_load_radius
-    force = np.asarray(curve.force) / adhesion_force
-    chosen = (np.asarray(curve.branch) == "unloading") & np.isfinite(radius) & (radius > 0.0)
+    radius = curve.contact_radius / zero_load_radius
+    force = curve.force / adhesion_force
+    chosen = (curve.branch == "unloading") & np.isfinite(radius) & (radius > 0.0)
     top = max(1.3, 1.05 * float(radius[chosen].max(initial=0.0)))
     a = np.linspace(0.0, top, 400)
     axis.plot(a, jkr_reduced_force(a), "-", color=THEORY, linewidth=1.6, label="JKR")
@@ -135,7 +134,7 @@ def force_radius_figure(curve: Curve, adhesion_force: float, zero_load_radius: f
     return figure
 
 
-def friction_figure(columns: Mapping[str, Sequence[float]]) -> Figure:
+def friction_figure(columns: Mapping[str, Sequence[float] | Array]) -> Figure:
     """Friction over the way of the drive, and the normal force below it."""
     figure = new_figure(SIZE)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
@@ -148,28 +147,6 @@ def friction_figure(columns: Mapping[str, Sequence[float]]) -> Figure:
     return figure
 
 
-def plot_pressure(profiles: Mapping[str, Profile], radii: Mapping[str, float], path: Path) -> None:
-    """Save `pressure_figure`."""
-    save_figure(pressure_figure(profiles, radii), path)
-
-
-def plot_force_displacement(
-    curve: Curve, marks: Mapping[str, float], path: Path, theory: tuple[str, Array, Array] | None = None
-) -> None:
-    """Save `force_displacement_figure`."""
-    save_figure(force_displacement_figure(curve, marks, theory), path)
-
-
-def plot_force_radius(curve: Curve, adhesion_force: float, zero_load_radius: float, path: Path) -> None:
-    """Save `force_radius_figure`."""
-    save_figure(force_radius_figure(curve, adhesion_force, zero_load_radius), path)
-
-
-def plot_friction(columns: Mapping[str, Sequence[float]], path: Path) -> None:
-    """Save `friction_figure`."""
-    save_figure(friction_figure(columns), path)
-
-
 def new_figure(size: tuple[float, float]) -> Figure:
     """Return an empty figure of that size [inch], without the state that pyplot keeps."""
     from matplotlib.figure import Figure
@@ -177,13 +154,18 @@ def new_figure(size: tuple[float, float]) -> Figure:
     return Figure(figsize=size, dpi=DPI, layout="constrained")
 
 
-def save_figure(figure: Figure, path: Path) -> None:
-    """Save whole or not at all."""
+def plain_axes(figure: Figure) -> Figure:
+    """Take away the lines above and to the right of each axis; returns the figure."""
     for axis in figure.axes:
         axis.spines[["top", "right"]].set_visible(False)
-    part = path.with_name(path.name + ".part")
-    figure.savefig(part, format="png")
-    os.replace(part, path)
+    return figure
+
+
+def save_figure(figure: Figure, path: Path) -> None:
+    """Save as PNG, whole or not at all."""
+    plain_axes(figure)
+    with whole(path) as part:
+        figure.savefig(part, format="png")
 
 
 def _draw_bars(axis: Axes, x: Array, height: Array, width: float) -> None:

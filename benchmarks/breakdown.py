@@ -19,10 +19,10 @@ from typing import Any
 import contact1d.workflow.runs.campaign as campaign
 from benchmarks.peers.contact1d_peer import SETTINGS, hertz_tables
 from benchmarks.peers.contacts import displacements
-from contact1d import scene_from_dict
 from contact1d.workflow.engine.process import WorkerProcess
 from contact1d.workflow.experiments.running.contact import Contact
 from contact1d.workflow.reproduce.markdown import table
+from contact1d.workflow.scene import scene_from_dict
 
 README = Path(__file__).parent / "README.md"
 BEGIN, END = "<!-- breakdown: begin -->\n", "<!-- breakdown: end -->\n"
@@ -79,7 +79,7 @@ def measured() -> list[dict[str, float]]:
         for _ in range(RUNS + 2):
             clock.spent.clear()
             began = perf_counter()
-            lammps = campaign.run(scene, folder, figures=False).results["timing"]["lammps_s"]
+            lammps = campaign.run(scene, folder, figures=False).document["timing"]["lammps_s"]
             total = perf_counter() - began
             parts = dict(clock.spent)
             parts[REST] = total - sum(parts.values())

@@ -27,7 +27,7 @@ from statistics import median
 from time import process_time
 from typing import Any
 
-from contact1d import read_scene, run, scene_from_dict
+from contact1d import read_scene, run
 from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import UnderLoad
@@ -38,7 +38,7 @@ from contact1d.workflow.experiments.running.holding import AT_REST, LOST
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.sampling import chunk_steps
 from contact1d.workflow.reproduce.oracles import chain_model
-from contact1d.workflow.scene import PullOff, Scene
+from contact1d.workflow.scene import PullOff, Scene, scene_from_dict
 from contact1d.workflow.settings.calibration import CALIBRATION
 from contact1d.workflow.settings.settings import settings_for
 
@@ -138,7 +138,7 @@ def compared(scene: Scene, tolerance: float, folder: Path) -> list[Cost]:
         for way, timed in ours.items():
             # The plain way finds F_A alone; with these settings ours is not run again for the sake of a radius.
             own = settings_for(timed)
-            runs = (run(timed, folder / way, figures=False, settings=own).results for _ in range(REPEATS[way]))
+            runs = (run(timed, folder / way, figures=False, settings=own).document for _ in range(REPEATS[way]))
             done[way] += runs
         if tuned is not None:
             way = "plain, tuned" if tuned else "plain"

@@ -31,8 +31,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from contact1d import read_scene, run, scene_from_dict
-from contact1d.workflow.scene import Scene
+from contact1d import read_scene, run
+from contact1d.workflow.scene import Scene, scene_from_dict
 
 SCENES = Path(__file__).parents[1] / "lammps_inputs" / "scenes"
 RESULTS = Path(__file__).parent / "results" / "scaling.json"
@@ -113,7 +113,7 @@ def one(particles: int, method: str) -> dict[str, Any]:
         run(scaled_scene(20, method), Path(folder) / "first", figures=False)
         (worker,) = workers()
         before, started = (time.process_time(), cpu_seconds(worker)), time.perf_counter()
-        results = run(scene, Path(folder) / "run", figures=False).results
+        results = run(scene, Path(folder) / "run", figures=False).document
         wall = time.perf_counter() - started
         python, child = time.process_time() - before[0], cpu_seconds(worker) - before[1]
         steps = steps_of(Path(folder) / "run", results)
@@ -163,7 +163,7 @@ def later_run(scene: Scene, figures: bool, folder: Path) -> tuple[float, float]:
     """Wall and processor time [s] of one run in this process, without what LAMMPS took."""
     (worker,) = workers()
     before, started = time.process_time() + cpu_seconds(worker), time.perf_counter()
-    timing = run(scene, folder, figures=figures).results["timing"]
+    timing = run(scene, folder, figures=figures).document["timing"]
     wall = time.perf_counter() - started
     cpu = time.process_time() + cpu_seconds(worker) - before
     return wall - timing["lammps_s"], cpu - timing["lammps_cpu_s"]

@@ -14,13 +14,13 @@ only there, the force falls to 0 at r = 0 instead of jumping to its opposite.
 from __future__ import annotations
 
 import math
-import os
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
+from contact1d.files import write_whole
 from contact1d.potentials.double_exponential import Array, DoubleExponential
 
 SECTION = "DOUBLE_EXPONENTIAL"
@@ -131,9 +131,7 @@ def table_for(law: DoubleExponential, cutoff: float, closest: float, error: floa
 
 def write_table(table: Table, closest: float, path: Path) -> None:
     """Write the LAMMPS table file, whole or not at all; its header states the law and the measured error."""
-    part = path.with_name(path.name + ".part")
-    part.write_text(_text(table, closest))
-    os.replace(part, path)
+    write_whole(path, _text(table, closest))
 
 
 @lru_cache(maxsize=4)  # scenes run one after the other mostly share their law, and 32 000 rows take 45 ms

@@ -31,6 +31,17 @@ SMALL: dict[str, Any] = {
     "experiment": {"kind": "path", "displacements": [0.0, 0.05]},
 }
 
+PLANE: dict[str, Any] = {
+    "title": "plane",
+    "bodies": {
+        "particles": 21,
+        "spacing": 1.0,
+        "profile": {"kind": "parabola", "radius": 50.0},
+        "bulk_stiffness": 0.5,
+        "lower": "rigid_plane",
+    },
+}
+
 MakeScene = Callable[..., Scene]
 OpenDeck = Callable[[Scene], tuple[Deck, Session]]
 
@@ -42,6 +53,16 @@ def make_scene() -> MakeScene:
     def make(**tables: Any) -> Scene:
         bodies = SMALL["bodies"] | tables.pop("bodies", {})
         return scene_from_dict(SMALL | {"bodies": bodies} | tables)
+
+    return make
+
+
+@pytest.fixture
+def plane() -> MakeScene:
+    """`plane(force=…)`: some particles on a rigid plane, the quickest run there is; keys are of its load."""
+
+    def make(**experiment: Any) -> Scene:
+        return scene_from_dict(PLANE | {"experiment": {"kind": "load", "force": 0.5} | experiment})
 
     return make
 

@@ -6,7 +6,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 LENGTH = "LU"
 FORCE = "FU"
@@ -26,15 +28,27 @@ SI = {
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number with its uncertainty, both in `unit`."""
+    """A number with its uncertainty, both in `unit`; `si`: the same in SI, where the scene has a [material]."""
 
     value: float
     uncertainty: float
     unit: str
+    si: Quantity | None = None
 
     def __float__(self) -> float:
         """The value."""
         return self.value
+
+    @classmethod
+    def of(cls, entry: Mapping[str, Any]) -> Quantity:
+        """The quantity that `entry` wrote."""
+        si = entry.get("si")
+        return cls(entry["value"], entry["uncertainty"], entry["unit"], None if si is None else cls.of(si))
+
+    def entry(self) -> dict[str, Any]:
+        """What results.json holds of it."""
+        own = {"value": self.value, "uncertainty": self.uncertainty, "unit": self.unit}
+        return own if self.si is None else own | {"si": self.si.entry()}
 
     def __str__(self) -> str:
         """`1.483400 ± 0.000029 FU`."""

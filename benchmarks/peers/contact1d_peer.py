@@ -50,7 +50,8 @@ def load() -> None:
 
 def curve(contact: str, setting: Setting) -> Curve:
     """Return the curve of one run."""
-    from contact1d import run, scene_from_dict
+    from contact1d import run
+    from contact1d.workflow.scene import scene_from_dict
 
     d = displacements(contact, CHAIN_WAY)
     began = time.perf_counter()
@@ -66,7 +67,7 @@ def curve(contact: str, setting: Setting) -> Curve:
     limit = closed_form(contact, d) if scene is None else own_limit(scene, unit, force_unit, d)
     return Curve(
         columns["displacement"] * unit, columns["force"] * force_unit, columns["contact_radius"] * unit, seconds,
-        start_up, limit, {"lammps": finished.results["timing"]["lammps_s"]},
+        start_up, limit, {"lammps": finished.document["timing"]["lammps_s"]},
     )  # fmt: skip
 
 

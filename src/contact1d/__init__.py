@@ -1,10 +1,21 @@
-"""From a scene file to a finished run folder.
+"""From a scene file to a finished run: contact, adhesion and friction of one-dimensional particle chains, on LAMMPS.
 
-from contact1d import atoms, read_scene, run
+    import contact1d
 
-finished = run(read_scene("lammps_inputs/scenes/pull_off.toml"), "runs/pull_off")
-finished.results["adhesion_force"]          # {"value": …, "uncertainty": …, "unit": "FU"}
-atoms("runs/pull_off")                      # the last state as ase.Atoms
+    scene = contact1d.read_scene("lammps_inputs/scenes/pull_off.toml")
+    finished = contact1d.run(scene, "runs/pull_off")
+    finished                                    # title and results
+    finished.results.adhesion_force             # value, uncertainty, unit
+    finished.curve.force                        # numpy arrays; also .profiles, .friction
+    finished.plot()                             # a matplotlib figure
+    finished.atoms()                            # the last state as ase.Atoms
+    contact1d.load_run("runs/pull_off")         # the same again, from the folder
+
+    sweep = [(scene.with_({"bodies.profile.radius": R}), f"runs/R{R}") for R in (500, 1000, 2000)]
+    contact1d.run_many(sweep)                   # several at a time
+
+Every error about a scene, a folder or a run is a `Contact1dError`. Units: LU length, FU force, MU mass,
+TU = √(MU·LU/FU); compression is positive.
 """
 
 from __future__ import annotations
@@ -14,38 +25,54 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from contact1d.analysis.atoms import atoms
-    from contact1d.workflow.runs.campaign import Run, RunError, run, run_many, write_deck
-    from contact1d.workflow.scene import Scene, SceneError, read_scene, scene_from_dict
+    from contact1d.workflow.engine.failure import EngineError
+    from contact1d.workflow.errors import Contact1dError, FolderError, RunError
+    from contact1d.workflow.runs.campaign import run, write_deck
+    from contact1d.workflow.runs.finished import Run, load_run
+    from contact1d.workflow.runs.many import run_many
+    from contact1d.workflow.scene import Scene, SceneError, read_scene
+    from contact1d.workflow.settings.chain import SettingsError
+    from contact1d.workflow.units import Quantity
 
 __all__ = [
+    "Contact1dError",
+    "EngineError",
+    "FolderError",
+    "Quantity",
     "Run",
     "RunError",
     "Scene",
     "SceneError",
+    "SettingsError",
     "atoms",
+    "load_run",
     "read_scene",
     "run",
     "run_many",
-    "scene_from_dict",
     "write_deck",
 ]
 
 _HOMES = {
-    "atoms": "contact1d.analysis.atoms",
-    "Run": "contact1d.workflow.runs.campaign",
-    "RunError": "contact1d.workflow.runs.campaign",
-    "run": "contact1d.workflow.runs.campaign",
-    "run_many": "contact1d.workflow.runs.campaign",
-    "write_deck": "contact1d.workflow.runs.campaign",
-    "Scene": "contact1d.workflow.scene",
-    "SceneError": "contact1d.workflow.scene",
-    "read_scene": "contact1d.workflow.scene",
-    "scene_from_dict": "contact1d.workflow.scene",
+    "analysis.atoms": ("atoms",),
+    "workflow.engine.failure": ("EngineError",),
+    "workflow.errors": ("Contact1dError", "FolderError", "RunError"),
+    "workflow.runs.campaign": ("run", "write_deck"),
+    "workflow.runs.finished": ("Run", "load_run"),
+    "workflow.runs.many": ("run_many",),
+    "workflow.scene": ("Scene", "SceneError", "read_scene"),
+    "workflow.settings.chain": ("SettingsError",),
+    "workflow.units": ("Quantity",),
 }
 
 
 def __getattr__(name: str) -> object:
     """Import a public name when it is first used: the command line starts without LAMMPS, numpy or matplotlib."""
-    if name in _HOMES:
-        return getattr(import_module(_HOMES[name]), name)
+    for home, names in _HOMES.items():
+        if name in names:
+            return getattr(import_module(f"contact1d.{home}"), name)
     raise AttributeError(f"module 'contact1d' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    """Return the public names, for completion."""
+    return __all__

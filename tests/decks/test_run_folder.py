@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import pickle
 import re
 import shutil
 import subprocess
 import sys
 from collections import Counter
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +20,8 @@ from numpy.typing import NDArray
 from typer.testing import CliRunner
 
 from contact1d.workflow.cli.app import app
-from contact1d.workflow.runs.campaign import Run, run
+from contact1d.workflow.runs.campaign import run
+from contact1d.workflow.runs.finished import Run, load_run
 from contact1d.workflow.scene import scene_from_dict
 
 Array = NDArray[np.float64]
@@ -132,7 +135,7 @@ def test_curve_txt_holds_the_states_of_the_results(finished: Run) -> None:
     """Every state of the results is a line, bitwise and in order; where no row only passes, every line is a state."""
     phases, rows = curve(finished.folder)
     states = finished.outcome.states
-    assert len(rows) == len(states) or finished.results["experiment"] in PASSING
+    assert len(rows) == len(states) or finished.document["experiment"] in PASSING
     lines = iter(zip(phases, rows.tolist(), strict=True))
     for state in states:
         force = next(f for phase, (d, f) in lines if (phase, d) == (state.phase, state.displacement))
@@ -140,29 +143,29 @@ def test_curve_txt_holds_the_states_of_the_results(finished: Run) -> None:
 
 
 def value(finished: Run, name: str) -> tuple[float, float]:
-    quantity = finished.results[name]
+    quantity = finished.document[name]
     return quantity["value"], quantity["uncertainty"]
 
 
 def test_numbers_can_be_read_off_the_curve(finished: Run) -> None:
     """By eye, so to say: the largest tension, the last state, the mean of the samples."""
     phases, rows = curve(finished.folder)
-    kind = finished.results["experiment"]
+    kind = finished.document["experiment"]
     samples = rows[[phase == "sampling" for phase in phases]]
     if kind == "load":
         wanted = samples.mean(axis=0) if len(samples) else rows[-1]
         assert [value(finished, name)[0] for name in ("displacement", "force")] == pytest.approx(wanted, rel=SUM)
-    if "adhesion_force" in finished.results:
+    if "adhesion_force" in finished.document:
         adhesion, uncertainty = value(finished, "adhesion_force")
         held = rows[[phase in ("unloading", "pulling") for phase in phases], 1]
         largest = -float(held.min())
         # The quantity is the vertex between rows: at most one bend of the curve above the largest row.
         bend = BEND * float(np.abs(np.diff(held, 2)).max(initial=0.0))
         assert largest - uncertainty - SUM <= adhesion <= largest + bend + uncertainty + SUM
-    if "preload" in finished.results:
+    if "preload" in finished.document:
         loaded = rows[[phase == "loading" for phase in phases], 1]
         assert loaded[-1] == pytest.approx(value(finished, "preload")[0], rel=SUM)
-    if "largest_force" in finished.results:
+    if "largest_force" in finished.document:
         assert rows[:, 1].max() == pytest.approx(value(finished, "largest_force")[0], rel=SUM)
 
 
@@ -180,9 +183,9 @@ def test_radii_can_be_read_off_the_dump(finished: Run) -> None:
     """The first frame of a pull-off is the zero-load state, the second the critical one; a load has its last."""
     found = frames(finished.folder)
     names = {"pull_off": ("zero_load_radius", "critical_radius"), "load": ("contact_radius",)}
-    if finished.results["scene"]["bodies"]["lower"] == "rigid_plane" or "noise" in finished.results["effects"]:
+    if finished.document["scene"]["bodies"]["lower"] == "rigid_plane" or "noise" in finished.document["effects"]:
         return
-    for frame, name in zip(found, names.get(finished.results["experiment"], ()), strict=False):
+    for frame, name in zip(found, names.get(finished.document["experiment"], ()), strict=False):
         upper = frame[frame[:, 1] == 2]
         place = abs(upper[upper[:, 6].argmin(), 2])
         assert value(finished, name)[0] == pytest.approx(place, abs=NEAREST)
@@ -193,8 +196,28 @@ def test_the_folder_has_nothing_left_over(finished: Run) -> None:
     names = {path.name for path in finished.folder.iterdir()}
     assert not [name for name in names if name.endswith(".part") or name.startswith("saved")]
     assert {"in.lammps", "system.data", "curve.txt", "states.lammpstrj", "curve.csv", "results.json"} <= names
-    assert ("interaction.table" in names) == ("interaction" in finished.results["effects"])
-    assert json.loads((finished.folder / "results.json").read_text()) == finished.results
+    assert ("interaction.table" in names) == ("interaction" in finished.document["effects"])
+    assert json.loads((finished.folder / "results.json").read_text()) == finished.document
+
+
+def test_a_run_read_from_its_folder_is_the_one_that_was_made(finished: Run) -> None:
+    """From memory, from the files and through a pickle it has one face, to the last bit."""
+    for loaded in (load_run(str(finished.folder)), pickle.loads(pickle.dumps(finished))):
+        assert loaded == finished
+        for name in ("scene", "status", "results", "warnings", "timing"):
+            assert getattr(loaded, name) == getattr(finished, name), name
+        assert (repr(loaded), loaded._repr_html_()) == (repr(finished), finished._repr_html_())
+        assert list(loaded.profiles) == list(finished.profiles)
+        assert list(loaded.friction) == list(finished.friction)
+        pairs = zip(
+            (loaded.curve, *loaded.profiles.values()), (finished.curve, *finished.profiles.values()), strict=True
+        )
+        for one, other in pairs:
+            for field in fields(one):
+                np.testing.assert_array_equal(getattr(one, field.name), getattr(other, field.name))
+        for name, column in finished.friction.items():
+            np.testing.assert_array_equal(loaded.friction[name], column)
+        assert [axis.get_title() for axis in loaded.plot().axes] == [axis.get_title() for axis in finished.plot().axes]
 
 
 QUICK = {

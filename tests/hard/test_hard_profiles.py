@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import Run, RunError, run, scene_from_dict
+from contact1d import Run, RunError, run
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.pull_off import pull_off
+from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.settings.settings import SettingsError, settings_for
 
 LAW = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
@@ -80,7 +81,7 @@ def test_contact_wider_than_its_profile_is_refused_with_the_possible_displacemen
     assert "spread over the whole profile" in str(caught.value)
     assert not (tmp_path / "run").exists()
     possible = float(found[1]) * (1.0 - LAST_FIGURE)
-    results = done(tmp_path, tables(WIDE[name], path(possible), reduction=reduction)).results
+    results = done(tmp_path, tables(WIDE[name], path(possible), reduction=reduction)).document
     assert results["status"] == "done"
     assert {warning["name"] for warning in results["warnings"]} <= {"tolerance"}  # of the radius at its very edge
     assert results["largest_force"]["value"] > 0.0
@@ -101,12 +102,12 @@ def test_chain_wider_than_its_profile_is_refused_with_the_longest(name: str, tmp
     )
     assert found is not None
     assert int(found[1]) == {"circle": 40, "table": 30}[name]
-    assert done(tmp_path, tables(WIDE[name], path(0.5), particles=int(found[1]))).results["status"] == "done"
+    assert done(tmp_path, tables(WIDE[name], path(0.5), particles=int(found[1]))).document["status"] == "done"
 
 
 def test_profile_whose_reduction_falls_is_refused_with_the_place(tmp_path: Path) -> None:
     """Its own height does not fall, its transform does: beyond the rim f′ = 0 and g ~ 1/x."""
-    assert done(tmp_path, tables(WIDE["table with a flat rim"], path(0.2))).results["status"] == "done"
+    assert done(tmp_path, tables(WIDE["table with a flat rim"], path(0.2))).document["status"] == "done"
     with pytest.raises(SettingsError, match=r"as the reduction mdr has it, falls beyond x = [4-7]\.\d* LU"):
         done(tmp_path, tables(WIDE["table with a flat rim"], path(0.2), reduction="mdr", particles=20))
 
@@ -147,9 +148,9 @@ def largest_tension(law: dict[str, Any]) -> float:
 
 def test_flat_punch_on_the_plane_is_all_its_springs(tmp_path: Path) -> None:
     finished = done(tmp_path, tables(PUNCH, path(0.1, 0.5)), figures=True)
-    assert finished.results["largest_force"]["value"] == pytest.approx(20 * STIFFNESS * 0.5, rel=FORCE)
-    assert finished.results["largest_radius"]["value"] == 10.0
-    load = done(tmp_path, tables(PUNCH, {"kind": "load", "force": 3.0}), figures=True).results
+    assert finished.document["largest_force"]["value"] == pytest.approx(20 * STIFFNESS * 0.5, rel=FORCE)
+    assert finished.document["largest_radius"]["value"] == 10.0
+    load = done(tmp_path, tables(PUNCH, {"kind": "load", "force": 3.0}), figures=True).document
     assert load["displacement"]["value"] == pytest.approx(3.0 / (20 * STIFFNESS), rel=FORCE)
     assert load["mean_pressure"]["value"] == pytest.approx(3.0 / (math.pi * 100.0), rel=FORCE)
 
@@ -163,7 +164,7 @@ def test_flat_punch_pulls_off_with_the_largest_tension_of_each_pair(
     data = tables(
         {"kind": "flat_punch", "radius": radius}, {"kind": "pull_off", "preload": 0.1}, SHORT, reduction=reduction
     )  # fmt: skip
-    results = done(tmp_path, data, figures=True).results
+    results = done(tmp_path, data, figures=True).document
     count = round(2.0 * radius)
     assert results["adhesion_force"]["value"] == pytest.approx(count * largest_tension(SHORT), rel=ADHESION)
     for name in ("zero_load_radius", "critical_radius"):
@@ -176,7 +177,7 @@ def test_flat_punch_with_a_longer_range_agrees_with_the_reference(tmp_path: Path
     finished = done(tmp_path, tables(PUNCH, {"kind": "pull_off", "preload": 1.0}, LAW))
     pair = PairInteraction(Exponential(0.18, 0.13), Exponential(0.09, 0.26))
     reference = pull_off(ChainModel(20, STIFFNESS, pair, heights=np.zeros(20)), 1.0)
-    found = finished.results["adhesion_force"]
+    found = finished.document["adhesion_force"]
     assert found["value"] == pytest.approx(reference.adhesion_force, rel=ADHESION)
     assert abs(found["value"] - reference.adhesion_force) < found["uncertainty"]
 
@@ -196,8 +197,8 @@ def test_steep_and_nearly_flat_cones(slope: float, depth: float, reduction: str,
     finished = done(tmp_path, tables({"kind": "cone", "slope": slope}, path(0.3 * depth, depth), reduction=reduction))
     x = finished.outcome.states[-1].profile.x
     heights = slope * np.abs(x) * (0.5 * math.pi if reduction == "mdr" else 1.0)
-    assert finished.results["largest_force"]["value"] == pytest.approx(exact(finished, heights), rel=FORCE)
-    assert finished.results["warnings"] == []
+    assert finished.document["largest_force"]["value"] == pytest.approx(exact(finished, heights), rel=FORCE)
+    assert finished.document["warnings"] == []
 
 
 def test_cone_so_flat_that_no_chain_is_long_enough_is_refused() -> None:
@@ -209,7 +210,7 @@ def test_needle_touches_with_the_two_particles_at_its_apex(tmp_path: Path) -> No
     """The radius of the largest tension is 0 within half a spacing, and is said to be no better."""
     results = done(
         tmp_path, tables({"kind": "cone", "slope": 10.0}, {"kind": "pull_off", "preload": 0.01}, LAW)
-    ).results
+    ).document
     assert results["adhesion_force"]["value"] > 2.0 * largest_tension(LAW)
     assert results["zero_load_radius"]["value"] <= 0.5
     assert results["zero_load_radius"]["uncertainty"] >= 0.5 * (1.0 - 1e-9)
@@ -227,8 +228,8 @@ def test_exponent_50_is_nearly_a_flat_punch(reduction: str, tmp_path: Path) -> N
     )
     factor = 0.5 * math.sqrt(math.pi) * 50.0 * math.gamma(25.0) / math.gamma(25.5) if reduction == "mdr" else 1.0
     heights = factor * np.abs(finished.outcome.states[-1].profile.x / 20.0) ** 50
-    assert finished.results["largest_force"]["value"] == pytest.approx(exact(finished, heights), rel=FORCE)
-    radius = finished.results["largest_radius"]
+    assert finished.document["largest_force"]["value"] == pytest.approx(exact(finished, heights), rel=FORCE)
+    radius = finished.document["largest_radius"]
     assert abs(radius["value"] - 20.0 * (0.5 / factor) ** 0.02) < radius["uncertainty"]
 
 
@@ -238,7 +239,7 @@ def test_table_of_5000_points_is_its_formula(reduction: str, tmp_path: Path) -> 
     profile = {"kind": "table", "r": r.tolist(), "z": (r**2 / 100.0).tolist()}
     finished = done(tmp_path, tables(profile, path(0.1, 0.5), reduction=reduction))
     heights = finished.outcome.states[-1].profile.x ** 2 / (50.0 if reduction == "mdr" else 100.0)
-    assert finished.results["largest_force"]["value"] == pytest.approx(exact(finished, heights), rel=FORCE)
+    assert finished.document["largest_force"]["value"] == pytest.approx(exact(finished, heights), rel=FORCE)
 
 
 def test_table_of_5000_points_pulls_off(tmp_path: Path) -> None:
@@ -256,7 +257,7 @@ def test_table_of_5000_points_pulls_off(tmp_path: Path) -> None:
             {"kind": "parabola", "radius": 50.0},
         )
     ]
-    forces = [finished.results["adhesion_force"]["value"] for finished in found]
+    forces = [finished.document["adhesion_force"]["value"] for finished in found]
     assert forces[0] == pytest.approx(forces[1], rel=ADHESION)
 
 
@@ -280,7 +281,7 @@ def test_three_particles(lower: str, tmp_path: Path) -> None:
     profile = {"kind": "parabola", "radius": 1.0}
     if lower == "rigid_plane":
         finished = done(tmp_path, tables(profile, path(0.1, 0.3), particles=3))
-        assert finished.results["largest_force"]["value"] == pytest.approx(STIFFNESS * 0.3, rel=FORCE)
+        assert finished.document["largest_force"]["value"] == pytest.approx(STIFFNESS * 0.3, rel=FORCE)
         with pytest.raises(RunError, match="end of the chain"):
             done(tmp_path, tables(profile, path(0.6), particles=3))
         return

@@ -9,10 +9,11 @@ from typing import Any
 
 import pytest
 
-from contact1d import RunError, run, scene_from_dict
+from contact1d import RunError, run
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.pull_off import pull_off
+from contact1d.workflow.scene import scene_from_dict
 
 LAW = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
 
@@ -103,7 +104,7 @@ def doubts(results: dict[str, Any]) -> set[str]:
 
 
 def test_a_chain_that_cuts_the_tail_of_the_contact_gets_a_warning(tmp_path: Path) -> None:
-    results = run(scene_from_dict(tables(PULL, {"particles": 34})), tmp_path / "run", figures=False).results
+    results = run(scene_from_dict(tables(PULL, {"particles": 34})), tmp_path / "run", figures=False).document
     assert results["status"] == "done"
     assert doubts(results) == {"chain_end"}
 
@@ -112,15 +113,15 @@ def test_particles_closer_than_the_table_was_chosen_for_get_a_warning(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     scene = tables({"kind": "path", "displacements": [0.0, 1.7]})  # one leap: the rows between are the program's
-    results = run(scene_from_dict(scene), tmp_path / "run", figures=False).results
+    results = run(scene_from_dict(scene), tmp_path / "run", figures=False).document
     assert "table_core" not in doubts(results)
     spoil(monkeypatch, table_from=0.1)
-    results = run(scene_from_dict(scene), tmp_path / "run", figures=False).results
+    results = run(scene_from_dict(scene), tmp_path / "run", figures=False).document
     assert "table_core" in doubts(results)
 
 
 def test_automatic_chains_need_no_warning(tmp_path: Path) -> None:
-    results = run(scene_from_dict(tables(PULL, {"particles": "auto"})), tmp_path / "run", figures=False).results
+    results = run(scene_from_dict(tables(PULL, {"particles": "auto"})), tmp_path / "run", figures=False).document
     assert doubts(results) == set()
 
 
@@ -165,7 +166,7 @@ def test_a_tension_is_held_up_to_the_adhesion_force_and_no_further(tmp_path: Pat
 
     def held(tension: float) -> float:
         scene = tables({"kind": "load", "method": method, "force": -tension}, **more)
-        return float(run(scene_from_dict(scene), tmp_path / "run", figures=False).results["force"]["value"])
+        return float(run(scene_from_dict(scene), tmp_path / "run", figures=False).document["force"]["value"])
 
     below, above = (1.0 - NEAR[method]) * adhesion, (1.0 + NEAR[method]) * adhesion
     assert held(below) == pytest.approx(-below, rel=1e-3)  # the tolerance of the scene

@@ -45,7 +45,7 @@ def test_steps_are_what_lammps_says(tmp_path: Path) -> None:
 
 def test_a_real_log_is_counted(tmp_path: Path) -> None:
     finished = run(scaled_scene(20, "quasistatic"), tmp_path / "run", figures=False)
-    assert steps_of(finished.folder, finished.results) > finished.results["timing"]["steps"] > 0
+    assert steps_of(finished.folder, finished.document) > finished.document["timing"]["steps"] > 0
 
 
 def sized(cost: float, memory: float, method: str = "dynamic") -> dict[str, Any]:

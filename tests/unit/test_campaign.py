@@ -1,46 +1,31 @@
-"""Run folders: what is written, what is replaced, what is refused; and many runs through an executor."""
+"""Run folders: what is written, what is replaced, what is refused."""
 
 from __future__ import annotations
 
 import json
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 import contact1d
-from contact1d.workflow.runs.campaign import FolderError, RunError, prepare, run, run_many, write_deck
-from contact1d.workflow.scene import Scene, scene_from_dict
+from contact1d import Scene
+from contact1d.workflow.errors import FolderError, RunError
+from contact1d.workflow.runs.campaign import prepare, run, write_deck
 
+MakeScene = Callable[..., Scene]
 ALWAYS = {
     "results.json", "curve.csv", "profile.csv", "scene.toml", "system.data", "in.lammps", "log.lammps", "curve.txt",
 }  # fmt: skip
 
 
-def plane(**experiment: object) -> Scene:
-    """Some particles on a rigid plane: the quickest run there is."""
-    return scene_from_dict(
-        {
-            "title": "plane",
-            "bodies": {
-                "particles": 21,
-                "spacing": 1.0,
-                "profile": {"kind": "parabola", "radius": 50.0},
-                "bulk_stiffness": 0.5,
-                "lower": "rigid_plane",
-            },
-            "experiment": {"kind": "load", "force": 0.5} | experiment,
-        }
-    )
-
-
-def test_a_run_leaves_a_complete_folder(tmp_path: Path) -> None:
+def test_a_run_leaves_a_complete_folder(plane: MakeScene, tmp_path: Path) -> None:
     finished = run(plane(), tmp_path / "run", figures=False)
     present = {path.name for path in finished.folder.iterdir()}
     assert present >= ALWAYS
     assert not any(name.endswith(".part") for name in present)
     document = json.loads((finished.folder / "results.json").read_text())
-    assert document == finished.results
+    assert document == finished.document
     assert document["status"] == "done"
     assert document["effects"] == []
     assert document["force"].keys() == {"value", "uncertainty", "unit"}
@@ -48,7 +33,7 @@ def test_a_run_leaves_a_complete_folder(tmp_path: Path) -> None:
     assert contact1d.read_scene(finished.folder / "scene.toml") == plane()
 
 
-def test_a_failed_run_has_no_numbers_and_keeps_its_files(tmp_path: Path) -> None:
+def test_a_failed_run_has_no_numbers_and_keeps_its_files(plane: MakeScene, tmp_path: Path) -> None:
     with pytest.raises(RunError, match="end of the chain"):
         run(plane(force=30.0), tmp_path / "run", figures=False)
     document = json.loads((tmp_path / "run" / "results.json").read_text())
@@ -58,7 +43,7 @@ def test_a_failed_run_has_no_numbers_and_keeps_its_files(tmp_path: Path) -> None
     assert (tmp_path / "run" / "in.lammps").exists()
 
 
-def test_a_new_run_removes_what_an_earlier_one_left(tmp_path: Path) -> None:
+def test_a_new_run_removes_what_an_earlier_one_left(plane: MakeScene, tmp_path: Path) -> None:
     run(plane(), tmp_path, figures=True)
     assert (tmp_path / "pressure.png").exists()
     with pytest.raises(RunError):
@@ -76,29 +61,6 @@ def test_a_folder_of_other_things_is_left_alone(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
 
 
-def test_a_deck_is_written_without_running(tmp_path: Path) -> None:
+def test_a_deck_is_written_without_running(plane: MakeScene, tmp_path: Path) -> None:
     folder = write_deck(plane(), tmp_path / "deck")
     assert {path.name for path in folder.iterdir()} == {"in.lammps", "scene.toml", "system.data"}
-
-
-def test_many_runs_come_back_in_order_with_failures_among_them(tmp_path: Path) -> None:
-    pairs = [(plane(force=force), tmp_path / str(i)) for i, force in enumerate((0.5, 30.0, 0.25))]
-    with ThreadPoolExecutor(2) as executor:
-        first, second, third = run_many(pairs, executor)
-    assert isinstance(second, RunError)
-    assert not isinstance(first, RunError)
-    assert not isinstance(third, RunError)
-    assert first.results["force"]["value"] > third.results["force"]["value"]
-
-
-def test_a_run_error_survives_the_way_between_processes() -> None:
-    import pickle
-
-    error = pickle.loads(pickle.dumps(RunError("why", Path("somewhere"))))
-    assert (error.message, error.folder) == ("why", Path("somewhere"))
-
-
-def test_public_names_are_there_and_others_are_not() -> None:
-    assert all(getattr(contact1d, name) is not None for name in contact1d.__all__)
-    with pytest.raises(AttributeError, match="no attribute 'missing'"):
-        _ = contact1d.missing

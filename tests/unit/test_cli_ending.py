@@ -18,9 +18,9 @@ import typer
 from contact1d.workflow.cli import ending
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import EngineError
+from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.identify import IdentifyError
 from contact1d.workflow.identify.finished import FinishedRunError
-from contact1d.workflow.runs.campaign import FolderError, RunError
 from contact1d.workflow.scene import Problem, SceneError
 from contact1d.workflow.settings.settings import SettingsError
 

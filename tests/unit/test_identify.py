@@ -10,9 +10,8 @@ from typing import Any
 
 import pytest
 
-from contact1d import scene_from_dict
 from contact1d.workflow.identify import IdentifyError, Target, identify, jkr_target, material_scene, require_reachable
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Scene, scene_from_dict
 
 ROUND_OFF = 1e-13
 PRINTED = 5e-6
@@ -186,7 +185,7 @@ def test_search_ends_at_its_target_and_keeps_the_shape_of_the_law(tmp_path: Path
     assert 1 <= found.runs <= 5
     assert max(map(abs, found.deviations)) < 0.3 * TOLERANCE * 1.01
     results = json.loads((tmp_path / "run" / "results.json").read_text())
-    assert results == found.run.results
+    assert results == found.run.document
     force, radius = results["adhesion_force"]["value"], results["zero_load_radius"]["value"]
     assert force / target.adhesion_force - 1.0 == pytest.approx(found.deviations[0], abs=ROUND_OFF)
     assert radius / target.zero_load_radius - 1.0 == pytest.approx(found.deviations[1], abs=ROUND_OFF)

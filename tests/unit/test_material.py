@@ -388,7 +388,7 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
 
 def document(finished: Run) -> dict[str, Any]:
     loaded: dict[str, Any] = json.loads((finished.folder / "results.json").read_text(encoding="utf-8"))
-    assert loaded == finished.results
+    assert loaded == finished.document
     return loaded
 
 
@@ -464,7 +464,7 @@ def test_without_a_material_nothing_is_in_si(finished: dict[str, Run]) -> None:
 def test_contact_of_one_pair_has_no_units_by_jkr(tmp_path: Path) -> None:
     """The radius of so sharp a parabola cannot be told from 0."""
     sharp = tables(JKR, {"kind": "pull_off", "preload": 0.01}, profile={"kind": "parabola", "radius": 0.05})
-    results = run(scene_from_dict(sharp), tmp_path / "run", figures=False).results
+    results = run(scene_from_dict(sharp), tmp_path / "run", figures=False).document
     assert "units" not in results
     limited, doubt = results["warnings"]
     assert limited["name"] == "tolerance"

@@ -145,11 +145,14 @@ def test_friction_is_over_the_way_of_the_drive_with_the_normal_force_below() -> 
 
 
 def test_every_figure_is_a_whole_file(curve: Curve, tmp_path: Path) -> None:
-    plots.plot_pressure({"final": profile(0.05)}, {"final": 28.0}, tmp_path / "pressure.png")
-    plots.plot_force_displacement(curve, MARKS, tmp_path / "force_displacement.png")
-    plots.plot_force_radius(curve, ADHESION, ZERO_LOAD, tmp_path / "force_radius.png")
     columns = {"drive": [0.0, 1.0], "friction": [0.0, 1.0], "normal_force": [1.0, 1.0]}
-    plots.plot_friction(columns, tmp_path / "friction.png")
+    for name, figure in {
+        "pressure": plots.pressure_figure({"final": profile(0.05)}, {"final": 28.0}),
+        "force_displacement": plots.force_displacement_figure(curve, MARKS),
+        "force_radius": plots.force_radius_figure(curve, ADHESION, ZERO_LOAD),
+        "friction": plots.friction_figure(columns),
+    }.items():
+        plots.save_figure(figure, tmp_path / f"{name}.png")
     files = sorted(tmp_path.iterdir())
     assert [f.name for f in files] == ["force_displacement.png", "force_radius.png", "friction.png", "pressure.png"]
     for file in files:

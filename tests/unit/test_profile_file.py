@@ -250,7 +250,7 @@ def test_scene_of_a_run_folder_reads_back_without_the_file(tmp_path: Path) -> No
     again = read_scene(finished.folder / "scene.toml")
     assert again == scene
     assert hash(again) == hash(scene)
-    assert scene_from_dict(finished.results["scene"]) == scene
+    assert scene_from_dict(finished.document["scene"]) == scene
     assert scene_from_dict(tomllib.loads(scene_to_toml(again))) == scene
     assert "p.csv" not in (finished.folder / "scene.toml").read_text()
 

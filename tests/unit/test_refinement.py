@@ -163,7 +163,7 @@ def test_a_refined_run_is_one_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert any(note.startswith("refining: adhesion_force") for note in heard.notes)
     assert read_scene(finished.folder / "scene.toml") == asked
     assert not (finished.folder / refinement.FOLDER).exists()
-    single = run(asked, tmp_path / "single", figures=False, settings=settings_for(asked)).results
+    single = run(asked, tmp_path / "single", figures=False, settings=settings_for(asked)).document
     assert single["accuracy"] == {"tolerance": TOLERANCE, "refinements": 0}
     assert "tolerance" in [warning["name"] for warning in single["warnings"]]
     claimed, found = single["adhesion_force"], document["adhesion_force"]

@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from contact1d import files
 from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.potentials import table as table_module
 from contact1d.potentials.table import MOST_POINTS, Table, table_for, write_table
@@ -253,7 +254,7 @@ def test_a_write_that_fails_leaves_the_old_file(tmp_path: Path, monkeypatch: pyt
     def full(*_: object) -> None:
         raise OSError("no space left on device")
 
-    monkeypatch.setattr(table_module.os, "replace", full)
+    monkeypatch.setattr(files.os, "replace", full)
     with pytest.raises(OSError, match="no space"):
         write_table(Table(REPULSIVE, 1.8, 2000), 0.07, path)
     assert path.read_bytes() == before

@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from contact1d import Run, run, scene_from_dict
+from contact1d import Run, run
+from contact1d.workflow.scene import scene_from_dict
 
 RunTables = Callable[[dict[str, Any]], Run]
 

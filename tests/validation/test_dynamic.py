@@ -165,7 +165,7 @@ def test_pairs_that_snap_let_go_where_they_do_without_time(run_tables: RunTables
         found = finished.outcome.quantities
         assert abs(found["adhesion_force"].value - exact.adhesion_force) <= found["adhesion_force"].uncertainty
         assert found["adhesion_force"].uncertainty < 3e-3 * exact.adhesion_force
-        assert "snaps" in [warning["name"] for warning in finished.results["warnings"]]
+        assert "snaps" in [warning["name"] for warning in finished.document["warnings"]]
     for name in ("zero_load_radius", "critical_radius"):
         one, other = moving.outcome.quantities[name], resting.outcome.quantities[name]
         assert abs(one.value - other.value) <= one.uncertainty + other.uncertainty

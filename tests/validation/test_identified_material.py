@@ -16,9 +16,9 @@ from pathlib import Path
 
 import pytest
 
-from contact1d import run, scene_from_dict
+from contact1d import run
 from contact1d.workflow.identify import Identified, identify, jkr_target, material_scene
-from contact1d.workflow.scene import scene_to_toml
+from contact1d.workflow.scene import scene_from_dict, scene_to_toml
 
 ROUND_OFF = 1e-12
 STOP = 0.3
@@ -60,7 +60,7 @@ def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
 
 def test_adhesion_force_and_zero_load_radius_are_jkrs_in_si(found: tuple[Sphere, Identified]) -> None:
     sphere, identified = found
-    results = identified.run.results
+    results = identified.run.document
     force, radius = results["adhesion_force"]["si"], results["zero_load_radius"]["si"]
     assert (force["unit"], radius["unit"]) == ("N", "m")
     assert force["value"] == pytest.approx(sphere.adhesion_force(), rel=STOP * sphere.tolerance)
@@ -71,7 +71,7 @@ def test_adhesion_force_and_zero_load_radius_are_jkrs_in_si(found: tuple[Sphere,
 def test_scene_is_of_that_sphere(found: tuple[Sphere, Identified]) -> None:
     """Its springs are E* per length of two chains in series, its radius R, in the units that the results name."""
     sphere, identified = found
-    scene, units = identified.scene, identified.run.results["units"]
+    scene, units = identified.scene, identified.run.document["units"]
     length, force = units["LU"]["value"], units["FU"]["value"]
     assert scene.bodies.reduction == "mdr"
     assert scene.bodies.profile.curvature_radius == pytest.approx(sphere.radius / length, rel=ROUND_OFF)
@@ -83,9 +83,9 @@ def test_scene_is_of_that_sphere(found: tuple[Sphere, Identified]) -> None:
 def test_run_of_the_scene_as_it_is_written_down_repeats(found: tuple[Sphere, Identified], tmp_path: Path) -> None:
     _, identified = found
     scene = scene_from_dict(tomllib.loads(scene_to_toml(identified.scene)))
-    again = run(scene, tmp_path / "again", figures=False).results
+    again = run(scene, tmp_path / "again", figures=False).document
     for name in ("adhesion_force", "zero_load_radius"):
-        assert again[name]["si"]["value"] == pytest.approx(identified.run.results[name]["si"]["value"], rel=REPEATED)
+        assert again[name]["si"]["value"] == pytest.approx(identified.run.document[name]["si"]["value"], rel=REPEATED)
 
 
 def test_search_does_not_depend_on_the_tolerance_of_the_scene(tmp_path: Path) -> None:
@@ -93,5 +93,5 @@ def test_search_does_not_depend_on_the_tolerance_of_the_scene(tmp_path: Path) ->
     steel = SPHERES["steel"]
     target = jkr_target(steel.modulus, steel.energy, steel.radius)
     scene, wanted = material_scene(steel.modulus, steel.radius, target, tolerance=1e-2)
-    results = identify(scene, wanted, tmp_path / "run").run.results
+    results = identify(scene, wanted, tmp_path / "run").run.document
     assert results["adhesion_force"]["si"]["value"] == pytest.approx(steel.adhesion_force(), rel=1e-2)

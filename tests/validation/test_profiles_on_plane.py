@@ -24,10 +24,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from contact1d import Run, scene_from_dict
+from contact1d import Run
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import compressive_radius
 from contact1d.workflow.experiments.running.contact import State
+from contact1d.workflow.scene import scene_from_dict
 
 RunTables = Callable[[dict[str, Any]], Run]
 Array = NDArray[np.float64]
@@ -142,15 +143,15 @@ def test_force_is_the_sum_over_particles(run_tables: RunTables, name: str) -> No
     for depth, state in zip(depths, done.outcome.states, strict=True):
         assert state.displacement == pytest.approx(float(depth), rel=1e-9)
         assert state.force == pytest.approx(discrete_sum(indenter, state), rel=tolerance)
-    assert done.results["reduction"] == "mdr"
-    assert done.results["warnings"] == []
+    assert done.document["reduction"] == "mdr"
+    assert done.document["warnings"] == []
 
 
 @pytest.mark.parametrize("name", INDENTERS)
 @pytest.mark.parametrize("depth", DEPTHS)
 def test_force_is_that_of_the_indenter(run_tables: RunTables, name: str, depth: float) -> None:
     indenter = INDENTERS[name]
-    results = on_plane(run_tables, indenter.tables, np.array([depth])).results
+    results = on_plane(run_tables, indenter.tables, np.array([depth])).document
     a = indenter.radius(depth)
     force = STIFFNESS * indenter.force(a, depth)
     lattice = STIFFNESS * (indenter.slope(a) / 6.0 + indenter.slope(1e-12) / 12.0)
@@ -162,7 +163,7 @@ def test_radius_is_that_of_the_indenter(run_tables: RunTables, name: str) -> Non
     """A parabola through the last three particles misses the zero of g(a) − g by at most g‴/g′ (spacings³)."""
     indenter = INDENTERS[name]
     for depth in (*DEPTHS, 0.94):
-        found = on_plane(run_tables, indenter.tables, np.array([depth])).results["largest_radius"]
+        found = on_plane(run_tables, indenter.tables, np.array([depth])).document["largest_radius"]
         a = indenter.radius(depth)
         third = float(np.diff(indenter.transform(a + np.arange(-2.0, 2.0)), 3)[0])
         assert found["value"] == pytest.approx(a, abs=PLACE + abs(third) / indenter.slope(a))
@@ -195,7 +196,7 @@ def test_flat_punch_has_no_lattice_error(run_tables: RunTables, radius: float, r
         [2.0 * STIFFNESS * radius * d for d in (0.1, 0.7)], rel=FORCE
     )
     assert states[2].force == 0.0
-    assert done.results["largest_radius"]["value"] == radius
+    assert done.document["largest_radius"]["value"] == radius
     pressure = states[1].profile.pressure
     assert pressure == pytest.approx(np.full(pressure.size, pressure.mean()), rel=FORCE)
 
@@ -252,7 +253,7 @@ def test_geike_and_popov_is_hertz_of_two_equal_spheres(run_tables: RunTables, nu
         spring = scene_from_dict(tables).bulk_stiffness * FORCE_UNIT / LENGTH
         assert 0.5 * spring / LENGTH == pytest.approx(0.5 * modulus, rel=SI_NUMBERS)
         return
-    results = run_tables(tables).results
+    results = run_tables(tables).document
     d, radius = 1.0 * LENGTH, RADIUS * LENGTH
     hertz = 4.0 / 3.0 * modulus * math.sqrt(0.5 * radius) * d**1.5
     a = math.sqrt(2.0 * radius * d)

@@ -43,7 +43,7 @@ def test_every_shipped_scene_is_pinned() -> None:
 @pytest.mark.parametrize("name", PINNED)
 def test_a_shipped_scene_gives_its_number(name: str, tmp_path: Path) -> None:
     quantity, value, tolerance = PINNED[name]
-    results = run(read_scene(SCENES / f"{name}.toml"), tmp_path / name, figures=False).results
+    results = run(read_scene(SCENES / f"{name}.toml"), tmp_path / name, figures=False).document
     assert results["status"] == "done"
     assert [warning["name"] for warning in results["warnings"]] == LIMITED.get(name, [])
     assert results[quantity]["value"] == pytest.approx(value, abs=tolerance)

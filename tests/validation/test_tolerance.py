@@ -19,12 +19,13 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 from scipy.stats import binom
 
-from contact1d import RunError, run, scene_from_dict
+from contact1d import RunError, run
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.analysis.reference.solver import ChainSolver, State
 from contact1d.analysis.reference.tension_radius import band_limited_radius
+from contact1d.workflow.scene import scene_from_dict
 
 SEED, SCENES, QUICK = 20071, 60, 12
 WITHIN_TOLERANCE, WITHIN_UNCERTAINTY = 0.99, 0.95
@@ -166,14 +167,14 @@ def exact_results(scene: dict[str, Any], model: ChainModel, near: float) -> dict
 def errors_of(scene: dict[str, Any], folder: Path) -> list[Error]:
     finished = run(scene_from_dict(scene), folder, figures=False)
     model = model_of(scene, finished.outcome.states[0].profile.x.size)
-    near = finished.results.get("displacement", {"value": 0.0})["value"]
+    near = finished.document.get("displacement", {"value": 0.0})["value"]
     errors = []
     for name, value in exact_results(scene, model, near).items():
-        quantity = finished.results[name]
+        quantity = finished.document[name]
         error = abs(quantity["value"] - value)
         relative = max(0.0, error / abs(value) - SOLVER) / scene["accuracy"]["tolerance"]
         covered = max(0.0, error - SOLVER * abs(value)) / quantity["uncertainty"]
-        doubts = [warning["message"] for warning in finished.results["warnings"] if warning["name"] == "tolerance"]
+        doubts = [warning["message"] for warning in finished.document["warnings"] if warning["name"] == "tolerance"]
         told = any(f"{name} is known to" in doubt for doubt in doubts)
         errors.append(Error(name, relative, covered, told))
     return errors

@@ -76,10 +76,11 @@ def run(
         finished = run_scene(checked, folder, figures, progress, time_limit)
     from contact1d.workflow.cli.summary import pressure_plot, quantities
 
-    typer.echo("\n".join(quantities(finished.results)))
-    for warning in finished.results["warnings"]:
+    typer.echo("\n".join(quantities(finished.document)))
+    for warning in finished.document["warnings"]:
         typer.secho(f"warning {warning['name']}: {warning['message']}", err=True, fg="yellow")
     if not quiet:
+        assert finished.outcome is not None
         name, profile = next(iter(finished.outcome.profiles.items()))
         typer.echo(f"\npressure, {name.replace('_', ' ')} state:")
         typer.echo("\n".join(pressure_plot(profile, finished.outcome.radii[name])))

@@ -32,7 +32,7 @@ def cost(
         checked = read(scene, set_, without)
         from contact1d.workflow.cost.report import closing, summary, write_report
         from contact1d.workflow.cost.study import cost_of
-        from contact1d.workflow.reproduce.studies import cores
+        from contact1d.workflow.runs.cores import cores
         from contact1d.workflow.settings.settings import settings_for
 
         settings_for(checked)

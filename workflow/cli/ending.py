@@ -121,16 +121,18 @@ def _of_system(error: BaseException, what: str, folder: Path | None, left: list[
 
 def _of_program(error: BaseException, what: str, blame: int) -> tuple[str, int] | None:
     """Sentence and exit code of an error that the program raises for the person; None for a defect of its own."""
-    if not type(error).__module__.startswith("contact1d."):
+    from contact1d.workflow.errors import Contact1dError
+
+    if not isinstance(error, Contact1dError):
         return None
     from contact1d.workflow.scene import SceneError
 
     if isinstance(error, SceneError):
         return _problems("the scene", error), blame
     from contact1d.workflow.engine.failure import EngineError
+    from contact1d.workflow.errors import FolderError, RunError
     from contact1d.workflow.identify import IdentifyError
     from contact1d.workflow.identify.finished import FinishedRunError
-    from contact1d.workflow.runs.campaign import FolderError, RunError
     from contact1d.workflow.settings.settings import SettingsError
 
     if isinstance(error, FolderError | FinishedRunError):

@@ -109,7 +109,7 @@ def _scene_of_material(
 def _say(found: Identified, target: Target) -> None:
     from contact1d.workflow.cli.summary import in_si, quantities
 
-    results = found.run.results
+    results = found.run.document
     lines = [f"identified in {found.runs} run{'s' if found.runs > 1 else ''}"]
     for name, wanted, unit in (
         ("adhesion_force", target.adhesion_force, "N"), ("zero_load_radius", target.zero_load_radius, "m"),

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import shutil
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from statistics import median
@@ -14,8 +13,10 @@ from statistics import median
 from contact1d.workflow.deck.fragments import DeckError
 from contact1d.workflow.engine.process import stop_idle
 from contact1d.workflow.engine.progress import Progress
+from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments.running.outcome import unmet
-from contact1d.workflow.runs.campaign import FolderError, RunError, run
+from contact1d.workflow.runs.campaign import run
+from contact1d.workflow.runs.pool import pool
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.units import Quantity
@@ -78,22 +79,17 @@ def measure(
         progress: is told of each run that ends.
     """
     done: dict[str, Measured] = {}
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(min(workers, len(variants)), mp_context=context) as executor:
+    with pool(min(workers, len(variants))) as executor:
         for turn in range(repeats):
             again = [one for one in variants if turn == 0 or _worth_repeating(done[one.label])]
             futures = {
                 executor.submit(run_once, one, folder / f"{turn}_{index}", turn == 0): one.label
                 for index, one in enumerate(again)
             }
-            try:
-                for future in as_completed(futures):
-                    label = futures[future]
-                    done[label] = _together(done.get(label), future.result())
-                    progress.advance(1)
-            except BaseException:
-                executor.shutdown(wait=False, cancel_futures=True)
-                raise
+            for future in as_completed(futures):
+                label = futures[future]
+                done[label] = _together(done.get(label), future.result())
+                progress.advance(1)
             progress.advance(len(variants) - len(again))
     return done
 
@@ -108,15 +104,16 @@ def run_once(variant: Prepared, folder: Path, fresh: bool) -> Measured:
         return Measured(failure=getattr(error, "message", str(error)))
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-    timing = finished.results["timing"]
-    open_ = unmet(variant.scene, finished.outcome)
+    timing, outcome = finished.timing, finished.outcome
+    assert outcome is not None
+    open_ = unmet(variant.scene, outcome)
     return Measured(
-        finished.outcome.quantities,
+        outcome.quantities,
         (timing["lammps_cpu_s"],),
         (timing["total_s"],),
-        timing["steps"],
+        int(timing["steps"]),
         children_peak_mb() if fresh else float("nan"),
-        warnings=frozenset({*finished.outcome.warnings, *(f"tolerance {name}" for name in open_)}),
+        warnings=frozenset({*outcome.warnings, *(f"tolerance {name}" for name in open_)}),
     )
 
 

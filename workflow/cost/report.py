@@ -8,11 +8,11 @@ import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from contact1d.files import write_whole
 from contact1d.workflow.cost.advice import power
 from contact1d.workflow.cost.figure import cost_figure
 from contact1d.workflow.cost.record import RECORD, CostRecord, EffectCost, KnobRecord, VariantRecord
 from contact1d.workflow.cost.sampling import SAMPLING_COLUMNS, sampling_rows
-from contact1d.workflow.runs.report import write_whole
 
 TABLE, FIGURE = "cost.csv", "cost.png"
 COLUMNS = (

@@ -18,7 +18,7 @@ from contact1d.workflow.cost.per_step import effect_costs, without_effects
 from contact1d.workflow.cost.record import CostRecord, EffectCost, KnobRecord, VariantRecord
 from contact1d.workflow.cost.sampling import samplings
 from contact1d.workflow.engine.progress import Progress
-from contact1d.workflow.runs.campaign import RunError
+from contact1d.workflow.errors import RunError
 from contact1d.workflow.runs.report import versions
 from contact1d.workflow.scene import Scene, SceneError
 from contact1d.workflow.settings.settings import SettingsError, settings_for

@@ -7,7 +7,6 @@ anchors. Bond types: 1 bulk springs, then neighbour springs if any, then long bo
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +15,7 @@ from typing import TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.files import whole
 from contact1d.workflow.deck.lattice import Body
 
 Integers = NDArray[np.int64]
@@ -89,8 +89,7 @@ def assemble(
 
 def write_data(system: System, title: str, path: Path) -> None:
     """Write a LAMMPS data file for `atom_style bond`, whole or not at all."""
-    part = path.with_name(path.name + ".part")
-    with part.open("w") as file:
+    with whole(path) as part, part.open("w") as file:
         file.write(f"# {title}\n\n{len(system.types)} atoms\n{len(system.bonds)} bonds\n")
         file.write(f"{len(system.masses)} atom types\n{len(system.bond_names)} bond types\n\n")
         for axis, low, high in zip("xyz", *system.box.tolist(), strict=True):
@@ -102,7 +101,6 @@ def write_data(system: System, title: str, path: Path) -> None:
         _write_rows(file, "%d 1 %d %.17g %.17g %.17g\n", ids, system.types, *system.positions.T)
         file.write("\nBonds\n\n")
         _write_rows(file, "%d %d %d %d\n", np.arange(1, len(system.bonds) + 1), *system.bonds.T)
-    os.replace(part, path)
 
 
 def _bonds(kind: int, first: Integers, second: Integers) -> Integers:

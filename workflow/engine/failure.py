@@ -8,8 +8,10 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from contact1d.workflow.errors import Contact1dError
 
-class EngineError(RuntimeError):
+
+class EngineError(Contact1dError, RuntimeError):
     """LAMMPS gave no result.
 
     Attributes:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
-from contact1d.workflow.runs.report import RESULTS
-from contact1d.workflow.runs.scales import jkr_scales
-from contact1d.workflow.units import SI, Quantity, Scales
+from contact1d.workflow.errors import Contact1dError, FolderError, RunError
+from contact1d.workflow.runs.finished import load_run
+from contact1d.workflow.runs.scales import FIXING, jkr_scales
+from contact1d.workflow.scene import Circle, Parabola
+from contact1d.workflow.units import SI, Scales
 
 
-class FinishedRunError(ValueError):
+class FinishedRunError(Contact1dError, ValueError):
     """A folder that holds no run with F_A and a₀ of a sphere; the message says what is missing."""
 
 
@@ -27,30 +28,18 @@ def scales_of_run(folder: Path, contact_modulus: float, surface_energy: float) -
     Raises:
         FinishedRunError: no such run, or one without these quantities.
     """
-    path = folder / RESULTS
     try:
-        results = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise FinishedRunError(f"{path}: {error.strerror}; give the folder of a finished run") from None
-    except ValueError:
-        raise FinishedRunError(f"{path} is no results file") from None
-    if not isinstance(results, dict) or results.get("status") != "done":
-        raise FinishedRunError(f"{path}: the run has no numbers; only one with status done can be identified")
-    missing = [name for name in ("adhesion_force", "zero_load_radius") if name not in results]
+        run = load_run(folder)
+    except (FolderError, RunError) as error:
+        raise FinishedRunError(str(error)) from None
+    missing = [name for name in FIXING if name not in run.results]
     if missing:
-        raise FinishedRunError(f"{path} has no {' and no '.join(missing)}: use a run of kind pull_off")
-    try:
-        profile = results["scene"]["bodies"]["profile"]
-    except (KeyError, TypeError):
-        raise FinishedRunError(f"{path} does not say what scene it is of; run that scene anew") from None
-    if profile["kind"] not in ("parabola", "circle"):
-        raise FinishedRunError(f"{path}: the profile is a {profile['kind']}, and JKR is for a sphere")
-    force, radius = (
-        Quantity(results[name]["value"], results[name]["uncertainty"], results[name]["unit"])
-        for name in ("adhesion_force", "zero_load_radius")
-    )
+        raise FinishedRunError(f"{folder} has no {' and no '.join(missing)}: use a run of kind pull_off")
+    profile = run.scene.bodies.profile
+    if not isinstance(profile, Parabola | Circle):
+        raise FinishedRunError(f"{folder}: the profile is a {profile.kind}, and JKR is for a sphere")
+    force, radius = (run.results[name] for name in FIXING)
     if not (force.value > 0.0 and radius.value > 0.0):
-        raise FinishedRunError(f"{path}: F_A and a_0 must be positive; they are {force.value:g} and {radius.value:g}")
-    scales = jkr_scales(force, radius, profile["radius"], contact_modulus, surface_energy)
-    quantities = {name: entry for name, entry in results.items() if isinstance(entry, dict) and entry.get("unit") in SI}
-    return scales, quantities
+        raise FinishedRunError(f"{folder}: F_A and a_0 must be positive; they are {force.value:g} and {radius.value:g}")
+    scales = jkr_scales(force, radius, profile.radius, contact_modulus, surface_energy)
+    return scales, {name: quantity.entry() for name, quantity in run.results.items() if quantity.unit in SI}

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.identify.start import scaled, slopes, start
 from contact1d.workflow.identify.target import IdentifyError, Target, require_reachable
-from contact1d.workflow.runs.campaign import Run, run
+from contact1d.workflow.runs.campaign import run
+from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
@@ -64,7 +65,7 @@ def identify(scene: Scene, target: Target, folder: Path, progress: Progress | No
         trial = scaled(scene, at)
         finished = run(trial, folder, figures=False, progress=progress)
         reached = _deviations(
-            (finished.results["adhesion_force"]["value"], finished.results["zero_load_radius"]["value"]), target
+            (finished.results["adhesion_force"].value, finished.results["zero_load_radius"].value), target
         )
         found = Identified(trial, finished, (math.expm1(reached[0]), math.expm1(reached[1])), count)
         if np.abs(reached).max() < CLOSE * scene.accuracy.tolerance:

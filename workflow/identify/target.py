@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.scene import Parabola, PullOff, Scene
 
 BRITTLE = 4.0 / (9.0 * math.sqrt(3.0))
@@ -20,7 +21,7 @@ ROUNDING = 1.0 + 1e-5
 """Keeps a nearest value possible after it was printed with six digits."""
 
 
-class IdentifyError(ValueError):
+class IdentifyError(Contact1dError, ValueError):
     """A target that the model can't reach; the message names the nearest one that it can."""
 
 

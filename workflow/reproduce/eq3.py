@@ -19,8 +19,9 @@ from contact1d.analysis.reference import hertz, sneddon
 from contact1d.workflow.reproduce.check import Check
 from contact1d.workflow.reproduce.figures import ReductionPanel, reductions_figure, save
 from contact1d.workflow.reproduce.page import share
-from contact1d.workflow.reproduce.runs import Finished
+from contact1d.workflow.reproduce.runs import found
 from contact1d.workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
+from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Reduction, Scene, scene_from_dict
 
 STUDY = "eq3"
@@ -154,14 +155,14 @@ def scenes(_: Scene) -> Scenes:
     return {case.name: case.scene() for case in _cases()} | shapes | drawn
 
 
-def measured_force(run: Finished) -> float:
+def measured_force(run: Run) -> float:
     """F [N]."""
-    return float(run.results["largest_force"]["si"]["value"])
+    return float(run.document["largest_force"]["si"]["value"])
 
 
-def measured_energy(run: Finished, scene: Scene) -> float:
+def measured_energy(run: Run, scene: Scene) -> float:
     """U = Σ f²/2k [J]."""
-    pressure = run.profiles()["deepest"].pressure
+    pressure = run.profiles["deepest"].pressure
     force = pressure * scene.bodies.spacing
     return float(np.sum(force**2)) / (2.0 * scene.bulk_stiffness) * LENGTH_UNIT * FORCE_UNIT
 
@@ -245,7 +246,7 @@ def _rate_checks(reduction: Reduction, runs: Runs) -> list[Check]:
 def _width_check(reduction: Reduction, runs: Runs) -> Check:
     case = rate_cases(reduction)[-1]
     R, _ = case._sphere()
-    radius = float(runs[case.name].results["largest_radius"]["si"]["value"])
+    radius = float(runs[case.name].document["largest_radius"]["si"]["value"])
     hertzian = float(hertz.hertz_contact_radius(case.values["d"] * LENGTH_UNIT, R))
     twice = reduction == "geike_popov"
     return row(
@@ -303,8 +304,8 @@ def _shape_checks(kind: str, runs: Runs) -> list[Check]:
     return [
         row(
             f"{what} of a {words} (mdr)",
-            run.value(quantity),
-            run.uncertainty(quantity),
+            found(run, quantity).value,
+            found(run, quantity).uncertainty,
             unit,
             expected,
             source,
@@ -327,7 +328,7 @@ def _drawn_cone(runs: Runs) -> Check:
     expected = float(cone.force(cone.contact_radius(3.0)))
     return row(
         "force of two equal cones as drawn over Sneddon's (geike_popov)",
-        runs["eq3_shape_cone_as_drawn"].value("largest_force") / expected,
+        found(runs["eq3_shape_cone_as_drawn"], "largest_force").value / expected,
         0.0,
         "1",
         0.5 * math.pi,

@@ -12,8 +12,9 @@ from contact1d.workflow.reproduce.check import Check
 from contact1d.workflow.reproduce.figures import pressure_compared_figure, save
 from contact1d.workflow.reproduce.oracles import chain_model, row_tension
 from contact1d.workflow.reproduce.page import share
-from contact1d.workflow.reproduce.runs import Finished
+from contact1d.workflow.reproduce.runs import found
 from contact1d.workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
+from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import PullOff, Scene
 
 NAME = "fig4"
@@ -41,11 +42,11 @@ def judge(paper: Scene, runs: Runs, folder: Path) -> Findings:
     model = chain_model(paper)
     solved = pull_off(model, paper.experiment.preload, stencil=STENCIL)
     solver = solved.zero_load.pair_force[:, 1] / paper.bodies.spacing
-    profile = run.profiles()["zero_load"]
+    profile, radius, force = run.profiles["zero_load"], found(run, "zero_load_radius"), found(run, "adhesion_force")
     tension = -float(solver.min())
     rms = float(np.sqrt(np.mean((profile.pressure - solver) ** 2))) / tension
     save(
-        pressure_compared_figure(profile.x, profile.pressure, model.places(), solver, run.value("zero_load_radius")),
+        pressure_compared_figure(profile.x, profile.pressure, model.places(), solver, radius.value),
         folder / "fig4.png",
     )
     against = "independent solver (energy minimisation with scipy)"
@@ -56,10 +57,10 @@ def judge(paper: Scene, runs: Runs, folder: Path) -> Findings:
                 state_radius(model, solved.zero_load, STENCIL)),
         _radius(run, "critical_radius", "radius of the largest tension at pull-off, a_cr",
                 state_radius(model, solved.critical, STENCIL)),
-        row("adhesion force F_A", run.value("adhesion_force"), run.uncertainty("adhesion_force"), "FU",
+        row("adhesion force F_A", force.value, force.uncertainty, "FU",
             solved.adhesion_force, against, "independent solver", FORCE, "tolerance of the run"),
         row("sum of the pressure at zero load over the largest tension times a_0",
-            abs(float(profile.pressure.sum())) * paper.bodies.spacing / (tension * run.value("zero_load_radius")),
+            abs(float(profile.pressure.sum())) * paper.bodies.spacing / (tension * radius.value),
             0.0, "1", FORCE, "equilibrium: the force of the contact is 0", "closed form", 0.0, "search for F = 0",
             comparison="at most"),
         row("largest tension of a particle at zero load", -float(profile.pressure.min()) * paper.bodies.spacing, 0.0,
@@ -68,17 +69,18 @@ def judge(paper: Scene, runs: Runs, folder: Path) -> Findings:
     ]  # fmt: skip
     finding = (
         "The pressure has no singularity: it falls from the compressed middle to a finite tension, largest at the "
-        f"radius a_0 = {run.value('zero_load_radius'):.3f} LU. The independent solver finds the same pressure within "
+        f"radius a_0 = {radius.value:.3f} LU. The independent solver finds the same pressure within "
         f"{share(rms)} of the largest tension."
     )
     caption = "Pressure at zero load (bars), the independent solver's (line), and the contact radius (dashed)"
     return Findings(finding, checks, {"fig4.png": caption})
 
 
-def _radius(run: Finished, quantity: str, name: str, reference: float) -> Check:
+def _radius(run: Run, quantity: str, name: str, reference: float) -> Check:
     source = "independent solver (energy minimisation with scipy)"
+    ours = found(run, quantity)
     return row(
-        name, run.value(quantity), run.uncertainty(quantity), "LU", reference, source, "independent solver", RADIUS,
+        name, ours.value, ours.uncertainty, "LU", reference, source, "independent solver", RADIUS,
         "interpolation between particles",
     )  # fmt: skip
 

@@ -15,6 +15,7 @@ from contact1d.workflow.reproduce.check import Check
 from contact1d.workflow.reproduce.figures import Series, history_figure, save
 from contact1d.workflow.reproduce.oracles import interaction
 from contact1d.workflow.reproduce.paper import changed
+from contact1d.workflow.reproduce.runs import found
 from contact1d.workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
 from contact1d.workflow.scene import Scene
 
@@ -84,18 +85,18 @@ def judge(paper: Scene, runs: Runs, folder: Path) -> Findings:
         "dynamic, horizontal": ([_dynamic(p) for p in DYNAMIC], DYNAMIC),
     }
     for kind, (names, preloads) in kinds.items():
-        held = [(p, runs[name]) for p, name in zip(preloads, names, strict=True) if not runs[name].failed]
+        held = [(p, runs[name]) for p, name in zip(preloads, names, strict=True) if runs[name].status == "done"]
         bounds = SPREAD_DYNAMIC if kind.startswith("dynamic") else (SPREAD_STILL, 10.0 * SPREAD_STILL)
         for quantity, symbol, series, bound in (
             ("adhesion_force", "F_A", force, bounds[0]), ("critical_radius", "a_cr", radius, bounds[1]),
         ):  # fmt: skip
-            values = np.array([run.value(quantity) for _, run in held])
+            values = np.array([found(run, quantity).value for _, run in held])
             spread = float(np.abs(values / values.mean() - 1.0).max())
             reach = f"{min(p for p, _ in held):g} to {max(p for p, _ in held):g} FU"
             series.append(Series(kind, np.array([p for p, _ in held]), values / values.mean()))
             checks.append(
                 row(f"largest deviation of {symbol} from its mean, F_D = {reach}: {kind}", spread,
-                    float(max(run.uncertainty(quantity) for _, run in held) / values.mean()), "1", bound,
+                    float(max(found(run, quantity).uncertainty for _, run in held) / values.mean()), "1", bound,
                     "weak dependence (dynamic), none (quasistatic)", "set bound", 0.0,
                     "tolerance of the run; the maximum of F is flat in a", comparison="at most")
             )  # fmt: skip
@@ -118,10 +119,10 @@ def judge(paper: Scene, runs: Runs, folder: Path) -> Findings:
 
 def _slips(paper: Scene, runs: Runs) -> tuple[list[Check], float]:
     """The displacement at which horizontal runs end, and the preload between the last good and the first bad one."""
-    failed = [p for p in PRELOADS if runs[_still(True, p)].failed]
+    failed = [p for p in PRELOADS if runs[_still(True, p)].status != "done"]
     if not failed:
         return [], PRELOADS[-1]
-    message = str(runs[_still(True, min(failed))].results["error"]["message"])
+    message = str(runs[_still(True, min(failed))].document["error"]["message"])
     place = float(message.split("at displacement ")[1].split(" LU")[0]) if "went through" in message else float("nan")
     check = row(
         "displacement at which horizontal freedom lets the chains slip past each other", place, 0.0, "LU",

@@ -18,6 +18,7 @@ from contact1d.workflow.reproduce.figures import Series, save, scaling_figure
 from contact1d.workflow.reproduce.oracles import independent_pairs
 from contact1d.workflow.reproduce.page import share
 from contact1d.workflow.reproduce.paper import local, with_radius
+from contact1d.workflow.reproduce.runs import found
 from contact1d.workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
 from contact1d.workflow.scene import Scene
 
@@ -72,7 +73,7 @@ def fitted(radii: Sequence[float], values: Sequence[float]) -> Fit:
 def judge_fig7(paper: Scene, runs: Runs, folder: Path) -> Findings:
     """Exponents of the paper's chain, beside JKR's and Barquins'."""
     row = checker("fig7")
-    fits = {q: fitted(RADII, [runs[paper_run(r)].value(q) for r in RADII]) for q in QUANTITIES}
+    fits = {q: fitted(RADII, [found(runs[paper_run(r)], q).value for r in RADII]) for q in QUANTITIES}
     theory = {"adhesion_force": "JKR 1, Barquins 1/3", "zero_load_radius": "JKR 2/3, Barquins 2/3"}
     checks = [
         row(f"exponent of {QUANTITIES[q]} over R from 500 to 4000 LU ({theory[q]})", fit.exponent, fit.half_width, "1",
@@ -102,7 +103,7 @@ def judge_exponents(paper: Scene, runs: Runs, folder: Path) -> Findings:
     row = checker("exponents")
     checks: list[Check] = []
     for quantity, symbol in QUANTITIES.items():
-        fit = fitted(LOCAL_RADII, [runs[local_run(r)].value(quantity) for r in LOCAL_RADII])
+        fit = fitted(LOCAL_RADII, [found(runs[local_run(r)], quantity).value for r in LOCAL_RADII])
         checks.append(
             row(f"exponent of {symbol} over R in the local limit", fit.exponent, fit.half_width, "1", EXPONENT,
                 "closed form of independent pairs", "closed form", ASKED, "lattice", comparison="absolute",
@@ -110,16 +111,15 @@ def judge_exponents(paper: Scene, runs: Runs, folder: Path) -> Findings:
         )  # fmt: skip
     for radius in LOCAL_RADII:
         law = independent_pairs(with_radius(local(paper), radius))
-        run = runs[local_run(radius)]
         for quantity, symbol, unit, expected in (
             ("adhesion_force", "F_A", "FU", law.adhesion_force()),
             ("zero_load_radius", "a_0", "LU", law.zero_load_radius()),
             ("critical_radius", "a_cr", "LU", law.critical_radius()),
         ):
+            ours = found(runs[local_run(radius)], quantity)
             checks.append(
-                row(f"{symbol} in the local limit, R = {radius:g} LU", run.value(quantity), run.uncertainty(quantity),
-                    unit, expected, "closed form of independent pairs", "closed form", 1e-3,
-                    "tolerance of the run, lattice")
+                row(f"{symbol} in the local limit, R = {radius:g} LU", ours.value, ours.uncertainty, unit, expected,
+                    "closed form of independent pairs", "closed form", 1e-3, "tolerance of the run, lattice")
             )  # fmt: skip
     worst = max(abs(check.value / check.reference - 1.0) for check in checks[2:])
     finding = (
@@ -132,7 +132,7 @@ def judge_exponents(paper: Scene, runs: Runs, folder: Path) -> Findings:
 
 def _values(runs: Runs, name: object, radii: Sequence[float], quantity: str) -> NDArray[np.float64]:
     assert callable(name)
-    return np.array([runs[name(radius)].value(quantity) for radius in radii])
+    return np.array([found(runs[name(radius)], quantity).value for radius in radii])
 
 
 FIG7 = Study(

@@ -19,8 +19,9 @@ from contact1d.workflow.reproduce.check import Check
 from contact1d.workflow.reproduce.figures import Series, closed_form_figure, reduced_figure, save
 from contact1d.workflow.reproduce.oracles import distances, independent_pairs, reduced
 from contact1d.workflow.reproduce.paper import TABLE_1, changed, curve_scene, local, with_radius
-from contact1d.workflow.reproduce.runs import Finished, branch
+from contact1d.workflow.reproduce.runs import branch, found
 from contact1d.workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
+from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene
 
 DEEPEST, STEPS = 0.46, 56
@@ -180,12 +181,12 @@ def judge_both(_: Scene, runs: Runs, folder: Path) -> Findings:
     return Findings(finding, checks, {})
 
 
-def _distances(run: Finished) -> tuple[float, float]:
+def _distances(run: Run) -> tuple[float, float]:
     _, force, a, _ = branch(run)
     return distances(force, a)
 
 
-def _series(name: str, run: Finished) -> Series:
+def _series(name: str, run: Run) -> Series:
     _, force, a, _ = branch(run)
     tension, ratio = reduced(force, a)
     stable = np.arange(len(force)) <= int(np.argmin(force)) + 2
@@ -239,19 +240,19 @@ def _dynamic_checks(runs: Runs) -> list[Check]:
     order = np.argsort(force[stable])
     checks = []
     for load in DYNAMIC_FORCES:
-        run = runs[dynamic_run(load)]
+        ours = found(runs[dynamic_run(load)], "contact_radius")
         expected = float(np.interp(load, force[stable][order], a[stable][order]))
         checks.append(
-            row(f"contact radius of the dynamic method at F = {load:g} FU", run.value("contact_radius"),
-                run.uncertainty("contact_radius"), "LU", expected, "the quasistatic curve, interpolated", "set bound",
-                5e-3, "rows of the curve; tolerance of the run")
+            row(f"contact radius of the dynamic method at F = {load:g} FU", ours.value, ours.uncertainty, "LU",
+                expected, "the quasistatic curve, interpolated", "set bound", 5e-3,
+                "rows of the curve; tolerance of the run")
         )  # fmt: skip
     return checks
 
 
 def _summary(checks: list[Check]) -> str:
-    found = [check.value for check in checks if "to JKR" in check.name]
-    return f"The rms distance to JKR is {min(found):.3f} to {max(found):.3f} up to F/F_A = 1.5."
+    distances = [check.value for check in checks if "to JKR" in check.name]
+    return f"The rms distance to JKR is {min(distances):.3f} to {max(distances):.3f} up to F/F_A = 1.5."
 
 
 FIG8A = Study(

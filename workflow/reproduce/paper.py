@@ -8,14 +8,15 @@ table, the exponents, and that curves of other R and N fall on the same one, are
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
+from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.identify import Target, identify
-from contact1d.workflow.runs.report import RESULTS, versions
-from contact1d.workflow.scene import Scene, SceneError, read_scene, scene_from_dict
+from contact1d.workflow.runs.finished import load_run
+from contact1d.workflow.runs.report import versions
+from contact1d.workflow.scene import Scene, read_scene, scene_from_dict
 
 CONTACT_MODULUS = 200e9
 """E* of the paper's example [Pa]."""
@@ -57,15 +58,15 @@ def calibrated(folder: Path) -> Scene:
 def _identified(scene: Scene, target: Target, folder: Path) -> Scene | None:
     """The scene of a finished run in `folder` that is `scene` but for the interaction, and has its target."""
     try:
-        results = json.loads((folder / RESULTS).read_text(encoding="utf-8"))
-        found = scene_from_dict(results["scene"])
-        reached = [results[name]["value"] for name in ("adhesion_force", "zero_load_radius")]
-    except (OSError, ValueError, KeyError, TypeError, SceneError):
+        run = load_run(folder)
+        reached = [run.results[name].value for name in ("adhesion_force", "zero_load_radius")]
+    except (FolderError, RunError, KeyError):
         return None
+    found = run.scene
     same = found.model_copy(update={"interaction": scene.interaction}) == scene
     wanted = (target.adhesion_force, target.zero_load_radius)
     near = all(abs(a / b - 1.0) < scene.accuracy.tolerance for a, b in zip(reached, wanted, strict=True))
-    return found if same and near and results.get("versions") == versions() else None
+    return found if same and near and run.document.get("versions") == versions() else None
 
 
 def changed(scene: Scene, *overrides: str) -> Scene:

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from contact1d.files import write_whole
 from contact1d.workflow.engine.progress import Progress, Silent
+from contact1d.workflow.errors import FolderError
 from contact1d.workflow.reproduce import eq3, fig4, fig6, fig7, fig8, table1
 from contact1d.workflow.reproduce.markdown import validation_markdown
 from contact1d.workflow.reproduce.page import html_page
 from contact1d.workflow.reproduce.paper import calibrated
 from contact1d.workflow.reproduce.record import RECORD, Record, StudyRecord, read_record
-from contact1d.workflow.reproduce.runs import Finished, finish
+from contact1d.workflow.reproduce.runs import finish
 from contact1d.workflow.reproduce.study import Scenes, Study
-from contact1d.workflow.runs.campaign import FolderError
-from contact1d.workflow.runs.report import versions, write_whole
+from contact1d.workflow.runs.cores import cores
+from contact1d.workflow.runs.finished import Run
+from contact1d.workflow.runs.report import versions
 from contact1d.workflow.scene import Scene
 
 STUDIES: tuple[Study, ...] = (
@@ -34,11 +36,6 @@ STUDIES: tuple[Study, ...] = (
 )
 NAMES = tuple(study.name for study in STUDIES)
 PAGE, VALIDATION = "reproduce.html", "VALIDATION.md"
-
-
-def cores() -> int:
-    """How many processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def reproduce(
@@ -103,7 +100,7 @@ def _longest_first(studies: Sequence[Study]) -> list[Study]:
     return sorted(studies, key=lambda study: order.get(study.name, len(order)))
 
 
-def _judged(study: Study, paper: Scene, done: dict[str, Finished], folder: Path) -> StudyRecord:
+def _judged(study: Study, paper: Scene, done: dict[str, Run], folder: Path) -> StudyRecord:
     names = list(study.scenes(paper))
     found = study.judge(paper, done, folder)
     return StudyRecord(
@@ -114,5 +111,5 @@ def _judged(study: Study, paper: Scene, done: dict[str, Finished], folder: Path)
         tuple(found.checks),
         found.figures,
         len(names),
-        sum(done[name].lammps_seconds for name in names),
+        sum(done[name].timing["lammps_s"] for name in names),
     )

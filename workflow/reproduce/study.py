@@ -8,11 +8,11 @@ from functools import partial
 from pathlib import Path
 
 from contact1d.workflow.reproduce.check import Check
-from contact1d.workflow.reproduce.runs import Finished
+from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene
 
 Scenes = dict[str, Scene]
-Runs = Mapping[str, Finished]
+Runs = Mapping[str, Run]
 
 
 @dataclass(frozen=True)

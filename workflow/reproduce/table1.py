@@ -17,11 +17,11 @@ from contact1d.workflow.reproduce.fig8 import lengthened_run
 from contact1d.workflow.reproduce.fig8 import scenes_8a as curves
 from contact1d.workflow.reproduce.figures import pressure_radius_figure, save
 from contact1d.workflow.reproduce.paper import CONTACT_MODULUS, SURFACE_ENERGY, TABLE_1, with_radius
-from contact1d.workflow.reproduce.runs import branch
+from contact1d.workflow.reproduce.runs import branch, found
 from contact1d.workflow.reproduce.study import Findings, Runs, Scenes, Study, checker
 from contact1d.workflow.runs.scales import jkr_scales
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.units import MEAN_PRESSURE, Quantity, Scales
+from contact1d.workflow.units import MEAN_PRESSURE, Scales
 
 PRINTED = 0.015
 """Allowed deviation from a printed value, of three digits or two."""
@@ -46,11 +46,7 @@ def pressure_scenes(paper: Scene) -> Scenes:
 def scales(runs: Runs, radius: float) -> Scales:
     """LU and FU that a run with this R [LU] gives the paper's material."""
     results = runs[paper_run(radius)].results
-    force, a_0 = (
-        Quantity(results[name]["value"], results[name]["uncertainty"], results[name]["unit"])
-        for name in ("adhesion_force", "zero_load_radius")
-    )
-    return jkr_scales(force, a_0, radius, CONTACT_MODULUS, SURFACE_ENERGY)
+    return jkr_scales(results["adhesion_force"], results["zero_load_radius"], radius, CONTACT_MODULUS, SURFACE_ENERGY)
 
 
 def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
@@ -59,10 +55,11 @@ def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
     checks: list[Check] = []
     for entry in TABLE_1:
         run, units = runs[paper_run(entry.radius)], scales(runs, entry.radius)
+        a_0, force = found(run, "zero_load_radius"), found(run, "adhesion_force")
         first = entry is TABLE_1[0]
         for name, value, spread, unit, expected in (
-            ("a_0", run.value("zero_load_radius"), run.uncertainty("zero_load_radius"), "LU", entry.zero_load_radius),
-            ("F_A", run.value("adhesion_force"), run.uncertainty("adhesion_force"), "FU", entry.adhesion_force),
+            ("a_0", a_0.value, a_0.uncertainty, "LU", entry.zero_load_radius),
+            ("F_A", force.value, force.uncertainty, "FU", entry.adhesion_force),
             ("one LU", 1e9 * units.length, 1e9 * units.length_uncertainty, "nm", 1e9 * entry.length_unit),
             ("one FU", 1e6 * units.force, 1e6 * units.force_uncertainty, "µN", 1e6 * entry.force_unit),
         ):
@@ -88,7 +85,7 @@ def judge_pressure(_: Scene, runs: Runs, folder: Path) -> Findings:
     units = scales(runs, first.radius)
     pascal = units.factor(MEAN_PRESSURE)
     run = runs[paper_run(first.radius)]
-    force_scale, radius_scale = run.value("adhesion_force"), run.value("zero_load_radius")
+    force_scale, radius_scale = found(run, "adhesion_force").value, found(run, "zero_load_radius").value
     force, a = branch(runs[lengthened_run(200)])[1:3]
     stable = slice(0, int(np.argmin(force)) + 1)
     order = np.argsort(a[stable])

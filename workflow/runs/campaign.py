@@ -1,82 +1,40 @@
-"""A scene to a finished run folder, and many scenes through an executor."""
+"""A scene to a finished run folder."""
 
 from __future__ import annotations
 
 import fcntl
 import time
-from collections.abc import Iterable, Iterator
-from concurrent.futures import Executor
+from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
-from typing import Any
 
+import numpy as np
+
+from contact1d.files import PART, write_whole
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.engine.session import EngineError
+from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments import perform, planned
-from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import UntrustedError
+from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.runs.refinement import Refined, refined
-from contact1d.workflow.runs.report import (
-    FILES,
-    curve_of,
-    draw,
-    failure,
-    results,
-    write_results,
-    write_tables,
-    write_whole,
-)
-from contact1d.workflow.scene import Scene, scene_to_toml
+from contact1d.workflow.runs.report import FILES, curve_of, failure, results, write_results, write_tables
+from contact1d.workflow.scene import AnyScene, Scene, read_scene, scene_to_toml
 from contact1d.workflow.settings.settings import Settings, settings_for
 
+AnyPath = str | PathLike[str]
 LOCK = ".running"
 TIME_LIMIT = 3600.0
 """Wall time after which LAMMPS is stopped, for each pass of a search [s]."""
 
 
-class FolderError(RuntimeError):
-    """A folder that no run may be written into."""
-
-
-class RunError(RuntimeError):
-    """A run that gave no numbers; results.json in its folder says the same.
-
-    Attributes:
-        folder: the run folder, whose files are kept.
-    """
-
-    def __init__(self, message: str, folder: Path) -> None:
-        """Keep both; they are arguments, so that the error can be pickled."""
-        super().__init__(message, folder)
-        self.message, self.folder = message, folder
-
-    def __str__(self) -> str:
-        """Return the message and where the files are."""
-        return f"{self.message}\nfiles kept in {self.folder}"
-
-
-@dataclass(frozen=True)
-class Run:
-    """A finished run.
-
-    Attributes:
-        folder: with every file of the run.
-        results: what results.json holds.
-        outcome: quantities, states, profiles as Python objects.
-    """
-
-    folder: Path
-    results: dict[str, Any]
-    outcome: Outcome
-
-
 def run(
-    scene: Scene,
-    folder: Path | str,
+    scene: AnyScene,
+    folder: AnyPath,
     figures: bool = True,
     progress: Progress | None = None,
     time_limit: float = TIME_LIMIT,
@@ -85,7 +43,7 @@ def run(
     """Run a scene in a folder and leave everything there.
 
     Args:
-        scene: what `read_scene` returns.
+        scene: a `Scene`, or what `read_scene` makes one of: a file, TOML text, tables.
         folder: made if it does not exist; an earlier run in it is replaced.
         figures: whether to draw.
         progress: told of phases and steps.
@@ -93,11 +51,13 @@ def run(
         settings: in place of those that `settings_for` chooses and refines; for cost studies.
 
     Raises:
+        SceneError: it is no scene; nothing is written.
         SettingsError: the scene's numbers lead to no computable system; nothing is written.
         FolderError: the folder holds something else, or another run is at work in it.
         RunError: LAMMPS failed, or the result can't be trusted.
     """
     started = time.perf_counter()
+    scene = _scene(scene)
     deck = Deck(scene, settings or settings_for(scene))
     folder = prepare(Path(folder))
     with _alone(folder):
@@ -126,11 +86,19 @@ def _run(context: RunContext, started: float, figures: bool, refine: bool) -> Ru
     write_whole(folder / "in.lammps", last.deck.text(outcome.phases))
     curve = curve_of(last.deck.scene, outcome)
     write_tables(folder, scene, outcome, curve)
+    friction = {name: np.asarray(column) for name, column in outcome.friction.items()}
     if figures:
-        draw(folder, scene, outcome, curve)
+        from contact1d.workflow.runs.drawing import draw
+
+        values = {name: quantity.value for name, quantity in outcome.quantities.items()}
+        draw(folder, scene, values, curve, outcome.profiles, friction)
     document = results(scene, outcome, timing())
     write_results(folder, document)
-    return Run(folder, document, outcome)
+    return Run(folder, document, scene, curve, outcome.profiles, friction, outcome)
+
+
+def _scene(scene: AnyScene) -> Scene:
+    return scene if isinstance(scene, Scene) else read_scene(scene)
 
 
 def _hint(message: str) -> str:
@@ -140,8 +108,12 @@ def _hint(message: str) -> str:
     return ""
 
 
-def write_deck(scene: Scene, folder: Path | str) -> Path:
-    """Write system.data, the table and in.lammps with the planned schedule; nothing runs. Returns the folder."""
+def write_deck(scene: AnyScene, folder: AnyPath) -> Path:
+    """Write system.data, the table and in.lammps with the planned schedule; nothing runs. Returns the folder.
+
+    Arguments and errors are those of `run`.
+    """
+    scene = _scene(scene)
     deck = Deck(scene, settings_for(scene))
     folder = prepare(Path(folder))
     with _alone(folder):
@@ -158,7 +130,7 @@ def prepare(folder: Path) -> Path:
     if folder.exists() and not folder.is_dir():
         raise FolderError(f"{folder} is a file; a run needs a folder")
     if folder.is_dir() and any(folder.iterdir()) and not any((folder / name).exists() for name in ("in.lammps", LOCK)):
-        raise FolderError(f"{folder} holds files that are not of a run; choose another folder with --out")
+        raise FolderError(f"{folder} holds files that are not of a run; choose another folder")
     try:
         folder.mkdir(parents=True, exist_ok=True)
         (folder / LOCK).touch()
@@ -174,7 +146,7 @@ def _alone(folder: Path) -> Iterator[None]:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
-            raise FolderError(f"another run is at work in {folder}; choose another folder with --out") from None
+            raise FolderError(f"another run is at work in {folder}; choose another folder") from None
         try:
             yield
         finally:
@@ -184,22 +156,8 @@ def _alone(folder: Path) -> Iterator[None]:
 def _write(deck: Deck, folder: Path) -> None:
     """Replace whatever an earlier run left by what the deck needs."""
     for path in folder.iterdir():
-        if path.name.removesuffix(".part") in FILES:
+        if path.name.removesuffix(PART) in FILES:
             path.unlink()
     write_whole(folder / "in.lammps", deck.text(planned(deck.scene, deck.settings)))
     write_whole(folder / "scene.toml", scene_to_toml(deck.scene))
     write_system(deck, folder)
-
-
-def run_many(scenes: Iterable[tuple[Scene, Path]], executor: Executor) -> Iterator[Run | RunError]:
-    """Run (scene, folder) pairs through an executor; results come in the order given, failures among them."""
-    futures = [executor.submit(_run_quietly, scene, folder) for scene, folder in scenes]
-    for future in futures:
-        yield future.result()
-
-
-def _run_quietly(scene: Scene, folder: Path) -> Run | RunError:
-    try:
-        return run(scene, folder, figures=False)
-    except RunError as error:
-        return error

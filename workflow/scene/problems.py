@@ -8,6 +8,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 
+from contact1d.workflow.errors import Contact1dError
+
 SHOWN = 60
 """Characters of a given value that a message shows."""
 
@@ -28,7 +30,7 @@ class Problem:
         return f"{self.path}{given}: {self.message}{hint}"
 
 
-class SceneError(Exception):
+class SceneError(Contact1dError):
     """A scene cannot be used; `problems` has every mistake found, in the order of the scene's tables."""
 
     def __init__(self, problems: Iterable[Problem]) -> None:

@@ -12,11 +12,14 @@ from typing import Any
 
 from contact1d.workflow.scene.check import check_tables, mend_words
 from contact1d.workflow.scene.fit import check_fit
-from contact1d.workflow.scene.overrides import apply_overrides, remove_effects
+from contact1d.workflow.scene.overrides import apply_overrides, remove_effects, set_values
 from contact1d.workflow.scene.problems import Problem, SceneError, shown
 from contact1d.workflow.scene.profile_file import ProfileFileError, read_profile
 from contact1d.workflow.scene.quantities import Table
 from contact1d.workflow.scene.tables import Scene
+
+AnyScene = Scene | str | PathLike[str] | Mapping[str, Any]
+"""What `read_scene` makes a scene of."""
 
 MEANING = {
     "Cannot overwrite a value": "this key is given twice",
@@ -41,12 +44,26 @@ HINTS = {
 }
 
 
-def read_scene(path: str | PathLike[str], overrides: Iterable[str] = (), without: Iterable[str] = ()) -> Scene:
-    """The scene in the TOML file `path`, changed by `overrides` and `without` as in `scene_from_dict`.
+def read_scene(source: AnyScene, overrides: Iterable[str] = (), without: Iterable[str] = ()) -> Scene:
+    """The scene that `source` describes, checked.
 
-    Raises SceneError with every problem: also for a file that is missing, unreadable, not UTF-8 or not TOML.
+    Args:
+        source: a TOML file, by its path; or TOML text, which is a `str` with a line break or "=" in it; or a mapping
+            of tables with the keys of a scene file; or a `Scene`.
+        overrides: strings "table.key=value", applied in order, the value read as TOML or else as bare text.
+        without: names of effects whose tables are removed.
+
+    Raises:
+        SceneError: with every problem at once, also for a file that is missing, unreadable, not UTF-8 or not TOML.
     """
-    return scene_from_dict(_parsed(fspath(path)), overrides, without, FilePath(path).parent)
+    if isinstance(source, Mapping | Scene):
+        return scene_from_dict(source, overrides, without)
+    if isinstance(source, str) and ("\n" in source or "=" in source):
+        return scene_from_dict(_tables(source, "scene"), overrides, without)
+    if not isinstance(source, str | PathLike):
+        given = type(source).__name__
+        raise SceneError([Problem("scene", f"must be a path, TOML text, tables or a Scene, not {given}")])
+    return scene_from_dict(_parsed(fspath(source)), overrides, without, FilePath(source).parent)
 
 
 def scene_from_dict(
@@ -65,8 +82,24 @@ def scene_from_dict(
     if not isinstance(plain, dict):
         raise SceneError([Problem("scene", "must be a table of tables")])
     problems = apply_overrides(plain, _listed(overrides)) + remove_effects(plain, _listed(without))
+    return _checked(plain, problems, FilePath(folder))
+
+
+def changed_scene(scene: Scene, changes: object, without: Iterable[str]) -> Scene:
+    """`Scene.with_`."""
+    if not isinstance(changes, Mapping):
+        form = 'write {"bodies.profile.radius": 2000.0}'
+        raise SceneError([Problem("changes", "must be a mapping of dotted keys to values", shown(changes), form)])
+    data: dict[str, Any] = _plain(scene)
+    problems = set_values(data, {str(key): value for key, value in changes.items()})
+    problems += remove_effects(data, _listed(without))
+    return _checked(_plain(data), problems, FilePath())
+
+
+def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -> Scene:
+    """The scene of `plain`, which is mended on the way; `problems` are those found so far."""
     problems += mend_words(plain)
-    problems += _with_points(plain, FilePath(folder))
+    problems += _with_points(plain, folder)
     checked = check_tables(plain)
     problems += checked.problems
     problems += check_fit(plain, checked.unsound)
@@ -117,6 +150,8 @@ def _plain(value: Any) -> Any:
         return {str(key): _plain(item) for key, item in value.items() if item is not None}
     if isinstance(value, list | tuple):
         return [_plain(item) for item in value]
+    if hasattr(value, "tolist"):  # numpy's arrays and numbers
+        return _plain(value.tolist())
     return value
 
 
@@ -143,6 +178,11 @@ def _parsed(path: str) -> dict[str, Any]:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise SceneError([Problem(path, f"cannot be read: {reason}")]) from error
+    return _tables(text, path)
+
+
+def _tables(text: str, path: str) -> dict[str, Any]:
+    """TOML text as a dict; `path` is where it is from. Raises SceneError with one problem."""
     try:
         return tomllib.loads(text)
     except ValueError as error:

@@ -6,7 +6,8 @@ repulsion and B, b those of the attraction.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from annotated_types import MinLen
 from pydantic import AfterValidator, Field
@@ -169,6 +170,37 @@ class Scene(Table):
     material: Material | None = Field(default=None, description="what the model stands for in SI")
     accuracy: Accuracy = Field(default=Accuracy(), description="how exact")
     experiment: Experiment = Field(description="what is done")
+
+    def with_(self, changes: Mapping[str, Any] | None = None, *, without: Iterable[str] = (), **keywords: Any) -> Scene:
+        """Return this scene with values changed, checked as a whole.
+
+            scene.with_({"bodies.profile.radius": 2000.0, "accuracy.tolerance": 1e-4}, without="neighbours")
+            scene.with_(bodies__profile__radius=2000.0, accuracy__tolerance=1e-4)
+
+        Args:
+            changes: values by dotted keys, as in a scene file; a table is a dict, None takes a key or table away.
+            without: effects whose tables are removed.
+            keywords: more changes, the keys' dots written as two underscores.
+
+        Raises:
+            SceneError: the scene that would be is none; with every problem at once.
+        """
+        from contact1d.workflow.scene.read import changed_scene
+
+        named = {key.replace("__", "."): value for key, value in keywords.items()}
+        given = {} if changes is None else changes
+        return changed_scene(self, {**given, **named} if isinstance(given, Mapping) else given, without)
+
+    def __repr__(self) -> str:
+        """One line: title, profile, effects and experiment; `print` shows the whole scene."""
+        effects = f", {', '.join(self.effects)}" if self.effects else ""
+        return f"<Scene {self.title!r}: {self.bodies.profile.kind}{effects}; {self.experiment.kind}>"
+
+    def __str__(self) -> str:
+        """The scene file."""
+        from contact1d.workflow.scene.write import scene_to_toml
+
+        return scene_to_toml(self)
 
     @property
     def effects(self) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.scene import Bodies, FlatPunch, Scene
 from contact1d.workflow.settings.estimate import ContactEstimate
 
@@ -17,7 +18,7 @@ ROUND_OFF = 1e-9
 """Relative, of a length that a chain only just fits into."""
 
 
-class SettingsError(ValueError):
+class SettingsError(Contact1dError, ValueError):
     """A scene whose numbers, each allowed, lead to no computable system; the message says which and what to change."""
 
 

@@ -1,0 +1,115 @@
+"""A finished run from memory and from its folder: one face; and folders that hold no run."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import contact1d
+from contact1d import FolderError, Run, RunError, Scene, load_run, run
+
+MakeScene = Callable[..., Scene]
+STEEL = {"youngs_modulus": 210e9, "poisson_ratio": 0.3}
+SHORT = 600
+"""Characters that a run shows of itself; it has hundreds of thousands of numbers."""
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """A pull-off with a title that HTML would trip over, and with SI units."""
+    scene = {
+        "title": "a <b> & c",
+        "bodies": {
+            "particles": 40, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 50.0}, "bulk_stiffness": 0.83,
+        },
+        "interaction": {
+            "repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26},
+        },
+        "material": {"upper": STEEL, "lower": STEEL, "length_unit": 2e-9},
+        "accuracy": {"tolerance": 1e-2},
+        "experiment": {"kind": "pull_off", "preload": 0.2},
+    }  # fmt: skip
+    return run(scene, tmp_path_factory.mktemp("run") / "small")
+
+
+def test_results_are_quantities_by_name_and_as_attributes(finished: Run) -> None:
+    entry = json.loads((finished.folder / "results.json").read_text())["adhesion_force"]
+    force = finished.results["adhesion_force"]
+    assert (force.value, force.uncertainty, force.unit) == (entry["value"], entry["uncertainty"], "FU")
+    assert float(force) == force.value
+    assert force.si is not None
+    assert (force.si.value, force.si.unit) == (entry["si"]["value"], "N")
+    assert finished.results.adhesion_force is force
+    assert "adhesion_force" in dir(finished.results)
+    assert set(finished.results) == {"adhesion_force", "critical_radius", "zero_load_radius", "preload"}
+    with pytest.raises(KeyError, match="no pull_off_force, it has adhesion_force"):
+        finished.results["pull_off_force"]
+    with pytest.raises(AttributeError, match="no pull_off_force, it has adhesion_force"):
+        _ = finished.results.pull_off_force
+
+
+def test_a_run_shows_itself_in_a_few_lines(finished: Run) -> None:
+    shown = repr(finished)
+    assert len(shown) < SHORT
+    first, *rest = shown.splitlines()
+    assert "a <b> & c" in first
+    assert "done" in first
+    assert str(finished.folder) in first
+    assert any("adhesion_force" in line and str(finished.results.adhesion_force) in line for line in rest)
+    assert "a &lt;b&gt; &amp; c: done" in finished._repr_html_()
+    assert "<b>" not in finished._repr_html_()
+
+
+def test_a_run_draws_its_figures_and_gives_its_atoms(finished: Run) -> None:
+    files = {path.stem for path in finished.folder.glob("*.png")}
+    assert files == {"force_displacement", "force_radius", "pressure"}
+    loaded = load_run(finished.folder)
+    for one in (finished, loaded):
+        assert [axis.get_xlabel() for axis in one.plot().axes] == ["displacement (LU), compression positive"]
+        assert len(one.plot("pressure").axes) == 2
+        with pytest.raises(ValueError, match="no figure 'friction', it has force_displacement, force_radius, pressure"):
+            one.plot("friction")
+        np.testing.assert_array_equal(one.atoms().positions, contact1d.atoms(finished.folder).positions)
+        assert len(one.atoms(0)) == 160
+
+
+def test_a_run_that_failed_raises_its_own_message(plane: MakeScene, tmp_path: Path) -> None:
+    with pytest.raises(RunError) as failed:
+        run(plane(force=30.0), tmp_path / "run")
+    with pytest.raises(RunError) as loaded:
+        load_run(tmp_path / "run")
+    assert "end of the chain" in loaded.value.message
+    assert loaded.value.message in failed.value.message
+    assert loaded.value.folder == failed.value.folder
+
+
+def test_a_folder_without_a_run_is_refused_in_words(plane: MakeScene, tmp_path: Path) -> None:
+    with pytest.raises(FolderError, match="give the folder of a finished run"):
+        load_run(tmp_path / "nowhere")
+    folder = run(plane(), tmp_path / "run", figures=False).folder
+    results = folder / "results.json"
+    whole = json.loads(results.read_text())
+    table = (folder / "curve.csv").read_text()
+    for change, words in (
+        ({"scene": whole["scene"] | {"law": "other"}}, "law: unknown"),
+        ({"status": None}, "'message'|'error'|subscriptable"),
+        ({"force": {"value": 1.0}}, "no 'uncertainty'"),
+    ):
+        results.write_text(json.dumps(whole | change))
+        with pytest.raises(FolderError, match=words):
+            load_run(folder)
+    for text in ("[]", "{}", "results"):
+        results.write_text(text)
+        with pytest.raises(FolderError, match=r"[Rr]un (its|the) scene again"):
+            load_run(folder)
+    results.write_text(json.dumps(whole))
+    (folder / "curve.csv").write_text(table[: len(table) // 2])
+    with pytest.raises(FolderError, match="can read"):
+        load_run(folder)
+    (folder / "curve.csv").unlink()
+    with pytest.raises(FolderError, match=r"curve\.csv"):
+        load_run(folder)

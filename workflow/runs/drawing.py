@@ -1,0 +1,89 @@
+"""The figures of a run: which ones its experiment has, with the theory beside the curve."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from math import nan
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.analysis import plots
+from contact1d.analysis.curve import Curve
+from contact1d.analysis.pressure import Profile
+from contact1d.workflow.experiments.running.radii import RadiusRule
+from contact1d.workflow.scene import Parabola, Scene
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+Drawings = dict[str, Callable[[], "Figure"]]
+
+
+def drawings(
+    scene: Scene,
+    values: Mapping[str, float],
+    curve: Curve,
+    profiles: Mapping[str, Profile],
+    friction: Mapping[str, Array],
+) -> Drawings:
+    """What draws each figure, by the names of the files, the main one first.
+
+    Args:
+        scene: what ran.
+        values: of the results.
+        curve, profiles, friction: as in `Run`.
+    """
+    radii = {state: _radius(scene, profile) for state, profile in profiles.items()}
+    pressure: Drawings = {"pressure": partial(plots.pressure_figure, profiles, radii)}
+    if friction:
+        return {"friction": partial(plots.friction_figure, friction), **pressure}
+    if scene.noise is not None:
+        return pressure
+    forces = partial(plots.force_displacement_figure, curve, values, _theory(scene, values))
+    found: Drawings = {"force_displacement": forces}
+    if _adheres_over_a_width(values):
+        marks = values["adhesion_force"], values["zero_load_radius"]
+        found["force_radius"] = partial(plots.force_radius_figure, curve, *marks)
+    return found | pressure
+
+
+def draw(
+    folder: Path,
+    scene: Scene,
+    values: Mapping[str, float],
+    curve: Curve,
+    profiles: Mapping[str, Profile],
+    friction: Mapping[str, Array],
+) -> None:
+    """Save every figure of a run in its folder."""
+    for name, figure in drawings(scene, values, curve, profiles, friction).items():
+        plots.save_figure(figure(), folder / f"{name}.png")
+
+
+def _radius(scene: Scene, profile: Profile) -> float:
+    found = RadiusRule(scene, scene.accuracy.tolerance).of(profile)
+    return nan if found is None else found.value
+
+
+def _adheres_over_a_width(values: Mapping[str, float]) -> bool:
+    """Whether the run has F_A and an a₀ that is not 0, by which a reduced curve can be divided."""
+    return "adhesion_force" in values and values.get("zero_load_radius", 0.0) > 0.0
+
+
+def _theory(scene: Scene, values: Mapping[str, float]) -> tuple[str, Array, Array] | None:
+    """JKR with the run's own F_A and a₀; Hertz, with nothing fitted, for a parabola on a rigid plane; else none."""
+    bodies = scene.bodies
+    if not isinstance(bodies.profile, Parabola):
+        return None
+    radius = bodies.profile.radius * (0.5 if bodies.reduction == "mdr" else 1.0)
+    if _adheres_over_a_width(values):
+        curve = plots.jkr_curve(values["adhesion_force"], values["zero_load_radius"], radius)
+        return "JKR, same $F_A$ and $a_0$", *curve
+    if scene.interaction is None and (places := scene.experiment.places()):
+        return "Hertz", *plots.hertz_curve(max(places), radius, scene.bulk_stiffness / bodies.spacing)
+    return None

@@ -1,0 +1,83 @@
+"""Many scenes through an executor: one entry for each, whatever happens to it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import BrokenExecutor, Executor, Future, as_completed
+from dataclasses import replace
+from pathlib import Path
+from traceback import format_exc
+
+from contact1d.workflow.errors import Contact1dError, RunError
+from contact1d.workflow.runs.campaign import AnyPath, run
+from contact1d.workflow.runs.cores import cores
+from contact1d.workflow.runs.finished import Run
+from contact1d.workflow.runs.pool import pool
+from contact1d.workflow.scene import AnyScene
+
+Entry = Run | RunError
+
+
+def run_many(
+    scenes: Iterable[tuple[AnyScene, AnyPath]], executor: Executor | None = None, workers: int | None = None
+) -> list[Entry]:
+    """Run (scene, folder) pairs, several at a time, without figures.
+
+    Args:
+        scenes: scenes as `run` takes them, each with a folder of its own.
+        executor: anything with the interface of `concurrent.futures`; None: processes on this machine.
+        workers: runs at a time on this machine; None: as many as there are processors.
+
+    Returns:
+        One entry for each pair, in the order given: a `Run`, or a `RunError` whatever went wrong, with the message of
+        the error that `run` raised and the folder. None keeps another from running, but that a process that is killed
+        takes its executor with it: what has not run by then comes back as errors.
+    """
+    pairs = list(scenes)
+    if executor is None:
+        with pool(min(workers or cores(), max(1, len(pairs)))) as local:
+            return run_many(pairs, local)
+    entries = dict(completed(pairs, executor))
+    return [entries[index] for index in range(len(pairs))]
+
+
+def completed(pairs: Sequence[tuple[AnyScene, AnyPath]], executor: Executor) -> Iterator[tuple[int, Entry]]:
+    """The entries of `run_many` as they are done, each with its place among the pairs."""
+    futures: dict[Future[Entry], int] = {}
+    taken = set()
+    for index, (scene, folder) in enumerate(pairs):
+        place = Path(folder).resolve()
+        if place in taken:
+            yield index, RunError("another of these runs has the same folder", place, kept=False)
+            continue
+        taken.add(place)
+        try:
+            futures[executor.submit(_entry, scene, place)] = index
+        except RuntimeError as error:  # it is shut down, or a process of it has died already
+            yield index, _no_answer(error, place)
+    for future in as_completed(futures):
+        index = futures[future]
+        try:
+            yield index, future.result()
+        except Exception as error:
+            yield index, _no_answer(error, Path(pairs[index][1]).resolve())
+
+
+def _entry(scene: AnyScene, folder: Path) -> Entry:
+    try:
+        return replace(run(scene, folder, figures=False), outcome=None)
+    except RunError as error:
+        return error
+    except Exception as error:
+        expected = isinstance(error, Contact1dError | OSError)
+        failed = RunError(str(error) if expected else f"{type(error).__name__}: {error}", folder, kept=False)
+        failed.add_note(format_exc())
+        return failed
+
+
+def _no_answer(error: Exception, folder: Path) -> RunError:
+    if isinstance(error, BrokenExecutor):
+        message = "the process that was to run it was killed, most often because the machine was out of memory"
+    else:
+        message = f"it was not run: {type(error).__name__}: {error}"
+    return RunError(message, folder, kept=False)
