@@ -15,7 +15,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.curve_marks import are_apart, through
+from contact1d.analysis.curve_marks import are_apart
+from contact1d.analysis.polynomial import fitting, lowest_minimum, value
 from contact1d.workflow.deck.deck import Deck, Phase
 from contact1d.workflow.experiments.running.contact import Contact, State
 from contact1d.workflow.experiments.running.holding import Held, Start, hold, overshoot
@@ -216,13 +217,9 @@ def top_of(states: Sequence[State]) -> tuple[float, float] | None:
     if not are_apart(place):
         return None
     width = float(np.ptp(place))
-    tension = through((place - place[-1]) / width, np.asarray([-state.force for state in states]))
-    flat = [root.real for root in tension.deriv().roots() if root.imag == 0.0]
-    tops = [float(x) for x in flat if tension.deriv(2)(x) < 0.0 and abs(x) < REACH]
-    if not tops:
-        return None
-    nearest = min(tops, key=abs)
-    return float(place[-1]) + width * nearest, float(tension(nearest))
+    loss = fitting((place - place[-1]) / width) @ np.asarray([state.force for state in states])
+    top, _ = lowest_minimum(loss, -REACH, REACH)
+    return None if math.isnan(top) else (float(place[-1]) + width * top, -value(loss, top))
 
 
 def _critical_radius(scene: Scene, held: Sequence[State]) -> tuple[Quantity, float]:
