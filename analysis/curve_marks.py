@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact1d.analysis.polynomial import Array, fitting, lowest_minimum, real_roots, value
+from contact1d.analysis.polynomial import Array, lowest_minimum, real_roots, through, value
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ def _vertex(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, 
     if not are_apart(d[near]):
         return float(d[middle]), top
     x = (d[near] - d[middle]) / scale
-    missing = fitting(x) @ (top - tension[near])
+    missing = through(x, top - tension[near])
     best, _ = lowest_minimum(missing, float(x[beside + 1]), float(x[beside - 1]))
     above = -value(missing, best)
     return (float(d[middle]) + scale * best, top + above) if above > 0.0 else (float(d[middle]), top)
@@ -150,5 +150,5 @@ def smooth_crossing(displacement: Sequence[float], force: Sequence[float], level
         return place
     over = np.asarray(force[index - 1 : index + 3]) - level
     x = (d - d[1]) / (d[2] - d[1])
-    inside = real_roots(fitting(x) @ over, 0.0, 1.0)
+    inside = real_roots(through(x, over), 0.0, 1.0)
     return float(d[1] + inside[0] * (d[2] - d[1])) if len(inside) == 1 else place

@@ -20,13 +20,21 @@ ROOT = 1e-12
 """Its last step: the next one would be round-off."""
 
 
-def fitting(t: Array, degree: int | None = None) -> Array:
+def fitting(t: Array, degree: int) -> Array:
     """The matrix M, (degree + 1, n), that makes coefficients c = M y of values y at n different places t.
 
-    P goes through all values, degree = n - 1, or is that of least squares and this lower degree.
+    P goes through all values where degree = n - 1; for a lower degree it is that of least squares.
     """
-    powers = t[:, None] ** np.arange(len(t) if degree is None else degree + 1)
-    return np.linalg.inv(powers) if powers.shape[0] == powers.shape[1] else np.linalg.pinv(powers)
+    powers = t[:, None] ** np.arange(degree + 1)
+    return np.asarray(np.linalg.inv(powers) if len(t) == degree + 1 else np.linalg.pinv(powers), dtype=np.float64)
+
+
+def through(t: Array, y: Array) -> Array:
+    """Coefficients of degree n - 1 of the polynomial through n values y at different places t.
+
+    Of several sets of values, (n, m), the coefficients of each, (n, m). It has less round-off than `fitting`.
+    """
+    return np.asarray(np.linalg.solve(np.vander(t, increasing=True), y), dtype=np.float64)
 
 
 def value(c: Array, t: float) -> float:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import are_apart
-from contact1d.analysis.polynomial import fitting, lowest_minimum, value
+from contact1d.analysis.polynomial import lowest_minimum, through, value
 from contact1d.workflow.deck.deck import Deck, Phase
 from contact1d.workflow.experiments.running.contact import Contact, State
 from contact1d.workflow.experiments.running.holding import Held, Start, hold, overshoot
@@ -217,7 +217,7 @@ def top_of(states: Sequence[State]) -> tuple[float, float] | None:
     if not are_apart(place):
         return None
     width = float(np.ptp(place))
-    loss = fitting((place - place[-1]) / width) @ np.asarray([state.force for state in states])
+    loss = through((place - place[-1]) / width, np.asarray([state.force for state in states]))
     top, _ = lowest_minimum(loss, -REACH, REACH)
     return None if math.isnan(top) else (float(place[-1]) + width * top, -value(loss, top))
 
@@ -246,6 +246,4 @@ def _critical_radius(scene: Scene, held: Sequence[State]) -> tuple[Quantity, flo
 
 def _weights(places: NDArray[np.float64], place: float) -> NDArray[np.float64]:
     """Weights of the values at `places` [LU] in the value at `place` of the polynomial through all of them."""
-    width = float(np.ptp(places))
-    matrix = np.vander((places - place) / width, increasing=True)
-    return np.asarray(np.linalg.inv(matrix)[0])
+    return np.asarray(through((places - place) / float(np.ptp(places)), np.eye(len(places)))[0])
