@@ -47,11 +47,11 @@ def real_roots(c: Array, low: float, high: float) -> Array:
 
     They are eigenvalues of the companion matrix; `numpy.polynomial` does the same in twice the time.
     """
-    lead = c[-1] or np.finfo(np.float64).eps * float(np.abs(c).max())
-    if lead == 0.0:
+    c = np.trim_zeros(c, "b")
+    if len(c) < 2:
         return np.empty(0)
     companion = np.eye(len(c) - 1, k=-1)
-    companion[:, -1] -= c[:-1] / lead
+    companion[:, -1] -= c[:-1] / c[-1]
     roots = np.asarray(np.linalg.eigvals(companion), dtype=np.complex128)
     real = roots.real[np.abs(roots.imag) < REAL]
     return real[(real >= low) & (real <= high)]
@@ -60,7 +60,7 @@ def real_roots(c: Array, low: float, high: float) -> Array:
 def lowest_minimum(c: Array, low: float, high: float, near: float | None = None) -> tuple[float, float]:
     """(t, P″(t)) of the lowest minimum of P between low and high, NaN where it has none.
 
-    A minimum that is known to be `near` some place is found from there, by Newton's method.
+    A minimum that is known to be `near` some place is found from there, by Newton's method, where |t| < 1.
     """
     powers = np.arange(len(c))
     first = c[1:] * powers[1:]
