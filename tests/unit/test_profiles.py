@@ -169,6 +169,7 @@ def test_bodies_take_the_profile_as_drawn_or_transformed_by_their_reduction() ->
     for reduction, height in ((None, 1.0), ("geike_popov", 1.0), ("mdr", 2.0)):
         bodies = Bodies.model_validate(made | ({} if reduction is None else {"reduction": reduction}))
         assert bodies.height(x).tolist() == [0.0, height]
+        assert bodies.plane_radius == 50.0 / height
         assert bodies.reach == math.inf
 
 

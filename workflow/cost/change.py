@@ -10,7 +10,7 @@ from typing import Any
 
 from contact1d.potentials.table import Table
 from contact1d.workflow.cost.row_law import row_law
-from contact1d.workflow.scene import FlatPunch, Scene, scene_from_dict
+from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.scene.tables import TIMED
 from contact1d.workflow.settings.settings import Settings, interaction_law, settings_for
 
@@ -68,7 +68,7 @@ def base_change(scene: Scene) -> Change:
 def at_tolerance(scene: Scene, tolerance: float) -> Change:
     """The tolerance, and nothing numerical that the scene fixed by itself."""
     overrides = [f"accuracy.tolerance={tolerance!r}"]
-    if not isinstance(scene.bodies.profile, FlatPunch):
+    if not scene.bodies.profile.has_edge:
         overrides.append("bodies.particles=auto")
     if scene.interaction is not None and scene.interaction.attraction is not None:
         overrides.append("interaction.cutoff=auto")

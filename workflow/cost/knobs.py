@@ -15,7 +15,7 @@ from contact1d.workflow.cost.change import Change, at_tolerance, with_method
 from contact1d.workflow.cost.errors import is_sampled
 from contact1d.workflow.cost.row_law import row_law
 from contact1d.workflow.cost.spacing import SPACING_FACTORS, at_spacing, spacing_is_physics
-from contact1d.workflow.scene import FlatPunch, Scene
+from contact1d.workflow.scene import Scene
 from contact1d.workflow.scene.experiments import Span
 from contact1d.workflow.settings.settings import Settings, settings_for
 
@@ -104,7 +104,7 @@ def left_out(scene: Scene) -> dict[str, str]:
         reasons["other thermostats"] = OTHER_THERMOSTATS
     if reason := spacing_is_physics(scene, settings_for(scene)):
         reasons["spacing"] = reason
-    if isinstance(scene.bodies.profile, FlatPunch):
+    if scene.bodies.profile.has_edge:
         reasons["chain length"] = "a flat punch is as long as it is wide"
     if scene.noise is not None or scene.experiment.kind == "slide":
         reasons["method"] = "what is asked for exists in time only"
@@ -147,7 +147,7 @@ def _styled(style: str, points: int) -> Change:
 
 
 def _chain(scene: Scene, own: Settings) -> Iterator[Knob]:
-    if isinstance(scene.bodies.profile, FlatPunch):
+    if scene.bodies.profile.has_edge:
         return
     automatic = settings_for(at_tolerance(scene, scene.accuracy.tolerance).scene(scene)).particles
     counts = dict.fromkeys(max(4, 2 * round(0.5 * factor * automatic)) for factor in CHAIN_FACTORS)

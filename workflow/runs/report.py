@@ -21,7 +21,7 @@ from contact1d.workflow.experiments import Outcome, in_words, unmet
 from contact1d.workflow.experiments.running.outcome import left_open_by_spacing
 from contact1d.workflow.experiments.running.radii import radius_of
 from contact1d.workflow.runs.scales import scales_of, unfound
-from contact1d.workflow.scene import Parabola, Scene
+from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import FORCE, LENGTH, LINE_PRESSURE, SI, Scales
 
 Array = NDArray[np.float64]
@@ -170,10 +170,9 @@ def _theory(scene: Scene, marks: Mapping[str, float]) -> tuple[str, Array, Array
     """JKR with the run's own F_A and a₀; Hertz, with nothing fitted, for a parabola on a rigid plane; else none."""
     from contact1d.analysis import plots
 
-    bodies = scene.bodies
-    if not isinstance(bodies.profile, Parabola):
+    bodies, radius = scene.bodies, scene.bodies.plane_radius
+    if radius is None:
         return None
-    radius = bodies.profile.radius * (0.5 if bodies.reduction == "mdr" else 1.0)
     if _adheres_over_a_width(marks):
         curve = plots.jkr_curve(marks["adhesion_force"], marks["zero_load_radius"], radius)
         return "JKR, same $F_A$ and $a_0$", *curve

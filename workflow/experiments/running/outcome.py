@@ -11,7 +11,7 @@ from contact1d.workflow.deck.deck import Phase
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.law_error import law_share
 from contact1d.workflow.experiments.running.slowness import slowness
-from contact1d.workflow.scene import FlatPunch, Scene
+from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.units import Quantity
 
@@ -137,7 +137,7 @@ def _reaches_end(scene: Scene, profile: Profile) -> bool:
 
     That of a flat punch is meant to be.
     """
-    if isinstance(scene.bodies.profile, FlatPunch):
+    if scene.bodies.profile.has_edge:
         return False
     pressure = profile.pressure
     if scene.interaction is not None and scene.interaction.attraction is not None:
@@ -151,7 +151,7 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
     """Named warnings about states that are results, but limited ones."""
     found = {}
     share = max(end_pressure_share(state.profile) for state in states)
-    if not isinstance(scene.bodies.profile, FlatPunch) and share > END_SHARE_LIMIT * scene.accuracy.tolerance:
+    if not scene.bodies.profile.has_edge and share > END_SHARE_LIMIT * scene.accuracy.tolerance:
         found["chain_end"] = (
             f"the outermost particles carry up to {share:.2g} of the largest pressure, so the chain of "
             f'{settings.particles} particles cuts the contact: take more bodies.particles, or "auto"'
