@@ -11,6 +11,7 @@ import pytest
 import contact1d
 from contact1d.workflow.runs.campaign import FolderError, RunError, prepare, run, run_many, write_deck
 from contact1d.workflow.scene import Scene, scene_from_dict
+from tests.scenes import chains
 
 ALWAYS = {
     "results.json", "curve.csv", "profile.csv", "scene.toml", "system.data", "in.lammps", "log.lammps", "curve.txt",
@@ -19,19 +20,9 @@ ALWAYS = {
 
 def plane(**experiment: object) -> Scene:
     """Some particles on a rigid plane: the quickest run there is."""
-    return scene_from_dict(
-        {
-            "title": "plane",
-            "bodies": {
-                "particles": 21,
-                "spacing": 1.0,
-                "profile": {"kind": "parabola", "radius": 50.0},
-                "bulk_stiffness": 0.5,
-                "lower": "rigid_plane",
-            },
-            "experiment": {"kind": "load", "force": 0.5} | experiment,
-        }
-    )
+    load = {"kind": "load", "force": 0.5} | experiment
+    bodies = {"particles": 21, "lower": "rigid_plane"}
+    return scene_from_dict(chains(50.0, 0.5, bodies=bodies, interaction=None, experiment=load))
 
 
 def test_a_run_leaves_a_complete_folder(tmp_path: Path) -> None:

@@ -19,7 +19,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
 
 import numpy as np
 import pytest
@@ -31,6 +30,7 @@ from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Session
 from contact1d.workflow.experiments import RunContext, write_system
 from contact1d.workflow.settings.settings import settings_for
+from tests.scenes import chains
 
 Array = NDArray[np.float64]
 
@@ -63,24 +63,15 @@ def sample(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Sample]:
 
     @cache
     def taken(neighbours: float = 0.0, tangential: float | None = None) -> Sample:
-        scene: dict[str, Any] = {
-            "title": "noise",
-            "bodies": {
-                "particles": PARTICLES,
-                "spacing": 1.0,
-                "profile": {"kind": "parabola", "radius": 1000.0},
-                "bulk_stiffness": STIFFNESS,
-                "mass": MASS,
-            },
-            "interaction": {
-                "repulsion": {"amplitude": 0.18, "range": 0.13},
-                "attraction": {"amplitude": 0.09, "range": 0.26},
-            },
-            "damping": {"coefficient": DAMPING},
-            "noise": {"temperature": TEMPERATURE, "seed": 20},
-            "plate": {},
-            "experiment": {"kind": "load", "method": "dynamic", "force": 0.0},
-        }
+        scene = chains(
+            1000.0,
+            STIFFNESS,
+            bodies={"particles": PARTICLES, "mass": MASS},
+            damping={"coefficient": DAMPING},
+            noise={"temperature": TEMPERATURE, "seed": 20},
+            plate={},
+            experiment={"kind": "load", "method": "dynamic", "force": 0.0},
+        )
         if neighbours:
             scene["neighbours"] = {"stiffness": neighbours}
         if tangential is not None:
