@@ -147,6 +147,7 @@ def test_reach_is_where_the_body_ends() -> None:
     assert {name for name, reach in reaches.items() if reach == 50.0} == {"circle", "flat_punch"}
     assert all(reach == math.inf for name, reach in reaches.items() if name not in ("circle", "flat_punch"))
     assert table(np.arange(5.0), np.arange(5.0) ** 2).reach == 4.0
+    assert [name for name, (profile, _, _) in SHAPES.items() if profile.has_edge] == ["flat_punch"]
 
 
 def test_only_spheres_have_a_curvature_radius() -> None:
