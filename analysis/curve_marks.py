@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from contact1d.analysis.polynomial import Array, lowest_minimum, real_roots, through, value
 
 
 @dataclass(frozen=True)
@@ -36,8 +35,6 @@ NEAREST = 1e-5
 """Distance of two places over that of the outermost ones below which no polynomial is put through them."""
 WIDEST = 3
 """Samples on either side of the highest one under the widest polynomial."""
-REAL = 1e-9
-"""Imaginary part up to which a root counts as real."""
 JUMP = 3.0
 """A fall after the maximum over the rise before it, from which on it is a jump and no curve."""
 
@@ -88,10 +85,10 @@ def _vertex(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, 
     if not are_apart(d[near]):
         return float(d[middle]), top
     x = (d[near] - d[middle]) / scale
-    polynomial = through(x, tension[near] - top)
-    inside = _real_roots(polynomial.deriv(), float(x[beside + 1]), float(x[beside - 1]))
-    best = max([0.0, *inside], key=lambda place: float(polynomial(place)))
-    return float(d[middle]) + scale * best, top + max(0.0, float(polynomial(best)))
+    missing = through(x, top - tension[near])
+    best, _ = lowest_minimum(missing, float(x[beside + 1]), float(x[beside - 1]))
+    above = -value(missing, best)
+    return (float(d[middle]) + scale * best, top + above) if above > 0.0 else (float(d[middle]), top)
 
 
 def rivals(force: Sequence[float], peak: Peak) -> dict[int, float]:
@@ -109,16 +106,6 @@ def rivals(force: Sequence[float], peak: Peak) -> dict[int, float]:
 def are_apart(d: Array) -> bool:
     """Whether neighbouring displacements are far enough from each other for a polynomial through them."""
     return float(np.abs(np.diff(d)).min()) > NEAREST * float(np.ptp(d))
-
-
-def through(x: Array, y: Array) -> np.polynomial.Polynomial:
-    """The polynomial of degree n - 1 through n points; x, (n,), of the order of 1 and all different, y, (n,)."""
-    return np.polynomial.Polynomial(np.linalg.solve(np.vander(x, increasing=True), y))
-
-
-def _real_roots(polynomial: np.polynomial.Polynomial, low: float, high: float) -> list[float]:
-    roots = np.asarray(polynomial.roots(), dtype=np.complex128)
-    return [float(root.real) for root in roots if abs(root.imag) < REAL and low <= root.real <= high]
 
 
 def _bend(d: np.ndarray, tension: np.ndarray, i: int) -> float:
@@ -163,5 +150,5 @@ def smooth_crossing(displacement: Sequence[float], force: Sequence[float], level
         return place
     over = np.asarray(force[index - 1 : index + 3]) - level
     x = (d - d[1]) / (d[2] - d[1])
-    inside = _real_roots(through(x, over), 0.0, 1.0)
+    inside = real_roots(through(x, over), 0.0, 1.0)
     return float(d[1] + inside[0] * (d[2] - d[1])) if len(inside) == 1 else place

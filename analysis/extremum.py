@@ -20,10 +20,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
-from contact1d.analysis.stencil import Array, Stencil, polynomial_minimum
+from contact1d.analysis.polynomial import Array, fitting, lowest_minimum
 
 INTERPOLANT_SIZES = (7, 5)
 """Samples under the interpolating polynomial, and under the lower one that it is compared with."""
@@ -52,6 +51,19 @@ NOISE_ORDER = 12
 """Highest difference of samples that is looked at for noise: of a smooth function it is the least."""
 MEDIAN_TO_SIGMA = 0.6745
 """Median of |n| over the standard deviation of a normal n."""
+
+
+@dataclass(frozen=True)
+class Stencil:
+    """Samples low … low + size - 1 (indices) under a polynomial of this degree."""
+
+    low: int
+    size: int
+    degree: int
+
+    def of(self, values: Array) -> Array:
+        """Those of all samples that are under it, (size,)."""
+        return values[self.low : self.low + self.size]
 
 
 @dataclass(frozen=True)
@@ -140,7 +152,7 @@ def _converging(x: Array, y: Array, index: int, noise: float) -> Place | None:
     change = 0.0
     for beside in (b for b in BESIDE if b <= room):
         stencil = Stencil(index - beside, 2 * beside + 1, 2 * beside)
-        position, shift = polynomial_minimum(x, y, stencil, low, high, before)
+        position, shift = _minimum(x, y, stencil, low, high, before)
         if math.isnan(position):
             break
         if before is not None:
@@ -172,9 +184,7 @@ def _interpolated(x: Array, y: Array, index: int, noise: float) -> Place:
     """Minimum of the polynomial through the samples about `index`, compared with three through other samples."""
     low, high = float(x[index - 1]), float(x[index + 1])
     trials = [_smoothest(x, y, index, min(size, len(x)))[:2] for size in INTERPOLANT_SIZES]
-    best, *others = (
-        polynomial_minimum(x, y, stencil, low, high) for stencil in (trials[0][0], trials[1][0], *trials[0][1:])
-    )
+    best, *others = (_minimum(x, y, stencil, low, high) for stencil in (trials[0][0], trials[1][0], *trials[0][1:]))
     position, shift = best
     if math.isnan(position):  # y jumps: halfway across the larger of the two steps beside the lowest sample
         side = index + (1 if abs(y[index + 1] - y[index]) > abs(y[index - 1] - y[index]) else -1)
@@ -197,8 +207,8 @@ def _fitted(x: Array, y: Array, first: int, last: int, noise: float) -> Place:
     best = int(np.argmin(misfits))
     window, low_x, high_x = windows[best], float(x[first]), float(x[last])
     lower = Stencil(window.low, window.size, window.degree - 1)
-    position, shift = polynomial_minimum(x, y, window, low_x, high_x)
-    other, _ = polynomial_minimum(x, y, lower, low_x, high_x)
+    position, shift = _minimum(x, y, window, low_x, high_x)
+    other, _ = _minimum(x, y, lower, low_x, high_x)
     extent = high_x - low_x
     if math.isnan(position):
         return Place(0.5 * (low_x + high_x), 0.5 * extent)
@@ -210,6 +220,23 @@ def _fitted(x: Array, y: Array, first: int, last: int, noise: float) -> Place:
 def _misfit(x: Array, y: Array, window: Stencil) -> float:
     """Root mean square of what the polynomial leaves, per degree of freedom."""
     t = (window.of(x) - x[window.low]) / float(np.ptp(window.of(x)))
-    coefficients = polynomial.polyfit(t, window.of(y), window.degree)
-    residual = window.of(y) - polynomial.polyval(t, coefficients)
+    coefficients = fitting(t, window.degree) @ window.of(y)
+    residual = window.of(y) - np.vander(t, len(coefficients), increasing=True) @ coefficients
     return math.sqrt(float(np.sum(residual**2)) / max(1, window.size - window.degree - 1))
+
+
+def _minimum(
+    x: Array, y: Array, stencil: Stencil, low: float, high: float, near: float | None = None
+) -> tuple[float, float]:
+    """Position of the polynomial's lowest minimum between low and high, and its shift per unit of noise in y.
+
+    Without a minimum there (NaN, NaN); where one is known to be `near`, it is found from there.
+    """
+    points, values = stencil.of(x), stencil.of(y)
+    origin, width, depth = float(points.sum()) / len(points), float(points[-1] - points[0]), float(np.abs(values).max())
+    matrix = fitting((points - origin) / width, stencil.degree)
+    start = None if near is None else (near - origin) / width
+    t, bend = lowest_minimum(matrix @ (values / depth), (low - origin) / width, (high - origin) / width, start)
+    powers = np.arange(1, stencil.degree + 1)
+    slope = float(np.linalg.norm((powers * t ** (powers - 1)) @ matrix[1:]))
+    return origin + t * width, slope * width / (bend * depth)

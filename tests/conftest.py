@@ -14,22 +14,14 @@ from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import Engine, Session
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
+from tests.scenes import chains
 
-SMALL: dict[str, Any] = {
-    "title": "small",
-    "bodies": {
-        "particles": 20,
-        "spacing": 1.0,
-        "profile": {"kind": "parabola", "radius": 100.0},
-        "bulk_stiffness": 0.83,
-    },
-    "interaction": {
-        "repulsion": {"amplitude": 0.18, "range": 0.13},
-        "attraction": {"amplitude": 0.09, "range": 0.26},
-    },
-    "accuracy": {"tolerance": 1e-2},
-    "experiment": {"kind": "path", "displacements": [0.0, 0.05]},
-}
+SMALL = chains(
+    100.0,
+    bodies={"particles": 20},
+    accuracy={"tolerance": 1e-2},
+    experiment={"kind": "path", "displacements": [0.0, 0.05]},
+)
 
 PLANE: dict[str, Any] = {
     "title": "plane",

@@ -49,9 +49,8 @@ def curve(contact: str, setting: Setting) -> Curve:
     else:
         scene, unit, force_unit = identified(setting)
         bodies = scene.bodies
-        model = ChainModel(
-            2 * round(CHAIN * setting.grid), scene.bulk_stiffness, pair_law(scene), 0.5 * bodies.profile.radius
-        )
+        assert bodies.plane_radius is not None
+        model = ChainModel(2 * round(CHAIN * setting.grid), scene.bulk_stiffness, pair_law(scene), bodies.plane_radius)
     start_up = time.perf_counter() - began
     began = time.perf_counter()
     states = trace(model, d / unit)

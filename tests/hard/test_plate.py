@@ -19,6 +19,7 @@ from contact1d.workflow.engine.session import Session
 from contact1d.workflow.experiments import planned
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
+from tests.scenes import chains
 
 MakeScene = Callable[..., Scene]
 OpenDeck = Callable[[Scene], tuple[Deck, Session]]
@@ -56,26 +57,15 @@ def test_a_long_chain_has_few_bins(make_scene: MakeScene) -> None:
 def test_a_plate_with_momentum_does_not_break_the_contact_too_early(tmp_path: Path, plate: dict[str, float]) -> None:
     """A weakly damped plate shoots past its place: the stated bracket still holds the pull-off force."""
     attraction, repulsion = (0.2, 0.5), (0.4, 0.25)
-    scene = scene_from_dict(
-        {
-            "title": "momentum",
-            "bodies": {
-                "particles": "auto",
-                "spacing": 1.0,
-                "profile": {"kind": "parabola", "radius": 50.0},
-                "bulk_stiffness": 0.83,
-            },
-            "interaction": {
-                "repulsion": {"amplitude": repulsion[0], "range": repulsion[1]},
-                "attraction": {"amplitude": attraction[0], "range": attraction[1]},
-            },
-            "damping": {"coefficient": 0.02},
-            "plate": plate,
-            "accuracy": {"tolerance": 1e-2},
-            "experiment": {"kind": "pull_off", "method": "dynamic", "preload": 0.5},
-        }
+    tables = chains(
+        50.0,
+        law=(*repulsion, *attraction),
+        damping={"coefficient": 0.02},
+        plate=plate,
+        accuracy={"tolerance": 1e-2},
+        experiment={"kind": "pull_off", "method": "dynamic", "preload": 0.5},
     )
-    finished = run(scene, tmp_path / "run", figures=False)
+    finished = run(scene_from_dict(tables), tmp_path / "run", figures=False)
     law = PairInteraction(Exponential(*repulsion), Exponential(*attraction))
     model = ChainModel(finished.outcome.states[0].profile.x.size, 0.83, law, radius=50.0)
     exact = pull_off(model, 0.5, step=0.06).adhesion_force

@@ -14,23 +14,11 @@ from contact1d.analysis.reference.interaction import Exponential, PairInteractio
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.workflow.scene import scene_from_dict
-
-LAW = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
+from tests.scenes import LAW, chains
 
 
 def tables(experiment: dict[str, Any], bodies: dict[str, Any] | None = None, **more: Any) -> dict[str, Any]:
-    return {
-        "title": "hard",
-        "bodies": {
-            "particles": 60,
-            "spacing": 1.0,
-            "profile": {"kind": "parabola", "radius": 100.0},
-            "bulk_stiffness": 0.83,
-        }
-        | (bodies or {}),
-        "interaction": LAW,
-        "experiment": experiment,
-    } | more
+    return chains(100.0, bodies={"particles": 60} | (bodies or {}), experiment=experiment, **more)
 
 
 PULL = {"kind": "pull_off", "preload": 0.3}
@@ -160,7 +148,7 @@ NEAR = {"quasistatic": 0.002, "dynamic": 0.01}
 @pytest.mark.parametrize("method", NEAR)
 def test_a_tension_is_held_up_to_the_adhesion_force_and_no_further(tmp_path: Path, method: str) -> None:
     """The adhesion force is that of the reference solver, which shares nothing with the program."""
-    terms = [Exponential(LAW[name]["amplitude"], LAW[name]["range"]) for name in ("repulsion", "attraction")]
+    terms = [Exponential(*LAW[:2]), Exponential(*LAW[2:])]
     adhesion = pull_off(ChainModel(60, 0.83, PairInteraction(*terms), radius=100.0), 0.1).adhesion_force
     more = TIMED if method == "dynamic" else {}
 

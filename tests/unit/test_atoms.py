@@ -11,30 +11,16 @@ from contact1d.analysis.atoms import atoms
 from contact1d.analysis.curve import read_profiles
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import scene_from_dict
+from tests.scenes import chains
 
 ROUND_OFF = 1e-13  # the same doubles, divided by the spacing in between
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    scene = scene_from_dict(
-        {
-            "title": "small pull-off",
-            "bodies": {
-                "particles": 40,
-                "spacing": 1.0,
-                "profile": {"kind": "parabola", "radius": 50.0},
-                "bulk_stiffness": 0.83,
-            },
-            "interaction": {
-                "repulsion": {"amplitude": 0.18, "range": 0.13},
-                "attraction": {"amplitude": 0.09, "range": 0.26},
-            },
-            "accuracy": {"tolerance": 1e-2},
-            "experiment": {"kind": "pull_off", "preload": 0.2},
-        }
-    )
-    return run(scene, tmp_path_factory.mktemp("run") / "small", figures=False).folder
+    pull = {"kind": "pull_off", "preload": 0.2}
+    tables = chains(50.0, bodies={"particles": 40}, accuracy={"tolerance": 1e-2}, experiment=pull)
+    return run(scene_from_dict(tables), tmp_path_factory.mktemp("run") / "small", figures=False).folder
 
 
 def test_every_state_agrees_with_its_profile(folder: Path) -> None:

@@ -27,8 +27,6 @@ from contact1d.workflow.cost.orders import Order, fit_order, pareto_front
 from contact1d.workflow.cost.per_step import without_effects
 from contact1d.workflow.cost.record import Advice, CostRecord, EffectCost, KnobRecord, VariantRecord, read_record
 from contact1d.workflow.cost.report import COLUMNS, csv_text, effects_markdown, summary, write_report
-from contact1d.workflow.cost.sampling import samplings
-from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.estimate import row_force
@@ -61,60 +59,48 @@ displacements = { from = 0.0, to = 0.5, steps = 2 }
 
 
 def names(scene: Scene) -> set[str]:
-    base = base_change(scene)
-    return {knob.name for knob in knobs_of(scene, settings_for(scene), base.chosen(base.scene(scene)))}
+    return {knob.name for knob in knobs_of(scene, settings_for(scene))}
 
 
-ALWAYS = {"tolerance"}
-STILL = {"convergence threshold", "load increment"}
-TIMED = {"time step", "damping"}
-LAW = {"table points", "table style linear", "table style lookup", "table style bitmap", "cutoff"}
+ALWAYS = {"tolerance", "chain length"}
 
 
 @pytest.mark.parametrize(
     ("name", "wanted"),
     [
-        ("pull_off", ALWAYS | STILL | LAW | {"chain length", "method dynamic"}),
-        ("load", ALWAYS | STILL | LAW | {"chain length", "method dynamic", "spacing"}),
-        ("hertz_plane", ALWAYS | STILL | {"chain length", "method dynamic", "spacing"}),
-        ("path_hysteresis", ALWAYS | STILL | LAW | {"chain length", "method dynamic"}),
-        ("pull_off_dynamic", ALWAYS | TIMED | LAW | {"chain length", "method quasistatic"}),
-        ("thermal_load", ALWAYS | TIMED | LAW | {"chain length", "thermostat gjf"}),
+        ("pull_off", {"cutoff", "method dynamic"}),
+        ("load", {"cutoff", "method dynamic", "spacing"}),
+        ("hertz_plane", {"load increment", "method dynamic", "spacing"}),
+        ("path_hysteresis", {"cutoff", "load increment", "method dynamic"}),
+        ("pull_off_dynamic", {"cutoff", "damping", "method quasistatic"}),
+        ("thermal_load", {"cutoff", "damping"}),
     ],
 )
-def test_a_scene_has_the_knobs_of_its_effects_and_method(name: str, wanted: set[str]) -> None:
+def test_a_scene_has_the_knobs_that_its_file_can_turn(name: str, wanted: set[str]) -> None:
     scene = read_scene(SCENES / f"{name}.toml")
-    assert names(scene) == wanted
+    assert names(scene) == ALWAYS | wanted
     assert not names(scene) & left_out(scene).keys()
-    assert ("other thermostats" in left_out(scene)) == (scene.noise is not None)
     assert ("spacing" in left_out(scene)) == ("spacing" not in wanted)
 
 
 def test_a_law_without_attraction_has_no_cutoff_to_turn(make_scene: MakeScene) -> None:
     scene = make_scene(interaction={"repulsion": {"amplitude": 0.18, "range": 0.13}})
-    assert "table points" in names(scene)
     assert "cutoff" not in names(scene)
     assert "physics" in left_out(scene)["cutoff"]
 
 
-def test_a_change_sets_keys_settings_and_table_and_changes_add_up(make_scene: MakeScene) -> None:
+def test_a_change_sets_keys_and_changes_add_up(make_scene: MakeScene) -> None:
     scene = make_scene()
-    change = base_change(scene) + Change(("accuracy.tolerance=0.01",), (), (("table_points", 1000),))
-    change += Change((), (), (("force_tolerance", 1e-5), ("table_points", 2000)))
+    change = base_change(scene) + Change(("accuracy.tolerance=0.1",)) + Change(("accuracy.tolerance=0.01",))
     changed = change.scene(scene)
-    chosen, usual = change.chosen(changed), settings_for(changed)
     assert changed.accuracy.tolerance == 0.01
     assert changed.bodies.particles == "auto"
-    assert chosen.table is not None
-    assert chosen.table.points == 2000
-    assert chosen.force_tolerance == 1e-5
-    assert (chosen.cutoff, chosen.particles, chosen.closest) == (usual.cutoff, usual.particles, usual.closest)
+    assert change.chosen(changed).table == settings_for(changed).table
 
 
 def test_a_spacing_keeps_stiffness_per_length() -> None:
     scene = read_scene(SCENES / "hertz_plane.toml")
-    base = base_change(scene)
-    knobs = knobs_of(scene, settings_for(scene), base.chosen(base.scene(scene)))
+    base, knobs = base_change(scene), knobs_of(scene, settings_for(scene))
     spacing = next(knob for knob in knobs if knob.name == "spacing")
     for level in spacing.levels:
         changed = (base + level.change).scene(scene)
@@ -126,8 +112,7 @@ def test_a_spacing_of_two_chains_keeps_the_force_of_opposite_rows_per_length() -
     scene = read_scene(SCENES / "load.toml")
     own = interaction_law(scene)
     assert own is not None
-    base = base_change(scene)
-    knobs = knobs_of(scene, settings_for(scene), base.chosen(base.scene(scene)))
+    base, knobs = base_change(scene), knobs_of(scene, settings_for(scene))
     spacing = next(knob for knob in knobs if knob.name == "spacing")
     r = np.linspace(0.5, 8.0, 40) * own.force_free_distance()
     wanted = row_force(own, r, 1.0, 10.0)
@@ -149,29 +134,6 @@ def test_a_spacing_of_two_chains_keeps_the_force_of_opposite_rows_per_length() -
 def test_where_a_spacing_would_be_other_physics_it_is_not_turned() -> None:
     for name, word in (("pull_off", "along x"), ("path_hysteresis", "snap"), ("thermal_load", "thermal")):
         assert word in left_out(read_scene(SCENES / f"{name}.toml"))["spacing"]
-
-
-@pytest.mark.parametrize(("style", "size"), [("spline", "8192"), ("linear", "8192"), ("bitmap", "13")])
-def test_a_table_style_reaches_the_deck(style: str, size: str, make_scene: MakeScene) -> None:
-    scene = make_scene()
-    settings = Change(settings=(("table_points", 8192), ("table_style", style))).chosen(scene)
-    assert f"table {style} {size}\n" in Deck(scene, settings).head
-
-
-def test_thermostats_are_held_against_equipartition(tmp_path: Path) -> None:
-    """A short study; the standard errors are a few times wider than those of a real one."""
-    scene = read_scene(SCENES / "thermal_load.toml", ("bodies.particles=40", "accuracy.tolerance=0.05"))
-    found = samplings(scene, tmp_path, steps=8_000)
-    assert [(one.scheme, one.time_step / found[0].time_step) for one in found] == [
-        (scheme, pytest.approx(factor)) for scheme in ("langevin", "gjf") for factor in (1.0, 2.0, 4.0, 8.0)
-    ]
-    for one in found:
-        assert one.us_per_step > 0.0
-        assert 0.0 < one.error < 0.1
-    # Both at the scene's own time step; at eight times that only gjf is still without bias.
-    for one in (found[0], *found[4:]):
-        assert abs(one.variance - 1.0) < 5.0 * one.error
-    assert samplings(read_scene(SCENES / "load.toml"), tmp_path) == ()
 
 
 def test_the_order_of_synthetic_errors_is_found_with_its_standard_error() -> None:
@@ -216,16 +178,14 @@ def test_advice_says_what_the_tolerance_chooses_and_what_is_cheaper_in_the_scene
     variants = [
         tolerance(1e-3, 1e-6, 3.0),
         tolerance(1e-1, 1e-4, 0.5),
-        variant("tuned", 2e-4, 0.1, knob="combined", settings={"time_step": 0.2}, details="time step 0.2"),
+        variant("tuned", 2e-4, 0.1, knob="combined", details="cutoff 3 LU"),
     ]
     advice = advise(1e-3, variants, noisy=False)
     assert advice.text == (
         "tolerance 1e-3: chooses table of 2000 points: error 1.0e-06 in 3 s of CPU; "
-        "cheaper in this scene: tuned (time step 0.2), error 2.0e-04 in 0.1 s of CPU; "
-        "by the scene file alone: accuracy.tolerance = 0.1, error 1.0e-04 in 0.5 s of CPU"
+        "cheaper in this scene: tuned (cutoff 3 LU), error 2.0e-04 in 0.1 s of CPU"
     )
     assert (advice.chosen, advice.label) == ("accuracy.tolerance = 0.001", "tuned")
-    assert advice.scene_label == "accuracy.tolerance = 0.1"
 
 
 def test_advice_is_silent_about_what_saves_nothing_to_speak_of() -> None:
@@ -292,14 +252,14 @@ def test_a_variant_without_a_main_result_has_failed(make_scene: MakeScene) -> No
 
 def test_a_combination_takes_each_knob_at_its_coarsest_good_value() -> None:
     scene = read_scene(SCENES / "pull_off.toml")
-    base = base_change(scene)
-    knobs = knobs_of(scene, settings_for(scene), base.chosen(base.scene(scene)))
-    errors = {500: 1e-1, 1000: 2e-3, 2000: 1e-4, 4000: 1e-6}
-    records = [variant(f"table of {n} points", error, 1.0, knob="table points") for n, error in errors.items()]
-    found = {label: (text, change.settings) for label, text, change in combinations(knobs, records, base)}
-    assert found["combined for 1e-2"] == ("table of 1000 points", (("table_points", 1000),))
-    assert found["combined for 1e-3"][1] == (("table_points", 2000),)
-    assert found["combined for 1e-5"][1] == (("table_points", 4000),)
+    base, knobs = base_change(scene), knobs_of(scene, settings_for(scene))
+    cutoff = next(knob for knob in knobs if knob.name == "cutoff")
+    errors = (1e-1, 2e-3, 1e-4, 1e-5, 1e-6)
+    records = [variant(one.label, e, 1.0, knob="cutoff") for one, e in zip(cutoff.levels, errors, strict=True)]
+    found = {label: (text, change) for label, text, change in combinations(knobs, records, base)}
+    for target, place in (("1e-2", 1), ("1e-3", 2), ("1e-4", 3), ("1e-5", 4)):
+        level = cutoff.levels[place]
+        assert found[f"combined for {target}"] == (level.label, base + level.change)
 
 
 def test_effects_that_cannot_be_left_out_say_why() -> None:
@@ -310,10 +270,10 @@ def test_effects_that_cannot_be_left_out_say_why() -> None:
 
 
 def record() -> CostRecord:
-    failed = VariantRecord("coarse", "table points", 500.0, failure="particles flew\napart")
+    failed = VariantRecord("the scene as it is", "scene", math.nan, failure="particles flew\napart")
     good = variant(
         "accuracy.tolerance = 0.01", 1e-4, 0.2, values={"adhesion_force": 1.5}, errors={"adhesion_force": 1e-4},
-        steps=70, memory_mb=61.0, total_s=0.4, scene_keys=("accuracy.tolerance=0.01",), settings={},
+        steps=70, memory_mb=61.0, total_s=0.4, scene_keys=("accuracy.tolerance=0.01",),
     )  # fmt: skip
     return CostRecord(
         title="a pull-off", scene="pull_off", method="quasistatic", tolerance=1e-3,
@@ -329,7 +289,7 @@ def record() -> CostRecord:
             EffectCost("neighbours", 17.0, 15.0, 1.133, 0.004, 400, "", {"adhesion_force": 6e-5}),
         ),
         left_out={"spacing": "it would change the physics"}, pareto=(good.label,),
-        advice=(Advice(1e-3, "tolerance 1e-3: take it", "", good.label, good.label),),
+        advice=(Advice(1e-3, "tolerance 1e-3: take it", "", good.label),),
         versions={"lammps": "1"}, wall_s=9.0,
     )  # fmt: skip
 
@@ -353,7 +313,7 @@ def test_the_summary_and_the_readme_say_orders_costs_failures_and_advice() -> No
     for words in (
         "0.94 ± 0.04",
         "1.133 ± 0.004",
-        "coarse: particles flew apart",
+        "the scene as it is: particles flew apart",
         "take it",
         "would change the physics",
     ):
@@ -404,11 +364,18 @@ def test_the_command_studies_a_scene_from_end_to_end(tmp_path: Path) -> None:
     done = contact1d("cost", "tiny.toml", "--repeats", "1", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "tolerance 1e-3: " in done.stdout
-    assert "gave no numbers" in done.stdout  # the shortest chains are too short
+    assert "gave no numbers" not in done.stdout  # the shortest chains are too short, which nobody asked for
     folder = tmp_path / "costs" / "tiny"
     assert {path.name for path in folder.iterdir()} == {"cost.json", "cost.csv", "cost.png"}
     found = read_record(folder / "cost.json")
-    assert {"tolerance", "chain length", "convergence threshold", "spacing"} <= {knob.name for knob in found.knobs}
+    assert {knob.name for knob in found.knobs} == {
+        "tolerance",
+        "chain length",
+        "load increment",
+        "method dynamic",
+        "spacing",
+    }
+    assert not [one.label for one in found.variants if one.failure]
     assert found.pareto
     assert [one.name for one in found.effect_costs] == ["neighbours"]
     assert found.effect_costs[0].without_us > 0.0

@@ -23,26 +23,17 @@ from contact1d.workflow.experiments.running.holding import Held, damping_under, 
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.estimate import plane_estimate
 from contact1d.workflow.settings.settings import Settings, settings_for
+from tests.scenes import chains
 
 NOTHING = np.zeros(3)
 PROFILE = Profile(NOTHING, NOTHING, NOTHING, NOTHING, NOTHING)
 RULE: Any = None  # no radius is asked for here
-TIMED = {
-    "title": "timed",
-    "bodies": {
-        "particles": "auto",
-        "spacing": 1.0,
-        "profile": {"kind": "parabola", "radius": 200.0},
-        "bulk_stiffness": 0.83,
-    },
-    "interaction": {
-        "repulsion": {"amplitude": 0.18, "range": 0.13},
-        "attraction": {"amplitude": 0.09, "range": 0.26},
-    },
-    "damping": {"coefficient": "auto"},
-    "plate": {},
-    "experiment": {"kind": "pull_off", "method": "dynamic", "preload": 0.5},
-}
+TIMED = chains(
+    200.0,
+    damping={"coefficient": "auto"},
+    plate={},
+    experiment={"kind": "pull_off", "method": "dynamic", "preload": 0.5},
+)
 
 
 def at(displacement: float, force: float) -> State:

@@ -13,8 +13,9 @@ import pytest
 
 import contact1d.workflow.deck.fragments as fragments_module
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.effects import EFFECTS, Contribution, neighbours
-from contact1d.workflow.deck.effects import interaction as interaction_effect
+from contact1d.workflow.deck.effects import EFFECTS, Contribution
+from contact1d.workflow.deck.effects.interaction import interaction as interaction_effect
+from contact1d.workflow.deck.effects.neighbours import neighbours
 from contact1d.workflow.deck.fragments import DeckError, fragment
 from contact1d.workflow.deck.steps import STEPS, Displace, Hold, Phase, UnderLoad
 from contact1d.workflow.scene import EFFECTS as SCENE_EFFECTS

@@ -12,6 +12,7 @@ import pytest
 
 from contact1d.workflow.identify import IdentifyError, Target, identify, jkr_target, material_scene, require_reachable
 from contact1d.workflow.scene import Scene, scene_from_dict
+from tests.scenes import chains
 
 ROUND_OFF = 1e-13
 PRINTED = 5e-6
@@ -20,22 +21,15 @@ TOLERANCE = 1e-2
 """Of the scene that is searched for, loose so that its runs are quick; the search ends at 0.3 of it."""
 REACH = 0.95 * 4.0 / (9.0 * math.sqrt(3.0))
 """F_A R₁/(c a₀³) up to which a target is tried: 95 % of the brittle limit."""
-LAW = {"repulsion": {"amplitude": 0.4, "range": 0.25}, "attraction": {"amplitude": 0.2, "range": 0.5}}
+LAW = (0.4, 0.25, 0.2, 0.5)
 PULL = {"kind": "pull_off", "preload": 0.5}
 
 
 def scene_of(profile: dict[str, Any] | None = None, experiment: dict[str, Any] | None = None, **bodies: Any) -> Scene:
     """A pull-off of R = 200 LU."""
-    return scene_from_dict(
-        {
-            "title": "identify",
-            "bodies": {"particles": "auto", "spacing": 1.0, "profile": profile or {"kind": "parabola", "radius": 200.0},
-                       "bulk_stiffness": 0.83} | bodies,
-            "interaction": LAW,
-            "accuracy": {"tolerance": TOLERANCE},
-            "experiment": experiment or PULL,
-        }
-    )  # fmt: skip
+    changed = bodies if profile is None else bodies | {"profile": profile}
+    accuracy = {"tolerance": TOLERANCE}
+    return scene_from_dict(chains(200.0, law=LAW, bodies=changed, accuracy=accuracy, experiment=experiment or PULL))
 
 
 # The target.

@@ -14,6 +14,7 @@ from contact1d.workflow.experiments.running.law_error import GIVES, law_error
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import Settings, settings_for
+from tests.scenes import chains
 
 SUM = 1e-9
 """Two sums over the same pairs, relative; the tail beyond its last range is in neither."""
@@ -23,23 +24,9 @@ SHARP = 20.0
 
 def pressed(**interaction: Any) -> Scene:
     """Two chains that touch over a width, at a prescribed displacement; the claim is for the force there."""
-    return scene_from_dict(
-        {
-            "title": "pressed",
-            "bodies": {
-                "particles": 60,
-                "spacing": 1.0,
-                "profile": {"kind": "parabola", "radius": 100.0},
-                "bulk_stiffness": 0.83,
-            },
-            "interaction": {
-                "repulsion": {"amplitude": 0.18, "range": 0.13},
-                "attraction": {"amplitude": 0.09, "range": 0.26},
-            }
-            | interaction,
-            "experiment": {"kind": "path", "displacements": [0.2]},
-        }
-    )
+    tables = chains(100.0, bodies={"particles": 60}, experiment={"kind": "path", "displacements": [0.2]})
+    tables["interaction"] |= interaction
+    return scene_from_dict(tables)
 
 
 def with_points(scene: Scene, points: int) -> Settings:

@@ -15,6 +15,7 @@ from contact1d import Run, run
 from contact1d.workflow.runs.scales import jkr_scales, scales_of
 from contact1d.workflow.scene import Elastic, Material, Problem, SceneError, scene_from_dict, scene_to_toml
 from contact1d.workflow.units import Quantity, Scales
+from tests.scenes import chains
 
 ROUND_OFF = 1e-13
 """Relative: a few operations each."""
@@ -24,23 +25,16 @@ STEEL = {"youngs_modulus": 210e9, "poisson_ratio": 0.3}
 RUBBER = {"youngs_modulus": 2e6, "poisson_ratio": 0.5}
 E_STAR = {"contact_modulus": 200e9}
 UNITS = {"length_unit": 1e-9, "force_unit": 1e-6}
-LAW = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
 PULL = {"kind": "pull_off", "preload": 0.3}
 PATH = {"kind": "path", "displacements": [0.0, 0.3]}
 
 
 def tables(material: dict[str, Any] | None = None, experiment: dict[str, Any] = PULL, **bodies: Any) -> dict[str, Any]:
     """A scene; on a rigid plane without its interaction."""
-    made: dict[str, Any] = {
-        "title": "material",
-        "bodies": {"particles": "auto", "spacing": 1.0, "profile": {"kind": "parabola", "radius": 100.0},
-                   "bulk_stiffness": 0.83} | bodies,
-        "interaction": LAW,
-        "experiment": experiment,
-    }  # fmt: skip
+    made = chains(100.0, bodies=bodies, experiment=experiment, material=material)
     if bodies.get("lower") == "rigid_plane":
         del made["interaction"]
-    return made if material is None else made | {"material": material}
+    return made
 
 
 # Elasticity.

@@ -147,6 +147,7 @@ def test_reach_is_where_the_body_ends() -> None:
     assert {name for name, reach in reaches.items() if reach == 50.0} == {"circle", "flat_punch"}
     assert all(reach == math.inf for name, reach in reaches.items() if name not in ("circle", "flat_punch"))
     assert table(np.arange(5.0), np.arange(5.0) ** 2).reach == 4.0
+    assert [name for name, (profile, _, _) in SHAPES.items() if profile.has_edge] == ["flat_punch"]
 
 
 def test_only_spheres_have_a_curvature_radius() -> None:
@@ -169,6 +170,7 @@ def test_bodies_take_the_profile_as_drawn_or_transformed_by_their_reduction() ->
     for reduction, height in ((None, 1.0), ("geike_popov", 1.0), ("mdr", 2.0)):
         bodies = Bodies.model_validate(made | ({} if reduction is None else {"reduction": reduction}))
         assert bodies.height(x).tolist() == [0.0, height]
+        assert bodies.plane_radius == 50.0 / height
         assert bodies.reach == math.inf
 
 

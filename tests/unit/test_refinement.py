@@ -23,24 +23,13 @@ from contact1d.workflow.scene import Scene, read_scene, scene_from_dict
 from contact1d.workflow.settings.calibration import CALIBRATION
 from contact1d.workflow.settings.settings import Settings, settings_for
 from contact1d.workflow.units import Quantity
+from tests.scenes import chains
 
 TOLERANCE = 1e-4
 ROUND_OFF = 1e-12
-SCENE: dict[str, Any] = {
-    "title": "refined",
-    "bodies": {
-        "particles": "auto",
-        "spacing": 1.0,
-        "profile": {"kind": "parabola", "radius": 380.0},
-        "bulk_stiffness": 0.65,
-    },
-    "interaction": {
-        "repulsion": {"amplitude": 0.05, "range": 0.207},
-        "attraction": {"amplitude": 0.025, "range": 0.414},
-    },
-    "accuracy": {"tolerance": TOLERANCE},
-    "experiment": {"kind": "pull_off", "preload": 0.7},
-}
+LAW = (0.05, 0.207, 0.025, 0.414)
+PULL = {"kind": "pull_off", "preload": 0.7}
+SCENE = chains(380.0, 0.65, LAW, accuracy={"tolerance": TOLERANCE}, experiment=PULL)
 
 
 class Heard(Silent):

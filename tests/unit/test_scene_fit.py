@@ -1,28 +1,15 @@
 """Rules across tables: each one broken on its own, by its path and its words; and the scenes that keep them."""
 
 import math
-from typing import Any
 
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from contact1d.workflow.scene import Problem, SceneError, scene_from_dict
+from tests.scenes import chains
 
-BASE: dict[str, Any] = {
-    "title": "base",
-    "bodies": {
-        "particles": "auto",
-        "spacing": 1.0,
-        "profile": {"kind": "parabola", "radius": 1000.0},
-        "bulk_stiffness": 0.83,
-    },
-    "interaction": {
-        "repulsion": {"amplitude": 0.18, "range": 0.13},
-        "attraction": {"amplitude": 0.09, "range": 0.26},
-    },
-    "experiment": {"kind": "pull_off", "preload": 1.0},
-}
+BASE = chains(1000.0, title="base", experiment={"kind": "pull_off", "preload": 1.0})
 LOAD = 'experiment={ kind = "load", force = 1.0 }'
 PATH = 'experiment={ kind = "path", displacements = [0.0, 1.0] }'
 SLIDE = 'experiment={ kind = "slide", normal_force = 1.0, distance = 5.0 }'

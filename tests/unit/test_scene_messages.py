@@ -1,27 +1,14 @@
 """Every mistake inside a table: one line, at its path, in the words of the scene file."""
 
 import pickle
-from typing import Any
 
 import pytest
 
 from contact1d.workflow.scene import Problem, SceneError, scene_from_dict
 from contact1d.workflow.scene.problems import as_toml, nearest, path_of, shown
+from tests.scenes import chains
 
-BASE: dict[str, Any] = {
-    "title": "base",
-    "bodies": {
-        "particles": 200,
-        "spacing": 1.0,
-        "profile": {"kind": "parabola", "radius": 1000.0},
-        "bulk_stiffness": 0.83,
-    },
-    "interaction": {
-        "repulsion": {"amplitude": 0.18, "range": 0.13},
-        "attraction": {"amplitude": 0.09, "range": 0.26},
-    },
-    "experiment": {"kind": "pull_off", "preload": 1.0},
-}
+BASE = chains(1000.0, bodies={"particles": 200}, experiment={"kind": "pull_off", "preload": 1.0})
 POSITIVE = [
     ("bodies.spacing", "LU"),
     ("bodies.profile.radius", "LU"),

@@ -4,7 +4,6 @@ import math
 import subprocess
 import sys
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,21 +12,9 @@ from pydantic import ValidationError
 from contact1d.workflow.scene import EFFECTS, Bodies, Parabola, Path, Plate, Scene, Slide, Span, Table, scene_from_dict
 from contact1d.workflow.scene.quantities import annotation_of, keys_of
 from contact1d.workflow.scene.wording import members, statement, table_of, unit_of
+from tests.scenes import chains
 
-BASE: dict[str, Any] = {
-    "title": "base",
-    "bodies": {
-        "particles": 200,
-        "spacing": 1.0,
-        "profile": {"kind": "parabola", "radius": 1000.0},
-        "bulk_stiffness": 0.83,
-    },
-    "interaction": {
-        "repulsion": {"amplitude": 0.18, "range": 0.13},
-        "attraction": {"amplitude": 0.09, "range": 0.26},
-    },
-    "experiment": {"kind": "pull_off", "preload": 1.0},
-}
+BASE = chains(1000.0, bodies={"particles": 200}, experiment={"kind": "pull_off", "preload": 1.0})
 DYNAMIC = ["damping.coefficient=auto", "plate={}"]
 SLIDE = [
     *DYNAMIC,

@@ -23,6 +23,7 @@ from contact1d import Run
 from contact1d.analysis.reference.independent_pairs import IndependentPairs
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.workflow.units import Quantity
+from tests.scenes import chains
 
 FORCE = 2e-6
 """Relative; measured 4e-7: table, cutoff and rows, each chosen for far less than the tolerance of 1e-3."""
@@ -43,23 +44,9 @@ def measured(run_tables: Callable[[dict[str, Any]], Run]) -> dict[float, Mapping
 
 def tables(radius: float) -> dict[str, Any]:
     """The scene of one radius [LU]."""
-    return {
-        "bodies": {
-            "particles": "auto",
-            "spacing": 1.0,
-            "profile": {"kind": "parabola", "radius": radius},
-            "bulk_stiffness": STIFFNESS,
-        },
-        "interaction": {
-            "repulsion": {"amplitude": REPULSION[0], "range": REPULSION[1]},
-            "attraction": {"amplitude": ATTRACTION[0], "range": ATTRACTION[1]},
-        },
-        "experiment": {
-            "kind": "pull_off",
-            "method": "quasistatic",
-            "preload": 0.05 * float(np.sqrt(radius / RADII[0])),
-        },
-    }
+    preload = 0.05 * float(np.sqrt(radius / RADII[0]))
+    pull = {"kind": "pull_off", "method": "quasistatic", "preload": preload}
+    return chains(radius, STIFFNESS, (*REPULSION, *ATTRACTION), experiment=pull)
 
 
 def closed_form(radius: float) -> dict[str, float]:

@@ -24,6 +24,7 @@ from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.analysis.reference.solver import ChainSolver, State, trace
 from contact1d.analysis.reference.tension_radius import tension_radius
+from tests.scenes import chains
 
 RunTables = Callable[[dict[str, Any]], Run]
 Term = tuple[float, float]
@@ -57,21 +58,14 @@ BOTH_VERTICAL: tuple[float, bool] = (0.3, False)
 
 def tables(law: tuple[Term, Term, float], effects: tuple[float, bool], experiment: dict[str, Any]) -> dict[str, Any]:
     """A dynamic scene; damping, plate, chain and time step are left open."""
-    scene: dict[str, Any] = {
-        "bodies": {
-            "particles": "auto",
-            "spacing": 1.0,
-            "profile": {"kind": "parabola", "radius": law[2]},
-            "bulk_stiffness": STIFFNESS,
-        },
-        "interaction": {
-            "repulsion": {"amplitude": law[0][0], "range": law[0][1]},
-            "attraction": {"amplitude": law[1][0], "range": law[1][1]},
-        },
-        "damping": {"coefficient": "auto"},
-        "plate": {},
-        "experiment": {"method": "dynamic"} | experiment,
-    }
+    scene = chains(
+        law[2],
+        STIFFNESS,
+        (*law[0], *law[1]),
+        damping={"coefficient": "auto"},
+        plate={},
+        experiment={"method": "dynamic"} | experiment,
+    )
     if effects[0]:
         scene["neighbours"] = {"stiffness": effects[0]}
     if effects[1]:

@@ -32,6 +32,7 @@ from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.solver import trace
 from contact1d.analysis.reference.winkler import rigid_plane_sum, winkler_force, winkler_half_width
 from contact1d.workflow.experiments.running.contact import State
+from tests.scenes import chains
 
 RunTables = Callable[[dict[str, Any]], Run]
 Array = NDArray[np.float64]
@@ -59,16 +60,9 @@ def on_plane(
     neighbours: float = 0.0,
 ) -> tuple[State, ...]:
     """States of one chain on the plane at these displacements [LU], in that order."""
-    scene: dict[str, Any] = {
-        "bodies": {
-            "particles": "auto",
-            "spacing": spacing,
-            "profile": {"kind": "parabola", "radius": radius},
-            "bulk_stiffness": stiffness,
-            "lower": "rigid_plane",
-        },
-        "experiment": {"kind": "path", "displacements": displacements.tolist()},
-    }
+    bodies = {"spacing": spacing, "lower": "rigid_plane"}
+    path = {"kind": "path", "displacements": displacements.tolist()}
+    scene = chains(radius, stiffness, bodies=bodies, interaction=None, experiment=path)
     if neighbours:
         scene["neighbours"] = {"stiffness": neighbours}
     return run_tables(scene).outcome.states

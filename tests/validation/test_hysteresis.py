@@ -24,6 +24,7 @@ from scipy.optimize import brentq
 from contact1d import Run
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.units import Quantity
+from tests.scenes import chains
 
 RunTables = Callable[[dict[str, Any]], Run]
 Array = NDArray[np.float64]
@@ -90,24 +91,9 @@ def round_trip(
     run_tables: RunTables, stiffness: float, lowest: float, steps: int
 ) -> tuple[list[State], list[State], Quantity]:
     """Loading and unloading states of a path there and back, both by rising displacement, and what it dissipates."""
-    scene: dict[str, Any] = {
-        "bodies": {
-            "particles": "auto",
-            "spacing": 1.0,
-            "profile": {"kind": "parabola", "radius": 2000.0},
-            "bulk_stiffness": stiffness,
-        },
-        "interaction": {
-            "repulsion": {"amplitude": A, "range": RANGE_A},
-            "attraction": {"amplitude": B, "range": RANGE_B},
-        },
-        "experiment": {
-            "kind": "path",
-            "method": "quasistatic",
-            "displacements": {"from": lowest, "to": 0.1, "steps": steps, "return": True},
-        },
-    }
-    outcome = run_tables(scene).outcome
+    displacements = {"from": lowest, "to": 0.1, "steps": steps, "return": True}
+    path = {"kind": "path", "method": "quasistatic", "displacements": displacements}
+    outcome = run_tables(chains(2000.0, stiffness, (A, RANGE_A, B, RANGE_B), experiment=path)).outcome
     states = outcome.states
     loading = [state for state in states if state.phase == "loading"]
     unloading = [state for state in states if state.phase == "unloading"]

@@ -17,9 +17,8 @@ integrator's bias,
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
-from typing import Any
 
 import numpy as np
 import pytest
@@ -32,6 +31,7 @@ from contact1d.workflow.engine.session import Session
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
+from tests.scenes import chains
 
 Array = NDArray[np.float64]
 
@@ -60,49 +60,36 @@ class Sample:
 
 @pytest.fixture(scope="module")
 def sample(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Sample]:
-    """`sample(neighbours=…, tangential=…, gjf=…)`: the deck's head, the bodies moved apart, and a long run at T; once
-    each. With gjf in place of fix langevin the time step is `gjf` times longer."""
+    """`sample(neighbours=…, tangential=…)`: the deck's head, the bodies moved apart, and a long run at T; once each."""
 
     @cache
-    def taken(neighbours: float = 0.0, tangential: float | None = None, gjf: float = 0.0) -> Sample:
-        scene: dict[str, Any] = {
-            "title": "noise",
-            "bodies": {
-                "particles": PARTICLES,
-                "spacing": 1.0,
-                "profile": {"kind": "parabola", "radius": 1000.0},
-                "bulk_stiffness": STIFFNESS,
-                "mass": MASS,
-            },
-            "interaction": {
-                "repulsion": {"amplitude": 0.18, "range": 0.13},
-                "attraction": {"amplitude": 0.09, "range": 0.26},
-            },
-            "damping": {"coefficient": DAMPING},
-            "noise": {"temperature": TEMPERATURE, "seed": 20},
-            "plate": {},
-            "experiment": {"kind": "load", "method": "dynamic", "force": 0.0},
-        }
+    def taken(neighbours: float = 0.0, tangential: float | None = None) -> Sample:
+        scene = chains(
+            1000.0,
+            STIFFNESS,
+            bodies={"particles": PARTICLES, "mass": MASS},
+            damping={"coefficient": DAMPING},
+            noise={"temperature": TEMPERATURE, "seed": 20},
+            plate={},
+            experiment={"kind": "load", "method": "dynamic", "force": 0.0},
+        )
         if neighbours:
             scene["neighbours"] = {"stiffness": neighbours}
         if tangential is not None:
             scene["horizontal"] = {}
             scene["bodies"]["bulk_stiffness_tangential"] = tangential
         checked = scene_from_dict(scene)
-        settings = settings_for(checked)
-        if gjf:
-            settings = replace(settings, thermostat="gjf", time_step=gjf * settings.time_step)
-        deck = Deck(checked, settings)
+        deck = Deck(checked, settings_for(checked))
         folder = tmp_path_factory.mktemp("noise")
         write_system(deck, folder)
         with RunContext(deck, folder, Silent(), 300.0).contact() as contact:
-            return drawn(contact.session, deck.settings.time_step, "no" if gjf else "yes")
+            return drawn(contact.session, deck.settings.time_step)
 
     return taken
 
 
-def drawn(session: Session, time_step: float, set_up: str) -> Sample:
-    """Let the particles forget their start, then take SAMPLES; `set_up` each of them anew, "yes" or "no"."""
+def drawn(session: Session, time_step: float) -> Sample:
+    """Let the particles forget their start, then take SAMPLES."""
     session.execute(f"displace_atoms upper_body move 0.0 0.0 {APART} units box", phase="sampling")
     start = session.atoms("x")["x"]
     stride = round(INTERVAL / time_step)
@@ -111,7 +98,7 @@ def drawn(session: Session, time_step: float, set_up: str) -> Sample:
     upper = np.arange(PARTICLES, count)
     displacement, velocity = [], []
     for _ in range(SAMPLES):
-        session.execute(f"run {stride} pre {set_up} post no")
+        session.execute(f"run {stride} pre yes post no")
         reading = session.atoms("x", "v")
         moved = reading["x"][:count] - start[:count]
         # The plate is free, and the particles of the upper body go with it: all its anchors move alike.
@@ -173,25 +160,6 @@ def test_chain_with_neighbour_springs(sample: Callable[..., Sample]) -> None:
     ends = z[:, [0, PARTICLES - 1, PARTICLES, 2 * PARTICLES - 1]] ** 2
     check_ends(ends, float(exact[0]))
     check(taken.velocity[:, :, 2] ** 2, TEMPERATURE / MASS)
-
-
-@pytest.mark.parametrize("tangential", [None, TANGENTIAL])
-def test_gjf_in_a_deck_has_no_bias_at_long_time_steps_and_holds_what_is_held(
-    sample: Callable[..., Sample], tangential: float | None
-) -> None:
-    """ω_max Δt = 0.4 in place of 0.05; only the variance of places is free of bias, so velocities are not looked at.
-
-    In one long run: every set-up adds to the variance. With 28 steps a run, as here, four more seeds found it to be
-    1.0135 ± 0.0021 times equipartition along x and 1.0048 ± 0.0018 along z.
-    """
-    taken = sample(tangential=tangential, gjf=8.0)
-    check(taken.displacement[:, :, 2] ** 2, TEMPERATURE / STIFFNESS)
-    if tangential is None:
-        assert not taken.displacement[:, :, 0].any()
-    else:
-        check(taken.displacement[:, :, 0] ** 2, TEMPERATURE / tangential)
-    assert not taken.displacement[:, :, 1].any()
-    assert not taken.velocity[:, :, 1].any()
 
 
 def check_ends(squares: Array, expected: float) -> None:

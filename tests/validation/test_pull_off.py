@@ -25,6 +25,7 @@ from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.analysis.reference.solver import State
 from contact1d.analysis.reference.tension_radius import tension_radius
 from contact1d.workflow.units import Quantity
+from tests.scenes import chains
 
 FORCE = 2e-5
 """Relative; measured 1.2e-5: mostly the tail of the attraction beyond the automatic cutoff."""
@@ -116,22 +117,10 @@ def compare(run_tables: Callable[[dict[str, Any]], Any]) -> Compare:
 
 def tables(case: Case) -> dict[str, Any]:
     """The scene; everything that can be left open is."""
-    bodies: dict[str, Any] = {
-        "particles": "auto",
-        "spacing": 1.0,
-        "profile": {"kind": "parabola", "radius": case.radius},
-        "bulk_stiffness": STIFFNESS,
-    }
+    pull = {"kind": "pull_off", "method": "quasistatic", "preload": case.preload}
+    scene = chains(case.radius, STIFFNESS, (*case.repulsion, *case.attraction), experiment=pull)
     if case.tangential is not None:
-        bodies["bulk_stiffness_tangential"] = case.tangential
-    scene: dict[str, Any] = {
-        "bodies": bodies,
-        "interaction": {
-            "repulsion": {"amplitude": case.repulsion[0], "range": case.repulsion[1]},
-            "attraction": {"amplitude": case.attraction[0], "range": case.attraction[1]},
-        },
-        "experiment": {"kind": "pull_off", "method": "quasistatic", "preload": case.preload},
-    }
+        scene["bodies"]["bulk_stiffness_tangential"] = case.tangential
     if case.neighbours:
         scene["neighbours"] = {"stiffness": case.neighbours}
     if case.horizontal:

@@ -85,20 +85,15 @@ def advise(tolerance: float, variants: Sequence[VariantRecord], noisy: bool) -> 
         text += "" if chosen in reaching else ", which is not enough"
     limit = CHEAPER * chosen.cpu_s if chosen in reaching and chosen is not None else math.inf
     less = [one for one in reaching if one.cpu_s < limit]
-    plain = next((one for one in less if not one.settings), None)
     if less:
         text += f"; {'cheaper' if limit < math.inf else 'the cheapest'} in this scene: {said(less[0])}"
-        if plain is not None and plain is not less[0]:
-            text += f"; by the scene file alone: {said(plain)}"
     elif limit < math.inf:
         text += "; nothing else that was tried is clearly cheaper"
     else:
         best = min(variants, key=lambda one: one.bound, default=None)
         nearest = "" if best is None else f" (best {best.bound:.1e}{', by its noise' if noisy else ''}: {best.label})"
         text += f"; not reached by any setting tried{nearest}"
-    cheapest = reaching[0].label if reaching else ""
-    by_file = next((one.label for one in reaching if not one.settings), "")
-    return Advice(tolerance, text, "" if chosen is None else chosen.label, cheapest, by_file)
+    return Advice(tolerance, text, "" if chosen is None else chosen.label, reaching[0].label if reaching else "")
 
 
 def power(value: float) -> str:

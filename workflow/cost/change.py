@@ -1,16 +1,14 @@
-"""A variant of a scene: scene keys, effects left out, and fields of the settings, which add up.
+"""A variant of a scene: scene keys and effects left out, which add up.
 
 base + one knob's change = a variant;  base + several = a combination
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
 
-from contact1d.potentials.table import Table
 from contact1d.workflow.cost.row_law import row_law
-from contact1d.workflow.scene import FlatPunch, Scene, scene_from_dict
+from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.scene.tables import TIMED
 from contact1d.workflow.settings.settings import Settings, interaction_law, settings_for
 
@@ -25,21 +23,18 @@ class Change:
     Attributes:
         overrides: "table.key=value", as `--set` takes them.
         without: effects left out.
-        settings: (field of `Settings`, value) set after the rules have chosen; "table_points" sets the table's points.
         row_spacing: spacing [LU] whose rows' force per length is kept (`row_law`), None where the law is the scene's.
     """
 
     overrides: tuple[str, ...] = ()
     without: tuple[str, ...] = ()
-    settings: tuple[tuple[str, float | str], ...] = ()
     row_spacing: float | None = None
 
     def __add__(self, later: Change) -> Change:
         """Both; where they meet, the later one prevails."""
-        fields = dict(self.settings) | dict(later.settings)
         left = tuple(dict.fromkeys(self.without + later.without))
         row = self.row_spacing if later.row_spacing is None else later.row_spacing
-        return Change(self.overrides + later.overrides, left, tuple(fields.items()), row)
+        return Change(self.overrides + later.overrides, left, row)
 
     def scene(self, scene: Scene) -> Scene:
         """The changed scene. Raises SceneError where it is none."""
@@ -49,12 +44,7 @@ class Change:
         """The settings of the changed `scene`. Raises SettingsError where it has none."""
         own = interaction_law(scene)
         keeps = self.row_spacing is not None and own is not None
-        settings = settings_for(scene, law=row_law(own, self.row_spacing, scene.bodies.spacing) if keeps else None)
-        fields: dict[str, Any] = dict(self.settings)
-        points = fields.pop("table_points", None)
-        if points is not None and settings.law is not None:
-            fields["table"] = Table(settings.law, settings.cutoff, int(points))
-        return replace(settings, **fields)
+        return settings_for(scene, law=row_law(own, self.row_spacing, scene.bodies.spacing) if keeps else None)
 
 
 def base_change(scene: Scene) -> Change:
@@ -68,7 +58,7 @@ def base_change(scene: Scene) -> Change:
 def at_tolerance(scene: Scene, tolerance: float) -> Change:
     """The tolerance, and nothing numerical that the scene fixed by itself."""
     overrides = [f"accuracy.tolerance={tolerance!r}"]
-    if not isinstance(scene.bodies.profile, FlatPunch):
+    if not scene.bodies.profile.has_edge:
         overrides.append("bodies.particles=auto")
     if scene.interaction is not None and scene.interaction.attraction is not None:
         overrides.append("interaction.cutoff=auto")

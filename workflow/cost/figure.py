@@ -16,12 +16,14 @@ if TYPE_CHECKING:
 
 SIZE = (10.5, 5.4)
 COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#999933")
-"""Okabe and Ito's, and one more; a knob has its colour and its marker in both panels, of 88 pairs."""
-MARKERS = "osD^vPX*<>p"
+"""Okabe and Ito's, and one more; a knob has its colour and its marker in both panels."""
+MARKERS = "osD^vPX*"
 
 
 def cost_figure(record: CostRecord) -> Figure:
     """Left: error over CPU time of all variants. Right: error over a knob's place relative to the scene's own."""
+    from matplotlib.ticker import LogLocator
+
     figure = new_figure(SIZE)
     left, right = figure.subplots(1, 2, sharey=True)
     for i, knob in enumerate(record.knobs):
@@ -38,6 +40,10 @@ def cost_figure(record: CostRecord) -> Figure:
     for axis, columns in ((left, 3), (right, 2)):
         axis.axhline(record.tolerance, color=THEORY, linewidth=0.8, linestyle=":")
         axis.legend(frameon=False, fontsize=7, ncols=columns, loc="upper center", bbox_to_anchor=(0.5, -0.13))
+    left.set(xscale="log", yscale="log")
+    left.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    left.xaxis.set_major_formatter("{x:g}")
+    left.xaxis.set_minor_formatter("")
     left.set_xlabel("CPU time in LAMMPS (s)")
     left.set_ylabel("largest relative error of the main results")
     right.axvline(1.0, color=THEORY, linewidth=0.8)
@@ -58,8 +64,6 @@ def _over_time(axis: Axes, knob: KnobRecord, levels: Sequence[VariantRecord], st
     axis.plot(cpu, error, linewidth=0.6, markersize=5, fillstyle="none", label=knob.name, **style)
     if any(one.spread for one in levels):
         axis.errorbar(cpu, error, [one.spread for one in levels], fmt="none", ecolor=style["color"], elinewidth=0.6)
-    axis.set_xscale("log")
-    axis.set_yscale("log")
 
 
 def _over_knob(axis: Axes, knob: KnobRecord, levels: Sequence[VariantRecord], style: dict[str, Any]) -> None:

@@ -19,11 +19,10 @@ class VariantRecord:
     """One variant, measured.
 
     Attributes:
-        label: "table of 4000 points".
+        label: "cutoff 3.67 LU".
         knob, value: which knob, and where it stands; NaN for what is no place on a scale.
         details: what it is made of, where the label does not say it.
         scene_keys: changes that a scene file can say; effects left out are "without …".
-        settings: changes of settings that only the program can make.
         same_physics: whether its errors are errors at all: not where an effect was left out.
         own_reference: whether the errors are against the finest level of its own knob.
         values: main results.
@@ -42,7 +41,6 @@ class VariantRecord:
     value: float
     details: str = ""
     scene_keys: tuple[str, ...] = ()
-    settings: Mapping[str, float | str] | None = None
     same_physics: bool = True
     own_reference: bool = False
     values: Mapping[str, float] | None = None
@@ -108,25 +106,6 @@ class EffectCost:
 
 
 @dataclass(frozen=True)
-class Sampling:
-    """One scheme at one time step.
-
-    Attributes:
-        scheme: a value of `Settings.thermostat`.
-        time_step: [TU].
-        us_per_step: processor time in LAMMPS [µs].
-        variance: ⟨u²⟩ of all particles along z over that of equipartition.
-        error: its standard error after the steps of all (`workflow.cost.sampling`).
-    """
-
-    scheme: str
-    time_step: float
-    us_per_step: float
-    variance: float
-    error: float
-
-
-@dataclass(frozen=True)
 class Advice:
     """What a tolerance chooses, and the cheapest measured variants that reach it.
 
@@ -135,14 +114,12 @@ class Advice:
         text: one line.
         chosen: label of the scene with this `accuracy.tolerance`, "" where it was not run.
         label: of the cheapest, "" where none reaches it.
-        scene_label: of the cheapest that a scene file can say.
     """
 
     tolerance: float
     text: str
     chosen: str
     label: str
-    scene_label: str
 
 
 @dataclass(frozen=True)
@@ -158,7 +135,6 @@ class CostRecord:
         base_error: what is left of error there, the floor of every fit.
         repeats: asked for.
         left_out: knobs that are not turned, with the reason.
-        samplings: thermostats beside each other, for a scene with noise.
     """
 
     title: str
@@ -180,7 +156,6 @@ class CostRecord:
     advice: tuple[Advice, ...]
     versions: Mapping[str, str]
     wall_s: float
-    samplings: tuple[Sampling, ...] = ()
 
     def variant(self, label: str) -> VariantRecord:
         """The variant of that label."""
@@ -206,7 +181,6 @@ def read_record(path: Path) -> CostRecord:
             "knobs": tuple(KnobRecord(**one) for one in knobs),
             "variants": tuple(VariantRecord(**one) for one in variants),
             "effect_costs": tuple(EffectCost(**_numbers(one)) for one in data["effect_costs"]),
-            "samplings": tuple(Sampling(**one) for one in data.get("samplings", ())),
             "pareto": tuple(data["pareto"]),
             "advice": tuple(Advice(**one) for one in data["advice"]),
         }

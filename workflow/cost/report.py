@@ -12,7 +12,6 @@ from contact1d.files import write_whole
 from contact1d.workflow.cost.advice import power
 from contact1d.workflow.cost.figure import cost_figure
 from contact1d.workflow.cost.record import RECORD, CostRecord, EffectCost, KnobRecord, VariantRecord
-from contact1d.workflow.cost.sampling import SAMPLING_COLUMNS, sampling_rows
 
 TABLE, FIGURE = "cost.csv", "cost.png"
 COLUMNS = (
@@ -60,9 +59,6 @@ def summary(record: CostRecord) -> list[str]:
     if record.effect_costs:
         lines += ["", "what each effect costs per step:"]
         lines += _columns(EFFECT_COLUMNS, [effect_row(one) for one in record.effect_costs])
-    if record.samplings:
-        lines += ["", "thermostats at equal steps, of free particles:"]
-        lines += _columns(SAMPLING_COLUMNS, sampling_rows(record.samplings))
     failures = [one for one in record.variants if one.failure]
     if failures:
         lines += ["", "gave no numbers:", *(f"  {one.label}: {' '.join(one.failure.split())}" for one in failures)]

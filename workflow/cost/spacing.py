@@ -5,7 +5,7 @@ The force that opposite rows exert per length is kept by another pair law, see `
 
 from __future__ import annotations
 
-from contact1d.workflow.scene import FlatPunch, Scene
+from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 
 SPACING_FACTORS = {"particles": (4.0, 3.0, 2.0, 1.0, 0.5), "rigid_plane": (4.0, 2.0, 1.0, 0.5, 0.125)}
@@ -14,7 +14,7 @@ SPACING_FACTORS = {"particles": (4.0, 3.0, 2.0, 1.0, 0.5), "rigid_plane": (4.0, 
 
 def spacing_is_physics(scene: Scene, own: Settings) -> str:
     """Why the spacing cannot be turned with the physics kept; "" where it can."""
-    if isinstance(scene.bodies.profile, FlatPunch):
+    if scene.bodies.profile.has_edge:
         return "a flat punch is as wide as its particles make it"
     if scene.noise is not None:
         return "thermal motion of a particle belongs to its spacing"

@@ -16,7 +16,6 @@ from contact1d.workflow.cost.measure import Measured, Prepared, measure, run_onc
 from contact1d.workflow.cost.orders import fit_order, pareto_front
 from contact1d.workflow.cost.per_step import effect_costs, without_effects
 from contact1d.workflow.cost.record import CostRecord, EffectCost, KnobRecord, VariantRecord
-from contact1d.workflow.cost.sampling import samplings
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.errors import RunError
 from contact1d.workflow.runs.report import versions
@@ -69,7 +68,7 @@ def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, p
         progress.phase("reference")
         label, reference = reference_of(scene, runs)
         change = base_change(scene)
-        knobs = knobs_of(scene, own, change.chosen(change.scene(scene)))
+        knobs = knobs_of(scene, own)
         planned = _planned(scene, knobs, change)
         progress.phase("runs", repeats * len(planned))
         records = _measured(scene, planned, runs, repeats, workers, progress, reference)
@@ -83,7 +82,6 @@ def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, p
                 records += _measured(scene, found, runs, repeats, workers, progress, reference)
         progress.phase("effects, step by step")
         effects = _with_changes(effect_costs(scene, runs), records)
-        thermostats = samplings(scene, runs)
     base = next(one for one in records if one.knob == BASE)
     competing = [one for one in records if one.competes]
     front = pareto_front([one.cpu_s for one in competing], [one.error for one in competing])
@@ -100,14 +98,13 @@ def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, p
         base_error=base.error,
         repeats=repeats,
         knobs=tuple(_knob_record(knob, records, 0.0 if knob.own_reference else base.error, scene) for knob in knobs),
-        variants=tuple(records),
+        variants=tuple(one for one in records if one.knob == AS_IT_IS or not one.failure),
         effect_costs=effects,
         left_out=left_out(scene),
         pareto=tuple(competing[i].label for i in front),
         advice=tuple(advise(target, competing, is_sampled(scene)) for target in TARGETS),
         versions=versions(),
         wall_s=time.perf_counter() - started,
-        samplings=thermostats,
     )
 
 
@@ -192,7 +189,6 @@ def _record(one: Planned, measured: Measured, reference: Mapping[str, Quantity],
         value=one.value,
         details=one.details,
         scene_keys=one.change.overrides + tuple(f"without {effect}" for effect in one.change.without),
-        settings=dict(one.change.settings),
         same_physics=one.same_physics,
         own_reference=one.own_reference,
         cpu_s=measured.cpu_s,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from contact1d.analysis.reference.jkr import Jkr, work_of_adhesion
 from contact1d.workflow.identify.target import IdentifyError, Target, require_held
 from contact1d.workflow.scene import Scene, scene_from_dict
+from contact1d.workflow.scene.material import PARABOLA_SHARE
 
 RESOLUTION = 28.5
 """Particles in a₀, unless the length unit is given: as in the first row of the paper's Table 1."""
@@ -38,7 +39,7 @@ def material_scene(
     Raises:
         IdentifyError: a target out of reach, or a length unit that is too coarse.
     """
-    require_held(target, contact_modulus, 0.5 * radius, ("N", "m"))  # the MDR's springs: E* on a parabola of R/2
+    require_held(target, contact_modulus, PARABOLA_SHARE["mdr"] * radius, ("N", "m"))  # the MDR's springs are E*
     coarsest = target.zero_load_radius / COARSEST
     unit = target.zero_load_radius / RESOLUTION if length_unit is None else length_unit
     if unit > coarsest:

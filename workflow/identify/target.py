@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 
 from contact1d.workflow.errors import Contact1dError
-from contact1d.workflow.scene import Parabola, PullOff, Scene
+from contact1d.workflow.scene import PullOff, Scene
 
 BRITTLE = 4.0 / (9.0 * math.sqrt(3.0))
 """F_A R₁/(c a₀³) in the limit of a vanishing range."""
@@ -41,11 +41,10 @@ def require_reachable(scene: Scene, target: Target) -> None:
     """
     if not isinstance(scene.experiment, PullOff) or scene.interaction is None or scene.interaction.attraction is None:
         raise IdentifyError("only a pull_off with an attraction finds F_A and a₀")
-    if not isinstance(scene.bodies.profile, Parabola):
+    if scene.bodies.plane_radius is None:
         raise IdentifyError("only a parabola has the F_A and a₀ of JKR's sphere")
     layer = scene.bulk_stiffness / (2.0 * scene.bodies.spacing)
-    radius = scene.bodies.profile.radius * (0.5 if scene.bodies.reduction == "mdr" else 1.0)
-    require_held(target, layer, radius, ("FU", "LU"))
+    require_held(target, layer, scene.bodies.plane_radius, ("FU", "LU"))
 
 
 def require_held(target: Target, layer: float, radius: float, units: tuple[str, str]) -> None:

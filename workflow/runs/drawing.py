@@ -15,7 +15,7 @@ from contact1d.analysis import plots
 from contact1d.analysis.curve import Curve
 from contact1d.analysis.pressure import Profile
 from contact1d.workflow.experiments.running.radii import RadiusRule
-from contact1d.workflow.scene import Parabola, Scene
+from contact1d.workflow.scene import Scene
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -77,10 +77,9 @@ def _adheres_over_a_width(values: Mapping[str, float]) -> bool:
 
 def _theory(scene: Scene, values: Mapping[str, float]) -> tuple[str, Array, Array] | None:
     """JKR with the run's own F_A and a₀; Hertz, with nothing fitted, for a parabola on a rigid plane; else none."""
-    bodies = scene.bodies
-    if not isinstance(bodies.profile, Parabola):
+    bodies, radius = scene.bodies, scene.bodies.plane_radius
+    if radius is None:
         return None
-    radius = bodies.profile.radius * (0.5 if bodies.reduction == "mdr" else 1.0)
     if _adheres_over_a_width(values):
         curve = plots.jkr_curve(values["adhesion_force"], values["zero_load_radius"], radius)
         return "JKR, same $F_A$ and $a_0$", *curve

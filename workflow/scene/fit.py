@@ -37,9 +37,6 @@ NEEDED = {
 }
 """Effects that a dynamic experiment cannot do without."""
 
-INSTEAD = {"noise": 'kind = "load"', "cantilever": 'kind = "slide"', "plate": 'kind = "load"'}
-"""Which experiment has what another one excludes."""
-
 ADD = {
     "damping": '[damping] with coefficient = "auto"',
     "plate": '[plate] with mass = "auto"',
@@ -141,8 +138,8 @@ def _tables_of_experiment(draft: Draft) -> Iterator[Problem]:
         return
     for name, why in EXCLUDED[kind].items():
         if name in present:
-            hint = f"remove it, or use {INSTEAD[name]}"
-            yield Problem(name, f"not in a {kind}: {why}", hint=hint)
+            other = next(one for one, excluded in EXCLUDED.items() if name not in excluded)
+            yield Problem(name, f"not in a {kind}: {why}", hint=f'remove it, or use kind = "{other}"')
     if not draft.sound("experiment", "method"):
         return
     rest = tuple(name for name in present if name not in EXCLUDED[kind])

@@ -19,6 +19,8 @@ from contact1d.workflow.scene.quantities import Table, Unit
 Reduction = Literal["geike_popov", "mdr"]
 LAYER_SHARE = {"geike_popov": 0.5, "mdr": 1.0}
 """Stiffness per length of the layer over E*."""
+PARABOLA_SHARE = {"geike_popov": 1.0, "mdr": 0.5}
+"""Radius of the plane parabola x²/2R₁ over that of the body that it stands for: the MDR takes x²/2R to x²/R."""
 
 Pascal = Annotated[float, Gt(0), Unit("Pa")]
 SurfaceEnergy = Annotated[float, Gt(0), Unit("J/m²")]

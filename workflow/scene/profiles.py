@@ -15,7 +15,7 @@ import math
 import statistics
 from functools import lru_cache
 from itertools import pairwise
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 from annotated_types import Ge, MinLen
 from pydantic import Discriminator, Field, model_validator
@@ -37,7 +37,13 @@ CELLS = 1_000_000
 
 
 class Shape(Table):
-    """What all profiles can do; a kind overrides what differs."""
+    """What all profiles can do; a kind overrides what differs.
+
+    `has_edge`: the body ends at its `reach` by a flank, so that its chain is as long as it is wide and the contact is
+    too; others rise, and the contact ends on them.
+    """
+
+    has_edge: ClassVar[bool] = False
 
     def height(self, x: Array) -> Array:
         """Height z(x) = f(|x|) [LU] above the apex as drawn, at the places `x` [LU]; same shape."""
@@ -123,6 +129,8 @@ class Cone(Shape):
 
 class FlatPunch(Shape):
     """Profile of the upper body: z = 0 out to the edge, and no body beyond it."""
+
+    has_edge = True
 
     kind: Literal["flat_punch"] = Field(description="z = 0 within the radius, no body beyond it")
     radius: Length = Field(description="radius, a whole number of half spacings")

@@ -7,15 +7,15 @@ repulsion and B, b those of the attraction.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args
 
 from annotated_types import MinLen
 from pydantic import AfterValidator, Field
 from pydantic_core import PydanticCustomError
 
 from contact1d.workflow.scene.experiments import Experiment, Method, Slide
-from contact1d.workflow.scene.material import Material, Reduction
-from contact1d.workflow.scene.profiles import Profile
+from contact1d.workflow.scene.material import PARABOLA_SHARE, Material, Reduction
+from contact1d.workflow.scene.profiles import Parabola, Profile
 from contact1d.workflow.scene.quantities import (
     AutoDamping,
     AutoDampingOrZero,
@@ -36,12 +36,6 @@ from contact1d.workflow.scene.quantities import (
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
-
-EFFECTS = ("interaction", "neighbours", "horizontal", "damping", "noise", "plate", "cantilever")
-"""Names of all effects in deck order; each is also the name of its scene table."""
-
-TIMED = ("damping", "noise", "plate", "cantilever")
-"""Effects that exist in time only, so that a quasistatic run cannot have them."""
 
 
 class Bodies(Table):
@@ -76,6 +70,11 @@ class Bodies(Table):
         """Half-width [LU] within which the profile is a body at all."""
         return self.profile.reach
 
+    @property
+    def plane_radius(self) -> float | None:
+        """Radius R₁ [LU] of the plane parabola x²/2R₁ that stands for one of R, R or with the MDR R/2; else None."""
+        return PARABOLA_SHARE[self.reduction] * self.profile.radius if isinstance(self.profile, Parabola) else None
+
 
 class Exponential(Table):
     """One term of the interaction: amplitude · exp(−r/range)."""
@@ -84,7 +83,13 @@ class Exponential(Table):
     range: Length = Field(description="decay length")
 
 
-class Interaction(Table):
+class Effect(Table):
+    """A table that may be absent, and then adds nothing. `timed`: in time only, so never in a quasistatic run."""
+
+    timed: ClassVar[bool] = False
+
+
+class Interaction(Effect):
     """Effect: V(r) = A exp(−r/a) − B exp(−r/b) between opposite bodies."""
 
     repulsion: Exponential = Field(description="repulsive term, A and a")
@@ -94,24 +99,28 @@ class Interaction(Table):
     )
 
 
-class Neighbours(Table):
+class Neighbours(Effect):
     """Effect: springs between neighbouring particles of one body, with transverse rigidity."""
 
     stiffness: Stiffness = Field(description="stiffness of a spring between neighbours")
 
 
-class Horizontal(Table):
+class Horizontal(Effect):
     """Effect: particles may also move along x. It has no keys."""
 
 
-class Damping(Table):
+class Damping(Effect):
     """Effect: viscous damping of particles."""
+
+    timed = True
 
     coefficient: AutoDamping = Field(description='drag force over velocity, or "auto": near critical')
 
 
-class Noise(Table):
+class Noise(Effect):
     """Effect: thermal forces on the particles; with the damping it makes one Langevin thermostat."""
+
+    timed = True
 
     temperature: Energy = Field(description="temperature as energy k_BT")
     seed: Seed = Field(description="seed of the random forces")
@@ -128,16 +137,20 @@ def _free_directions(free: tuple[str, ...]) -> tuple[str, ...]:
 Free = Annotated[tuple[Literal["x", "z"], ...], Field(strict=False), MinLen(1), AfterValidator(_free_directions)]
 
 
-class Plate(Table):
+class Plate(Effect):
     """Effect: the upper plate is a rigid body with inertia, loaded by a force. Absent: its place is prescribed."""
+
+    timed = True
 
     mass: AutoMass = Field(default="auto", description='mass of the plate, or "auto"')
     free: Free = Field(default=("z",), description='directions in which the plate may move: ["z"] or ["x", "z"]')
     damping: AutoDampingOrZero = Field(default="auto", description='drag force over velocity of the plate, or "auto"')
 
 
-class Cantilever(Table):
+class Cantilever(Effect):
     """Effect: the plate is pulled along x through a spring whose far end moves steadily."""
+
+    timed = True
 
     stiffness: Stiffness = Field(description="stiffness of the spring")
     velocity: Velocity = Field(description="velocity of the driven end")
@@ -243,6 +256,19 @@ class Scene(Table):
         return self.experiment.method or default_method(self.effects)
 
 
+EFFECT_TABLES: dict[str, type[Effect]] = {
+    name: kind
+    for name, field in Scene.model_fields.items()
+    for kind in get_args(field.annotation)
+    if isinstance(kind, type) and issubclass(kind, Effect)
+}
+EFFECTS = tuple(EFFECT_TABLES)
+"""Names of all effects in deck order, which is that of the scene's fields; each is also the name of its scene table."""
+
+TIMED = tuple(name for name, kind in EFFECT_TABLES.items() if kind.timed)
+"""Effects that exist in time only, so that a quasistatic run cannot have them."""
+
+
 def default_method(effects: tuple[str, ...]) -> Method:
     """Method of a scene that names none and has these `effects`; a slide is always dynamic besides."""
-    return "dynamic" if {"plate", "damping", "noise"} & set(effects) else "quasistatic"
+    return "dynamic" if set(TIMED) & set(effects) else "quasistatic"

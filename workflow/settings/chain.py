@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from contact1d.workflow.errors import Contact1dError
-from contact1d.workflow.scene import Bodies, FlatPunch, Scene
+from contact1d.workflow.scene import Bodies, Scene
 from contact1d.workflow.settings.estimate import ContactEstimate
 
 CHAIN_MARGIN = 1.1
@@ -30,7 +30,7 @@ def require_room(bodies: Bodies) -> None:
     """
     fewest = 4 if bodies.particles == "auto" else 3
     widest = 2.0 * bodies.reach / (fewest - 1)
-    if not isinstance(bodies.profile, FlatPunch) and bodies.spacing > (1.0 - ROUND_OFF) * widest:
+    if not bodies.profile.has_edge and bodies.spacing > (1.0 - ROUND_OFF) * widest:
         raise SettingsError(
             f"the profile ends at {bodies.reach:.6g} LU, which is too narrow for {fewest} particles, the fewest"
             f"{' of an automatic chain' if fewest == 4 else ''}: take a bodies.spacing below {widest:.6g} LU"
@@ -45,7 +45,7 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
     Raises:
         SettingsError: with the nearest value that is possible.
     """
-    if isinstance(bodies.profile, FlatPunch):
+    if bodies.profile.has_edge:
         return
     half = 0.5 * (particles - 1) * bodies.spacing
     if half > bodies.reach:
@@ -81,7 +81,7 @@ def chain_length(scene: Scene, estimate: ContactEstimate, largest: float, share:
 
     A flat punch has its own length; no chain is longer than its profile is wide.
     """
-    if isinstance(scene.bodies.profile, FlatPunch):
+    if scene.bodies.profile.has_edge:
         return round(2.0 * scene.bodies.reach / scene.bodies.spacing)
     force = np.abs(estimate.force)
     strongest = float(np.max(force[estimate.gap > estimate.rest - largest], initial=0.0))

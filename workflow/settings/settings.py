@@ -72,9 +72,6 @@ class Settings:
             its particles' distance from the opposite ones is put behind them. A search may come nearer than `closest`,
             in moves down to NEAR_SHARE of this.
         largest_displacement: what the estimate expects [LU].
-        table_style: of `pair_style table`. "spline" is the only one that decks have by themselves; others are for
-            `contact1d cost`, which measures that none of them is cheaper at an equal error.
-        thermostat: scheme of [noise], "langevin" or "gjf"; the latter for cost studies too.
     """
 
     tolerance: float
@@ -101,8 +98,6 @@ class Settings:
     settle_time: float
     largest_displacement: float
     estimate: ContactEstimate
-    table_style: str = "spline"
-    thermostat: str = "langevin"
 
     @property
     def is_smooth(self) -> bool:

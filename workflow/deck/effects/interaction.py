@@ -11,14 +11,12 @@ SKIN = 0.5
 def interaction(scene: Scene, settings: Settings) -> Contribution:
     """Shared slots: `pair_style`, and the tally of opposite forces in every measurement."""
     assert settings.table is not None
-    points, style = settings.table.points, settings.table_style
-    size = points.bit_length() - 1 if style == "bitmap" else points  # a bitmap has 2^size entries
     return Contribution(
         "interaction",
         Stage.SPRINGS,
         ("interaction",),
         {"interaction_skin": number(SKIN * scene.bodies.spacing)},
-        pair_style=f"table {style} {size}",
+        pair_style=f"table spline {settings.table.points}",
         step_begin=("steps/measuring_opposite",),
         step_end=("steps/measured_opposite",),
     )

@@ -6,18 +6,11 @@ from contact1d.workflow.settings.settings import Settings
 
 
 def noise(scene: Scene, settings: Settings) -> Contribution:
-    """`fix langevin` takes the relaxation time m/γ.
-
-    The scheme "gjf" must be told which directions are free, and stands after the guide: at the start of every run it
-    turns forces into velocities, also those that the guide is about to take away.
-    """
+    """`fix langevin` takes the relaxation time m/γ."""
     assert scene.noise is not None
     variables = {
         "noise_temperature": number(scene.noise.temperature),
         "noise_damp": number(scene.bodies.mass / settings.damping),
         "noise_seed": str(scene.noise.seed),
     }
-    if settings.thermostat == "langevin":
-        return Contribution("noise", Stage.DRAG, ("noise",), variables)
-    variables["noise_free_x"] = str(int(scene.horizontal is not None))
-    return Contribution("noise", Stage.PULL, ("noise_gjf",), variables)
+    return Contribution("noise", Stage.DRAG, ("noise",), variables)

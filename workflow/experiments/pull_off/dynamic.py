@@ -15,7 +15,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.curve_marks import are_apart, through
+from contact1d.analysis.curve_marks import are_apart
+from contact1d.analysis.polynomial import lowest_minimum, through, value
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.pull_off.marked import marked_outcome
@@ -216,13 +217,9 @@ def top_of(states: Sequence[State]) -> tuple[float, float] | None:
     if not are_apart(place):
         return None
     width = float(np.ptp(place))
-    tension = through((place - place[-1]) / width, np.asarray([-state.force for state in states]))
-    flat = [root.real for root in tension.deriv().roots() if root.imag == 0.0]
-    tops = [float(x) for x in flat if tension.deriv(2)(x) < 0.0 and abs(x) < REACH]
-    if not tops:
-        return None
-    nearest = min(tops, key=abs)
-    return float(place[-1]) + width * nearest, float(tension(nearest))
+    loss = through((place - place[-1]) / width, np.asarray([state.force for state in states]))
+    top, _ = lowest_minimum(loss, -REACH, REACH)
+    return None if math.isnan(top) else (float(place[-1]) + width * top, -value(loss, top))
 
 
 def _critical_radius(held: Sequence[State]) -> tuple[Quantity, float]:
@@ -249,6 +246,4 @@ def _critical_radius(held: Sequence[State]) -> tuple[Quantity, float]:
 
 def _weights(places: NDArray[np.float64], place: float) -> NDArray[np.float64]:
     """Weights of the values at `places` [LU] in the value at `place` of the polynomial through all of them."""
-    width = float(np.ptp(places))
-    matrix = np.vander((places - place) / width, increasing=True)
-    return np.asarray(np.linalg.inv(matrix)[0])
+    return np.asarray(through((places - place) / float(np.ptp(places)), np.eye(len(places)))[0])

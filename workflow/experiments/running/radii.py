@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius, compressive_radius, tensile_radius
-from contact1d.workflow.scene import FlatPunch, Scene
+from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.calibration import CALIBRATION
 
 
@@ -22,10 +22,10 @@ class RadiusRule:
         scene = self.scene
         adhesive = scene.interaction is not None and scene.interaction.attraction is not None
         sign = -1.0 if adhesive else 1.0
-        punch = isinstance(scene.bodies.profile, FlatPunch)
-        if not (sign * profile.pressure > 0.0).any() and not (punch and profile.pressure.any()):
+        has_edge = scene.bodies.profile.has_edge
+        if not (sign * profile.pressure > 0.0).any() and not (has_edge and profile.pressure.any()):
             return None
-        if punch:
+        if has_edge:
             edge = scene.bodies.reach
             return ContactRadius(edge, 0.0, -edge, edge, reaches_end=False)
         if adhesive:

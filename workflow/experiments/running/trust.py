@@ -6,7 +6,7 @@ from contact1d.analysis.pressure import Profile, end_pressure_share
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.law_error import law_share
 from contact1d.workflow.experiments.running.slowness import slowness
-from contact1d.workflow.scene import FlatPunch, Scene
+from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 
 
@@ -60,7 +60,7 @@ def _reaches_end(scene: Scene, profile: Profile) -> bool:
 
     That of a flat punch is meant to be.
     """
-    if isinstance(scene.bodies.profile, FlatPunch):
+    if scene.bodies.profile.has_edge:
         return False
     pressure = profile.pressure
     if scene.interaction is not None and scene.interaction.attraction is not None:
@@ -74,7 +74,7 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
     """Named warnings about states that are results, but limited ones."""
     found = {}
     share = max(end_pressure_share(state.profile) for state in states)
-    if not isinstance(scene.bodies.profile, FlatPunch) and share > END_SHARE_LIMIT * settings.tolerance:
+    if not scene.bodies.profile.has_edge and share > END_SHARE_LIMIT * settings.tolerance:
         found["chain_end"] = (
             f"the outermost particles carry up to {share:.2g} of the largest pressure, so the chain of "
             f'{settings.particles} particles cuts the contact: take more bodies.particles, or "auto"'

@@ -1,0 +1,87 @@
+"""The polynomial P(t) = Σ cₖ tᵏ of a few samples: its coefficients, its real roots and its lowest minimum.
+
+Places t are of the order of 1 and counted from a sample, or the coefficients are those of round-off.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+REAL = 1e-9
+"""Imaginary part up to which a root counts as real."""
+NEWTON = 20
+"""Steps in which Newton's method has found a minimum that is near, or will not."""
+ROOT = 1e-12
+"""Its last step: the next one would be round-off."""
+
+
+def fitting(t: Array, degree: int) -> Array:
+    """The matrix M, (degree + 1, n), that makes coefficients c = M y of values y at n different places t.
+
+    P goes through all values where degree = n - 1; for a lower degree it is that of least squares.
+    """
+    powers = t[:, None] ** np.arange(degree + 1)
+    return np.asarray(np.linalg.inv(powers) if len(t) == degree + 1 else np.linalg.pinv(powers), dtype=np.float64)
+
+
+def through(t: Array, y: Array) -> Array:
+    """Coefficients of degree n - 1 of the polynomial through n values y at different places t.
+
+    Of several sets of values, (n, m), the coefficients of each, (n, m). It has less round-off than `fitting`.
+    """
+    return np.asarray(np.linalg.solve(np.vander(t, increasing=True), y), dtype=np.float64)
+
+
+def value(c: Array, t: float) -> float:
+    """P(t)."""
+    return float(c @ t ** np.arange(len(c)))
+
+
+def real_roots(c: Array, low: float, high: float) -> Array:
+    """Places between low and high where P is 0.
+
+    They are eigenvalues of the companion matrix; `numpy.polynomial` does the same in twice the time.
+    """
+    c = np.trim_zeros(c, "b")
+    if len(c) < 2:
+        return np.empty(0)
+    companion = np.eye(len(c) - 1, k=-1)
+    companion[:, -1] -= c[:-1] / c[-1]
+    roots = np.asarray(np.linalg.eigvals(companion), dtype=np.complex128)
+    real = roots.real[np.abs(roots.imag) < REAL]
+    return real[(real >= low) & (real <= high)]
+
+
+def lowest_minimum(c: Array, low: float, high: float, near: float | None = None) -> tuple[float, float]:
+    """(t, P″(t)) of the lowest minimum of P between low and high, NaN where it has none.
+
+    A minimum that is known to be `near` some place is found from there, by Newton's method, where |t| < 1.
+    """
+    powers = np.arange(len(c))
+    first = c[1:] * powers[1:]
+    second = first[1:] * powers[1:-1]
+    places = real_roots(first, low, high) if near is None else _newton(first, second, low, high, near)
+    at_places = places[:, None] ** powers
+    bends = at_places[:, :-2] @ second
+    if not (bends > 0.0).any():
+        return math.nan, math.nan
+    lowest = int(np.argmin(np.where(bends > 0.0, at_places @ c, math.inf)))
+    return float(places[lowest]), float(bends[lowest])
+
+
+def _newton(first: Array, second: Array, low: float, high: float, t: float) -> Array:
+    """The root near t of P′, with the coefficients `first`; `second` are those of P″. None where it runs away."""
+    step = math.inf
+    for _ in range(NEWTON):
+        powers = t ** np.arange(len(first))
+        slope = float(second @ powers[:-1])
+        step = float(first @ powers) / slope if slope > 0.0 else math.nan
+        t -= step
+        if not (abs(step) > ROOT and abs(t) < 1.0):
+            break
+    return np.asarray([t] if abs(step) <= ROOT and low <= t <= high else [])

@@ -1,0 +1,23 @@
+"""The tables of small scenes, for tests that say only what is their own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+LAW = (0.18, 0.13, 0.09, 0.26)
+"""A [FU·LU], a [LU], B [FU·LU], b [LU] of V(r) = A exp(−r/a) − B exp(−r/b)."""
+
+
+def chains(radius: float, stiffness: float = 0.83, law: Sequence[float] = LAW, **tables: Any) -> dict[str, Any]:
+    """A scene of two chains: a parabola of this `radius` [LU], springs to the bulk of this `stiffness` [FU/LU].
+
+    The chains are as long as the contact needs and have a spacing of 1 LU, unless keys of bodies={…} say otherwise.
+    Other tables come as they are; None leaves one out.
+    """
+    profile = {"kind": "parabola", "radius": radius}
+    bodies = {"particles": "auto", "spacing": 1.0, "profile": profile, "bulk_stiffness": stiffness}
+    near, far = ({"amplitude": law[i], "range": law[i + 1]} for i in (0, 2))
+    interaction = {"repulsion": near, "attraction": far}
+    found = {"title": "chains", "interaction": interaction} | tables | {"bodies": bodies | tables.get("bodies", {})}
+    return {name: table for name, table in found.items() if table is not None}
