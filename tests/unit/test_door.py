@@ -112,5 +112,5 @@ def test_what_makes_no_scene_is_told_in_words(changes: Any, without: Any, words:
 
 def test_a_scene_shows_itself_in_one_line_and_prints_as_its_file(make_scene: MakeScene) -> None:
     scene = make_scene()
-    assert repr(scene) == "<Scene 'small': parabola, interaction; path>"
+    assert repr(scene) == "<Scene 'chains': parabola, interaction; path>"
     assert read_scene(str(scene)) == scene

@@ -66,7 +66,7 @@ def test_nobody_is_sent_to_a_method_that_his_experiment_refuses() -> None:
 def test_a_tight_tolerance_beyond_what_a_scene_may_ask_ends_in_numbers(tmp_path: Path) -> None:
     """Passes are finer than the finest tolerance that a scene may have."""
     scene = read_scene(SCENES / "pull_off.toml", ("accuracy.tolerance=1e-7", "interaction.cutoff=2.5"))
-    document = run(scene, tmp_path, figures=False).results
+    document = run(scene, tmp_path, figures=False).document
     assert document["status"] == "done"
     assert document["accuracy"]["tolerance"] < 1e-7
     assert "cutoff" in [warning["name"] for warning in document["warnings"]]

@@ -165,7 +165,7 @@ def read_run(folder: Path) -> Run:
             str(document["error"]["message"])
         return Run(folder.resolve(), document, scene, curve, profiles, friction)
     except (KeyError, TypeError, AttributeError, ValueError, OSError, SceneError) as error:
-        reason = f"no {error}" if isinstance(error, KeyError) else str(error)
+        reason = f"no {error}" if isinstance(error, KeyError) else str(error).partition("\n")[0]
         raise FolderError(f"{folder} holds no run that this version can read: {reason}. Run its scene again") from None
 
 
