@@ -12,11 +12,11 @@ from typing import Any
 
 from contact1d.workflow.cost.advice import TARGETS, power
 from contact1d.workflow.reproduce.markdown import table
-from contact1d.workflow.settings.calibration import FILE, Calibration, shares_of
+from contact1d.workflow.settings.calibration import FILE, Calibration, calibration_of, meanings
 
 HERE = Path(__file__).parent
 RECORD = HERE / "results" / "calibration.csv"
-BEGIN, END = "<!-- shares: begin -->\n", "<!-- shares: end -->\n"
+BEGIN, END = "<!-- calibration: begin -->\n", "<!-- calibration: end -->\n"
 PART = 0.1
 """Of the tolerance, that one share may add to the error of a main result."""
 SAME_COST = 0.03
@@ -49,22 +49,23 @@ class Row:
     trouble: str
 
 
-def chosen_shares(rows: Sequence[Row]) -> dict[str, Any]:
-    """The contents of `workflow/settings/calibration.json`: of each share the value, and what it was chosen by."""
+def chosen_values(rows: Sequence[Row]) -> dict[str, Any]:
+    """The contents of `calibration.json`: of each setting what it is, its value, and what that was chosen by."""
     document: dict[str, Any] = {
         "made_by": "python -m benchmarks.calibration",
         "record": "benchmarks/results/calibration.csv",
         "tolerances": list(TARGETS),
         "adds_at_most": PART,
-        "shares": {},
+        "values": {},
     }
-    for share in (one.name for one in fields(Calibration)):
+    for share in meanings():
         ladder = sorted({row.value for row in rows if row.share == share})
         refusals = _refusals(rows, share, ladder)
         costs = {value: _cost(rows, share, value) for value in ladder if not refusals[value]}
         value = next(one for one in costs if costs[one] <= (1.0 + SAME_COST) * min(costs.values()))
         worst = max((row for row in rows if (row.share, row.value) == (share, value)), key=lambda row: row.added)
-        document["shares"][share] = {
+        document["values"][share] = {
+            "is": meanings()[share],
             "value": value,
             "adds": float(f"{worst.added:.2g}"),
             "most_in": f"{worst.scene} at {power(worst.tolerance)}",
@@ -114,11 +115,11 @@ def _next(ladder: Sequence[float], value: float, refusals: Mapping[float, str], 
     return f"{coarser:.3g}: {refusals[coarser] or f'is no cheaper ({costs[coarser]:.3g} of the finest)'}"
 
 
-def shares_markdown(document: Mapping[str, Any], rows: Sequence[Row]) -> str:
-    """The table between the markers of benchmarks/README.md, with what all shares come to together."""
-    head = ("share", "value", "error that it adds, over the tolerance", "CPU over the finest", "next coarser value")
+def calibration_markdown(document: Mapping[str, Any], rows: Sequence[Row]) -> str:
+    """The table between the markers of benchmarks/README.md, with what all settings come to together."""
+    head = ("setting", "value", "error that it adds, over the tolerance", "CPU over the finest", "next coarser value")
     cells = []
-    for name, one in document["shares"].items():
+    for name, one in document["values"].items():
         adds, cpu = f"{one['adds']:.2g} ({one['most_in']})", f"{one['cpu_over_finest']:.2f}"
         cells.append((f"`{name}`", f"{one['value']:.3g}", adds, cpu, one["next"]))
     together = [row for row in rows if row.share == TOGETHER]
@@ -146,12 +147,12 @@ def write_rows(rows: Sequence[Row], path: Path = RECORD) -> None:
 
 
 def write_choice(rows: Sequence[Row]) -> Calibration:
-    """Write workflow/settings/calibration.json and the table of benchmarks/README.md; returns the chosen shares."""
-    document = chosen_shares(rows)
+    """Write workflow/settings/calibration.json and the table of benchmarks/README.md; returns the chosen values."""
+    document = chosen_values(rows)
     FILE.write_text(json.dumps(document, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     if any(row.share == TOGETHER for row in rows):
         readme = HERE / "README.md"
         before, begin, rest = readme.read_text(encoding="utf-8").partition(BEGIN)
         after = rest.partition(END)[2]
-        readme.write_text(before + begin + shares_markdown(document, rows) + END + after, encoding="utf-8")
-    return shares_of(document)
+        readme.write_text(before + begin + calibration_markdown(document, rows) + END + after, encoding="utf-8")
+    return calibration_of(document)

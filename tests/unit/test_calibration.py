@@ -18,13 +18,13 @@ from benchmarks.calibration_choice import (
     PROMISED,
     TOGETHER,
     Row,
-    chosen_shares,
+    calibration_markdown,
+    chosen_values,
     read_rows,
-    shares_markdown,
 )
 from contact1d.workflow.cost.advice import TARGETS
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.calibration import CALIBRATION, FILE, Calibration, shares_of
+from contact1d.workflow.settings.calibration import CALIBRATION, FILE, Calibration, calibration_of
 from contact1d.workflow.settings.settings import settings_for
 
 MakeScene = Callable[..., Scene]
@@ -35,14 +35,14 @@ AT_ALL_TOLERANCES = 4
 def test_the_file_in_use_follows_from_the_kept_study() -> None:
     """Renew both with `python -m benchmarks.calibration`; never by hand."""
     kept = json.loads(FILE.read_text(encoding="utf-8"))
-    assert kept == chosen_shares(read_rows())
-    assert shares_of(kept) == CALIBRATION
+    assert kept == chosen_values(read_rows())
+    assert calibration_of(kept) == CALIBRATION
 
 
 def test_the_table_in_benchmarks_follows_from_the_kept_study() -> None:
     page = (ROOT / "benchmarks" / "README.md").read_text(encoding="utf-8")
     rows = read_rows()
-    assert page.partition(BEGIN)[2].partition(END)[0] == shares_markdown(chosen_shares(rows), rows)
+    assert page.partition(BEGIN)[2].partition(END)[0] == calibration_markdown(chosen_values(rows), rows)
 
 
 def test_every_share_was_studied_at_every_tolerance_and_every_scene_has_a_part() -> None:
@@ -95,7 +95,7 @@ def ladder(share: str, scene: str = "a", **added: float) -> list[Row]:
 
 def study(share: str, rows: list[Row]) -> dict[str, object]:
     others = [row for name in LADDERS if name != share for row in ladder(name, **{"_1e-5": 0.0, "_1e-4": 0.0})]
-    found = chosen_shares([*rows, *others])["shares"][share]
+    found = chosen_values([*rows, *others])["values"][share]
     assert isinstance(found, dict)
     return found
 

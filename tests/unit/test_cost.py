@@ -29,8 +29,7 @@ from contact1d.workflow.cost.record import Advice, CostRecord, EffectCost, KnobR
 from contact1d.workflow.cost.report import COLUMNS, csv_text, effects_markdown, summary, write_report
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.estimate import row_force
-from contact1d.workflow.settings.settings import interaction_law, settings_for
+from contact1d.workflow.settings.settings import settings_for
 from contact1d.workflow.units import Quantity
 
 MakeScene = Callable[..., Scene]
@@ -38,8 +37,6 @@ ROOT = Path(__file__).parents[2]
 SCENES = ROOT / "lammps_inputs" / "scenes"
 BEGIN, END = "<!-- cost: begin -->\n", "<!-- cost: end -->\n"
 ROUND_OFF = 1e-12
-ROW_MISFIT = 2e-5
-"""Of the sum of exponentials, over the largest tension, at half the spacing; at wider ones it is below 1e-6."""
 TINY = """
 title = "tiny"
 [bodies]
@@ -69,7 +66,7 @@ ALWAYS = {"tolerance", "chain length"}
     ("name", "wanted"),
     [
         ("pull_off", {"cutoff", "method dynamic"}),
-        ("load", {"cutoff", "method dynamic", "spacing"}),
+        ("load", {"cutoff", "method dynamic"}),
         ("hertz_plane", {"load increment", "method dynamic", "spacing"}),
         ("path_hysteresis", {"cutoff", "load increment", "method dynamic"}),
         ("pull_off_dynamic", {"cutoff", "damping", "method quasistatic"}),
@@ -95,7 +92,6 @@ def test_a_change_sets_keys_and_changes_add_up(make_scene: MakeScene) -> None:
     changed = change.scene(scene)
     assert changed.accuracy.tolerance == 0.01
     assert changed.bodies.particles == "auto"
-    assert change.chosen(changed).table == settings_for(changed).table
 
 
 def test_a_spacing_keeps_stiffness_per_length() -> None:
@@ -108,31 +104,8 @@ def test_a_spacing_keeps_stiffness_per_length() -> None:
         assert changed.bulk_stiffness / changed.bodies.spacing == pytest.approx(0.5, rel=ROUND_OFF)
 
 
-def test_a_spacing_of_two_chains_keeps_the_force_of_opposite_rows_per_length() -> None:
-    scene = read_scene(SCENES / "load.toml")
-    own = interaction_law(scene)
-    assert own is not None
-    base, knobs = base_change(scene), knobs_of(scene, settings_for(scene))
-    spacing = next(knob for knob in knobs if knob.name == "spacing")
-    r = np.linspace(0.5, 8.0, 40) * own.force_free_distance()
-    wanted = row_force(own, r, 1.0, 10.0)
-    assert [level.value for level in spacing.levels] == [4.0, 3.0, 2.0, 1.0, 0.5]
-    for level in spacing.levels:
-        change = base + level.change
-        changed = change.scene(scene)
-        law = change.chosen(changed).law
-        assert law is not None
-        found = row_force(law, r, level.value, 10.0) / level.value
-        assert found == pytest.approx(wanted, abs=ROW_MISFIT * -wanted.min())
-        assert law.force_free_distance() == own.force_free_distance()  # where displacements count from
-        step = 1e-5 * r
-        assert law.force(r) == pytest.approx((law.energy(r - step) - law.energy(r + step)) / (2.0 * step), abs=1e-8)
-        assert changed.neighbours is not None
-        assert changed.neighbours.stiffness * level.value == pytest.approx(0.3, rel=ROUND_OFF)
-
-
 def test_where_a_spacing_would_be_other_physics_it_is_not_turned() -> None:
-    for name, word in (("pull_off", "along x"), ("path_hysteresis", "snap"), ("thermal_load", "thermal")):
+    for name, word in (("pull_off", "opposite particles"), ("load", "amplitudes"), ("thermal_load", "thermal")):
         assert word in left_out(read_scene(SCENES / f"{name}.toml"))["spacing"]
 
 

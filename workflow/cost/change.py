@@ -7,10 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from contact1d.workflow.cost.row_law import row_law
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.scene.tables import TIMED
-from contact1d.workflow.settings.settings import Settings, interaction_law, settings_for
 
 BASE_TOLERANCE = 1e-5
 """Of the base of a quasistatic scene; in time the scene's own is taken, since time costs by the tolerance."""
@@ -23,28 +21,18 @@ class Change:
     Attributes:
         overrides: "table.key=value", as `--set` takes them.
         without: effects left out.
-        row_spacing: spacing [LU] whose rows' force per length is kept (`row_law`), None where the law is the scene's.
     """
 
     overrides: tuple[str, ...] = ()
     without: tuple[str, ...] = ()
-    row_spacing: float | None = None
 
     def __add__(self, later: Change) -> Change:
         """Both; where they meet, the later one prevails."""
-        left = tuple(dict.fromkeys(self.without + later.without))
-        row = self.row_spacing if later.row_spacing is None else later.row_spacing
-        return Change(self.overrides + later.overrides, left, row)
+        return Change(self.overrides + later.overrides, tuple(dict.fromkeys(self.without + later.without)))
 
     def scene(self, scene: Scene) -> Scene:
         """The changed scene. Raises SceneError where it is none."""
         return scene_from_dict(scene, self.overrides, self.without)
-
-    def chosen(self, scene: Scene) -> Settings:
-        """The settings of the changed `scene`. Raises SettingsError where it has none."""
-        own = interaction_law(scene)
-        keeps = self.row_spacing is not None and own is not None
-        return settings_for(scene, law=row_law(own, self.row_spacing, scene.bodies.spacing) if keeps else None)
 
 
 def base_change(scene: Scene) -> Change:

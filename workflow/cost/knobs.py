@@ -13,7 +13,6 @@ from typing import Literal
 
 from contact1d.workflow.cost.change import Change, at_tolerance, with_method
 from contact1d.workflow.cost.errors import is_sampled
-from contact1d.workflow.cost.row_law import row_law
 from contact1d.workflow.cost.spacing import SPACING_FACTORS, at_spacing, spacing_is_physics
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.scene.experiments import Span
@@ -71,7 +70,7 @@ def knobs_of(scene: Scene, own: Settings) -> tuple[Knob, ...]:
     found = [_tolerance(scene), *_cutoff(scene, own), *_chain(scene, own)]
     if scene.damping is not None:
         found.append(_damping(own))
-    return (*found, *_increment(scene), *_method(scene), *_spacing(scene, own))
+    return (*found, *_increment(scene), *_method(scene), *_spacing(scene))
 
 
 def left_out(scene: Scene) -> dict[str, str]:
@@ -79,7 +78,7 @@ def left_out(scene: Scene) -> dict[str, str]:
     reasons = {}
     if scene.interaction is not None and scene.interaction.attraction is None:
         reasons["cutoff"] = "without attraction displacements count from the cutoff, so it is physics"
-    if reason := spacing_is_physics(scene, settings_for(scene)):
+    if reason := spacing_is_physics(scene):
         reasons["spacing"] = reason
     if scene.bodies.profile.has_edge:
         reasons["chain length"] = "a flat punch is as long as it is wide"
@@ -148,15 +147,11 @@ def _method(scene: Scene) -> Iterator[Knob]:
     yield Knob(f"method {other}", meaning, "smaller", tuple(levels), math.nan, has_order=False, alternative=True)
 
 
-def _spacing(scene: Scene, own: Settings) -> Iterator[Knob]:
-    if spacing_is_physics(scene, own):
+def _spacing(scene: Scene) -> Iterator[Knob]:
+    if spacing_is_physics(scene):
         return
     spacing = scene.bodies.spacing
-    row = None if own.law is None else spacing
-    values = [factor * spacing for factor in SPACING_FACTORS[scene.bodies.lower]]
-    levels = [Level(h, f"spacing {h:g} LU", Change(at_spacing(scene, h), row_spacing=row)) for h in values]
+    values = [factor * spacing for factor in SPACING_FACTORS]
+    levels = [Level(h, f"spacing {h:g} LU", Change(at_spacing(scene, h))) for h in values]
     meaning = "spacing [LU], same stiffness per length"
-    if own.law is not None:
-        misfit = max(row_law(own.law, spacing, h).misfit for h in values)
-        meaning += f", opposite rows with the same force per length within {misfit:.0e} of the largest tension"
-    yield Knob("spacing", meaning, "smaller", tuple(levels), spacing, has_order=own.law is None, own_reference=True)
+    yield Knob("spacing", meaning, "smaller", tuple(levels), spacing, own_reference=True)

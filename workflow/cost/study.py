@@ -157,7 +157,7 @@ def _planned(scene: Scene, knobs: Sequence[Knob], base: Change) -> list[Planned]
 def _choice(scene: Scene, change: Change) -> str:
     try:
         changed = change.scene(scene)
-        return choice(changed, change.chosen(changed))
+        return choice(changed, settings_for(changed))
     except (SceneError, SettingsError):  # which the run will tell
         return ""
 
@@ -175,7 +175,7 @@ def _measured(
     for one in planned:
         try:
             changed = one.change.scene(scene)
-            ready.append(Prepared(one.label, changed, one.change.chosen(changed)))
+            ready.append(Prepared(one.label, changed, settings_for(changed)))
         except (SceneError, SettingsError) as error:
             failures[one.label] = Measured(failure=str(error))
     done = (measure(ready, folder, repeats, workers, progress) if ready else {}) | failures

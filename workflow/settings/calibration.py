@@ -1,47 +1,49 @@
-"""What each numerical setting may use up of `[accuracy] tolerance`, as measured: `calibration.json`, read at import.
+"""How fine each numerical setting is for an `[accuracy] tolerance`, as measured: `calibration.json`, read at import.
 
-The file is written by `python -m benchmarks.calibration`, which turns every share over a ladder of values in a number
-of scenes, at tolerances of 1e-2 to 1e-5, and takes the cheapest that adds a small part of the tolerance at most to the
-errors of the main results in each of them. Nobody types these numbers.
+The file is written by `python -m benchmarks.calibration`, which turns every value over a ladder in a number of scenes,
+at tolerances of 1e-2 to 1e-5, and takes the cheapest that adds a small part of the tolerance at most to the errors of
+the main results in each of them. Nobody types these numbers. Four of them are shares of the tolerance; three hold at
+every tolerance.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
 FILE = Path(__file__).with_name("calibration.json")
 
 
+def _value(meaning: str) -> Any:
+    return field(metadata={"is": meaning})
+
+
 @dataclass(frozen=True)
 class Calibration:
-    """The values; a cost study sets others.
+    """The values, each with its meaning (`meanings`); the study that measures them sets others."""
 
-    Attributes:
-        cutoff: force at an automatic cutoff over the law's own, per unit of tolerance.
-        table: error of the table over the force scale, per unit of tolerance.
-        residual: norm of the forces left on the particles over the force scale, per unit of tolerance.
-        chain: force at the end of an automatic chain over the largest one, per unit of tolerance.
-        smooth_increment: increment of a smooth search over the longest range, the width of the curve's largest tension.
-        loading_increment: increment where pairs snap, and on a rigid plane, over the way from touch to the preload.
-        still_step: ω_max·Δt of a motion in time that comes to rest, without noise; Verlet's limit is 2.
-    """
-
-    cutoff: float
-    table: float
-    residual: float
-    chain: float
-    smooth_increment: float
-    loading_increment: float
-    still_step: float
+    cutoff: float = _value("force at an automatic cutoff over the law's own, per unit of tolerance")
+    table: float = _value("error of the table over the force scale, per unit of tolerance")
+    residual: float = _value("norm of the forces left on the particles over the force scale, per unit of tolerance")
+    chain: float = _value("force at the end of an automatic chain over the largest one, per unit of tolerance")
+    smooth_increment: float = _value("increment of a smooth search over the longest range, at every tolerance")
+    loading_increment: float = _value(
+        "increment where pairs snap, and on a rigid plane, over the way from touch to the preload, at every tolerance"
+    )
+    still_step: float = _value("ω_max·Δt of a motion that comes to rest, without noise, at every tolerance")
 
 
-def shares_of(document: Mapping[str, Any]) -> Calibration:
+def meanings() -> dict[str, str]:
+    """What each value is, by its name."""
+    return {one.name: one.metadata["is"] for one in fields(Calibration)}
+
+
+def calibration_of(document: Mapping[str, Any]) -> Calibration:
     """The values in the contents of `calibration.json`. Raises KeyError where one is missing."""
-    return Calibration(**{one.name: float(document["shares"][one.name]["value"]) for one in fields(Calibration)})
+    return Calibration(**{name: float(document["values"][name]["value"]) for name in meanings()})
 
 
-CALIBRATION = shares_of(json.loads(FILE.read_text(encoding="utf-8")))
+CALIBRATION = calibration_of(json.loads(FILE.read_text(encoding="utf-8")))

@@ -129,18 +129,12 @@ def interaction_law(scene: Scene) -> DoubleExponential | None:
     return DoubleExponential(Exponential(terms.repulsion.amplitude, terms.repulsion.range), attraction)
 
 
-def settings_for(
-    scene: Scene,
-    tolerance: float | None = None,
-    law: DoubleExponential | None = None,
-    calibration: Calibration | None = None,
-) -> Settings:
+def settings_for(scene: Scene, tolerance: float | None = None, calibration: Calibration | None = None) -> Settings:
     """Choose every open number of a scene.
 
     Args:
         scene: whose numbers are left open.
         tolerance: in place of the scene's own, for a refined pass.
-        law: in place of the scene's own, for cost studies.
         calibration: in place of the one that was measured, for the study that measures it.
 
     Raises:
@@ -148,8 +142,7 @@ def settings_for(
     """
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
-            law = law or interaction_law(scene)
-            chosen = _chosen(scene, tolerance or scene.accuracy.tolerance, law, calibration or CALIBRATION)
+            chosen = _chosen(scene, tolerance or scene.accuracy.tolerance, calibration or CALIBRATION)
     except (OverflowError, FloatingPointError, ZeroDivisionError, MemoryError) as error:
         raise SettingsError(
             f"the scene's numbers are too far apart to compute with ({error}): compare its lengths (spacing, ranges, "
@@ -163,7 +156,8 @@ def settings_for(
     return chosen
 
 
-def _chosen(scene: Scene, tolerance: float, law: DoubleExponential | None, calibration: Calibration) -> Settings:
+def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Settings:
+    law = interaction_law(scene)
     bodies = scene.bodies
     require_room(bodies)
     shape = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
