@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import wraps
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.polynomial import polynomial
@@ -52,20 +49,6 @@ class ContactRadius:
     reaches_end: bool
 
 
-def _kept_with_the_profile(radius: Callable[[Profile], ContactRadius]) -> Callable[[Profile], ContactRadius]:
-    """The same function, which works a profile's radius out once: several results are read off one state."""
-    known: WeakKeyDictionary[Profile, ContactRadius] = WeakKeyDictionary()
-
-    @wraps(radius)
-    def remembered(profile: Profile) -> ContactRadius:
-        if profile not in known:
-            known[profile] = radius(profile)
-        return known[profile]
-
-    return remembered
-
-
-@_kept_with_the_profile
 def tensile_radius(profile: Profile) -> ContactRadius:
     """Return the radius of maximum tensile stress, between the particles: p(a) = min p on each side of the centre.
 
