@@ -74,7 +74,7 @@ def independent(name: str) -> float:
         case "pull_off":
             return pull_off(model, experiment.preload).adhesion_force
         case _ if model.rigid_plane:
-            deepest = max(experiment.values())
+            deepest = max(experiment.places())
             return rigid_plane_sum(deepest, model.places(), scene.bodies.profile.radius, model.bulk_stiffness)
         case _:
             return pull_off(model, 0.2).adhesion_force  # a path that turns deeper unloads along the same branch
