@@ -27,7 +27,7 @@ from contact1d.workflow.experiments.pull_off.smooth import (
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.law_error import law_error
 from contact1d.workflow.experiments.running.outcome import Outcome, UntrustedError, doubts, require_trust
-from contact1d.workflow.experiments.running.prescribing import approach, separate
+from contact1d.workflow.experiments.running.prescribing import SAME_PLACE, approach, separate
 from contact1d.workflow.experiments.running.radii import radius_or_spot
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.units import FORCE, LENGTH, Quantity
@@ -61,13 +61,22 @@ class Pass:
 
     @property
     def falling(self) -> list[State]:
-        """The states of the unloading, by falling displacement."""
-        return sorted(self.unloading, key=lambda state: -state.displacement)
+        """The states of the unloading, by falling displacement, each place once: marks may stand on rows."""
+        found: list[State] = []
+        for state in sorted(self.unloading, key=lambda state: -state.displacement):
+            if not found or found[-1].displacement - state.displacement > SAME_PLACE:
+                found.append(state)
+        return found
 
     @property
     def peak(self) -> Peak:
         """The largest tension while unloading."""
         return largest_tension([s.displacement for s in self.falling], [s.force for s in self.falling])
+
+    @property
+    def rivals(self) -> dict[int, float]:
+        """How much other teeth, by their highest rows among those that fall, may be higher than the peak [FU]."""
+        return rivals([s.displacement for s in self.falling], [s.force for s in self.falling], self.peak)
 
     @property
     def zero(self) -> State:
@@ -105,8 +114,7 @@ def pull_off_quasistatic(context: RunContext) -> Outcome:
         latest = _replay(context, experiment.preload, _refined(before, experiment.preload, window))
         window *= ZOOM
         if _agree(context, before, latest, experiment.preload, tolerance):
-            excess = max(rivals([s.force for s in latest.falling], latest.peak).values(), default=0.0)
-            missed = abs(latest.peak.smooth - before.peak.smooth) + max(0.0, excess)
+            missed = abs(latest.peak.smooth - before.peak.smooth) + max(0.0, 0.0, *latest.rivals.values())
             return _outcome(context, latest, experiment.preload, missed)
     raise UntrustedError(
         f"the pull-off force still changes from {before.peak.tension:.6g} to {latest.peak.tension:.6g} FU after "
@@ -227,6 +235,5 @@ def _outcome(context: RunContext, found: Pass | SmoothPass, preload: float, miss
 def _rival_radius(context: RunContext, found: Pass, radius: float, missed: float) -> float:
     """How far [LU] the radius a_cr may be off because another tooth is the highest: by `missed` [FU] it may be."""
     falling = found.falling
-    higher = rivals([s.force for s in falling], found.peak)
-    teeth = [falling[i] for i, excess in higher.items() if excess > -missed]
+    teeth = [falling[i] for i, excess in found.rivals.items() if excess > -missed]
     return max((abs(radius_or_spot(context.deck.scene, s.profile).value - radius) for s in teeth), default=0.0)

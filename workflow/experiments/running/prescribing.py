@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+import numpy as np
+
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.experiments.running.contact import Contact, State
 from contact1d.workflow.experiments.running.outcome import Outcome, ThroughError, UntrustedError, require_trust
@@ -21,6 +23,8 @@ PAST_PEAK = 0.5
 GROWTH, SMOOTH_GROWTH = 1.2, 1.6
 OVERSHOOT = 1.02
 """Secant steps aim a little beyond, so that a bracket forms instead of a slow approach from one side."""
+BACK = 0.5
+"""Move of a search that comes back to where the bodies have been, over their particles' smallest distance."""
 SAME_PLACE = 1e-12
 """Displacements [LU] nearer than this are the same place: a force that still differs has jumped."""
 SMALLER = (1 / 4, 1 / 16)
@@ -127,9 +131,37 @@ def separate(contact: Contact, start: float, largest: float = 0.0) -> list[State
     raise UntrustedError(f"the bodies did not separate within {MOST_ROWS} increments of the displacement")
 
 
+def still_held(contact: Contact, state: State) -> float:
+    """Tension [FU] that bodies which move apart can have at most from this state on.
+
+    A particle that has passed the largest tension of its law only loses what it has; any other, wherever it is, may
+    come to hold that.
+    """
+    profile, (distance, largest) = state.profile, contact.settings.strongest
+    held = contact.scene.bodies.spacing * np.maximum(0.0, -profile.pressure)
+    near = profile.z_upper - profile.z_lower < distance
+    return float(np.sum(np.where(near, np.maximum(held, largest), held)))
+
+
 def _apart(contact: Contact, state: State, largest: float) -> bool:
-    gone = largest > 0.0 and abs(state.force) < SEPARATED * largest
-    return gone or state.smallest_distance > contact.settings.cutoff
+    """Whether the bodies are out of reach, or can't hold more than a small part of the largest tension any more.
+
+    Where particles snap, the force passes 0 between one that lets go and the next.
+    """
+    gone = abs(state.force) < SEPARATED * largest and still_held(contact, state) < SEPARATED * largest
+    return (largest > 0.0 and gone) or state.smallest_distance > contact.settings.cutoff
+
+
+def back_to(contact: Contact, last: State, displacement: float) -> list[State]:
+    """The state at a displacement [LU] after those that the way there needs from the `last` one.
+
+    Bodies that come nearer do so by BACK of their particles' smallest distance at a time.
+    """
+    states = [last]
+    while displacement - states[-1].displacement > (longest := BACK * states[-1].smallest_distance):
+        longest = max(longest, contact.settings.longest_move)
+        states.append(measured(contact, min(states[-1].displacement + longest, displacement)))
+    return [*states[1:], measured(contact, displacement)]
 
 
 def measured(contact: Contact, displacement: float) -> State:
