@@ -165,7 +165,7 @@ class PairLattice:
             flat = np.abs(slope) < LEAST_SLOPE
             step = np.where(flat, 0.0, (self.gap(r) - gaps) / np.where(flat, 1.0, slope))
             r = np.clip(r - np.clip(step, -longest, longest), lowest, highest)
-        return np.asarray(np.where(gaps > far_gap[-1], 0.0, self.interaction.force(r)).sum(axis=-1))
+        return np.asarray(np.where(~held & (gaps > far_gap[-1]), 0.0, self.interaction.force(r)).sum(axis=-1))
 
     def _largest_between(self, low: float, high: float, stuck: NDArray[np.bool_]) -> tuple[float, float]:
         """The same between two displacements, the lower one of which the last of the stuck pairs just reaches."""

@@ -19,7 +19,7 @@ from contact1d.analysis.curve_marks import are_apart, through
 from contact1d.workflow.deck.deck import Deck, Phase
 from contact1d.workflow.experiments.running.contact import Contact, State
 from contact1d.workflow.experiments.running.holding import Held, Start, hold, overshoot
-from contact1d.workflow.experiments.running.outcome import Outcome, UntrustedError, doubts
+from contact1d.workflow.experiments.running.outcome import Outcome, UntrustedError, doubts, require_no_contradiction
 from contact1d.workflow.experiments.running.radii import radius_of, radius_or_spot
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.scene import Scene
@@ -179,6 +179,7 @@ def _outcome(context: RunContext, search: Search, loaded: Held, critical: Held, 
         "zero_load_radius": Quantity(zero_radius.value, zero_radius.uncertainty + slope * at_zero, LENGTH),
         "preload": Quantity(loaded.last.force, loaded.unbalance, FORCE),
     }
+    require_no_contradiction(settings, quantities, rest)
     profiles = {"zero_load": zero.profile, "critical": critical.last.profile}
     radii = {name: radius_or_spot(scene, profile).value for name, profile in profiles.items()}
     lattice = {"critical_radius": spread, "zero_load_radius": zero_radius.uncertainty}

@@ -26,8 +26,14 @@ from contact1d.workflow.experiments.pull_off.smooth import (
 )
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.law_error import law_error
-from contact1d.workflow.experiments.running.outcome import Outcome, UntrustedError, doubts, require_trust
-from contact1d.workflow.experiments.running.prescribing import SAME_PLACE, approach, separate
+from contact1d.workflow.experiments.running.outcome import (
+    Outcome,
+    UntrustedError,
+    doubts,
+    require_no_contradiction,
+    require_trust,
+)
+from contact1d.workflow.experiments.running.prescribing import SAME_PLACE, approach, separate, unloading_step
 from contact1d.workflow.experiments.running.radii import radius_or_spot
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.units import FORCE, LENGTH, Quantity
@@ -108,7 +114,7 @@ def pull_off_quasistatic(context: RunContext) -> Outcome:
         smooth = smooth_pass(context, experiment.preload, tolerance)
         return _outcome(context, smooth, experiment.preload, smooth.missed)
     latest = _first(context, experiment.preload)
-    window = settings.displacement_step
+    window = unloading_step(settings, latest.loading[-1].displacement)
     for _ in range(MOST_PASSES):
         before = latest
         latest = _replay(context, experiment.preload, _refined(before, experiment.preload, window))
@@ -225,6 +231,7 @@ def _outcome(context: RunContext, found: Pass | SmoothPass, preload: float, miss
         "zero_load_radius": Quantity(zero_radius.value, zero_radius.uncertainty + slope * at_zero, LENGTH),
         "preload": Quantity(loaded, abs(loaded - preload), FORCE),
     }
+    require_no_contradiction(settings, quantities, found.unloading)
     profiles = {"zero_load": zero.profile, "critical": critical.profile}
     radii = {"zero_load": zero_radius.value, "critical": critical_radius.value}
     lattice = {"critical_radius": critical_radius.uncertainty, "zero_load_radius": zero_radius.uncertainty}

@@ -99,6 +99,22 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
         )
 
 
+def require_no_contradiction(settings: Settings, quantities: Mapping[str, Quantity], states: Iterable[State]) -> None:
+    """Refuse a largest tension that a state of the run's own curve exceeds by more than its uncertainty.
+
+    Raises:
+        UntrustedError: names the state.
+    """
+    found = quantities["adhesion_force"]
+    for state in states:
+        if -state.force > found.value + found.uncertainty + state.residual * settings.particles:
+            raise UntrustedError(
+                f"the largest tension was found as {found.value:.6g} FU, and the run's own curve has "
+                f"{-state.force:.6g} FU at displacement {state.displacement:.6g} LU (phase {state.phase}): the search was misled. Use "
+                'kind = "path" through all of the tension, or a smaller [accuracy] tolerance'
+            )
+
+
 def unmet(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, float]:
     """Relative uncertainties of the main results that are known less well than the tolerance; with noise of none.
 

@@ -11,9 +11,12 @@ from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.experiments.running.contact import Contact, State
 from contact1d.workflow.experiments.running.outcome import Outcome, ThroughError, UntrustedError, require_trust
 from contact1d.workflow.experiments.running.run_context import RunContext
+from contact1d.workflow.settings.settings import Settings
 
 MOST_ROWS = 2_000
 """Rows of one branch of a search; a search that needs more has no end in sight."""
+ROWS_APART = 1_000.0
+"""Rows in which an unloading comes from any displacement to where nothing is felt any more."""
 APPROACH = 1e-3
 """How near to a wanted force a search must come, over the tolerance."""
 SEPARATED = 0.02
@@ -117,7 +120,7 @@ def separate(contact: Contact, start: float, largest: float = 0.0) -> list[State
     `largest` is what the tension has been before [FU].
     """
     displacement, states = start, [measured(contact, start)]
-    step = contact.settings.increment()
+    step = unloading_step(contact.settings, start)
     growth = SMOOTH_GROWTH if contact.settings.is_smooth else GROWTH
     for _ in range(MOST_ROWS):
         displacement -= step
@@ -129,6 +132,15 @@ def separate(contact: Contact, start: float, largest: float = 0.0) -> list[State
         if _apart(contact, state, largest):
             return states
     raise UntrustedError(f"the bodies did not separate within {MOST_ROWS} increments of the displacement")
+
+
+def unloading_step(settings: Settings, start: float) -> float:
+    """First increment [LU] of an unloading from `start` [LU]: that of a search, yet in ROWS_APART the bodies are apart.
+
+    Soft springs follow the attraction far beyond what the bodies were pressed together.
+    """
+    way = start - settings.rest + float(settings.estimate.gap[-1])
+    return max(settings.increment(), way / ROWS_APART)
 
 
 def still_held(contact: Contact, state: State) -> float:
