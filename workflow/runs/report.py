@@ -51,7 +51,7 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
             entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
         quantities["units"] = {unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE)}
     doubts = dict(outcome.warnings)
-    if coarse := unmet(scene, outcome.quantities):
+    if coarse := unmet(scene, outcome.on_own_lattice):
         ended = "" if outcome.refinement is None else f" ({outcome.refinement.ended})"
         doubts["tolerance"] = (
             f"{in_words(coarse)}, which is more than the tolerance of {scene.accuracy.tolerance:g} that was asked for"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from contact1d.analysis.pressure import Profile, end_pressure_share
 from contact1d.workflow.deck.deck import Phase
@@ -12,6 +12,7 @@ from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.law_error import law_share
 from contact1d.workflow.experiments.running.slowness import slowness
 from contact1d.workflow.scene import FlatPunch, Scene
+from contact1d.workflow.settings.centring import left_by_centring
 from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.units import Quantity
 
@@ -47,6 +48,8 @@ class Outcome:
         friction: columns of friction.csv, for a slide.
         lattice: by name, the part of a quantity's uncertainty that the spacing of the particles leaves, whatever the
             settings.
+        centring: by name, the part of it that comes from not knowing where the contact's centre lies between particles
+            (`workflow.settings.centring`); no finer settings of the run make it smaller.
         refinement: None where the settings were given, or are not refined.
     """
 
@@ -58,7 +61,40 @@ class Outcome:
     warnings: Mapping[str, str] = field(default_factory=dict)
     friction: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     lattice: Mapping[str, float] = field(default_factory=dict)
+    centring: Mapping[str, float] = field(default_factory=dict)
     refinement: Refinement | None = None
+
+    @property
+    def on_own_lattice(self) -> dict[str, Quantity]:
+        """The quantities as uncertain as the run leaves them, its particles being where they are."""
+        return {
+            name: Quantity(known.value, known.uncertainty - self.centring.get(name, 0.0), known.unit)
+            for name, known in self.quantities.items()
+        }
+
+
+def anywhere_between(scene: Scene, settings: Settings, outcome: Outcome) -> Outcome:
+    """The outcome of a contact whose centre may lie anywhere between particles: more uncertain, and a warning if much.
+
+    F and a of the mean pressure F/πa² are a load's own.
+    """
+    parts = left_by_centring(scene, settings)
+    if "mean_pressure" in outcome.quantities and "contact_radius" in parts:
+        share = 2.0 * parts["contact_radius"] / outcome.quantities["contact_radius"].value
+        parts["mean_pressure"] = share * abs(outcome.quantities["mean_pressure"].value)
+    parts = {name: part for name, part in parts.items() if name in outcome.quantities}
+    known = {
+        name: Quantity(q.value, q.uncertainty + parts.get(name, 0.0), q.unit) for name, q in outcome.quantities.items()
+    }
+    warnings = dict(outcome.warnings)
+    shares = {name: part / abs(known[name].value) for name, part in parts.items() if known[name].value}
+    if open_ := {name: share for name, share in shares.items() if share > scene.accuracy.tolerance}:
+        warnings["lattice"] = (
+            f"{in_words(open_)} only, more than the tolerance of {scene.accuracy.tolerance:g}, because the contact's "
+            "centre may lie on a particle or anywhere between two of this chain: take a smaller bodies.spacing at the "
+            "same stiffness and energy per length, or give bodies.particles where these very particles are meant"
+        )
+    return replace(outcome, quantities=known, centring=parts, warnings=warnings)
 
 
 END_SHARE_LIMIT = 1.0
@@ -110,8 +146,8 @@ def require_no_contradiction(settings: Settings, quantities: Mapping[str, Quanti
         if -state.force > found.value + found.uncertainty + state.residual * settings.particles:
             raise UntrustedError(
                 f"the largest tension was found as {found.value:.6g} FU, and the run's own curve has "
-                f"{-state.force:.6g} FU at displacement {state.displacement:.6g} LU (phase {state.phase}): the search was misled. Use "
-                'kind = "path" through all of the tension, or a smaller [accuracy] tolerance'
+                f"{-state.force:.6g} FU at displacement {state.displacement:.6g} LU (phase {state.phase}): the search "
+                'was misled. Use kind = "path" through all of the tension, or a smaller [accuracy] tolerance'
             )
 
 
