@@ -127,8 +127,9 @@ def separate(contact: Contact, start: float, largest: float = 0.0) -> list[State
         state = measured(contact, displacement)
         states.append(state)
         largest = max(largest, -state.force)
-        if largest > 0.0 and -state.force < PAST_PEAK * largest and state.force <= 0.0:
-            step *= growth
+        past = largest > 0.0 and -state.force < PAST_PEAK * largest and state.force <= 0.0
+        if past and (contact.settings.is_smooth or still_held(contact, state) < largest):
+            step *= growth  # longer moves let go of particles early: only where no tooth can be higher any more
         if _apart(contact, state, largest):
             return states
     raise UntrustedError(f"the bodies did not separate within {MOST_ROWS} increments of the displacement")
