@@ -22,7 +22,7 @@ RANGE = 0.03
 LAW = PairInteraction(Exponential(0.0024, 0.015), Exponential(0.0012, RANGE))
 TOLERANCE = 1e-3
 ROWS = 2e-3
-"""Largest difference of a force from the reference's over the largest; measured 1e-4: tail of the law, and residuals."""
+"""Largest difference of a force from the reference's over the largest; measured 1e-4: the law's tail, residuals."""
 AREA = 1e-3
 """Of the loop over the same rows; measured 1e-4."""
 DEEPEST = 0.1

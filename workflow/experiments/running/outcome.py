@@ -13,6 +13,7 @@ from contact1d.workflow.experiments.running.law_error import law_share
 from contact1d.workflow.experiments.running.slowness import slowness
 from contact1d.workflow.scene import FlatPunch, Scene
 from contact1d.workflow.settings.centring import left_by_centring
+from contact1d.workflow.settings.chain import decay_length, reflected
 from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.units import Quantity
 
@@ -207,6 +208,13 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
         found["chain_end"] = (
             f"the outermost particles carry up to {share:.2g} of the largest pressure, so the chain of "
             f'{settings.particles} particles cuts the contact: take more bodies.particles, or "auto"'
+        )
+    ends = reflected(scene, settings.estimate, settings.largest_displacement, settings.particles)
+    if not isinstance(scene.bodies.profile, FlatPunch) and ends > scene.accuracy.tolerance:
+        found["chain_end"] = (
+            f"neighbour springs spread the load over {decay_length(scene):.3g} LU to each side, and the chain of "
+            f"{settings.particles} particles ends so near to the contact that up to {ends:.1g} of that comes back from "
+            'there: take more bodies.particles, or "auto"'
         )
     share = law_share(scene, settings)
     if share > scene.accuracy.tolerance:
