@@ -105,8 +105,8 @@ def _longest_drop(scene: Scene, settings: Settings) -> float:
 
     A move h puts a stuck pair h further apart before it relaxes. It lets go where that is beyond the unstable place
     next to it, which is 2 √(2 e/|G″|) away at a gap e before the fold of G(r): too early by e = h² |G″|/8. With |G″| of
-    the ratio of the stiffnesses over the range b, and a loop as wide as some of that ratio times b, h = √(8 tolerance) b
-    leaves a share of `tolerance` of the loop.
+    the ratio of the stiffnesses over the range b, and a loop as wide as some of that ratio times b,
+    h = √(8 tolerance) b leaves a share of `tolerance` of the loop.
     """
     if settings.law is None or settings.is_smooth:
         return math.inf
