@@ -44,8 +44,8 @@ def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Pe
 
     Between samples a smooth curve exceeds the sampled maximum by what the polynomial through five points says; that
     through three tells how far to believe it, and that through seven how far to believe its place. Where a particle
-    snaps after the maximum, tension rises right up to the snap: it is then missed by one increment's rise at most, and
-    the sampled point is the place.
+    snaps after the maximum, tension rises right up to the snap, no faster than before the sampled point: that is
+    then the place, and the rise up to the next point what is missed at most.
     """
     d, tension = np.asarray(displacement), -np.asarray(force)
     i = int(np.argmax(tension))
@@ -55,7 +55,7 @@ def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Pe
     rise, fall = top - tension[i - 1], top - tension[i + 1]
     even = rise / max(d[i - 1] - d[i], 1e-300), fall / max(d[i] - d[i + 1], 1e-300)
     if even[1] > JUMP * even[0] + JUMP * abs(_bend(d, tension, i)):
-        return Peak(i, top, float(rise), top, float(d[i]), 0.0)
+        return Peak(i, top, float(even[0] * (d[i] - d[i + 1])), top, float(d[i]), 0.0)
     # A search that has come back to the maximum leaves rows beside it that no polynomial tells apart.
     d, tension, at = _apart_from(d, tension, i)
     place, coarse = _vertex(d, tension, at, 1)
@@ -91,16 +91,42 @@ def _vertex(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, 
     return (float(d[middle]) + scale * best, top + above) if above > 0.0 else (float(d[middle]), top)
 
 
-def rivals(force: Sequence[float], peak: Peak) -> dict[int, float]:
+def promised(displacement: Sequence[float], force: Sequence[float], places: Sequence[float]) -> Array:
+    """Tension [FU] at `places` [LU] beside the largest one, by the polynomial through it and two rows on each side.
+
+    NaN where there are no such rows.
+    """
+    d, tension = np.asarray(displacement), -np.asarray(force)
+    i = int(np.argmax(tension))
+    if not 0 < i < len(d) - 1:
+        return np.full(len(places), np.nan)
+    d, tension, at = _apart_from(d, tension, i)
+    near = slice(max(at - 2, 0), at + 3)
+    if not are_apart(d[near]):
+        return np.full(len(places), np.nan)
+    scale = float(np.ptp(d[near]))
+    rise = through((d[near] - d[at]) / scale, tension[near] - tension[at])
+    return np.asarray([tension[at] + value(rise, (place - d[at]) / scale) for place in places])
+
+
+def rivals(displacement: Sequence[float], force: Sequence[float], peak: Peak) -> dict[int, float]:
     """The other teeth of a sawtooth, by their highest rows: how much each may be higher than the peak [FU], or lower.
 
-    Each tooth rises by less than its last rise beyond its highest row. Displacements fall.
+    Beyond a tooth's highest row the tension rises no faster than it did up to there, and no further than to the next
+    row; between that row and the one before, no faster than up to the latter. Displacements fall.
     """
-    tension = -np.asarray(force)
+    d, tension = np.asarray(displacement), -np.asarray(force)
     inner = np.arange(1, len(tension) - 1)
     teeth = inner[(tension[inner] > tension[inner - 1]) & (tension[inner] > tension[inner + 1])]
     teeth = teeth[np.abs(teeth - peak.index) > 1]
-    return {int(i): float(2.0 * tension[i] - tension[i - 1] - peak.smooth) for i in teeth}
+    rise = np.diff(tension) / -np.diff(d)
+    found = {}
+    for i in teeth:
+        top = tension[i] + rise[i - 1] * (d[i] - d[i + 1])
+        if i > 1 and rise[i - 2] > 0.0:
+            top = max(top, tension[i - 1] + rise[i - 2] * (d[i - 1] - d[i]))
+        found[int(i)] = float(top) - peak.smooth
+    return found
 
 
 def are_apart(d: Array) -> bool:

@@ -81,13 +81,13 @@ def test_a_smooth_crossing_at_a_jump_or_an_end_is_the_straight_lines() -> None:
     assert smooth_crossing(*end, 0.0) == crossing(*end, 0.0)[1]
 
 
-def test_a_tooth_beside_the_highest_row_may_be_higher_by_its_last_rise() -> None:
+def test_a_tooth_beside_the_highest_row_may_be_higher_by_the_rises_before_it() -> None:
     places = falling(np.arange(9.0))
     tension = [0.0, 1.0, 1.5, 0.5, 1.2, 1.48, 0.5, 0.2, 0.0]
     peak = largest_tension(places, [-t for t in tension])
     assert peak.tension == 1.5
-    assert rivals([-t for t in tension], peak) == pytest.approx({5: 1.48 + 0.28 - peak.smooth})
-    assert rivals([-t for t in tension[:4]], peak) == {}
+    assert rivals(places, [-t for t in tension], peak) == pytest.approx({5: 1.2 + 0.7 - peak.smooth})
+    assert rivals(places[:4], [-t for t in tension[:4]], peak) == {}
 
 
 def test_places_that_all_but_coincide_get_no_polynomial() -> None:

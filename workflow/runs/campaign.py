@@ -18,6 +18,7 @@ from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.engine.session import EngineError
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments import perform, planned
+from contact1d.workflow.experiments.running.outcome import anywhere_between
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import UntrustedError
 from contact1d.workflow.runs.finished import Run
@@ -82,7 +83,7 @@ def _run(context: RunContext, started: float, figures: bool, refine: bool) -> Ru
         write_results(folder, failure(scene, facts, timing()))
         where = f" [phase {context.phase}, step {context.timestep}]"
         raise RunError(f"{facts['message']}{_hint(str(facts['message']))}{where}", folder) from error
-    outcome = last.outcome
+    outcome = anywhere_between(scene, last.deck.settings, last.outcome)
     write_whole(folder / "in.lammps", last.deck.text(outcome.phases))
     curve = curve_of(last.deck.scene, outcome)
     write_tables(folder, scene, outcome, curve)

@@ -76,8 +76,32 @@ def _most_particles(bodies: Bodies) -> int:
     return max(3, 2 * math.floor(bodies.reach / bodies.spacing * (1.0 - ROUND_OFF) + 0.5))
 
 
+def decay_length(scene: Scene) -> float:
+    """Length ℓ [LU] in which a chain that is pushed at one place comes back to rest beside it; 0 without neighbours.
+
+    Beside the push, k u_i = k_n (u_{i+1} − 2 u_i + u_{i−1}) has the solutions exp(±x/ℓ), cosh(s/ℓ) = 1 + k/(2 k_n): for
+    stiff neighbours ℓ = s √(k_n/k).
+    """
+    if scene.neighbours is None:
+        return 0.0
+    softest = min(scene.bulk_stiffness, scene.tangential_stiffness if scene.horizontal is not None else math.inf)
+    return scene.bodies.spacing / math.acosh(1.0 + 0.5 * softest / scene.neighbours.stiffness)
+
+
+def reflected(scene: Scene, estimate: ContactEstimate, largest: float, particles: int) -> float:
+    """Share of a contact's displacement that comes back to its edge from the chain's ends, exp(−2 L/ℓ), L apart."""
+    decay = decay_length(scene)
+    beyond = 0.5 * particles * scene.bodies.spacing - _edge(estimate, largest)
+    return math.exp(-2.0 * max(beyond, 0.0) / decay) if decay > 0.0 else 0.0
+
+
+def _edge(estimate: ContactEstimate, largest: float) -> float:
+    """Half-width [LU] up to the largest tension, or without attraction up to where nothing is felt."""
+    return estimate.half_width(max(largest, 0.0), float(estimate.gap[int(estimate.force.argmin())]))
+
+
 def chain_length(scene: Scene, estimate: ContactEstimate, largest: float, share: float) -> int:
-    """Particles of an automatic chain: out to where a force is this share of the largest one.
+    """Particles of an automatic chain: out to where a force, and what a chain's end reflects, is this share at most.
 
     A flat punch has its own length; no chain is longer than its profile is wide.
     """
@@ -90,5 +114,6 @@ def chain_length(scene: Scene, estimate: ContactEstimate, largest: float, share:
     if scene.interaction is not None and scene.interaction.attraction is None:
         reach = float(estimate.gap[-1])  # the contact ends where nothing is felt at all
     half = CHAIN_MARGIN * estimate.half_width(max(largest, 0.0), reach)
+    half = max(half, _edge(estimate, largest) - 0.5 * decay_length(scene) * math.log(share))
     wanted = 2 * (math.ceil(half / scene.bodies.spacing) + 2)
     return wanted if scene.bodies.reach == math.inf else min(wanted, _most_particles(scene.bodies))

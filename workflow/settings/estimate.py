@@ -10,6 +10,7 @@ h is the profile. This chooses chain lengths, first steps and time scales; no re
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -32,6 +33,8 @@ FLAT = 1e-6
 """Rise of a gap over the mean one below which the grid is level there: made monotone, where a pair snaps."""
 SOFTEST = 0.998
 """Tension over the largest one at which a contact counts as softest: at the largest itself it has no stiffness left."""
+TEETH_POINTS, TOOTH = 2000, 1e-4
+"""Displacements at which the tension of a chain is summed, and the fall between two of its teeth over the largest."""
 PLACES, NEAR = 1000, 0.01
 """Places at which a profile is tabulated, and the first one beyond its apex over the spacing."""
 ROUNDS, FRACTIONS = 12, np.linspace(0.0, 1.0, 33)[:, None]
@@ -149,6 +152,24 @@ class ContactEstimate:
         stiffness = np.gradient(forces, places)[top:]
         return float(np.interp(max(force, SOFTEST * forces[top]), forces[top:], stiffness))
 
+    def tooth(self, particles: int) -> float:
+        """Least distance [LU] of two tops of the tension, between which it falls by TOOTH of the largest; inf for one.
+
+        Summed over the particles of a chain of so many: where they let go one by one, F(d) has a tooth for each.
+        """
+        x: Array = self.spacing * (np.arange(particles, dtype=np.float64) - 0.5 * (particles - 1))
+        ends = self._tensions[0]
+        heights = self.rest + self.profile.height(x[x >= -self.spacing / 4])
+        heights = heights[heights - ends[-1] < self.gap[-1]]
+        counts = np.full(heights.shape, 2.0)
+        counts[: particles % 2] = 1.0
+        places = np.linspace(ends[-1], ends[0], TEETH_POINTS)
+        tension = np.asarray(
+            [-float(counts @ np.interp(heights - place, self.gap, self.force, right=0.0)) for place in places]
+        )
+        tops = _tops(tension, TOOTH * float(tension.max(initial=0.0)))
+        return math.inf if len(tops) < 2 else float(np.min(-np.diff(places[tops])))
+
     @cached_property
     def snap(self) -> tuple[float, float]:
         """(undeformed gap [LU] at which a pair lets go, tension [FU] that it loses then); the end, 0 if none does."""
@@ -198,6 +219,22 @@ class ContactEstimate:
             cell = int(np.clip(np.searchsorted(forces, force), 1, PARTS - 1))
             low, high = float(places[cell - 1]), float(places[cell])
         return float(np.interp(force, forces, places))
+
+
+def _tops(tension: Array, fall: float) -> list[int]:
+    """Indices of maxima after each of which values fall by more than `fall` before they rise by more than that."""
+    tops: list[int] = []
+    high = low = 0
+    for i, value in enumerate(tension):
+        if value > tension[high]:
+            high = low = i
+        elif value < tension[low]:
+            low = i
+            if tension[high] - value > fall and (not tops or tops[-1] != high):
+                tops.append(high)
+        elif tops and tops[-1] == high and value - tension[low] > fall:
+            high = low = i
+    return tops
 
 
 def row_force(law: DoubleExponential, r: Array, spacing: float, cutoff: float) -> Array:

@@ -104,6 +104,18 @@ class Settings:
         """Whether the force is a smooth function of the displacement: particles, and none of them snaps."""
         return self.law is not None and not self.estimate.snaps
 
+    @property
+    def strongest(self) -> tuple[float, float]:
+        """(distance [LU], tension [FU]) where the force of a row of opposite particles on one is the largest tension.
+
+        Of the estimate, whose grid of distances ends at the cutoff; (0, 0) on a rigid plane.
+        """
+        if self.law is None:
+            return 0.0, 0.0
+        force = self.estimate.force
+        at = int(force.argmin())
+        return self.cutoff * (at + 1) / force.size, max(0.0, -float(force[at]))
+
     def increment(self, smallest_distance: float = math.inf) -> float:
         """Longest increment [LU] of a search from a state with this smallest distance [LU]; unloading has no such."""
         if not self.is_smooth:

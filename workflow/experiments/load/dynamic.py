@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,6 +21,10 @@ from contact1d.workflow.experiments.running.trust import UntrustedError, doubts,
 from contact1d.workflow.scene import Load
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE, Quantity
 
+BEYOND = 2.0
+"""Rise of the tension that is tried first over the tolerance: rest, table and cutoff use up to one of it themselves."""
+NEAR_PULL_OFF = 0.9
+"""Tension over the estimate's largest one from which on it may be the pull-off force."""
 CLOSE = 1e-3
 """Steps towards a tension, over the largest one that is expected, below which the tension itself is tried."""
 SAMPLES = 200
@@ -38,6 +43,7 @@ def load_dynamic(context: RunContext) -> Outcome:
     scene = context.deck.scene
     assert isinstance(scene.experiment, Load)
     load = scene.experiment.force
+    doubt = {} if scene.noise is not None else _by_a_hair(context, load)
     with context.contact() as contact:
         if scene.noise is not None:
             return _thermal(context, contact, load)
@@ -47,7 +53,31 @@ def load_dynamic(context: RunContext) -> Outcome:
     settings = context.deck.settings
     error = last.unbalance + law_error(contact.scene, settings, last.last)
     moved = moved_by(states, error, stiffness_under(settings, load))
-    return load_outcome(context, tuple(states), contact.phases, error, moved)
+    outcome = load_outcome(context, tuple(states), contact.phases, error, moved)
+    return replace(outcome, warnings=doubt | dict(outcome.warnings))
+
+
+def _by_a_hair(context: RunContext, load: float) -> dict[str, str]:
+    """A warning where a tension is held, or is not, by less than the tolerance: a load that much larger is tried first.
+
+    A contact at rest balances its load within a share of the tolerance, and near the fold of F(d) it creeps: which side
+    of it a load is on can't be told nearer than that.
+    """
+    settings, tolerance = context.deck.settings, context.deck.scene.accuracy.tolerance
+    if load > -NEAR_PULL_OFF * settings.estimate.pull_off_force():
+        return {}
+    try:
+        with context.contact("whether a little more is held, too") as contact:
+            _settled(context, contact, load * (1.0 + BEYOND * tolerance))
+    except UntrustedError:
+        return {
+            "near_pull_off": (
+                f"the contact does not hold a tension that is larger by {BEYOND * tolerance:g}: {-load:.6g} FU is the "
+                f"pull-off force as nearly as a tolerance of {tolerance:g} can tell, and whether it is held for good "
+                'can\'t be told. A smaller [accuracy] tolerance tells more, kind = "pull_off" gives the force itself'
+            )
+        }
+    return {}
 
 
 def _settled(context: RunContext, contact: Contact, load: float) -> tuple[list[State], Held]:

@@ -13,6 +13,8 @@ from contact1d.workflow.settings.settings import Settings
 RELAXATIONS = 14.0
 """Time that a dynamic path gives the particles at each displacement, over the time constant of their slowest decay."""
 ROUND_OFF = 1e-9
+EARLY = 8.0
+"""Square of the longest move of bodies that part over the range squared, per unit of tolerance."""
 
 
 def schedule(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
@@ -37,16 +39,33 @@ def schedule(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
 def places(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
     """Displacements [LU] of all rows, and whether the scene asks for them or they lie on the way between two of those.
 
-    The way starts at 0, where the bodies stand in system.data, unless the first displacement draws them apart.
+    The way starts at 0, where the bodies stand in system.data, unless the first displacement draws them apart: from
+    there it is the state that comes from far away.
     """
     found: list[tuple[float, bool]] = []
     before = 0.0
     for value in scene.experiment.places():
-        moves = max(1, math.ceil((value - before) / settings.longest_move - ROUND_OFF))
+        longest = settings.longest_move if value > before else _longest_drop(settings)
+        moves = max(1, math.ceil(abs(value - before) / longest - ROUND_OFF))
+        if not found and value < before:
+            moves = 1
         found += [(before + (value - before) * i / moves, False) for i in range(1, moves)]
         found.append((value, True))
         before = value
     return found
+
+
+def _longest_drop(settings: Settings) -> float:
+    """Longest move [LU] by which bodies that part keep the particles that the law still holds: inf where none snaps.
+
+    A move h puts a stuck pair h further apart before it relaxes. It lets go where that is beyond the unstable place
+    next to it, which is 2 √(2 e/|G″|) away at a gap e before the fold of G(r): too early by e = h² |G″|/8. With |G″| of
+    the ratio of the stiffnesses over the range b, and a loop as wide as some of that ratio times b,
+    h = √(8 tolerance) b leaves a share of `tolerance` of the loop.
+    """
+    if settings.law is None or settings.is_smooth:
+        return math.inf
+    return min(settings.longest_move, math.sqrt(EARLY * settings.tolerance) * settings.law.longest_range)
 
 
 def _rows(scene: Scene, settings: Settings, places: Sequence[float]) -> tuple[Row, ...]:

@@ -24,7 +24,7 @@ from contact1d.workflow.experiments.running.contact import Contact, State
 from contact1d.workflow.experiments.running.holding import Held, Start, hold, overshoot
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
-from contact1d.workflow.experiments.running.trust import UntrustedError, doubts
+from contact1d.workflow.experiments.running.trust import UntrustedError, doubts, require_no_contradiction
 from contact1d.workflow.scene import PullOff
 from contact1d.workflow.units import FORCE, LENGTH, Quantity
 
@@ -181,6 +181,7 @@ def _outcome(context: RunContext, search: Search, loaded: Held, critical: Held, 
         "zero_load_radius": Quantity(zero_radius.value, zero_radius.uncertainty + slope * at_zero, LENGTH),
         "preload": Quantity(loaded.last.force, loaded.unbalance, FORCE),
     }
+    require_no_contradiction(settings, quantities, rest)
     marked = {"zero_load": zero, "critical": critical.last}
     by_spacing = {"critical_radius": spread, "zero_load_radius": zero_radius.uncertainty}
     states = (loaded.last, *rest)

@@ -28,9 +28,9 @@ from contact1d.workflow.experiments.pull_off.smooth import (
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.law_error import law_error
 from contact1d.workflow.experiments.running.outcome import Outcome
-from contact1d.workflow.experiments.running.prescribing import approach, separate
+from contact1d.workflow.experiments.running.prescribing import SAME_PLACE, approach, separate, unloading_step
 from contact1d.workflow.experiments.running.run_context import RunContext
-from contact1d.workflow.experiments.running.trust import UntrustedError, doubts, require_trust
+from contact1d.workflow.experiments.running.trust import UntrustedError, doubts, require_no_contradiction, require_trust
 from contact1d.workflow.scene import PullOff
 from contact1d.workflow.units import FORCE, LENGTH, Quantity
 
@@ -63,13 +63,22 @@ class Pass:
 
     @property
     def falling(self) -> list[State]:
-        """The states of the unloading, by falling displacement."""
-        return sorted(self.unloading, key=lambda state: -state.displacement)
+        """The states of the unloading, by falling displacement, each place once: marks may stand on rows."""
+        found: list[State] = []
+        for state in sorted(self.unloading, key=lambda state: -state.displacement):
+            if not found or found[-1].displacement - state.displacement > SAME_PLACE:
+                found.append(state)
+        return found
 
     @property
     def peak(self) -> Peak:
         """The largest tension while unloading."""
         return largest_tension([s.displacement for s in self.falling], [s.force for s in self.falling])
+
+    @property
+    def rivals(self) -> dict[int, float]:
+        """How much other teeth, by their highest rows among those that fall, may be higher than the peak [FU]."""
+        return rivals([s.displacement for s in self.falling], [s.force for s in self.falling], self.peak)
 
     @property
     def zero(self) -> State:
@@ -101,14 +110,13 @@ def pull_off_quasistatic(context: RunContext) -> Outcome:
         smooth = smooth_pass(context, experiment.preload, tolerance)
         return _outcome(context, smooth, experiment.preload, smooth.missed)
     latest = _first(context, experiment.preload)
-    window = settings.displacement_step
+    window = unloading_step(settings, latest.loading[-1].displacement)
     for _ in range(MOST_PASSES):
         before = latest
         latest = _replay(context, experiment.preload, _refined(before, experiment.preload, window))
         window *= ZOOM
         if _agree(before, latest, experiment.preload, tolerance):
-            excess = max(rivals([s.force for s in latest.falling], latest.peak).values(), default=0.0)
-            missed = abs(latest.peak.smooth - before.peak.smooth) + max(0.0, excess)
+            missed = abs(latest.peak.smooth - before.peak.smooth) + max(0.0, 0.0, *latest.rivals.values())
             return _outcome(context, latest, experiment.preload, missed)
     raise UntrustedError(
         f"the pull-off force still changes from {before.peak.tension:.6g} to {latest.peak.tension:.6g} FU after "
@@ -217,6 +225,7 @@ def _outcome(context: RunContext, found: Pass | SmoothPass, preload: float, miss
         "zero_load_radius": Quantity(zero_radius.value, zero_radius.uncertainty + slope * at_zero, LENGTH),
         "preload": Quantity(loaded, abs(loaded - preload), FORCE),
     }
+    require_no_contradiction(settings, quantities, found.unloading)
     marked = {"zero_load": zero, "critical": critical}
     by_spacing = {"critical_radius": critical_radius.uncertainty, "zero_load_radius": zero_radius.uncertainty}
     warnings = doubts(scene, settings, states)
@@ -226,6 +235,5 @@ def _outcome(context: RunContext, found: Pass | SmoothPass, preload: float, miss
 def _rival_radius(found: Pass, radius: float, missed: float) -> float:
     """How far [LU] the radius a_cr may be off because another tooth is the highest: by `missed` [FU] it may be."""
     falling = found.falling
-    higher = rivals([s.force for s in falling], found.peak)
-    teeth = [falling[i] for i, excess in higher.items() if excess > -missed]
+    teeth = [falling[i] for i, excess in found.rivals.items() if excess > -missed]
     return max((abs(s.radius_or_spot.value - radius) for s in teeth), default=0.0)

@@ -3,29 +3,43 @@
 No particle snaps, so that the state at a displacement does not depend on the way to it, and the search may come back to
 a place that it has passed: it compresses to F_D, goes to F = 0, pulls until the tension has passed its largest value,
 comes back to where polynomials through the rows put it, and pulls the bodies apart. Each mark is approached until the
-row there says what the polynomial had promised; how far the two were apart is the uncertainty of the search.
+row there says what the polynomial had promised, and the largest tension until rows that halve the increment beside it
+leave its height and place as they were; how far these were apart is the uncertainty of the search. Polynomials of
+several degrees through one coarse sample agree with each other where the maximum is sharper than the sample tells.
+
+Just below snapping F(d) has a tooth for each pair that lets go, so that there is more than one maximum: the rows are
+then denser than the teeth of the estimate, and every tooth that may be the highest is looked at more closely.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
-from contact1d.analysis.curve_marks import Peak, largest_tension, smooth_crossing
+from contact1d.analysis.curve_marks import Peak, largest_tension, promised, rivals, smooth_crossing
 from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.running.contact import Contact, State
-from contact1d.workflow.experiments.running.prescribing import approach, measured, separate
+from contact1d.workflow.experiments.running.prescribing import approach, back_to, measured, separate, still_held
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import UntrustedError
 
 MOST_TRIES = 12
-"""Rows at one mark after which the search gives up."""
+"""Rows at F = 0 after which the search gives up."""
+MOST_CUTS = 60
+"""The same of looks at the largest tension, each of which may halve the increment beside it: a sharp one needs some."""
 PAST = 3
 """Rows beyond the largest tension that its polynomials need."""
+CLOSER = 2
+"""Halvings of the increment beside the largest tension for the sake of the contact radius there."""
 MISPLACED = 2.0
 """Error of the place of the largest tension over the distance between those of two polynomials."""
-CLOSER = (0.5, 0.25)
-"""Distances over the increment at which rows are put beside a largest tension that is not placed well enough."""
-MOST_PULLS = 500
+PER_TOOTH = 4.0
+"""Rows to a tooth of the tension."""
+MOST_TEETH = 400.0
+"""Teeth from F = 0 to separation that the rows can tell apart; denser ones are a small part of the tension each."""
+MOST_RIVALS = 200
+"""Looks at teeth that may be higher than the highest row."""
+MOST_PULLS = 2_000
 """Rows from F = 0 to the largest tension; a contact that needs more lets go nowhere near."""
 LATTICE = 0.5
 """Part of a radius's uncertainty below which it is looked at no closer: interpolation between particles limits it."""
@@ -59,7 +73,7 @@ class SmoothPass:
 
 
 def smooth_pass(context: RunContext, preload: float, tolerance: float) -> SmoothPass:
-    """Search and schedule in one.
+    """Search and schedule in one; again, through all of the tension, where it rises anew after its first maximum.
 
     Args:
         context: of a deck whose settings are smooth.
@@ -69,6 +83,19 @@ def smooth_pass(context: RunContext, preload: float, tolerance: float) -> Smooth
     Raises:
         UntrustedError: see `require_trust`; a mark is not found, or a larger tension comes after it.
     """
+    for through in (False, True):
+        found, before = _searched(context, preload, tolerance, through)
+        if abs(found.peak.smooth - before.smooth) <= tolerance * found.peak.smooth:
+            return found
+        context.progress.note("the tension rises again after its first maximum: once more, through all of it")
+    raise UntrustedError(
+        f"the tension rises again to {found.peak.tension:.6g} FU after its largest maximum was {before.smooth:.6g} FU: "
+        'use kind = "path" through all of it'
+    )
+
+
+def _searched(context: RunContext, preload: float, tolerance: float, through: bool) -> tuple[SmoothPass, Peak]:
+    """One schedule, and the largest tension as it was before the bodies were pulled apart."""
     with context.contact() as contact:
         contact.begin("loading")
         loading = approach(contact, preload, 0.0)
@@ -76,20 +103,18 @@ def smooth_pass(context: RunContext, preload: float, tolerance: float) -> Smooth
         unloaded = _to_zero(contact, loading, tolerance)
         contact.write_state()
         contact.begin("pulling")
-        pulled, missed = _to_largest_tension(contact, unloaded, tolerance)
+        pulled, missed = _to_largest_tension(contact, unloaded, tolerance, through)
         contact.write_state()
         contact.begin("separating")
-        apart = separate(contact, min(s.displacement for s in pulled), -min(s.force for s in pulled))
+        # On from where the bodies have been, yet no longer a way at once than the search for a maximum goes past it.
+        nearest = pulled[-1].displacement - (PAST + 1) * contact.settings.increment()
+        start = max(nearest, min(s.displacement for s in pulled))
+        apart = separate(contact, start, -min(s.force for s in pulled))
         contact.finish()
         phases = contact.phases
     unloading = [*unloaded, *pulled, *apart]
-    peak = _peak(unloading)
-    if abs(peak.smooth - _peak([*unloaded, *pulled]).smooth) > tolerance * peak.smooth:
-        raise UntrustedError(
-            f"the tension rises again to {peak.tension:.6g} FU after its first maximum: the contact lets go in pieces, "
-            'which one pull_off can\'t mark; use kind = "path" through all of it'
-        )
-    return SmoothPass(phases, loading, unloading, unloaded[-1], pulled[-1], peak, missed)
+    found = SmoothPass(phases, loading, unloading, unloaded[-1], pulled[-1], _peak(unloading), missed)
+    return found, _peak([*unloaded, *pulled])
 
 
 def _to_zero(contact: Contact, loading: list[State], tolerance: float) -> list[State]:
@@ -117,29 +142,87 @@ def _zero(states: list[State]) -> float:
         return -float("inf")
 
 
-def _to_largest_tension(contact: Contact, unloaded: list[State], tolerance: float) -> tuple[list[State], float]:
-    """Down from F = 0 past the largest tension and back to it, where the last state is. Also returns the miss [FU]."""
-    step = contact.settings.increment()
+def _to_largest_tension(
+    contact: Contact, unloaded: list[State], tolerance: float, through: bool
+) -> tuple[list[State], float]:
+    """Down from F = 0 past the largest tension and back to it, where the last state is. Also returns the miss [FU].
+
+    Rows at half the distance are put on both sides of it until they leave it as it was, and, at most CLOSER times more,
+    until the contact radius there is known.
+    """
+    tooth = contact.settings.estimate.tooth(contact.settings.particles)
+    step = _increment(contact, unloaded[-1].displacement, tooth)
+    states = _pulled(contact, unloaded[-1], step, through or tooth < math.inf)
+    expected, beside, cuts, changed = _peak([*unloaded, *states]), step, 0, math.inf
+    for _ in range(MOST_CUTS):
+        states += back_to(contact, states[-1], expected.position)
+        found = _peak([*unloaded, *states])
+        missed, allowed = abs(found.smooth - expected.smooth), tolerance * found.smooth
+        if missed <= allowed and _near(states, found, tolerance):
+            known = changed <= allowed and found.uncertainty <= allowed
+            if known and (cuts > CLOSER or _placed(states, found, tolerance)):
+                before, left = len(states), _look_at_rivals(contact, unloaded, states, allowed)
+                if len(states) == before:
+                    return states, max(missed, changed, left, abs(found.smooth + states[-1].force))
+                expected = _peak([*unloaded, *states])
+                changed = max(changed, abs(expected.smooth - found.smooth))
+                continue
+            beside, cuts = 0.5 * beside, cuts + 1
+            surprise = _halved(contact, unloaded, states, (found.position + beside, found.position - beside))
+            expected = _peak([*unloaded, *states])
+            changed = max(surprise, abs(expected.smooth - found.smooth))
+        else:
+            expected = found
+    raise UntrustedError(f"the largest tension is not found near {expected.position:.6g} LU: {JUMPS}")
+
+
+def _halved(contact: Contact, unloaded: list[State], states: list[State], places: tuple[float, float]) -> float:
+    """Put rows at `places` [LU] beside the largest tension; by how much they are not what was promised there [FU]."""
+    rows = _falling([*unloaded, *states])
+    expected = promised([s.displacement for s in rows], [s.force for s in rows], places)
+    surprise = 0.0
+    for place, tension in zip(places, expected, strict=True):
+        states += back_to(contact, states[-1], place)
+        surprise = max(surprise, math.inf if math.isnan(tension) else abs(float(tension) + states[-1].force))
+    return surprise
+
+
+def _increment(contact: Contact, zero: float, tooth: float) -> float:
+    """Increment [LU] from F = 0, at displacement `zero` [LU], on: that of a search, or less where teeth are denser."""
+    estimate = contact.settings.estimate
+    densest = (zero - estimate.rest + float(estimate.gap[-1])) / MOST_TEETH
+    return min(contact.settings.increment(), max(tooth, densest) / PER_TOOTH)
+
+
+def _pulled(contact: Contact, zero: State, step: float, through: bool) -> list[State]:
+    """Rows down from F = 0 until PAST of them lie beyond the largest tension, or `through` all that may exceed it."""
     states: list[State] = []
-    at = unloaded[-1].displacement
-    while not _passed([unloaded[-1], *states]):
-        at -= step
-        states.append(measured(contact, at))
+    while not _passed([zero, *states]) or (
+        through and -min(s.force for s in states) <= still_held(contact, states[-1])
+    ):
+        states.append(measured(contact, zero.displacement - (len(states) + 1) * step))
         if len(states) > MOST_PULLS:
             raise UntrustedError("the largest tension is never passed")
-    expected, closer = _peak([*unloaded, *states]), iter(CLOSER)
-    for _ in range(MOST_TRIES):
-        states.append(measured(contact, expected.position))
-        found = _peak([*unloaded, *states])
-        missed = abs(found.smooth - expected.smooth)
-        if missed <= tolerance * found.smooth and _near(states, found, tolerance):
-            beside = None if _placed(states, found, tolerance) else next(closer, None)
-            if beside is None:
-                return states, max(missed, abs(found.smooth + states[-1].force))
-            states += [measured(contact, found.position + side * beside * step) for side in (1.0, -1.0)]
-            found = _peak([*unloaded, *states])
-        expected = found
-    raise UntrustedError(f"the largest tension is not found near {expected.position:.6g} LU: {JUMPS}")
+    return states
+
+
+def _look_at_rivals(contact: Contact, unloaded: list[State], states: list[State], allowed: float) -> float:
+    """Put rows beside the teeth that may be higher than the highest row by more than `allowed` [FU], until none may.
+
+    Returns by how much one still may [FU].
+    """
+    excess = 0.0
+    for _ in range(MOST_RIVALS):
+        rows = _falling([*unloaded, *states])
+        teeth = rivals([s.displacement for s in rows], [s.force for s in rows], _peak(rows))
+        highest = max(teeth, key=lambda i: teeth[i], default=0)
+        excess = max(0.0, teeth.get(highest, 0.0))
+        if excess <= allowed:
+            break
+        at, beside = rows[highest].displacement, (rows[highest - 1].displacement, rows[highest + 1].displacement)
+        for other in beside:
+            states += back_to(contact, states[-1], 0.5 * (at + other))
+    return excess
 
 
 def _near(states: list[State], peak: Peak, tolerance: float) -> bool:

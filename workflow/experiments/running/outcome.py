@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from contact1d.analysis.pressure import Profile
 from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.centring import left_by_centring
+from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.units import Quantity
 
 
@@ -36,6 +38,8 @@ class Outcome:
         friction: columns of friction.csv, for a slide.
         spacing_uncertainty: by name, the part of a quantity's uncertainty that the spacing of the particles leaves,
             whatever the settings.
+        centring: by name, the part of it that comes from not knowing where the contact's centre lies between particles
+            (`workflow.settings.centring`); no finer settings of the run make it smaller.
         prescribed: names of the quantities that the scene prescribes, which are no results.
         compared_with: by name, what an uncertainty is compared with where that is not the quantity itself, in its unit.
         refinement: None where the settings were given, or are not refined.
@@ -49,9 +53,42 @@ class Outcome:
     warnings: Mapping[str, str] = field(default_factory=dict)
     friction: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     spacing_uncertainty: Mapping[str, float] = field(default_factory=dict)
+    centring: Mapping[str, float] = field(default_factory=dict)
     prescribed: frozenset[str] = frozenset()
     compared_with: Mapping[str, float] = field(default_factory=dict)
     refinement: Refinement | None = None
+
+    @property
+    def on_own_lattice(self) -> dict[str, Quantity]:
+        """The quantities as uncertain as the run leaves them, its particles being where they are."""
+        return {
+            name: Quantity(known.value, known.uncertainty - self.centring.get(name, 0.0), known.unit)
+            for name, known in self.quantities.items()
+        }
+
+
+def anywhere_between(scene: Scene, settings: Settings, outcome: Outcome) -> Outcome:
+    """The outcome of a contact whose centre may lie anywhere between particles: more uncertain, and a warning if much.
+
+    F and a of the mean pressure F/πa² are a load's own.
+    """
+    parts = left_by_centring(scene, settings)
+    if "mean_pressure" in outcome.quantities and "contact_radius" in parts:
+        share = 2.0 * parts["contact_radius"] / outcome.quantities["contact_radius"].value
+        parts["mean_pressure"] = share * abs(outcome.quantities["mean_pressure"].value)
+    parts = {name: part for name, part in parts.items() if name in outcome.quantities}
+    known = {
+        name: Quantity(q.value, q.uncertainty + parts.get(name, 0.0), q.unit) for name, q in outcome.quantities.items()
+    }
+    warnings = dict(outcome.warnings)
+    shares = {name: part / abs(known[name].value) for name, part in parts.items() if known[name].value}
+    if open_ := {name: share for name, share in shares.items() if share > scene.accuracy.tolerance}:
+        warnings["lattice"] = (
+            f"{in_words(open_)} only, more than the tolerance of {scene.accuracy.tolerance:g}, because the contact's "
+            "centre may lie on a particle or anywhere between two of this chain: take a smaller bodies.spacing at the "
+            "same stiffness and energy per length, or give bodies.particles where these very particles are meant"
+        )
+    return replace(outcome, quantities=known, centring=parts, warnings=warnings)
 
 
 def unmet(scene: Scene, outcome: Outcome) -> dict[str, float]:
@@ -62,7 +99,7 @@ def unmet(scene: Scene, outcome: Outcome) -> dict[str, float]:
     if scene.noise is not None:
         return {}
     shares = {}
-    for name, quantity in outcome.quantities.items():
+    for name, quantity in outcome.on_own_lattice.items():
         size = outcome.compared_with.get(name, abs(quantity.value))
         if name not in outcome.prescribed and (size != 0.0 or name.endswith("radius")):
             shares[name] = quantity.uncertainty / size if size else math.inf

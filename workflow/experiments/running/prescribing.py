@@ -5,15 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+import numpy as np
+
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Displace
 from contact1d.workflow.experiments.running.contact import Contact, State
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import ThroughError, UntrustedError, require_trust
+from contact1d.workflow.settings.settings import Settings
 
 MOST_INCREMENTS = 2_000
 """Rows of one branch of a search; a search that needs more has no end in sight."""
+ROWS_APART = 1_000.0
+"""Rows in which an unloading comes from any displacement to where nothing is felt any more."""
 APPROACH = 1e-3
 """How near to a wanted force a search must come, over the tolerance."""
 SEPARATED = 0.02
@@ -23,6 +28,8 @@ PAST_PEAK = 0.5
 GROWTH, SMOOTH_GROWTH = 1.2, 1.6
 OVERSHOOT = 1.02
 """Secant steps aim a little beyond, so that a bracket forms instead of a slow approach from one side."""
+BACK = 0.5
+"""Move of a search that comes back to where the bodies have been, over their particles' smallest distance."""
 SAME_PLACE = 1e-12
 """Displacements [LU] nearer than this are the same place: a force that still differs has jumped."""
 LOADING_STEPS = 24
@@ -117,23 +124,61 @@ def separate(contact: Contact, start: float, largest: float = 0.0) -> list[State
     `largest` is what the tension has been before [FU].
     """
     displacement, states = start, [measured(contact, start)]
-    step = contact.settings.increment()
+    step = unloading_step(contact.settings, start)
     growth = SMOOTH_GROWTH if contact.settings.is_smooth else GROWTH
     for _ in range(MOST_INCREMENTS):
         displacement -= step
         state = measured(contact, displacement)
         states.append(state)
         largest = max(largest, -state.force)
-        if largest > 0.0 and -state.force < PAST_PEAK * largest and state.force <= 0.0:
-            step *= growth
+        past = largest > 0.0 and -state.force < PAST_PEAK * largest and state.force <= 0.0
+        if past and (contact.settings.is_smooth or still_held(contact, state) < largest):
+            step *= growth  # longer moves let go of particles early: only where no tooth can be higher any more
         if _apart(contact, state, largest):
             return states
     raise UntrustedError(f"the bodies did not separate within {MOST_INCREMENTS} increments of the displacement")
 
 
+def unloading_step(settings: Settings, start: float) -> float:
+    """First increment [LU] of an unloading from `start` [LU]: that of a search, yet in ROWS_APART the bodies are apart.
+
+    Soft springs follow the attraction far beyond what the bodies were pressed together.
+    """
+    way = start - settings.rest + float(settings.estimate.gap[-1])
+    return max(settings.increment(), way / ROWS_APART)
+
+
+def still_held(contact: Contact, state: State) -> float:
+    """Tension [FU] that bodies which move apart can have at most from this state on.
+
+    A particle that has passed the largest tension of its law only loses what it has; any other, wherever it is, may
+    come to hold that.
+    """
+    profile, (distance, largest) = state.profile, contact.settings.strongest
+    held = contact.scene.bodies.spacing * np.maximum(0.0, -profile.pressure)
+    near = profile.z_upper - profile.z_lower < distance
+    return float(np.sum(np.where(near, np.maximum(held, largest), held)))
+
+
 def _apart(contact: Contact, state: State, largest: float) -> bool:
-    gone = largest > 0.0 and abs(state.force) < SEPARATED * largest
-    return gone or state.smallest_distance > contact.settings.cutoff
+    """Whether the bodies are out of reach, or can't hold more than a small part of the largest tension any more.
+
+    Where particles snap, the force passes 0 between one that lets go and the next.
+    """
+    gone = abs(state.force) < SEPARATED * largest and still_held(contact, state) < SEPARATED * largest
+    return (largest > 0.0 and gone) or state.smallest_distance > contact.settings.cutoff
+
+
+def back_to(contact: Contact, last: State, displacement: float) -> list[State]:
+    """The state at a displacement [LU] after those that the way there needs from the `last` one.
+
+    Bodies that come nearer do so by BACK of their particles' smallest distance at a time.
+    """
+    states = [last]
+    while displacement - states[-1].displacement > (longest := BACK * states[-1].smallest_distance):
+        longest = max(longest, contact.settings.longest_move)
+        states.append(measured(contact, min(states[-1].displacement + longest, displacement)))
+    return [*states[1:], measured(contact, displacement)]
 
 
 def measured(contact: Contact, displacement: float) -> State:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+
 from contact1d.analysis.pressure import Profile, end_pressure_share
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.law_error import law_share
 from contact1d.workflow.experiments.running.slowness import slowness
 from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.chain import decay_length, reflected
 from contact1d.workflow.settings.settings import Settings
+from contact1d.workflow.units import Quantity
 
 
 class UntrustedError(RuntimeError):
@@ -55,6 +59,22 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
         )
 
 
+def require_no_contradiction(settings: Settings, quantities: Mapping[str, Quantity], states: Iterable[State]) -> None:
+    """Refuse a largest tension that a state of the run's own curve exceeds by more than its uncertainty.
+
+    Raises:
+        UntrustedError: names the state.
+    """
+    found = quantities["adhesion_force"]
+    for state in states:
+        if -state.force > found.value + found.uncertainty + state.residual * settings.particles:
+            raise UntrustedError(
+                f"the largest tension was found as {found.value:.6g} FU, and the run's own curve has "
+                f"{-state.force:.6g} FU at displacement {state.displacement:.6g} LU (phase {state.phase}): the search "
+                'was misled. Use kind = "path" through all of the tension, or a smaller [accuracy] tolerance'
+            )
+
+
 def _reaches_end(scene: Scene, profile: Profile) -> bool:
     """Whether the contact's edge, the largest tension or else the last loaded particle, is a chain's last particle.
 
@@ -78,6 +98,13 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
         found["chain_end"] = (
             f"the outermost particles carry up to {share:.2g} of the largest pressure, so the chain of "
             f'{settings.particles} particles cuts the contact: take more bodies.particles, or "auto"'
+        )
+    ends = reflected(scene, settings.estimate, settings.largest_displacement, settings.particles)
+    if not scene.bodies.profile.has_edge and ends > settings.tolerance:
+        found["chain_end"] = (
+            f"neighbour springs spread the load over {decay_length(scene):.3g} LU to each side, and the chain of "
+            f"{settings.particles} particles ends so near to the contact that up to {ends:.1g} of that comes back from "
+            'there: take more bodies.particles, or "auto"'
         )
     share = law_share(scene, settings)
     if share > settings.tolerance:

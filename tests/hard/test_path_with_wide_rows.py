@@ -1,0 +1,80 @@
+"""Claim: where pairs snap, a path has the same states whether its rows are narrow or as wide as the range.
+
+Reference: `analysis.reference.pair_lattice`, each pair with its folds, at the same displacements; and the energy lost
+in a round, one loop for each pair that snaps.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact1d import run, scene_from_dict
+from contact1d.analysis.reference.interaction import Exponential, PairInteraction
+from contact1d.analysis.reference.pair_lattice import PairLattice
+from contact1d.workflow.scene import read_scene
+from contact1d.workflow.settings.settings import settings_for
+
+RANGE = 0.03
+LAW = PairInteraction(Exponential(0.0024, 0.015), Exponential(0.0012, RANGE))
+TOLERANCE = 1e-3
+ROWS = 2e-3
+"""Largest difference of a force from the reference's over the largest; measured 1e-4: the law's tail, residuals."""
+AREA = 1e-3
+"""Of the loop over the same rows; measured 1e-4."""
+DEEPEST = 0.1
+
+
+def scene(ratio: float, wide: float, method: str = "quasistatic") -> dict[str, Any]:
+    stiffness = 2.0 * float(LAW.force_slope(LAW.extremum_distance(2))) / ratio
+    pair = PairLattice(LAW, stiffness, np.zeros(1))
+    steps = round((DEEPEST + pair.snap_off + 2.0 * RANGE) / (wide * RANGE)) + 1
+    return {
+        "title": f"{ratio}, rows {wide}",
+        "bodies": {
+            "particles": 30, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 100.0},
+            "bulk_stiffness": stiffness,
+        },
+        "interaction": {
+            "repulsion": {"amplitude": 0.0024, "range": 0.015}, "attraction": {"amplitude": 0.0012, "range": RANGE},
+        },
+        "accuracy": {"tolerance": TOLERANCE},
+        "experiment": {
+            "kind": "path", "method": method,
+            "displacements": {"from": DEEPEST - steps * wide * RANGE, "to": DEEPEST, "steps": steps, "return": True},
+        },
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("wide", [0.5, 3.0])
+@pytest.mark.parametrize("ratio", [1.2, 3.0, 10.0])
+def test_every_row_is_on_its_branch(tmp_path: Path, ratio: float, wide: float) -> None:
+    asked = scene_from_dict(scene(ratio, wide))
+    states = run(asked, tmp_path, figures=False).outcome.states
+    pairs = PairLattice(LAW, float(asked.bulk_stiffness), asked.bodies.height(states[0].profile.x))
+    stuck = pairs.stuck_after(DEEPEST)
+    d, force = (np.array([getattr(state, name) for state in states]) for name in ("displacement", "force"))
+    exact = np.array([
+        pairs.force(s.displacement, pairs.stuck_after(s.displacement) if s.phase == "loading" else stuck)
+        for s in states
+    ])  # fmt: skip
+    assert np.abs(force - exact).max() < ROWS * np.abs(exact).max()
+    loop, true = np.trapezoid(force, d), np.trapezoid(exact, d)
+    assert abs(loop - true) < AREA * np.trapezoid(np.abs(exact), d[0] + np.cumsum(np.abs(np.diff(d, prepend=d[0]))))
+
+
+def test_rows_that_are_narrow_enough_stay_as_they_are() -> None:
+    """And rows between those that the scene asks for are in the deck, and not in the curve."""
+    from contact1d.workflow.experiments.path.path import schedule
+
+    shipped = read_scene(Path(__file__).parents[2] / "lammps_inputs/scenes/path_hysteresis.toml")
+    rows = sum(len(phase.rows) for phase in schedule(shipped, settings_for(shipped)))
+    assert shipped.experiment.kind == "path"
+    assert rows == len(shipped.experiment.values())
+    wide = scene_from_dict(scene(4.0, 1.0))
+    assert wide.experiment.kind == "path"
+    down = schedule(wide, settings_for(wide))[-1]
+    assert len(down.rows) > 5 * len(wide.experiment.values()) / 2

@@ -1,0 +1,76 @@
+"""Claim: where pairs snap, F_A is that of the highest tooth, and no state of the run's own curve contradicts it.
+
+Reference: `analysis.reference.pair_lattice`, each pair with its folds, unloaded from where the run had been deepest.
+Between a tooth and the next the force of a sharp body passes 0, and soft springs follow the attraction far out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from contact1d import run, scene_from_dict
+from contact1d.analysis.reference.interaction import Exponential, PairInteraction
+from contact1d.analysis.reference.pair_lattice import PairLattice
+from contact1d.workflow.experiments.running.outcome import UntrustedError, require_no_contradiction
+from contact1d.workflow.settings.settings import settings_for
+from contact1d.workflow.units import Quantity
+
+LAW = PairInteraction(Exponential(0.011, 0.015), Exponential(0.01, 0.03))
+"""Short against the spacing, so that a particle feels its opposite alone."""
+PROFILES: dict[str, dict[str, Any]] = {
+    "flat punch": {"kind": "flat_punch", "radius": 5.0},
+    "sharp": {"kind": "parabola", "radius": 50.0},
+    "very sharp": {"kind": "parabola", "radius": 10.0},
+    "cone": {"kind": "cone", "slope": 0.02},
+}
+PRELOAD = 0.19
+TAIL = 1e-6
+"""Part of the force that the law's tail beyond the cutoff may have at least."""
+
+
+def scene(profile: str, ratio: float, tolerance: float = 1e-2) -> dict[str, Any]:
+    stiffness = 2.0 * float(LAW.force_slope(LAW.extremum_distance(2))) / ratio
+    return {
+        "title": f"{profile}, {ratio}",
+        "bodies": {
+            "particles": "auto", "spacing": 1.0, "profile": PROFILES[profile], "bulk_stiffness": stiffness,
+        },
+        "interaction": {
+            "repulsion": {"amplitude": 0.011, "range": 0.015}, "attraction": {"amplitude": 0.01, "range": 0.03},
+        },
+        "accuracy": {"tolerance": tolerance},
+        "experiment": {"kind": "pull_off", "preload": PRELOAD},
+    }  # fmt: skip
+
+
+CASES = [(profile, ratio) for profile in PROFILES for ratio in (1.05, 3.0)] + [("flat punch", 30.0)]
+
+
+@pytest.mark.parametrize(("profile", "ratio"), CASES)
+def test_adhesion_force_is_that_of_the_highest_tooth(tmp_path: Path, profile: str, ratio: float) -> None:
+    asked = scene_from_dict(scene(profile, ratio))
+    outcome = run(asked, tmp_path, figures=False).outcome
+    heights = asked.bodies.height(outcome.states[0].profile.x)
+    pairs = PairLattice(LAW, float(asked.bulk_stiffness), heights)
+    deepest = [state for state in outcome.states if state.phase == "loading"][-1].displacement
+    exact, _ = pairs.pull_off(deepest)
+    found = outcome.quantities["adhesion_force"]
+    assert abs(found.value - exact) <= max(found.uncertainty, TAIL * exact)
+    assert abs(found.value - exact) <= asked.accuracy.tolerance * exact
+    assert max(-state.force for state in outcome.states) <= found.value + found.uncertainty
+
+
+def test_a_state_of_the_own_curve_that_contradicts_the_result_is_told(tmp_path: Path) -> None:
+    asked = scene_from_dict(scene("sharp", 0.5))
+    outcome, settings = run(asked, tmp_path, figures=False).outcome, settings_for(asked)
+    require_no_contradiction(settings, outcome.quantities, outcome.states)
+    found = outcome.quantities["adhesion_force"]
+    strongest = min(outcome.states, key=lambda state: state.force)
+    too_small = {"adhesion_force": Quantity(0.5 * found.value, 1e-3 * found.value, found.unit)}
+    with pytest.raises(UntrustedError, match=r"own curve has 0\.\d+ FU"):
+        require_no_contradiction(settings, too_small, [strongest])
+    require_no_contradiction(settings, too_small, [replace(strongest, force=0.4 * strongest.force)])

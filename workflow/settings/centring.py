@@ -1,0 +1,104 @@
+"""What the lattice leaves open: by how much results change with the place of the contact's centre between particles.
+
+A chain "auto" is as long as the contact needs and even, so that the apex lies between two particles. Nobody asked for
+that: on a particle, or a quarter of the spacing off it, the same body has another force
+
+    F(d) = Σ_i f(r_i),    G(r_i) = r₀ + h((i + φ) s) − d,    φ = 1/2, 1/4, 0
+
+The differences between these sums are those of the estimate's independent pairs: of contacts many spacings wide they
+are exponentially small where the pairs' force is smooth, and algebraically on a rigid plane. Where the number of
+particles is given, these particles are the body that was asked for, and the lattice leaves nothing open but what is
+read off between them; a flat punch has its edge particles where it ends, and one way to stand only.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.workflow.scene import Load, Scene
+from contact1d.workflow.settings.estimate import ContactEstimate
+from contact1d.workflow.settings.settings import Settings
+
+Array = NDArray[np.float64]
+OWN, OTHERS = 0.5, (0.25, 0.0)
+"""Places of the apex between particles over the spacing: of an even chain, and those that it is held against."""
+MARGIN = 1.25
+"""Claim over the change of the estimate, which knows no neighbours; measured against chains of both parities: 1.01."""
+POINTS, ROUNDS = 400, 3
+"""Displacements at which a sum is looked at, and how often again between those next to the one looked for."""
+
+
+def left_by_centring(scene: Scene, settings: Settings) -> dict[str, float]:
+    """By the names of results, the largest change [its unit]."""
+    if scene.bodies.particles != "auto" or scene.bodies.profile.has_edge:
+        return {}
+    own, *others = (_marks(scene, settings, phase) for phase in (OWN, *OTHERS))
+    return {name: MARGIN * max(abs(other[name] - value) for other in others) for name, value in own.items()}
+
+
+def _marks(scene: Scene, settings: Settings, phase: float) -> dict[str, float]:
+    """The results of a chain that stands so, as far as they are the scene's."""
+    estimate, experiment = settings.estimate, scene.experiment
+    adhesive = scene.interaction is not None and scene.interaction.attraction is not None
+    edge = float(estimate.gap[int(estimate.force.argmin())])
+    deepest = settings.largest_displacement
+
+    def radius(displacement: float) -> float:
+        return estimate.half_width(displacement, edge)
+
+    if experiment.motion_is_result:
+        return {}
+    row = _Row(estimate, phase, deepest)
+    if isinstance(experiment, Load):
+        place = row.crossing(experiment.force, deepest)
+        return {"displacement": place, "contact_radius": radius(place)}
+    if not adhesive:
+        return {"largest_force": row.force(deepest)}
+    place, tension = row.largest_tension()
+    zero = row.crossing(0.0, deepest)
+    return {"adhesion_force": tension, "critical_radius": radius(place), "zero_load_radius": radius(zero)}
+
+
+class _Row:
+    """The sum over particles whose apex stands at a phase between two of them."""
+
+    def __init__(self, estimate: ContactEstimate, phase: float, deepest: float) -> None:
+        """Keep the heights of all particles that are within reach at the deepest displacement [LU]."""
+        self.estimate = estimate
+        spacing, reach = estimate.spacing, estimate.half_width(deepest, float(estimate.gap[-1]))
+        count = int(reach / spacing) + 2
+        x = np.abs(spacing * (np.arange(-count, count + 1) + phase))
+        self.heights = estimate.rest + estimate.profile.height(np.asarray(x[x <= reach], dtype=np.float64))
+        self.lowest = estimate.rest - float(estimate.gap[-1])
+
+    def forces(self, displacements: Array) -> Array:
+        """F(d) [FU] at each of the displacements [LU]."""
+        gaps = self.heights - displacements[:, None]
+        return np.asarray(np.interp(gaps, self.estimate.gap, self.estimate.force, right=0.0).sum(axis=1))
+
+    def force(self, displacement: float) -> float:
+        """F(d) [FU] at a displacement [LU]."""
+        return float(self.forces(np.asarray([displacement]))[0])
+
+    def largest_tension(self) -> tuple[float, float]:
+        """(displacement [LU], tension [FU]) where the tension is largest."""
+        low, high = self.lowest, self.estimate.displacement_at(0.0)
+        for _ in range(ROUNDS):
+            places = np.linspace(low, high, POINTS)
+            forces = self.forces(places)
+            top = int(np.argmin(forces))
+            low, high = float(places[max(top - 1, 0)]), float(places[min(top + 1, POINTS - 1)])
+        return float(places[top]), -float(forces[top])
+
+    def crossing(self, force: float, deepest: float) -> float:
+        """Largest displacement [LU] at which the force is `force` [FU]; that of the largest tension if none is."""
+        low, high = self.lowest, max(deepest, self.estimate.displacement_at(max(force, 0.0)))
+        high += self.estimate.spacing * 0.1 + 0.1 * abs(high)
+        for _ in range(ROUNDS):
+            places = np.linspace(low, high, POINTS)
+            below = np.flatnonzero(self.forces(places) < force)
+            if below.size == 0:
+                return self.largest_tension()[0]
+            low, high = float(places[below[-1]]), float(places[min(below[-1] + 1, POINTS - 1)])
+        return 0.5 * (low + high)
