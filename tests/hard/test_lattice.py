@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 
-from contact1d import Run, run, scene_from_dict
-from contact1d.workflow.scene import Scene
+from contact1d import Run, run
+from contact1d.workflow.scene import Scene, scene_from_dict
 
 TOLERANCE = 1e-4
 PLANE: dict[str, Any] = {

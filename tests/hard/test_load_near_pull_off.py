@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import RunError, run, scene_from_dict
+from contact1d import RunError, run
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.pair_lattice import PairLattice
+from contact1d.workflow.scene import scene_from_dict
 
 TOLERANCE = 1e-3
 PARTICLES, RADIUS, STIFFNESS = 40, 100.0, 0.83
@@ -53,7 +54,7 @@ def test_within_the_tolerance_a_warning_says_so(tmp_path: Path, share: float) ->
         assert share > 1.0, error
         assert "cannot hold" in str(error)
         return
-    assert "near_pull_off" in {warning["name"] for warning in found.results["warnings"]}
+    assert "near_pull_off" in {warning["name"] for warning in found.document["warnings"]}
 
 
 def test_beyond_the_tolerance_it_parts(tmp_path: Path) -> None:
@@ -65,4 +66,4 @@ def test_beyond_the_tolerance_it_parts(tmp_path: Path) -> None:
 def test_well_below_nothing_is_doubted(tmp_path: Path, share: float) -> None:
     """The last within a tolerance of it, which a refinement, run because the displacement goes with a root, tells."""
     found = run(scene_from_dict(scene(share * largest_tension())), tmp_path, figures=False)
-    assert "near_pull_off" not in {warning["name"] for warning in found.results["warnings"]}
+    assert "near_pull_off" not in {warning["name"] for warning in found.document["warnings"]}

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import run, scene_from_dict
+from contact1d import run
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.pair_lattice import PairLattice
-from contact1d.workflow.scene import read_scene
+from contact1d.workflow.scene import read_scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 
 RANGE = 0.03
@@ -73,8 +73,8 @@ def test_rows_that_are_narrow_enough_stay_as_they_are() -> None:
     shipped = read_scene(Path(__file__).parents[2] / "lammps_inputs/scenes/path_hysteresis.toml")
     rows = sum(len(phase.rows) for phase in schedule(shipped, settings_for(shipped)))
     assert shipped.experiment.kind == "path"
-    assert rows == len(shipped.experiment.values())
+    assert rows == len(shipped.experiment.places())
     wide = scene_from_dict(scene(4.0, 1.0))
     assert wide.experiment.kind == "path"
     down = schedule(wide, settings_for(wide))[-1]
-    assert len(down.rows) > 5 * len(wide.experiment.values()) / 2
+    assert len(down.rows) > 5 * len(wide.experiment.places()) / 2

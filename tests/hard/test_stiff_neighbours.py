@@ -11,10 +11,11 @@ from typing import Any
 import pytest
 from scipy.optimize import brentq
 
-from contact1d import run, scene_from_dict
+from contact1d import run
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.solver import ChainSolver
+from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 
 TOLERANCE, FORCE = 1e-2, 0.5

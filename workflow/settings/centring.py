@@ -23,10 +23,12 @@ from contact1d.workflow.settings.settings import Settings
 Array = NDArray[np.float64]
 OWN, OTHERS = 0.5, (0.25, 0.0)
 """Places of the apex between particles over the spacing: of an even chain, and those that it is held against."""
+BEYOND = 0.1
+"""Way beyond the deepest place of the estimate that is looked at, over that place and a spacing."""
 MARGIN = 1.25
 """Claim over the change of the estimate, which knows no neighbours; measured against chains of both parities: 1.01."""
-POINTS, ROUNDS = 400, 3
-"""Displacements at which a sum is looked at, and how often again between those next to the one looked for."""
+POINTS = (200, 40, 40, 40)
+"""Displacements at which a sum is looked at, each time between those next to the one looked for."""
 
 
 def left_by_centring(scene: Scene, settings: Settings) -> dict[str, float]:
@@ -51,12 +53,12 @@ def _marks(scene: Scene, settings: Settings, phase: float) -> dict[str, float]:
         return {}
     row = _Row(estimate, phase, deepest)
     if isinstance(experiment, Load):
-        place = row.crossing(experiment.force, deepest)
+        place = row.crossing(experiment.force)
         return {"displacement": place, "contact_radius": radius(place)}
     if not adhesive:
         return {"largest_force": row.force(deepest)}
     place, tension = row.largest_tension()
-    zero = row.crossing(0.0, deepest)
+    zero = row.crossing(0.0)
     return {"adhesion_force": tension, "critical_radius": radius(place), "zero_load_radius": radius(zero)}
 
 
@@ -71,6 +73,7 @@ class _Row:
         x = np.abs(spacing * (np.arange(-count, count + 1) + phase))
         self.heights = estimate.rest + estimate.profile.height(np.asarray(x[x <= reach], dtype=np.float64))
         self.lowest = estimate.rest - float(estimate.gap[-1])
+        self.highest = deepest + BEYOND * (abs(deepest) + spacing)
 
     def forces(self, displacements: Array) -> Array:
         """F(d) [FU] at each of the displacements [LU]."""
@@ -83,22 +86,21 @@ class _Row:
 
     def largest_tension(self) -> tuple[float, float]:
         """(displacement [LU], tension [FU]) where the tension is largest."""
-        low, high = self.lowest, self.estimate.displacement_at(0.0)
-        for _ in range(ROUNDS):
-            places = np.linspace(low, high, POINTS)
+        low, high = self.lowest, self.highest
+        for points in POINTS:
+            places = np.linspace(low, high, points)
             forces = self.forces(places)
             top = int(np.argmin(forces))
-            low, high = float(places[max(top - 1, 0)]), float(places[min(top + 1, POINTS - 1)])
+            low, high = float(places[max(top - 1, 0)]), float(places[min(top + 1, points - 1)])
         return float(places[top]), -float(forces[top])
 
-    def crossing(self, force: float, deepest: float) -> float:
+    def crossing(self, force: float) -> float:
         """Largest displacement [LU] at which the force is `force` [FU]; that of the largest tension if none is."""
-        low, high = self.lowest, max(deepest, self.estimate.displacement_at(max(force, 0.0)))
-        high += self.estimate.spacing * 0.1 + 0.1 * abs(high)
-        for _ in range(ROUNDS):
-            places = np.linspace(low, high, POINTS)
+        low, high = self.lowest, self.highest
+        for points in POINTS:
+            places = np.linspace(low, high, points)
             below = np.flatnonzero(self.forces(places) < force)
             if below.size == 0:
                 return self.largest_tension()[0]
-            low, high = float(places[below[-1]]), float(places[min(below[-1] + 1, POINTS - 1)])
+            low, high = float(places[below[-1]]), float(places[min(below[-1] + 1, points - 1)])
         return 0.5 * (low + high)

@@ -63,7 +63,7 @@ def _by_a_hair(context: RunContext, load: float) -> dict[str, str]:
     A contact at rest balances its load within a share of the tolerance, and near the fold of F(d) it creeps: which side
     of it a load is on can't be told nearer than that.
     """
-    settings, tolerance = context.deck.settings, context.deck.scene.accuracy.tolerance
+    settings, tolerance = context.deck.settings, context.deck.settings.tolerance
     if load > -NEAR_PULL_OFF * settings.estimate.pull_off_force():
         return {}
     try:

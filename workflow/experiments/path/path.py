@@ -42,7 +42,9 @@ def path(context: RunContext) -> Outcome:
     quantities, warnings = _adhesion(context, branch) if adhesive else (_largest(context, states), {})
     ends = {"deepest": max(states, key=lambda s: s.displacement), "final": states[-1]}
     radii = {name: state.radius for name, state in ends.items()}
-    loop = loop_of([s.displacement for s in states], [s.force for s in states])
+    # Where pairs snap, all rows tell the jumps; else the same places there and back tell what a curve loses.
+    rows = passed[asked.index(True) :] if settings.estimate.snaps else states
+    loop = loop_of([s.displacement for s in rows], [s.force for s in rows])
     if loop is not None:
         quantities["dissipated_energy"] = _dissipated(context, states, loop)
     return Outcome(
