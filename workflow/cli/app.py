@@ -10,6 +10,7 @@ import typer
 
 from contact1d.workflow.cli.cost import cost
 from contact1d.workflow.cli.paper import INTERRUPTED, RUN_FAILED, SCENE_IS_WRONG, identify, reproduce, stop
+from contact1d.workflow.cli.stability import stability
 
 if TYPE_CHECKING:
     from contact1d.workflow.scene import Scene
@@ -153,6 +154,7 @@ def doctor() -> None:
 app.command()(identify)
 app.command()(reproduce)
 app.command()(cost)
+app.command()(stability)
 
 
 def _read(path: Path, overrides: list[str] | None, without: list[str] | None) -> Scene:
