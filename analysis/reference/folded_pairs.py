@@ -25,8 +25,12 @@ TAIL = 40.0
 HALVINGS, NEWTON = 25, 8
 """Of the interval that holds a distance, and steps of Newton's method in it: at the round-off but for the last 1e-9 of
 the range before a snap, where they halve the distance to the double root."""
-SCAN = 12
-"""First looks between two snaps, from which the largest tension is then refined."""
+LOOK, FEWEST, MOST = 0.25, 4, 400
+"""Distance of the first looks between two snaps over the shortest range, and how many there are at least and most; the
+largest tension among them is then refined."""
+KINKS, KINK = 7, 0.2
+"""Further looks where a pair is near its steepest tension, and how near over the shortest range: close to a ratio of 1
+it passes there within a share of the way only."""
 SIDE = 1e-12
 """Distance from a snap over the longest range at which the state before it is taken."""
 
@@ -120,37 +124,33 @@ class FoldedPairs:
             r = np.clip(r - step, low, high)
         return np.asarray(r)
 
-    def loading(self, displacement: float) -> float:
-        """Return F(d) of a body that comes from afar [FU]; `displacement` d [LU], zero at the force-free distance."""
+    def loading(self, displacement: Floats | float) -> Floats:
+        """Return F(d) of a body that comes from afar [FU], shape of `displacement`; zero at the force-free distance."""
         gap = self._gaps(displacement)
         return self._force(gap, self._joined(gap))
 
-    def unloading(self, displacement: float, deepest: float) -> float:
+    def unloading(self, displacement: Floats | float, deepest: float) -> Floats:
         """Return F(d) of a body that was at `deepest` [LU] and is drawn back to `displacement` [LU], in [FU]."""
         gap, fold = self._gaps(displacement), self.fold
         joined = self._joined(self._gaps(deepest))
-        return self._force(gap, joined if fold is None else joined & (gap <= fold.gap_off))
+        return self._force(gap, joined & (gap <= (math.inf if fold is None else fold.gap_off)))
 
     def deepest(self, preload: float) -> float:
-        """Return the first d at which a body that comes from afar carries `preload` [FU], in [LU].
+        """Return the first d at which a body that comes from afar carries `preload` >= 0 [FU], in [LU].
 
         Raises:
             ValueError: if the finite core gives way before.
         """
-        limit = self._rest + float(np.min(self.heights)) - float(self.gap(0.0))
-        start = float(np.min(self.heights)) - TAIL * self.interaction.longest_range
-        snaps = [] if self.fold is None else list(self._rest + self.heights - self.fold.gap_on)
-        ends = [start, *sorted({d for d in snaps if start < d < limit}), limit]
+        low, high = float(np.min(self.heights)), self._rest + float(np.min(self.heights)) - float(self.gap(0.0))
         side = SIDE * self.interaction.longest_range
-        for first, last in zip(ends[:-1], ends[1:], strict=True):
-            places = np.linspace(first + side, last - side, SCAN)
-            forces = [self.loading(float(d)) - preload for d in places]
-            reached = [i for i, force in enumerate(forces) if force >= 0.0]
-            if reached and reached[0] == 0:
+        for first, last in self._between(low, high, None if self.fold is None else self.fold.gap_on):
+            places = self._looks(first + side, last - side)
+            reached = np.flatnonzero(self.loading(places) >= preload)
+            if reached.size and reached[0] == 0:
                 return float(places[0])
-            if reached:
-                low, high = places[reached[0] - 1], places[reached[0]]
-                return float(brentq(lambda d: self.loading(d) - preload, low, high, xtol=1e-15))
+            if reached.size:
+                ends = places[reached[0] - 1], places[reached[0]]
+                return float(brentq(lambda d: float(self.loading(d)) - preload, *ends, xtol=1e-15))
         raise ValueError("the finite core gives way before the preload is carried")
 
     def adhesion(self, preload: float) -> tuple[float, float]:
@@ -159,16 +159,12 @@ class FoldedPairs:
         Raises:
             ValueError: as `deepest`.
         """
-        top = self.deepest(preload)
-        start = self._rest + float(np.max(self.heights)) - float(self.gap(0.0))
-        bottom = min(top, start) - float(np.ptp(self.heights)) - TAIL * self.interaction.longest_range
-        snaps = [] if self.fold is None else list(self._rest + self.heights - self.fold.gap_off)
-        ends = [bottom, *sorted({d for d in snaps if bottom < d < top}), top]
+        top, fold = self.deepest(preload), self.fold
+        far = TAIL * self.interaction.longest_range + (0.0 if fold is None else fold.gap_off)
+        bottom = min(top, self._rest) - float(np.ptp(self.heights)) - far
         side = SIDE * self.interaction.longest_range
-        best = (-math.inf, math.nan)
-        for first, last in zip(ends[:-1], ends[1:], strict=True):
-            best = max(best, self._largest(first + side, last, top))
-        return best
+        parts = self._between(bottom, top, None if fold is None else fold.gap_off)
+        return max(self._largest(first + side, last, top) for first, last in parts)
 
     def loop_area(self, deepest: float) -> float:
         """Return the work lost on the way from afar to `deepest` [LU] and back [FU LU]."""
@@ -193,30 +189,47 @@ class FoldedPairs:
         heights, counts = np.unique(self.heights, return_counts=True)
         return heights, counts.astype(np.float64)
 
-    def _gaps(self, displacement: float) -> Floats:
-        return self._rest + self._alike[0] - displacement
+    def _gaps(self, displacement: Floats | float) -> Floats:
+        return self._rest + self._alike[0] - np.asarray(displacement, dtype=np.float64)[..., None]
 
     def _joined(self, gap: Floats) -> Floats:
         return np.zeros(gap.shape, dtype=bool) if self.fold is None else gap <= self.fold.gap_on
 
-    def _force(self, gap: Floats, joined: Floats) -> float:
-        return float(self._alike[1] @ self.interaction.force(self.distance(gap, joined)))
+    def _force(self, gap: Floats, joined: Floats) -> Floats:
+        return np.asarray(self.interaction.force(self.distance(gap, joined)) @ self._alike[1])
 
     def _energy(self, gap: Floats, distance: Floats) -> Floats:
         return self.interaction.energy(distance) + 0.25 * self.bulk_stiffness * (distance - gap) ** 2
 
+    def _between(self, first: float, last: float, snap: float | None) -> list[tuple[float, float]]:
+        """The stretches of a way that are parted by the snaps of its pairs at the gap `snap`."""
+        places = [] if snap is None else (self._rest + self._alike[0] - snap).tolist()
+        ends = [first, *sorted(d for d in places if first < d < last), last]
+        return list(zip(ends[:-1], ends[1:], strict=True))
+
+    def _looks(self, first: float, last: float) -> Floats:
+        wanted = math.ceil((last - first) / (LOOK * self.interaction.shortest_range))
+        even = np.linspace(first, last, min(max(wanted, FEWEST), MOST))
+        return np.union1d(even, self._kinks[(self._kinks > first) & (self._kinks < last)])
+
+    @cached_property
+    def _kinks(self) -> Floats:
+        """Displacements at which a pair passes the steepest part of its force [LU]."""
+        width = KINK * self.interaction.shortest_range
+        r = self.interaction.extremum_distance(2) + width * np.linspace(-1.0, 1.0, KINKS) ** 3
+        if self.fold is not None:
+            r = r[(r < self.fold.r_off) | (r > self.fold.r_on)]
+        return np.asarray((self._rest + self._alike[0][:, None] - self.gap(r)[None, :]).ravel())
+
     def _largest(self, first: float, last: float, top: float) -> tuple[float, float]:
         """The largest tension between two snaps, and its place."""
-        places = np.linspace(first, last, SCAN)
-        tension = [-self.unloading(float(d), top) for d in places]
+        places = self._looks(first, last)
+        tension = -self.unloading(places, top)
         i = int(np.argmax(tension))
-        best = (tension[i], float(places[i]))
-        if 0 < i < SCAN - 1 or (i == 0 and tension[0] < tension[1]):
-            found = minimize_scalar(
-                lambda d: self.unloading(d, top),
-                bounds=(places[i - 1], places[i + 1]),
-                method="bounded",
-                options={"xatol": 1e-12 * self.interaction.longest_range},
-            )
-            best = max(best, (-float(found.fun), float(found.x)))
-        return best
+        found = minimize_scalar(
+            lambda d: float(self.unloading(d, top)),
+            bounds=(places[max(i - 1, 0)], places[min(i + 1, places.size - 1)]),
+            method="bounded",
+            options={"xatol": 1e-9 * self.interaction.longest_range},
+        )
+        return max((float(tension[i]), float(places[i])), (-float(found.fun), float(found.x)))

@@ -93,6 +93,28 @@ class PairCase:
         return float(LAW.force(pairs.distance(gap, joined))[0]) < CAPACITY * CORE
 
 
+def reach(ratio: float) -> float:
+    """Height over the apex [LU] beyond which a particle of a contact that is just touched carries nothing to speak of.
+
+    Twelve ranges, and with snaps the stretch at which the last of them happens.
+    """
+    fold = FoldedPairs(LAW, 2.0 * STEEPEST / ratio, np.zeros(1)).fold
+    return 12.0 * ATTRACTION[1] + (0.0 if fold is None else max(fold.gap_off, fold.gap_on))
+
+
+def shaped(kind: str, particles: int, edge: float) -> dict[str, Any]:
+    """Table of a profile whose last particle is `edge` [LU] above the apex."""
+    half = 0.5 * (particles - 1)
+    match kind:
+        case "flat_punch":
+            return {"kind": kind, "radius": 0.5 * particles}
+        case "parabola":
+            return {"kind": kind, "radius": half**2 / (2.0 * edge)}
+        case "cone":
+            return {"kind": kind, "slope": edge / half}
+    return {"kind": "power", "exponent": 6.0, "radius": half, "height": edge}
+
+
 def heights(profile: dict[str, Any], particles: int) -> Floats:
     """Heights over the apex of a chain of spacing 1, shape (particles,) [LU]; written apart from the program's own.
 

@@ -12,21 +12,21 @@ from contact1d.workflow.reproduce.figures import Series
 from contact1d.workflow.reproduce.runs import Finished
 from contact1d.workflow.stability.case import Bench, Class, Findings, Refused, at_most, over_claim, over_tolerance, worst
 from contact1d.workflow.stability.figures import points_figure
-from contact1d.workflow.stability.pairs import TENSION, PairCase
+from contact1d.workflow.stability.pairs import TENSION, PairCase, reach, shaped
 
 NAME = "stiffness"
-RATIOS = (0.3, 0.7, 0.9, 0.99, 1.01, 1.5, 3.0, 10.0, 30.0, 100.0)
+RATIOS = (0.3, 0.7, 0.9, 0.99, 1.01, 1.5, 3.0, 10.0, 100.0)
 FULL_RATIOS = (0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.99, 0.999, 1.001, 1.01, 1.1, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 30.0, 50.0, 100.0)  # fmt: skip
 DYNAMIC_RATIOS, FULL_DYNAMIC = (0.3, 0.9), (0.3, 0.7, 0.9, 0.99)
 """Below 1 only: behind a snap force control lands where the plate's momentum takes it, on which theory says nothing."""
 TOLERANCES = (1e-2, 1e-3, 1e-4)
 SHAPES = {
-    "flat punch of 3": ({"kind": "flat_punch", "radius": 1.5}, 3),
-    "flat punch of 10": ({"kind": "flat_punch", "radius": 5.0}, 10),
-    "cone of 9": ({"kind": "cone", "slope": 0.004}, 9),
-    "parabola of 21": ({"kind": "parabola", "radius": 300.0}, 21),
-    "power of 40": ({"kind": "power", "exponent": 6.0, "radius": 12.0, "height": 0.03}, 40),
-    "parabola of 200": ({"kind": "parabola", "radius": 20000.0}, 200),
+    "flat punch of 3": ("flat_punch", 3),
+    "flat punch of 10": ("flat_punch", 10),
+    "cone of 9": ("cone", 9),
+    "parabola of 21": ("parabola", 21),
+    "power of 40": ("power", 40),
+    "parabola of 200": ("parabola", 200),
 }
 REFERENCE = 1e-9
 """Relative error of the closed form's largest tension."""
@@ -34,13 +34,14 @@ SOURCE = "independent pairs with their folds, F_A by bisection and Newton's meth
 
 
 def cases(full: bool) -> list[PairCase]:
-    """Every shape in the long form; in the quick one the first five at a tolerance that goes round."""
+    """Every shape in the long form; in the quick one every second, at a tolerance that goes round."""
     listed = []
     for i, ratio in enumerate(FULL_RATIOS if full else RATIOS):
         for j, shape in enumerate(SHAPES):
-            if not full and j == len(SHAPES) - 1 and i % 3:
+            wide = j == len(SHAPES) - 1
+            if not full and ((i + j) % 2 or (wide and ratio > 1.0)):
                 continue
-            asked = TOLERANCES if full else (TOLERANCES[(i + j) % len(TOLERANCES)],)
+            asked = TOLERANCES if full else (TOLERANCES[(i + 2 * j) % len(TOLERANCES)],)
             listed += [_case(shape, ratio, tolerance, dynamic=False) for tolerance in asked]
     for ratio in FULL_DYNAMIC if full else DYNAMIC_RATIOS:
         shapes = ("flat punch of 10", "parabola of 21", "power of 40") if full else ("flat punch of 3", "parabola of 21")
@@ -49,9 +50,10 @@ def cases(full: bool) -> list[PairCase]:
 
 
 def _case(shape: str, ratio: float, tolerance: float, dynamic: bool) -> PairCase:
-    profile, particles = SHAPES[shape]
+    kind, particles = SHAPES[shape]
+    profile = shaped(kind, particles, reach(ratio))
     name = f"{shape.replace(' ', '_')}_{ratio:g}_{tolerance:g}" + ("_dynamic" if dynamic else "")
-    return PairCase(name, ratio, dict(profile), particles, 1.5 * TENSION, tolerance, dynamic)
+    return PairCase(name, ratio, profile, particles, 1.5 * TENSION, tolerance, dynamic)
 
 
 def measure(bench: Bench, folder: Path) -> Findings:
