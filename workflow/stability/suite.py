@@ -13,11 +13,16 @@ from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.reproduce.studies import cores
 from contact1d.workflow.runs.campaign import FolderError
 from contact1d.workflow.runs.report import versions, write_whole
-from contact1d.workflow.stability import stiffness
+from contact1d.workflow.stability import loads, loops, similarity, stiffness
 from contact1d.workflow.stability.case import Bench, Class
 from contact1d.workflow.stability.record import RECORD, TABLE, Answer, Stability, machine
 
-CLASSES: tuple[Class, ...] = (stiffness.STIFFNESS,)
+CLASSES: tuple[Class, ...] = (
+    stiffness.STIFFNESS,
+    loads.LOADS,
+    loops.LOOPS,
+    similarity.SIMILARITY,
+)
 NAMES = tuple(one.name for one in CLASSES)
 
 
