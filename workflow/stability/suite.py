@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import math
 import multiprocessing
 import time
 from collections.abc import Sequence
@@ -13,8 +14,8 @@ from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.reproduce.studies import cores
 from contact1d.workflow.runs.campaign import FolderError
 from contact1d.workflow.runs.report import versions, write_whole
-from contact1d.workflow.stability import loads, loops, similarity, stiffness
-from contact1d.workflow.stability.case import Bench, Class
+from contact1d.workflow.stability import forces, loads, loops, motion, similarity, stiffness
+from contact1d.workflow.stability.case import Bench, Class, Findings, at_most
 from contact1d.workflow.stability.record import RECORD, TABLE, Answer, Stability, machine
 
 CLASSES: tuple[Class, ...] = (
@@ -22,6 +23,8 @@ CLASSES: tuple[Class, ...] = (
     loads.LOADS,
     loops.LOOPS,
     similarity.SIMILARITY,
+    forces.FORCES,
+    motion.MOTION,
 )
 NAMES = tuple(one.name for one in CLASSES)
 
@@ -87,5 +90,9 @@ def measured(name: str, folder: Path, full: bool) -> Answer:
     started = time.perf_counter()
     runs = folder / "runs" / name
     runs.mkdir(parents=True, exist_ok=True)
-    found = asked.measure(Bench(runs, full), folder)
+    try:
+        found = asked.measure(Bench(runs, full), folder)
+    except Exception as error:  # what a class did not expect is the worst of its findings, and no reason to lose others
+        words = f"ended by {type(error).__name__}: {error}"
+        found = Findings([at_most(name, words, math.nan, 0.0, "a class ends with rows", "–", "set bound")], "", "")
     return Answer(asked, found, time.perf_counter() - started)
