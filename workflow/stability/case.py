@@ -7,7 +7,9 @@ less; a case that the program refuses in words has no number and is counted by a
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+import signal
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,8 +21,30 @@ from contact1d.workflow.runs.campaign import FolderError, RunError, run
 from contact1d.workflow.scene import SceneError, scene_from_dict
 from contact1d.workflow.settings.settings import SettingsError
 
-TIME_LIMIT = 600.0
+TIME_LIMIT = 120.0
 """Of LAMMPS in one run [s]."""
+ALARM = 180
+"""Of everything else in it too [s]: a program that computes its settings for so long has failed as well."""
+
+
+class LateError(Exception):
+    """A run took too long."""
+
+
+@contextmanager
+def at_most_seconds(seconds: int) -> Iterator[None]:
+    """Raise LateError after so many seconds; for the main thread of a process, which alone hears of signals."""
+
+    def late(*_: object) -> None:
+        raise LateError
+
+    before = signal.signal(signal.SIGALRM, late)
+    signal.alarm(seconds)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
 
 
 @dataclass(frozen=True)
@@ -46,6 +70,13 @@ class Bench:
     def run(self, name: str, scene: dict[str, Any]) -> Finished | Refused:
         """The finished run of a scene, made now or there already, or the words with which it was refused."""
         folder = self.folder / name
+        try:
+            with at_most_seconds(ALARM):
+                return self._run(name, scene, folder)
+        except LateError:
+            return Refused(f"nothing was said for {ALARM} s", before=False)
+
+    def _run(self, name: str, scene: dict[str, Any], folder: Path) -> Finished | Refused:
         try:
             checked = scene_from_dict({"title": name} | scene)
             found = there(checked, folder)

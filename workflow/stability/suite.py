@@ -14,7 +14,7 @@ from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.reproduce.studies import cores
 from contact1d.workflow.runs.campaign import FolderError
 from contact1d.workflow.runs.report import versions, write_whole
-from contact1d.workflow.stability import extremes, forces, loads, loops, motion, pressed, similarity, stiffness, thermal
+from contact1d.workflow.stability import extremes, faults, forces, fuzz, loads, loops, motion, pressed, similarity, stiffness, thermal
 from contact1d.workflow.stability.case import Bench, Class, Findings, at_most
 from contact1d.workflow.stability.record import RECORD, TABLE, Answer, Stability, machine
 
@@ -28,6 +28,8 @@ CLASSES: tuple[Class, ...] = (
     *thermal.CLASSES,
     extremes.EXTREMES,
     *pressed.CLASSES,
+    faults.FAULTS,
+    fuzz.FUZZ,
 )
 NAMES = tuple(one.name for one in CLASSES)
 
