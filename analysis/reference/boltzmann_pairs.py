@@ -1,7 +1,7 @@
 """Thermal averages of independent pairs under a load, by quadrature of Boltzmann's factor; no dynamics.
 
 A pair at the undeformed gap G has the energy V(r) + (k/4)(r - G)^2 as a function of its distance r (the other
-coordinate of its two particles is free of V and adds a constant), hence z(G) = int exp(-(V + (k/4)(r - G)^2)/kT) dr. The
+coordinate of its particles is free of V and adds a constant), hence z(G) = int exp(-(V + (k/4)(r - G)^2)/kT) dr. The
 plate, whose place d moves all gaps G_i = r0 + h_i - d, has under the load F the weight
 w(d) = exp(F d/kT) prod_i z(G_i), so <d> = int d w / int w, and <F_contact> = F. As kT -> 0 this is the equilibrium.
 """
@@ -45,7 +45,9 @@ class BoltzmannPairs:
         spread = SPREAD * np.sqrt(2.0 * self.temperature / self.bulk_stiffness)
         pull = 2.0 * abs(float(self.interaction.force(np.array(0.0)))) / self.bulk_stiffness
         low = np.maximum(gap - spread - 0.2 * self.interaction.longest_range, 0.0)
-        high = np.maximum(gap + spread, 0.0) + np.minimum(pull, np.maximum(-gap, 0.0) + 8.0 * self.interaction.longest_range)
+        high = np.maximum(gap + spread, 0.0) + np.minimum(
+            pull, np.maximum(-gap, 0.0) + 8.0 * self.interaction.longest_range
+        )
         r = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, NODES)[None, :]
         energy = self.interaction.energy(r) + 0.25 * self.bulk_stiffness * (r - gap[:, None]) ** 2
         least = energy.min(axis=1, keepdims=True)

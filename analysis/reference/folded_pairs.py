@@ -1,9 +1,9 @@
 """Independent pairs that may snap, exactly: each on one of two branches of G = r - 2 f(r)/k, with its own history.
 
-G is the undeformed gap of a pair, r its distance, k the spring of a particle on either body. Where f rises more steeply
-than k/2, G(r) has a largest value G_off at r_off and a least one G_on at r_on > r_off. A pair is joined (r <= r_off) from
-where its gap first fell to G_on until it rises to G_off, and free (r >= r_on) otherwise. With the heights h_i of the
-upper body over its apex G_i = r0 + h_i - d, and F(d) = sum_i f(r_i) on the branch of each pair. What a snap frees is
+G is the undeformed gap of a pair, r its distance, k the spring of a particle on either body. Where f rises more than
+k/2 per length, G(r) has a largest value G_off at r_off and a least one G_on at r_on > r_off. A pair is joined
+(r <= r_off) from where its gap first fell to G_on until it rises to G_off, and free (r >= r_on) otherwise. With the
+heights h_i of the upper body over its apex G_i = r0 + h_i - d, and F(d) = sum_i f(r_i) on the branch of each pair. What a snap frees is
 lost: a pair's energy V(r) + (k/4)(r - G)^2 before it less that behind it, so the loop there and back has the area
 sum_i (drop at G_on + drop at G_off). Holds where a particle feels its opposite only: no neighbour springs, ranges far
 below the spacing.
@@ -14,12 +14,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
 
 from contact1d.analysis.reference.interaction import Floats, PairInteraction
 
+Flags = NDArray[np.bool_]
 TAIL = 40.0
 """A pair further apart than the force-free distance and this many ranges carries nothing: exp(-40) = 4e-18."""
 HALVINGS, NEWTON = 25, 8
@@ -96,7 +99,7 @@ class FoldedPairs:
         r = np.asarray(distance, dtype=np.float64)
         return np.asarray(r - 2.0 * self.interaction.force(r) / self.bulk_stiffness)
 
-    def distance(self, gap: Floats, joined: Floats) -> Floats:
+    def distance(self, gap: Floats, joined: Flags) -> Floats:
         """Return r(G) of each pair on its branch [LU].
 
         Args:
@@ -192,10 +195,10 @@ class FoldedPairs:
     def _gaps(self, displacement: Floats | float) -> Floats:
         return self._rest + self._alike[0] - np.asarray(displacement, dtype=np.float64)[..., None]
 
-    def _joined(self, gap: Floats) -> Floats:
-        return np.zeros(gap.shape, dtype=bool) if self.fold is None else gap <= self.fold.gap_on
+    def _joined(self, gap: Floats) -> Flags:
+        return np.asarray(gap <= (-math.inf if self.fold is None else self.fold.gap_on))
 
-    def _force(self, gap: Floats, joined: Floats) -> Floats:
+    def _force(self, gap: Floats, joined: Flags) -> Floats:
         return np.asarray(self.interaction.force(self.distance(gap, joined)) @ self._alike[1])
 
     def _energy(self, gap: Floats, distance: Floats) -> Floats:
@@ -205,7 +208,7 @@ class FoldedPairs:
         """The stretches of a way that are parted by the snaps of its pairs at the gap `snap`."""
         places = [] if snap is None else (self._rest + self._alike[0] - snap).tolist()
         ends = [first, *sorted(d for d in places if first < d < last), last]
-        return list(zip(ends[:-1], ends[1:], strict=True))
+        return list(pairwise(ends))
 
     def _looks(self, first: float, last: float) -> Floats:
         wanted = math.ceil((last - first) / (LOOK * self.interaction.shortest_range))

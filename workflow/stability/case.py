@@ -23,8 +23,10 @@ from contact1d.workflow.settings.settings import SettingsError
 
 TIME_LIMIT = 120.0
 """Of LAMMPS in one run [s]."""
-ALARM = 180
-"""Of everything else in it too [s]: a program that computes its settings for so long has failed as well."""
+LONGEST = 160
+"""Characters of a refusal in a row."""
+PATIENCE = 180
+"""Of everything in it [s]: a program that computes its settings for so long has failed as well."""
 
 
 class LateError(Exception):
@@ -62,19 +64,21 @@ class Bench:
     Attributes:
         folder: of its run folders.
         full: whether the long form is asked for.
+        patience: wall time of a run [s].
     """
 
     folder: Path
     full: bool
+    patience: int = PATIENCE
 
     def run(self, name: str, scene: dict[str, Any]) -> Finished | Refused:
         """The finished run of a scene, made now or there already, or the words with which it was refused."""
         folder = self.folder / name
         try:
-            with at_most_seconds(ALARM):
+            with at_most_seconds(self.patience):
                 return self._run(name, scene, folder)
         except LateError:
-            return Refused(f"nothing was said for {ALARM} s", before=False)
+            return Refused(f"nothing was said for {self.patience} s", before=False)
 
     def _run(self, name: str, scene: dict[str, Any], folder: Path) -> Finished | Refused:
         try:
@@ -117,6 +121,13 @@ class Class:
     measure: Callable[[Bench, Path], Findings]
 
 
+def said(limited_by: str, found: Finished | Refused) -> str:
+    """What a row says about its limit: that of its number, or the words of a refusal in its place."""
+    if not isinstance(found, Refused):
+        return limited_by
+    return f"refused {'before anything ran' if found.before else 'in the run'}: {found.words[:LONGEST]}"
+
+
 def warned(finished: Finished) -> set[str]:
     """Names of a run's warnings."""
     return {str(warning["name"]) for warning in finished.results["warnings"]}
@@ -150,8 +161,14 @@ def worst(values: Iterable[float]) -> float:
 
 
 def at_most(
-    name: str, case: str, value: float, bound: float, source: str, limited_by: str,
-    evidence: Evidence = "closed form", unit: str = "1",
-) -> Check:  # fmt: skip
+    name: str,
+    case: str,
+    value: float,
+    bound: float,
+    source: str,
+    limited_by: str,
+    evidence: Evidence = "closed form",
+    unit: str = "1",
+) -> Check:
     """A row that passes where `value` ≤ `bound`."""
     return Check(name, case, value, 0.0, unit, bound, source, evidence, 0.0, limited_by, "at most")

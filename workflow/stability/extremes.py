@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 from contact1d.analysis.reference.winkler import rigid_plane_sum
 from contact1d.workflow.reproduce.check import Check
 from contact1d.workflow.reproduce.figures import Series
-from contact1d.workflow.stability.case import Bench, Class, Findings, Refused, at_most, over_claim
+from contact1d.workflow.stability.case import Bench, Class, Findings, Refused, at_most, over_claim, said
 from contact1d.workflow.stability.figures import points_figure
 from contact1d.workflow.stability.pairs import TENSION, PairCase, shaped
 
@@ -40,25 +40,51 @@ def measure(bench: Bench, folder: Path) -> Findings:
         places = np.arange(-30.0, 31.0)
         exact = rigid_plane_sum(d, places, radius, 0.5)
         off = _on_plane(bench, f"radius_{radius:g}", {"kind": "parabola", "radius": radius}, 61, d, exact)
-        checks.append(at_most(NAME, f"force on a plane off, R = {radius:g} LU", off, PLANE, "Σ k (d − x²/2R)",
-                              "round-off, and the minimiser's share of the tolerance"))  # fmt: skip
+        checks.append(
+            at_most(
+                NAME,
+                f"force on a plane off, R = {radius:g} LU",
+                off,
+                PLANE,
+                "Σ k (d − x²/2R)",
+                "round-off, and the minimiser's share of the tolerance",
+            )
+        )
     for count in FULL_COUNTS if bench.full else COUNTS:
         punch = {"kind": "flat_punch", "radius": 0.5 * count}
         off = _on_plane(bench, f"count_{count}", punch, count, 0.1, 0.5 * 0.1 * count)
-        checks.append(at_most(NAME, f"force on a plane off, N = {count}", off, PLANE, "N k d",
-                              "round-off, and the minimiser's share of the tolerance"))  # fmt: skip
+        checks.append(
+            at_most(
+                NAME,
+                f"force on a plane off, N = {count}",
+                off,
+                PLANE,
+                "N k d",
+                "round-off, and the minimiser's share of the tolerance",
+            )
+        )
     drawn = [_masses(bench, checks)]
     drawn += [_springs(bench, checks, kind) for kind in ("neighbour", "tangential")]
-    points_figure(folder / f"{NAME}.png", drawn, ("plate over particle mass, or stiffness over k", "error over claim"),
-                  bound=1.0)  # fmt: skip
+    points_figure(
+        folder / f"{NAME}.png", drawn, ("plate over particle mass, or stiffness over k", "error over claim"), bound=1.0
+    )
     return Findings(checks, f"{NAME}.png", "Error over claim far from the usual numbers; dashed: the bound")
 
 
 def _on_plane(bench: Bench, name: str, profile: dict[str, Any], count: int, d: float, exact: float) -> float:
-    found = bench.run(name, {
-        "bodies": {"particles": count, "spacing": 1.0, "profile": profile, "bulk_stiffness": 0.5, "lower": "rigid_plane"},
-        "experiment": {"kind": "path", "displacements": [d]},
-    })  # fmt: skip
+    found = bench.run(
+        name,
+        {
+            "bodies": {
+                "particles": count,
+                "spacing": 1.0,
+                "profile": profile,
+                "bulk_stiffness": 0.5,
+                "lower": "rigid_plane",
+            },
+            "experiment": {"kind": "path", "displacements": [d]},
+        },
+    )
     return math.nan if isinstance(found, Refused) else abs(found.value("largest_force") / exact - 1.0)
 
 
@@ -70,15 +96,22 @@ def _masses(bench: Bench, checks: list[Check]) -> Series:
     for mass in FULL_MASSES if bench.full else MASSES:
         scene = case.scene() | {"plate": {"mass": mass}, "experiment": {"kind": "load", "force": load}}
         run = bench.run(f"mass_{mass:g}", scene)
-        words = ""
         over = math.nan
         if isinstance(run, Refused):
-            words, over = f", refused {'before' if run.before else 'in the run'}", 0.0 if run.before else over
+            over = 0.0 if run.before else over
         else:
             over = over_claim(run, "displacement", exact)
         found.append((mass, over))
-        checks.append(at_most(NAME, f"d under a load off over its claim, plate of {mass:g} particle masses{words}", over,
-                              1.0, "independent pairs", "what the run claims"))  # fmt: skip
+        checks.append(
+            at_most(
+                NAME,
+                f"d under a load off over its claim, plate of {mass:g} particle masses",
+                over,
+                1.0,
+                "independent pairs",
+                said("what the run claims", run),
+            )
+        )
     return Series("mass of the plate", *np.array([(m, max(o, 1e-6)) for m, o in found if o == o]).T)
 
 
@@ -97,13 +130,22 @@ def _springs(bench: Bench, checks: list[Check], kind: str) -> Series:
         else:
             bodies = scene["bodies"] | {"bulk_stiffness_tangential": factor * case.stiffness}
             experiment = {"kind": "load", "method": "quasistatic", "force": load}
-            run = bench.run(f"tangential_{factor:g}", scene | {"bodies": bodies, "horizontal": {}, "experiment": experiment})
+            run = bench.run(
+                f"tangential_{factor:g}", scene | {"bodies": bodies, "horizontal": {}, "experiment": experiment}
+            )
             name, exact = "displacement", place
         over = math.nan if isinstance(run, Refused) else over_claim(run, name, exact)
-        words = f" (refused: {run.words})" if isinstance(run, Refused) else ""
         found.append((factor, over))
-        checks.append(at_most(NAME, f"{name} of a punch off over its claim, {kind} springs of {factor:g} k{words}", over, 1.0,
-                              "N times one pair", "what the run claims"))  # fmt: skip
+        checks.append(
+            at_most(
+                NAME,
+                f"{name} of a punch off over its claim, {kind} springs of {factor:g} k",
+                over,
+                1.0,
+                "N times one pair",
+                said("what the run claims", run),
+            )
+        )
     return Series(f"{kind} springs", *np.array([(f, max(o, 1e-6)) for f, o in found if o == o]).T)
 
 

@@ -50,10 +50,26 @@ def measure(bench: Bench, folder: Path) -> Findings:
         off = float(np.max(np.abs(force - slope))) / scale
         source = "−∂U/∂x by central differences"
         allowed = ALLOWED if "interaction" in tables else EXACT
-        checks.append(at_most(NAME, f"force on a particle off over the largest, worst of {force.size}, {words}", off,
-                              allowed, source, "table: the tolerance asked for; else step of the differences"))  # fmt: skip
-        checks.append(at_most(NAME, f"force on the plate off over the largest, {words}", abs(plate[0] - plate[1]) / scale,
-                              EXACT, source, "step of the differences; rounding of the energy"))  # fmt: skip
+        checks.append(
+            at_most(
+                NAME,
+                f"force on a particle off over the largest, worst of {force.size}, {words}",
+                off,
+                allowed,
+                source,
+                "table: the tolerance asked for; else step of the differences",
+            )
+        )
+        checks.append(
+            at_most(
+                NAME,
+                f"force on the plate off over the largest, {words}",
+                abs(plate[0] - plate[1]) / scale,
+                EXACT,
+                source,
+                "step of the differences; rounding of the energy",
+            )
+        )
         drawn.append(Series(words, np.abs(slope), np.maximum(np.abs(force - slope) / scale, 1e-12)))
     points_figure(folder / f"{NAME}.png", drawn, ("force by differences (FU)", "error over the largest"), bound=ALLOWED)
     return Findings(checks, f"{NAME}.png", "Error of the force on each particle")
@@ -106,7 +122,7 @@ def _forces(contact: Contact) -> tuple[Floats, Floats, tuple[float, float]]:
 FORCES = Class(
     NAME,
     "Forces of a whole deck",
-    "Each fragment may be right alone and wrong together: a bond type taken for another, an excluded pair, an anchor in "
-    "the wrong place. The force on every particle of the whole deck is the slope of the whole deck's energy.",
+    "Each fragment may be right alone and wrong together: a bond type taken for another, an excluded pair, an anchor "
+    "in the wrong place. The force on every particle of the whole deck is the slope of the whole deck's energy.",
     measure,
 )

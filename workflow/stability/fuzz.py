@@ -1,8 +1,8 @@
 """Random edits of scenes: each ends in a deck or in a sentence, never in a traceback.
 
-A scene of the package is read as text and edited one to four times: a number replaced by an extreme or wrong one, a line
-taken away, doubled or moved, a character changed. What still is a scene goes on to its settings and its deck; some of
-those are run.
+A scene of the package is read as text and edited one to four times: a number replaced by an extreme or wrong one, a
+line taken away, doubled or moved, a character changed. What still is a scene goes on to its settings and its deck; some of those are
+run.
 """
 
 from __future__ import annotations
@@ -33,8 +33,30 @@ SEED = 12
 SLOW, RUN = 10, 60
 """Seconds for a scene to become a deck or a sentence, and for a run."""
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
-VALUES = ("0", "-1", "1e-300", "1e300", "1e20", "1e-6", "1e6", "nan", "inf", "-inf", "true", '"auto"', '"x"', "[]", "{}", "3",
-          "1e-3", "0.5", "2.0", "1000000", "10.0", "7")  # fmt: skip
+VALUES = (
+    "0",
+    "-1",
+    "1e-300",
+    "1e300",
+    "1e20",
+    "1e-6",
+    "1e6",
+    "nan",
+    "inf",
+    "-inf",
+    "true",
+    '"auto"',
+    '"x"',
+    "[]",
+    "{}",
+    "3",
+    "1e-3",
+    "0.5",
+    "2.0",
+    "1000000",
+    "10.0",
+    "7",
+)
 SPOILT = "\"'[]{}=#.,\\\0é\n -"
 
 
@@ -45,7 +67,7 @@ def measure(bench: Bench, folder: Path) -> Findings:
     ends: Counter[str] = Counter()
     said: dict[str, str] = {}
     count, decks, slowest = FULL if bench.full else QUICK, 0, 0.0
-    for i in range(count):
+    for _ in range(count):
         path = bench.folder / "scene.toml"
         path.write_text(edited(draw.choice(sources), draw), encoding="utf-8")
         started = time.monotonic()
@@ -59,14 +81,32 @@ def measure(bench: Bench, folder: Path) -> Findings:
     bad = {end: found for end, found in ends.items() if end.startswith("a traceback")}
     worst = "; ".join(f"{found} × {said[end]}" for end, found in bad.items())
     checks = [
-        at_most(NAME, f"tracebacks of {count} random scenes{': ' + worst if worst else ''}", sum(bad.values()), 0.0,
-                "a deck, a result or a sentence", "–", "set bound"),
-        at_most(NAME, f"of {count} random scenes, those that are neither deck nor sentence after {SLOW} s", ends["late"], 0.0,
-                "a deck, a result or a sentence", "–", "set bound"),
-    ]  # fmt: skip
+        at_most(
+            NAME,
+            f"tracebacks of {count} random scenes",
+            sum(bad.values()),
+            0.0,
+            "a deck, a result or a sentence",
+            worst or "–",
+            "set bound",
+        ),
+        at_most(
+            NAME,
+            f"of {count} random scenes, those that are neither deck nor sentence after {SLOW} s",
+            ends["late"],
+            0.0,
+            "a deck, a result or a sentence",
+            "–",
+            "set bound",
+        ),
+    ]
     names = sorted(ends)
-    points_figure(folder / f"{NAME}.png", [Series(f"{i}: {name}"[:60], np.array([i]), np.array([ends[name]]))
-                  for i, name in enumerate(names)], ("end", "scenes"), log="y")  # fmt: skip
+    points_figure(
+        folder / f"{NAME}.png",
+        [Series(f"{i}: {name}"[:60], np.array([i]), np.array([ends[name]])) for i, name in enumerate(names)],
+        ("end", "scenes"),
+        log="y",
+    )
     return Findings(checks, f"{NAME}.png", "How many random scenes end how")
 
 
@@ -78,8 +118,8 @@ def edited(text: str, draw: random.Random) -> str:
             case 0 | 1 | 2:
                 places = list(NUMBER.finditer(text))
                 if places:
-                    place = draw.choice(places)
-                    text = text[: place.start()] + draw.choice(VALUES) + text[place.end() :]
+                    first, last = draw.choice(places).span()
+                    text = text[:first] + draw.choice(VALUES) + text[last:]
             case 3:
                 del lines[draw.randrange(len(lines))]
                 text = "\n".join(lines)

@@ -28,8 +28,9 @@ SOURCE = "independent pairs: root of F(d) above d_cr"
 
 def _case(method: str, share: float) -> PairCase:
     name = f"{method}_{share:+.0e}"
-    return PairCase(name, RATIO, shaped("parabola", PARTICLES, reach(RATIO)), PARTICLES, 0.0, TOLERANCE,
-                    method == "dynamic")  # fmt: skip
+    return PairCase(
+        name, RATIO, shaped("parabola", PARTICLES, reach(RATIO)), PARTICLES, 0.0, TOLERANCE, method == "dynamic"
+    )
 
 
 def measure(bench: Bench, folder: Path) -> Findings:
@@ -52,20 +53,41 @@ def measure(bench: Bench, folder: Path) -> Findings:
             shares.append(share)
             ways.append(found.value("displacement") - place)
         checks += [
-            at_most(NAME, f"d off over its claim under (1 − {share:g}) F_A, {method}; within the tolerance of F_A a "
-                    "named warning does as well", value, 1.0, SOURCE, "what the run claims")
+            at_most(
+                NAME,
+                f"d off over its claim under (1 − {share:g}) F_A, {method}; within the tolerance of F_A a "
+                "named warning does as well",
+                value,
+                1.0,
+                SOURCE,
+                "what the run claims",
+            )
             for share, value in zip(BELOW, off, strict=True)
-        ]  # fmt: skip
+        ]
         known = [(s, w) for s, w in zip(shares, ways, strict=True) if s >= TOLERANCE / 10.0 and w > 0.0]
-        slope = float("nan") if len(known) < 2 else float(np.polyfit(*np.log(np.array(known).T), 1)[0])
+        x, y = np.log(np.array(known or [(1.0, 1.0)])).T
+        slope = float("nan") if len(known) < 2 else float(np.polyfit(x, y, 1)[0])
         checks.append(
-            Check(NAME, f"exponent of d − d_cr over 1 − F/F_A, {method}", slope, 0.0, "1", 0.5,
-                  "the fold: square root", "closed form", EXPONENT, "next term of the fold", "absolute")
-        )  # fmt: skip
+            Check(
+                NAME,
+                f"exponent of d − d_cr over 1 − F/F_A, {method}",
+                slope,
+                0.0,
+                "1",
+                0.5,
+                "the fold: square root",
+                "closed form",
+                EXPONENT,
+                "next term of the fold",
+                "absolute",
+            )
+        )
         drawn.append(Series(method, np.array(shares), np.maximum(np.array(ways), 1e-12)))
         checks += _above(bench, method, largest)
     near = np.array(BELOW)
-    curvature = (float(pairs.unloading(place + 1e-4, 0.05)) + float(pairs.unloading(place - 1e-4, 0.05)) + 2 * largest) / 1e-8
+    curvature = (
+        float(pairs.unloading(place + 1e-4, 0.05)) + float(pairs.unloading(place - 1e-4, 0.05)) + 2 * largest
+    ) / 1e-8
     law = Series("square root", near, np.sqrt(2.0 * near * largest / curvature))
     points_figure(folder / f"{NAME}.png", drawn, ("$1 - F/F_A$", "$d - d_{cr}$ (LU)"), [law])
     return Findings(checks, f"{NAME}.png", "Way from the fold over the distance from F_A")
@@ -79,17 +101,31 @@ def _scene(method: str, force: float) -> dict[str, object]:
 def _above(bench: Bench, method: str, largest: float) -> list[Check]:
     held, silent = 0, 0
     for share in ABOVE:
-        held += not isinstance(bench.run(f"{method}_above_{share:g}", _scene(method, -largest * (1.0 + share))), Refused)
+        held += not isinstance(
+            bench.run(f"{method}_above_{share:g}", _scene(method, -largest * (1.0 + share))), Refused
+        )
     for share in UNSURE:
         found = bench.run(f"{method}_above_{share:g}", _scene(method, -largest * (1.0 + share)))
         silent += not isinstance(found, Refused) and not warned(found)
     said = f"independent pairs: F_A = {largest:.6g} FU"
     return [
-        at_most(NAME, f"loads held of (1 + {ABOVE[0]:g}) and (1 + {ABOVE[1]:g}) F_A, {method}", held, 0.0, said,
-                "beyond the tolerance there is no state"),
-        at_most(NAME, f"loads held without a warning of (1 + 1e-4 … 1e-5) F_A, {method}", silent, 0.0, said,
-                "within the tolerance a warning is all that can be asked"),
-    ]  # fmt: skip
+        at_most(
+            NAME,
+            f"loads held of (1 + {ABOVE[0]:g}) and (1 + {ABOVE[1]:g}) F_A, {method}",
+            held,
+            0.0,
+            said,
+            "beyond the tolerance there is no state",
+        ),
+        at_most(
+            NAME,
+            f"loads held without a warning of (1 + 1e-4 … 1e-5) F_A, {method}",
+            silent,
+            0.0,
+            said,
+            "within the tolerance a warning is all that can be asked",
+        ),
+    ]
 
 
 LOADS = Class(

@@ -11,7 +11,7 @@ from contact1d.analysis.reference.interaction import Floats
 from contact1d.workflow.reproduce.check import Check
 from contact1d.workflow.reproduce.figures import Series
 from contact1d.workflow.reproduce.runs import Finished
-from contact1d.workflow.stability.case import Bench, Class, Findings, Refused, at_most, over_claim
+from contact1d.workflow.stability.case import Bench, Class, Findings, Refused, at_most, over_claim, said
 from contact1d.workflow.stability.figures import points_figure
 from contact1d.workflow.stability.pairs import ATTRACTION, PairCase, reach, shaped
 
@@ -50,8 +50,13 @@ def measure(bench: Bench, folder: Path) -> Findings:
                 d = np.asarray(curve.displacement)
                 drawn.append(Series("run", d, np.asarray(curve.force)))
                 fine = np.linspace(lowest, DEEPEST, 2000)
-                lines = [Series("closed form", np.concatenate([fine, fine[::-1]]), np.concatenate(
-                    [pairs.loading(fine), pairs.unloading(fine[::-1], DEEPEST)]))]  # fmt: skip
+                lines = [
+                    Series(
+                        "closed form",
+                        np.concatenate([fine, fine[::-1]]),
+                        np.concatenate([pairs.loading(fine), pairs.unloading(fine[::-1], DEEPEST)]),
+                    )
+                ]
     points_figure(folder / f"{NAME}.png", drawn, ("displacement (LU)", "force (FU)"), lines, log="")
     return Findings(checks, f"{NAME}.png", f"A loop at ratio {RATIOS[0]:g}: every row of the run on the closed form")
 
@@ -59,21 +64,33 @@ def measure(bench: Bench, folder: Path) -> Findings:
 def _rows(words: str, found: Finished | Refused, pairs: FoldedPairs) -> list[Check]:
     source = "independent pairs with their folds"
     if isinstance(found, Refused):
-        return [at_most(NAME, f"path refused, {words}: {found.words}", float("nan"), 0.0, source, "–")]
+        return [at_most(NAME, f"path, {words}", float("nan"), 0.0, source, said("–", found))]
     curve = found.curve()
     d, force = np.asarray(curve.displacement), np.asarray(curve.force)
     back = int(np.argmax(d)) + 1
     exact = np.concatenate([pairs.loading(d[:back]), pairs.unloading(d[back:], DEEPEST)])
     scale = float(np.max(np.abs(exact)))
-    sure = ~_near_snap(d, pairs, NEAR * abs(float(d[1] - d[0])))
+    sure = _snap_distance(d, pairs) >= NEAR * abs(float(d[1] - d[0]))
     off = float(np.max(np.abs(force - exact)[sure])) / scale
-    area, true = (float(np.trapezoid(values[:back], d[:back]) + np.trapezoid(values[back - 1 :], d[back - 1 :]))
-                  for values in (force, exact))  # fmt: skip
+    area, true = (
+        float(np.trapezoid(values[:back], d[:back]) + np.trapezoid(values[back - 1 :], d[back - 1 :]))
+        for values in (force, exact)
+    )
     rows = [
         at_most(NAME, f"force off over the largest, worst row, {words}", off, FORCE, source, "the tolerance asked for"),
-        Check(NAME, f"area of the loop, {words}", area, 0.0, "FU·LU", true, source + ", at the same rows",
-              "closed form", FORCE, "the tolerance asked for; the rows are the same"),
-    ]  # fmt: skip
+        Check(
+            NAME,
+            f"area of the loop, {words}",
+            area,
+            0.0,
+            "FU·LU",
+            true,
+            source + ", at the same rows",
+            "closed form",
+            FORCE,
+            "the tolerance asked for; the rows are the same",
+        ),
+    ]
     if "adhesion_force" in found.results:
         largest = -float(np.min(pairs.unloading(np.linspace(float(d[-1]), DEEPEST, 20000), DEEPEST)))
         over = over_claim(found, "adhesion_force", largest)
@@ -81,13 +98,16 @@ def _rows(words: str, found: Finished | Refused, pairs: FoldedPairs) -> list[Che
     return rows
 
 
-def _near_snap(d: Floats, pairs: FoldedPairs, distance: float) -> Floats:
-    """Which rows are too near to a snap of a pair to say on which side they are."""
+def _snap_distance(d: Floats, pairs: FoldedPairs) -> Floats:
+    """How far [LU] each row is from a snap of a pair: too near, it may be on either side."""
     assert pairs.fold is not None
     places = np.concatenate(
-        [pairs.interaction.force_free_distance() + pairs.heights - gap for gap in (pairs.fold.gap_on, pairs.fold.gap_off)]
+        [
+            pairs.interaction.force_free_distance() + pairs.heights - gap
+            for gap in (pairs.fold.gap_on, pairs.fold.gap_off)
+        ]
     )
-    return np.asarray(np.min(np.abs(d[:, None] - places[None, :]), axis=1) < distance)
+    return np.asarray(np.min(np.abs(d[:, None] - places[None, :]), axis=1))
 
 
 LOOPS = Class(

@@ -51,10 +51,32 @@ def measure(bench: Bench, folder: Path) -> Findings:
     swings, drift = _energies(bench)
     fitted = float(np.polyfit(np.log(TIME_STEPS), np.log(swings), 1)[0])
     count = 10**6 if bench.full else 10**5
-    checks.append(Check(NAME, "order of the swing of the energy in Δt, no damping", fitted, 0.0, "1", 2.0,
-                        "velocity Verlet", "closed form", ORDER, "next order", "absolute"))  # fmt: skip
-    checks.append(at_most(NAME, f"drift of the energy over its swing, {count:g} steps without damping", drift, 1.0,
-                          "velocity Verlet is symplectic: no drift", "sampling of the swing", "closed form"))  # fmt: skip
+    checks.append(
+        Check(
+            NAME,
+            "order of the swing of the energy in Δt, no damping",
+            fitted,
+            0.0,
+            "1",
+            2.0,
+            "velocity Verlet",
+            "closed form",
+            ORDER,
+            "next order",
+            "absolute",
+        )
+    )
+    checks.append(
+        at_most(
+            NAME,
+            f"drift of the energy over its swing, {count:g} steps without damping",
+            drift,
+            1.0,
+            "velocity Verlet is symplectic: no drift",
+            "sampling of the swing",
+            "closed form",
+        )
+    )
     checks += [_time_step(tables, words) for words, tables in (("", {}), (", neighbours 100 k", _stiff(83.0)))]
     dt = np.array(TIME_STEPS)
     law = Series("Δt²", dt, swings[0] * (dt / dt[0]) ** 2)
@@ -73,15 +95,22 @@ def _oscillator(folder: Path, share: float) -> Check:
         session = contact.session
         session.execute(
             f"unfix damping_viscous\ndisplace_atoms upper_body move 0 0 {APART} units box\nrun 0\n"
-            f"displace_atoms particles move 0 0 {AMPLITUDE} units box\n", phase="swinging"
-        )  # fmt: skip
+            f"displace_atoms particles move 0 0 {AMPLITUDE} units box\n",
+            phase="swinging",
+        )
         start = session.atoms("x")["x"][:24, 2]
         session.execute(f"run {STEPS}\n")
         moved = session.atoms("x")["x"][:24, 2] - start + AMPLITUDE
     angle = math.acos(1.0 - 0.5 * (2.0 * share) ** 2)
     off = float(np.max(np.abs(moved / AMPLITUDE - math.cos(STEPS * angle))))
-    return at_most(NAME, f"place over the amplitude off after {STEPS} steps, ωΔt = {2 * share:g}", off, EXACT,
-                   "x_n = A cos(nΩ), cos Ω = 1 − (ωΔt)²/2", "round-off")  # fmt: skip
+    return at_most(
+        NAME,
+        f"place over the amplitude off after {STEPS} steps, ωΔt = {2 * share:g}",
+        off,
+        EXACT,
+        "x_n = A cos(nΩ), cos Ω = 1 − (ωΔt)²/2",
+        "round-off",
+    )
 
 
 def _beyond(folder: Path) -> list[Check]:
@@ -93,8 +122,9 @@ def _beyond(folder: Path) -> list[Check]:
             session = contact.session
             session.execute(
                 f"unfix damping_viscous\ndisplace_atoms upper_body move 0 0 {APART} units box\nrun 0\n"
-                f"displace_atoms particles move 0 0 {AMPLITUDE} units box\n", phase="swinging"
-            )  # fmt: skip
+                f"displace_atoms particles move 0 0 {AMPLITUDE} units box\n",
+                phase="swinging",
+            )
             start = session.atoms("x")["x"][:24, 2]
             session.execute(f"run {few}\n")
             moved = float((session.atoms("x")["x"][:24, 2] - start + AMPLITUDE)[0])
@@ -105,11 +135,24 @@ def _beyond(folder: Path) -> list[Check]:
     off = abs(moved / AMPLITUDE / math.cosh(few * growth) - 1.0)
     said = float(not words or "\n" in words or "Traceback" in words)
     return [
-        at_most(NAME, f"growth off after {few} steps, ωΔt = {2 * BEYOND:g}", off, EXACT, "x_n = (−1)ⁿ A cosh(nκ)",
-                "round-off"),
-        at_most(NAME, f"a run at ωΔt = {2 * BEYOND:g} that ends otherwise than in a sentence", said, 0.0,
-                "no number from what flies apart", "–", "set bound"),
-    ]  # fmt: skip
+        at_most(
+            NAME,
+            f"growth off after {few} steps, ωΔt = {2 * BEYOND:g}",
+            off,
+            EXACT,
+            "x_n = (−1)ⁿ A cosh(nκ)",
+            "round-off",
+        ),
+        at_most(
+            NAME,
+            f"a run at ωΔt = {2 * BEYOND:g} that ends otherwise than in a sentence",
+            said,
+            0.0,
+            "no number from what flies apart",
+            "–",
+            "set bound",
+        ),
+    ]
 
 
 def _energies(bench: Bench) -> tuple[list[float], float]:
@@ -130,8 +173,9 @@ def _energy(folder: Path, step: float, steps: int, looks: int) -> Any:
         session = contact.session
         session.execute(
             "thermo_style custom step pe ke\nthermo_modify norm no\nunfix damping_viscous\n"
-            "displace_atoms upper_body move 0 0 -0.05 units box\n", phase="swinging"
-        )  # fmt: skip
+            "displace_atoms upper_body move 0 0 -0.05 units box\n",
+            phase="swinging",
+        )
         energy = []
         stride = max(1, steps // looks)
         for _ in range(looks):
@@ -143,7 +187,7 @@ def _time_step(more: dict[str, Any], words: str) -> Check:
     """ωΔt/2 of the time step that the program chooses, ω from the solver's Hessian under the load."""
     tables = TIMED | LOADED | more
     step = settings_for(scene_from_dict({"title": "time step"} | tables)).time_step
-    law = PairInteraction(*(Exponential(*LAW[term].values()) for term in ("repulsion", "attraction")))
+    law = PairInteraction(Exponential(**LAW["repulsion"]), Exponential(**LAW["attraction"]))
     neighbours = more.get("neighbours", {"stiffness": 0.0})["stiffness"]
     model = ChainModel(12, 0.83, law, radius=40.0, neighbour_stiffness=neighbours)
     solver = ChainSolver(model)
@@ -158,8 +202,15 @@ def _time_step(more: dict[str, Any], words: str) -> Check:
         rows = np.arange(surface.dofs - offset)
         dense[rows + offset, rows] = dense[rows, rows + offset] = band[offset, : rows.size]
     omega = math.sqrt(float(eigh(dense, eigvals_only=True)[-1]))
-    return at_most(NAME, f"ωΔt/2 of the chosen time step under load{words}", 0.5 * omega * step, 1.0,
-                   "largest eigenvalue of the solver's Hessian", "–", "independent solver")  # fmt: skip
+    return at_most(
+        NAME,
+        f"ωΔt/2 of the chosen time step under load{words}",
+        0.5 * omega * step,
+        1.0,
+        "largest eigenvalue of the solver's Hessian",
+        "–",
+        "independent solver",
+    )
 
 
 MOTION = Class(

@@ -10,13 +10,43 @@ import numpy as np
 from contact1d.workflow.reproduce.check import Check
 from contact1d.workflow.reproduce.figures import Series
 from contact1d.workflow.reproduce.runs import Finished
-from contact1d.workflow.stability.case import Bench, Class, Findings, Refused, at_most, over_claim, over_tolerance, worst
+from contact1d.workflow.stability.case import (
+    Bench,
+    Class,
+    Findings,
+    Refused,
+    at_most,
+    over_claim,
+    over_tolerance,
+    worst,
+)
 from contact1d.workflow.stability.figures import points_figure
 from contact1d.workflow.stability.pairs import TENSION, PairCase, reach, shaped
 
 NAME = "stiffness"
 RATIOS = (0.3, 0.7, 0.9, 0.99, 1.01, 1.5, 3.0, 10.0, 100.0)
-FULL_RATIOS = (0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.99, 0.999, 1.001, 1.01, 1.1, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 30.0, 50.0, 100.0)  # fmt: skip
+FULL_RATIOS = (
+    0.3,
+    0.5,
+    0.7,
+    0.8,
+    0.9,
+    0.95,
+    0.99,
+    0.999,
+    1.001,
+    1.01,
+    1.1,
+    1.5,
+    2.0,
+    3.0,
+    5.0,
+    10.0,
+    20.0,
+    30.0,
+    50.0,
+    100.0,
+)
 DYNAMIC_RATIOS, FULL_DYNAMIC = (0.3, 0.9), (0.3, 0.7, 0.9, 0.99)
 """Below 1 only: behind a snap force control lands where the plate's momentum takes it, on which theory says nothing."""
 TOLERANCES = (1e-2, 1e-3, 1e-4)
@@ -44,7 +74,9 @@ def cases(full: bool) -> list[PairCase]:
             asked = TOLERANCES if full else (TOLERANCES[(i + 2 * j) % len(TOLERANCES)],)
             listed += [_case(shape, ratio, tolerance, dynamic=False) for tolerance in asked]
     for ratio in FULL_DYNAMIC if full else DYNAMIC_RATIOS:
-        shapes = ("flat punch of 10", "parabola of 21", "power of 40") if full else ("flat punch of 3", "parabola of 21")
+        shapes = (
+            ("flat punch of 10", "parabola of 21", "power of 40") if full else ("flat punch of 3", "parabola of 21")
+        )
         listed += [_case(shape, ratio, 1e-2, dynamic=True) for shape in shapes]
     return listed
 
@@ -77,15 +109,28 @@ def measure(bench: Bench, folder: Path) -> Findings:
         errors.append((case.ratio, _relative(found, exact)))
     checks = [_claim_row(dynamic, ratio, values) for (dynamic, ratio), values in sorted(claims.items())]
     checks += [
-        at_most(NAME, f"F_A off over the tolerance {tolerance:g} where no warning says so, worst of {len(values)}",
-                worst(values), 1.0, SOURCE, "the tolerance asked for")
+        at_most(
+            NAME,
+            f"F_A off over the tolerance {tolerance:g} where no warning says so, worst of {len(values)}",
+            worst(values),
+            1.0,
+            SOURCE,
+            "the tolerance asked for",
+        )
         for tolerance, values in sorted(tolerances.items())
-    ]  # fmt: skip
+    ]
     share = refused / solvable if solvable else math.nan
     checks.append(
-        at_most(NAME, f"share refused of {solvable} cases that have a stable way below 0.9 of the core's force", share,
-                0.05, "issue: 95 % must run", "statistics of so many cases", "set bound")
-    )  # fmt: skip
+        at_most(
+            NAME,
+            f"share refused of {solvable} cases that have a stable way below 0.9 of the core's force",
+            share,
+            0.05,
+            "issue: 95 % must run",
+            "statistics of so many cases",
+            "set bound",
+        )
+    )
     x, y = np.array(errors).T
     points_figure(
         folder / f"{NAME}.png",
@@ -99,9 +144,13 @@ def measure(bench: Bench, folder: Path) -> Findings:
 def _claim_row(dynamic: bool, ratio: float, values: list[float]) -> Check:
     method = "dynamic" if dynamic else "quasistatic"
     return at_most(
-        NAME, f"F_A off over its claim, ratio {ratio:g}, {method}, worst of {len(values)}", worst(values), 1.0, SOURCE,
+        NAME,
+        f"F_A off over its claim, ratio {ratio:g}, {method}, worst of {len(values)}",
+        worst(values),
+        1.0,
+        SOURCE,
         "what the run claims",
-    )  # fmt: skip
+    )
 
 
 def _relative(found: Finished, exact: float) -> float:
@@ -112,6 +161,6 @@ STIFFNESS = Class(
     NAME,
     "Stiffness ratio 0.3 to 100",
     "Below 1 no pair snaps, and close to 1 the force has a kink that a coarse path steps over; above 1 the force is a "
-    "row of teeth, of which the highest counts. Bodies sharp and blunt, of 3 to 200 particles, tolerances 1e-2 to 1e-4.",
+    "row of teeth, of which the highest counts. Bodies sharp and blunt, 3 to 200 particles, tolerances 1e-2 to 1e-4.",
     measure,
 )

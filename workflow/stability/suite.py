@@ -14,7 +14,20 @@ from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.reproduce.studies import cores
 from contact1d.workflow.runs.campaign import FolderError
 from contact1d.workflow.runs.report import versions, write_whole
-from contact1d.workflow.stability import extremes, faults, forces, fuzz, loads, loops, motion, pressed, similarity, stiffness, thermal
+from contact1d.workflow.stability import (
+    extremes,
+    faults,
+    forces,
+    fuzz,
+    loads,
+    loops,
+    modes,
+    motion,
+    pressed,
+    similarity,
+    stiffness,
+    thermal,
+)
 from contact1d.workflow.stability.case import Bench, Class, Findings, at_most
 from contact1d.workflow.stability.record import RECORD, TABLE, Answer, Stability, machine
 
@@ -25,6 +38,7 @@ CLASSES: tuple[Class, ...] = (
     similarity.SIMILARITY,
     forces.FORCES,
     motion.MOTION,
+    modes.EQUIPARTITION,
     *thermal.CLASSES,
     extremes.EXTREMES,
     *pressed.CLASSES,
