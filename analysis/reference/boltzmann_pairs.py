@@ -17,8 +17,9 @@ from contact1d.analysis.reference.interaction import Floats, PairInteraction
 
 SPREAD = 9.0
 """Standard deviations of a distance on its springs to either side of its gap: exp(-40)."""
-NODES, GAPS = 600, 1500
-"""Distances of a pair, and gaps at which ln z is tabulated, between which a cubic spline is exact to 1e-9."""
+FINE, MOST, GAPS = 0.6, 8000, 1500
+"""Step of the distances over the narrowest thermal width, where the trapezoidal rule is exact to exp(-2 (pi/0.6)^2);
+how many distances there may be; gaps at which ln z is tabulated, between which a cubic spline is exact to 1e-9."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +30,7 @@ class BoltzmannPairs:
         interaction: of an opposite pair; must have an attraction.
         bulk_stiffness: k of a particle on either body [FU/LU].
         heights: of the upper particles over the apex, shape (N,) [LU].
-        temperature: kT [FU LU], > 0.
+        temperature: kT [FU LU], > 0; the colder, the more distances.
     """
 
     interaction: PairInteraction
@@ -44,11 +45,18 @@ class BoltzmannPairs:
         """
         spread = SPREAD * np.sqrt(2.0 * self.temperature / self.bulk_stiffness)
         pull = 2.0 * abs(float(self.interaction.force(np.array(0.0)))) / self.bulk_stiffness
-        low = np.maximum(gap - spread - 0.2 * self.interaction.longest_range, 0.0)
+        tension = -float(self.interaction.force(np.array(self.interaction.extremum_distance(1))))
+        low = np.maximum(gap - spread - 2.0 * tension / self.bulk_stiffness, 0.0)
         high = np.maximum(gap + spread, 0.0) + np.minimum(
             pull, np.maximum(-gap, 0.0) + 8.0 * self.interaction.longest_range
         )
-        r = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, NODES)[None, :]
+        steepest = abs(float(self.interaction.force_slope(np.array(0.0)))) + 0.5 * self.bulk_stiffness
+        nodes = int(np.max(high - low) / (FINE * np.sqrt(self.temperature / steepest))) + 2
+        if nodes > MOST:
+            raise ValueError(
+                f"a temperature of {self.temperature:g} needs {nodes} distances: too cold for this integral"
+            )
+        r = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, nodes)[None, :]
         energy = self.interaction.energy(r) + 0.25 * self.bulk_stiffness * (r - gap[:, None]) ** 2
         least = energy.min(axis=1, keepdims=True)
         weight = np.trapezoid(np.exp(-(energy - least) / self.temperature), r, axis=1)

@@ -3,10 +3,10 @@
 G is the undeformed gap of a pair, r its distance, k the spring of a particle on either body. Where f rises more than
 k/2 per length, G(r) has a largest value G_off at r_off and a least one G_on at r_on > r_off. A pair is joined
 (r <= r_off) from where its gap first fell to G_on until it rises to G_off, and free (r >= r_on) otherwise. With the
-heights h_i of the upper body over its apex G_i = r0 + h_i - d, and F(d) = sum_i f(r_i) on the branch of each pair. What a snap frees is
-lost: a pair's energy V(r) + (k/4)(r - G)^2 before it less that behind it, so the loop there and back has the area
-sum_i (drop at G_on + drop at G_off). Holds where a particle feels its opposite only: no neighbour springs, ranges far
-below the spacing.
+heights h_i of the upper body over its apex G_i = r0 + h_i - d, and F(d) = sum_i f(r_i) on the branch of each pair.
+What a snap frees is lost: a pair's energy V(r) + (k/4)(r - G)^2 before it less that behind it, so the loop there and
+back has the area sum_i (drop at G_on + drop at G_off). Holds where a particle feels its opposite only: no neighbour
+springs, ranges far below the spacing.
 """
 
 from __future__ import annotations

@@ -96,11 +96,9 @@ def _masses(bench: Bench, checks: list[Check]) -> Series:
     for mass in FULL_MASSES if bench.full else MASSES:
         scene = case.scene() | {"plate": {"mass": mass}, "experiment": {"kind": "load", "force": load}}
         run = bench.run(f"mass_{mass:g}", scene)
-        over = math.nan
-        if isinstance(run, Refused):
-            over = 0.0 if run.before else over
-        else:
-            over = over_claim(run, "displacement", exact)
+        said_before = isinstance(run, Refused) and run.before
+        over = math.nan if isinstance(run, Refused) else over_claim(run, "displacement", exact)
+        over = 0.0 if said_before else over
         found.append((mass, over))
         checks.append(
             at_most(

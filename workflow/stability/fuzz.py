@@ -1,8 +1,8 @@
 """Random edits of scenes: each ends in a deck or in a sentence, never in a traceback.
 
 A scene of the package is read as text and edited one to four times: a number replaced by an extreme or wrong one, a
-line taken away, doubled or moved, a character changed. What still is a scene goes on to its settings and its deck; some of those are
-run.
+line taken away, doubled or moved, a character changed. What still is a scene goes on to its settings and its deck; some
+of those are run.
 """
 
 from __future__ import annotations
