@@ -130,16 +130,19 @@ def measure_buckling(bench: Bench, folder: Path) -> Findings:
 
 
 def _pushed(contact: Contact, d: float) -> float:
-    """Largest offset of opposite particles [LU] after a push and a relaxation at the displacement d."""
+    """How far particles are in the end from where they stood aligned at the displacement d [LU], after a push.
+
+    Sideways or in height: pairs that buckle may slip past each other until they are aligned again.
+    """
     contact.begin("loading", "displace")
     moves = math.ceil(d / contact.settings.longest_move)
     for i in range(moves):  # in one move they would pass each other
         contact.row(d * (i + 1) / moves)
     contact.finish()
+    before = contact.session.atoms("x")["x"][:6]
     contact.session.execute(f"displace_atoms upper move {PUSH!r} 0 0 units box\n", phase="pushed")
     contact.session.execute("min_style fire\nminimize 0.0 1e-13 20000 20000\n")
-    x = contact.session.atoms("x")["x"][:6, 0]
-    return float(np.max(np.abs(x[3:] - x[:3])))
+    return float(np.max(np.abs(contact.session.atoms("x")["x"][:6] - before)))
 
 
 CLASSES = (
