@@ -14,6 +14,7 @@ from contact1d.workflow.cli.ending import FAILS, Commands, command, read
 from contact1d.workflow.cli.identify import identify
 from contact1d.workflow.cli.reproduce import reproduce
 from contact1d.workflow.cli.scenes import new, schema
+from contact1d.workflow.cli.stability import stability
 
 SELDOM = 100_000
 """New objects after which Python looks for garbage: at 700, a tenth of what the imports take goes into looking."""
@@ -120,7 +121,7 @@ def doctor() -> None:
         raise typer.Exit(FAILS)
 
 
-for one in (new, run, deck, cost, identify, reproduce, schema, doctor):
+for one in (new, run, deck, cost, identify, reproduce, stability, schema, doctor):
     app.command()(one)
 
 

@@ -1,0 +1,143 @@
+"""What `stability` found: stability.json, and the table in Markdown with date and kind of machine.
+
+margin = what the rule of a row allows over what was found: 1 at the bound, below it FAIL; none where the two are equal.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import platform
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from contact1d.workflow.reproduce.check import Check
+from contact1d.workflow.reproduce.markdown import prose, table
+from contact1d.workflow.reproduce.page import number, ours, reference, tolerance
+from contact1d.workflow.stability.case import Class, Findings
+
+RECORD, TABLE = "stability.json", "stability.md"
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A class that was measured, and the wall time that took [s]."""
+
+    asked: Class
+    found: Findings
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Stability:
+    """All that was measured.
+
+    Attributes:
+        answers: in the order of the classes.
+        form: "quick" or "full".
+        date: day on which it ran.
+        machine: kind of machine, without names.
+        versions: of the programs.
+        wall_s: wall time of all [s].
+    """
+
+    answers: tuple[Answer, ...]
+    form: str
+    date: str
+    machine: str
+    versions: Mapping[str, str]
+    wall_s: float
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """The rows of all classes."""
+        return tuple(check for answer in self.answers for check in answer.found.checks)
+
+    @property
+    def failed(self) -> tuple[Check, ...]:
+        """The rows that fail."""
+        return tuple(check for check in self.checks if check.verdict == "FAIL")
+
+    def to_json(self) -> str:
+        """Return the text of stability.json."""
+        document: dict[str, Any] = {
+            "form": self.form,
+            "date": self.date,
+            "machine": self.machine,
+            "passed": len(self.checks) - len(self.failed),
+            "failed": len(self.failed),
+            "rows": [check.as_row() | {"margin": margin(check)} for check in self.checks],
+            "classes": [
+                {
+                    "name": answer.asked.name,
+                    "title": answer.asked.title,
+                    "question": answer.asked.question,
+                    "figure": answer.found.figure,
+                    "caption": answer.found.caption,
+                    "wall_s": answer.seconds,
+                }
+                for answer in self.answers
+            ],
+            "versions": dict(self.versions),
+            "wall_s": self.wall_s,
+        }
+        return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+    def to_markdown(self) -> str:
+        """Return the section of VALIDATION.md."""
+        count = len(self.checks)
+        command = "contact1d stability" + (" --full" if self.form == "full" else "")
+        head = (
+            f"## Hard cases\n\nWritten by `{command}` on {self.date}, on {self.machine}, in {self.wall_s / 60:.0f} "
+            f"minutes. **{count - len(self.failed)} of {count} rows pass.** A row that fails stays. The margin is what "
+            "the bound allows over what was found."
+        )
+        parts = [head]
+        for answer in self.answers:
+            rows = [
+                (c.name, ours(c), bound(c), c.source, _margin(c), c.limited_by, _badge(c)) for c in answer.found.checks
+            ]
+            names = ("case", "measured", "bound", "from", "margin", "limited by", "verdict")
+            parts.append(f"### {prose(answer.asked.title)} (`{answer.asked.name}`)\n\n{prose(answer.asked.question)}")
+            parts.append(table(names, rows).rstrip())
+        return "\n\n".join(parts) + "\n"
+
+
+def margin(check: Check) -> float | None:
+    """What the rule allows over what was found; None where nothing is found to be off, or there is no number."""
+    if not math.isfinite(check.value):
+        return None
+    off = abs(check.value - check.reference)
+    match check.comparison:
+        case "relative":
+            allowed = check.tolerance * abs(check.reference)
+        case "absolute":
+            allowed = check.tolerance
+        case "uncertainty":
+            allowed = check.uncertainty
+        case "at most":
+            allowed, off = check.reference, check.value
+    return allowed / off if off > 0.0 else None
+
+
+def bound(check: Check) -> str:
+    """The reference with what is allowed beside it."""
+    return tolerance(check) if check.comparison == "at most" else f"{reference(check)}, {tolerance(check)}"
+
+
+def machine() -> str:
+    """Kind of machine: architecture, processors, system; no names."""
+    return f"{platform.machine()} with {os.cpu_count()} processors under {platform.system()}"
+
+
+def _margin(check: Check) -> str:
+    found = margin(check)
+    if found is None:
+        return "exact" if math.isfinite(check.value) else "–"
+    return number(found, 2)
+
+
+def _badge(check: Check) -> str:
+    return "**FAIL**" if check.verdict == "FAIL" else "PASS"

@@ -1,0 +1,118 @@
+"""All classes of hard cases, several at a time, and their record."""
+
+from __future__ import annotations
+
+import datetime
+import math
+import multiprocessing
+import time
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
+
+from contact1d.files import write_whole
+from contact1d.workflow.engine.progress import Progress, Silent
+from contact1d.workflow.errors import FolderError
+from contact1d.workflow.runs.cores import cores
+from contact1d.workflow.runs.report import versions
+from contact1d.workflow.stability import (
+    extremes,
+    faults,
+    forces,
+    fuzz,
+    loads,
+    loops,
+    modes,
+    motion,
+    pressed,
+    similarity,
+    stiffness,
+    thermal,
+)
+from contact1d.workflow.stability.case import Bench, Class, Findings, at_most
+from contact1d.workflow.stability.record import RECORD, TABLE, Answer, Stability, machine
+
+CLASSES: tuple[Class, ...] = (
+    stiffness.STIFFNESS,
+    loads.LOADS,
+    loops.LOOPS,
+    similarity.SIMILARITY,
+    forces.FORCES,
+    motion.MOTION,
+    modes.EQUIPARTITION,
+    *thermal.CLASSES,
+    extremes.EXTREMES,
+    *pressed.CLASSES,
+    faults.FAULTS,
+    fuzz.FUZZ,
+)
+NAMES = tuple(one.name for one in CLASSES)
+
+
+def stability(
+    folder: Path,
+    only: Sequence[str] = (),
+    full: bool = False,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> Stability:
+    """Measure classes of hard cases; write stability.json, stability.md and a figure for each into `folder`.
+
+    Runs that `folder` has already, of the same scenes and versions, are not made again.
+
+    Args:
+        folder: made if it does not exist; runs go to `folder`/runs.
+        only: names of classes; empty: all.
+        full: the long form.
+        workers: classes at a time; None: as many as there are processors.
+        progress: is told of each class that ends.
+
+    Raises:
+        KeyError: a name that no class has.
+        FolderError: the folder holds something else.
+    """
+    started = time.perf_counter()
+    progress = progress or Silent()
+    if unknown := set(only) - set(NAMES):
+        raise KeyError(", ".join(sorted(unknown)))
+    if folder.is_dir() and any(folder.iterdir()) and not any((folder / name).exists() for name in ("runs", RECORD)):
+        raise FolderError(f"{folder} holds files that are not of a stability run; choose another folder with --out")
+    folder.mkdir(parents=True, exist_ok=True)
+    chosen = [name for name in NAMES if name in (only or NAMES)]
+    progress.phase("hard cases", len(chosen))
+    answers: dict[str, Answer] = {}
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(min(workers or cores(), len(chosen)), context) as executor:
+        futures = {executor.submit(measured, name, folder, full): name for name in chosen}
+        try:
+            for future in as_completed(futures):
+                answers[futures[future]] = future.result()
+                progress.advance(1)
+        except BaseException:
+            executor.shutdown(wait=False, cancel_futures=True)
+            raise
+    record = Stability(
+        tuple(answers[name] for name in chosen),
+        "full" if full else "quick",
+        datetime.date.today().isoformat(),
+        machine(),
+        versions(),
+        time.perf_counter() - started,
+    )
+    write_whole(folder / RECORD, record.to_json())
+    write_whole(folder / TABLE, record.to_markdown())
+    return record
+
+
+def measured(name: str, folder: Path, full: bool) -> Answer:
+    """One class, measured here; for a process of its own."""
+    asked = next(one for one in CLASSES if one.name == name)
+    started = time.perf_counter()
+    runs = folder / "runs" / name
+    runs.mkdir(parents=True, exist_ok=True)
+    try:
+        found = asked.measure(Bench(runs, full), folder)
+    except Exception as error:  # what a class did not expect is the worst of its findings, and no reason to lose others
+        words = f"ended by {type(error).__name__}: {error}"
+        found = Findings([at_most(name, words, math.nan, 0.0, "a class ends with rows", "–", "set bound")], "", "")
+    return Answer(asked, found, time.perf_counter() - started)
