@@ -26,16 +26,6 @@ FAILS: dict[str, set[str]] = {
     "loads": {
         "d off over its claim under (1 − 0.001) F_A, dynamic; within the tolerance of F_A a named warning does as well",
     },
-    "loops": {
-        "force off over the largest, worst row, ratio 1.5, rows as wide as the range",
-        "area of the loop, ratio 1.5, rows as wide as the range",
-        "F_A of the path off over its claim, ratio 1.5, rows as wide as the range",
-        "force off over the largest, worst row, ratio 10, rows as wide as the range",
-        "area of the loop, ratio 10, rows as wide as the range",
-        "F_A of the path off over its claim, ratio 10, rows as wide as the range",
-        "force off over the largest, worst row, ratio 10, rows a tenth of the range",
-        "area of the loop, ratio 10, rows a tenth of the range",
-    },
     "similarity": {
         "F_A·s/e off, lengths × 1e-09, quasistatic",
         "F_A·s/e off, lengths × 1e-06, quasistatic",
@@ -43,9 +33,6 @@ FAILS: dict[str, set[str]] = {
         "F_A·s/e off, lengths × 1e+06, quasistatic",
         "F_A·s/e off, lengths × 1e-09, dynamic",
         "F_A·s/e off, lengths × 0.001, dynamic",
-    },
-    "modes": {
-        'M ⟨V²⟩/kT of the plate, damping = "auto"',
     },
     "extremes": {
         "force on a plane off, R = 1e+09 LU",

@@ -65,7 +65,9 @@ def dynamics_of(
     plate_damping = 0.0
     if scene.plate is not None:
         given = scene.plate.damping
-        plate_damping = max(0.0, critical - particles * damping) if given == "auto" else given
+        # Drag without its noise would cool the plate; with noise the particles' own heat bath is its.
+        automatic = 0.0 if scene.noise is not None else max(0.0, critical - particles * damping)
+        plate_damping = automatic if given == "auto" else given
     slowest = contact / moving if scene.plate is not None else scene.bulk_stiffness / bodies.mass
     step = product / math.sqrt(stiffest / bodies.mass)
     if damping > 0.0:

@@ -38,12 +38,12 @@ def path(context: RunContext) -> Outcome:
     asked = [wanted for _, wanted in places(scene, settings)]
     states = [state for state, wanted in zip(passed, asked, strict=True) if wanted]
     adhesive = scene.interaction is not None and scene.interaction.attraction is not None
-    branch = [s for s in states if s.phase == phases[-1].name]
+    # Where pairs snap, all rows tell the jumps; else the same places there and back tell what a curve loses.
+    rows = passed[asked.index(True) :] if settings.estimate.snaps else states
+    branch = [s for s in rows if s.phase == phases[-1].name]
     quantities, warnings = _adhesion(context, branch) if adhesive else (_largest(context, states), {})
     ends = {"deepest": max(states, key=lambda s: s.displacement), "final": states[-1]}
     radii = {name: state.radius for name, state in ends.items()}
-    # Where pairs snap, all rows tell the jumps; else the same places there and back tell what a curve loses.
-    rows = passed[asked.index(True) :] if settings.estimate.snaps else states
     loop = loop_of([s.displacement for s in rows], [s.force for s in rows])
     if loop is not None:
         quantities["dissipated_energy"] = _dissipated(context, states, loop)
