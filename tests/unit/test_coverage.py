@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import pytest
 
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.workflow.experiments.path.path import path
@@ -69,9 +70,9 @@ def covered(found: list[tuple[Outcome, dict[str, float]]], name: str) -> float:
 
 
 def pulled(
-    rng: Rng, run: Callable[[ExactContext], Outcome], cases: int, tables: dict[str, Any]
+    rng: Rng, run: Callable[[ExactContext], Outcome], cases: int, tables: dict[str, Any], lets_go: float = 1.0
 ) -> list[tuple[Scene, Outcome, dict[str, float]]]:
-    """Random pull-offs, and the exact numbers."""
+    """Random pull-offs, and the exact numbers; held loads are lost at this part `lets_go` of the largest tension."""
     found = []
     for _ in range(cases):
         scene = random_case(rng, rng.uniform(0.05, 0.5), log_uniform(rng, 4.0, 200.0), log_uniform(rng, 1e-3, 5e-2))
@@ -84,6 +85,7 @@ def pulled(
         pairs, top, tension = exact(scene, -8.0 * long, settings.largest_displacement + 0.1, 200)
         zero = pairs.displacement(0.0, top, 1.5 * settings.largest_displacement + 0.1)
         context = exact_context(scene, settings)
+        tension *= lets_go
         context.largest_tension = top, tension
         numbers = {
             "adhesion_force": tension,
@@ -100,9 +102,11 @@ def test_a_pull_off_at_rest_claims_no_more_than_it_knows() -> None:
     assert covered(found, "critical_radius") >= COVERED
 
 
-def test_a_pull_off_in_time_is_bracketed_as_narrowly_as_was_asked_for() -> None:
+@pytest.mark.parametrize("lets_go", [1.0, 0.93])
+def test_a_pull_off_in_time_is_bracketed_as_narrowly_as_was_asked_for(lets_go: float) -> None:
+    """Also where the contact lets go before the estimate expects it to, so that no first guess is good enough."""
     timed = {"damping": {"coefficient": "auto"}, "plate": {}, "experiment": {"method": "dynamic"}}
-    for scene, outcome, numbers in pulled(np.random.default_rng(6), pull_off_dynamic, 8, timed):
+    for scene, outcome, numbers in pulled(np.random.default_rng(6), pull_off_dynamic, 6, timed, lets_go):
         force = outcome.quantities["adhesion_force"]
         assert abs(force.value - numbers["adhesion_force"]) <= force.uncertainty
         assert force.uncertainty <= scene.accuracy.tolerance * force.value

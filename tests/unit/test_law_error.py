@@ -9,15 +9,18 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.potentials.table import Table
-from contact1d.workflow.experiments.running.law_error import GIVES, law_error
+from contact1d.workflow.experiments.running.law_error import GIVES, law_error, law_share
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import Settings, settings_for
-from tests.scenes import chains
+from tests.scenes import LAW, chains
 
 SUM = 1e-9
 """Two sums over the same pairs, relative; the tail beyond its last range is in neither."""
+WIDE = 30.0
+"""A share that is warned of, over the true one, at most: it is for every body and spacing; 3 to 18 measured."""
 SHARP = 20.0
 """A claim above the error by more than this would be no estimate."""
 
@@ -59,3 +62,23 @@ def test_it_covers_what_a_cutoff_or_a_table_changes_and_no_more(tmp_path: Path, 
     fine = run(exact, tmp_path / "fine", figures=False, settings=with_points(exact, 100_000)).outcome.states[-1]
     error = abs(coarse.force - fine.force)
     assert error <= law_error(scene, settings, coarse) <= SHARP * error
+
+
+@pytest.mark.parametrize("spacing", [1.0, 0.5, 0.25])
+@pytest.mark.parametrize("cutoff", [1.0, 1.5, 2.0, 2.5])
+def test_the_share_that_is_warned_of_covers_what_lies_beyond_the_cutoff(spacing: float, cutoff: float) -> None:
+    """Rigid bodies at their largest tension, every pair of particles summed: what the cutoff leaves out of the force."""
+    tables = chains(40.0, bodies={"particles": int(30.0 / spacing), "spacing": spacing}, experiment={"kind": "path",
+                    "displacements": [0.0]})  # fmt: skip
+    tables["interaction"] |= {"cutoff": cutoff}
+    scene = scene_from_dict(tables)
+    law = PairInteraction(Exponential(*LAW[:2]), Exponential(*LAW[2:]))
+    x = (np.arange(scene.bodies.particles) - 0.5 * (scene.bodies.particles - 1)) * spacing
+    largest = most = 0.0
+    for apex in law.force_free_distance() + np.linspace(0.0, 1.0, 41):
+        up = (apex + x**2 / 80.0)[:, None]
+        r = np.hypot(x[:, None] - x[None, :], up)
+        tension = -law.force(r) * up / r
+        if tension.sum() > largest:
+            largest, most = float(tension.sum()), float(tension[r > cutoff].sum()) / float(tension.sum())
+    assert most <= law_share(scene, settings_for(scene)) <= WIDE * most
