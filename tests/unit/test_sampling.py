@@ -85,7 +85,9 @@ class Swings(RunContext):
 
 def sampled(make_scene: MakeScene, missed: float) -> Outcome:
     timed: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}, "noise": {"temperature": 1e-6, "seed": 1}}
-    scene = make_scene(bodies={"particles": 60}, **timed, experiment={"kind": "load", "method": "dynamic", "force": LOAD})
+    scene = make_scene(
+        bodies={"particles": 60}, **timed, experiment={"kind": "load", "method": "dynamic", "force": LOAD}
+    )
     context = Swings(Deck(scene, settings_for(scene)), cast(Any, None), Silent(), 1.0)
     context.missed = missed
     return load_dynamic(context)
