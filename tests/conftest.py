@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -14,6 +15,7 @@ from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import Engine, Session
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
+from tests.limits import LIMIT, SLOW_LIMIT, time_limit
 from tests.scenes import chains
 
 SMALL = chains(
@@ -33,6 +35,22 @@ PLANE: dict[str, Any] = {
         "lower": "rigid_plane",
     },
 }
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
+    """No test waits for ever: what hangs fails, setting up and tidying up included."""
+    with time_limit(SLOW_LIMIT if item.get_closest_marker("slow") else LIMIT):
+        return (yield)
+
+
+@pytest.fixture(autouse=True, scope="session")
+def ctrl_c() -> Iterator[None]:
+    """Ctrl-C interrupts here and in what the tests start, also where a shell's `&` has it ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
 
 MakeScene = Callable[..., Scene]
 OpenDeck = Callable[[Scene], tuple[Deck, Session]]

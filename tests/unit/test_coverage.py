@@ -1,6 +1,6 @@
 """Claim: what a run says of its uncertainty covers its error, over many contacts whose curve is known exactly.
 
-Reference: independent pairs (`tests.exact`), each solved for itself; no LAMMPS, so that a hundred contacts take seconds.
+Reference: independent pairs (`tests.exact`), each solved for itself; no LAMMPS, so that many contacts take seconds.
 The share that is covered is counted. Uncertainties three times smaller would fail each of these tests: they cover 60 to
 90 % of the same cases.
 """

@@ -94,7 +94,7 @@ def sampled(make_scene: MakeScene, missed: float) -> Outcome:
 
 
 def test_a_thermal_mean_has_forgotten_where_it_began(make_scene: MakeScene) -> None:
-    """Three settling times of memory: after ten of them 4 % of the start are left, and a hundredth of that in the mean."""
+    """Three settling times of memory: after ten of them 4 % of the start are left."""
     displacement = sampled(make_scene, 0.0).quantities["displacement"]
     left = START * math.exp(-10.0 / MEMORY) * MEMORY / 50.0
     assert abs(displacement.value - PLACE) <= SIGMAS * displacement.uncertainty
