@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import settings
 
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
@@ -17,6 +18,11 @@ from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 from tests.limits import LIMIT, SLOW_LIMIT, time_limit
 from tests.scenes import chains
+
+settings.register_profile("repeatable", deadline=None, derandomize=True)
+settings.load_profile(
+    "repeatable"
+)  # by itself hypothesis fails an example that takes 0.2 s, and draws others each time
 
 SMALL = chains(
     100.0,
