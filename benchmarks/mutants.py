@@ -62,7 +62,15 @@ TESTS: dict[str, tuple[str, ...]] = {
     ),
 }  # fmt: skip
 """For each file, or folder, whose faults are looked for: the tests that are to notice. The longest name counts."""
-LOADED = ("numpy", "scipy.optimize", "scipy.interpolate", "scipy.linalg", "scipy.stats", "pydantic", "matplotlib.figure")
+LOADED = (
+    "numpy",
+    "scipy.optimize",
+    "scipy.interpolate",
+    "scipy.linalg",
+    "scipy.stats",
+    "pydantic",
+    "matplotlib.figure",
+)
 OPERATORS: dict[type[ast.AST], type[ast.AST]] = {
     ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.FloorDiv: ast.Mult,
     ast.Pow: ast.Mult, ast.Mod: ast.Mult, ast.And: ast.Or, ast.Or: ast.And, ast.Lt: ast.GtE, ast.GtE: ast.Lt,
@@ -160,9 +168,12 @@ def tests_of(file: str) -> tuple[str, ...]:
 
 def copy_of_this(folder: Path) -> Path:
     """A copy of this folder in `folder`, without what was made by running it."""
-    shutil.copytree(
-        ROOT, folder, symlinks=True, ignore=shutil.ignore_patterns(".*", "__pycache__", "runs", "reproduced")
-    )
+
+    def made(parent: str, names: list[str]) -> list[str]:
+        runs = ("runs", "reproduced") if Path(parent) == ROOT else ()
+        return [name for name in names if name.startswith(".") or name in ("__pycache__", *runs)]
+
+    shutil.copytree(ROOT, folder, symlinks=True, ignore=made)
     return folder
 
 

@@ -35,7 +35,7 @@ LINEAR = 0.1
 """Part of the tolerance that a spring's force may be off, for moves up to a spacing; a long bond is for 0.05."""
 TOLERANCE = 1e-2
 WEAK = 1e-3
-"""Drag that allows any time step, so that the stiffness alone decides [FU·TU/LU]."""
+"""Drag of a particle that allows any time step, as a plate without drag does, so that the stiffness decides."""
 STABLE = 1.0
 """ω Δt of the stiffest motion: half of Verlet's limit."""
 
@@ -49,7 +49,7 @@ def timed(drag: float = DRAG, **tables: Any) -> Scene:
             STIFFNESS,
             bodies=bodies,
             damping={"coefficient": drag},
-            plate={},
+            plate={"damping": 0.0},
             accuracy={"tolerance": TOLERANCE},
             experiment={"kind": "load", "method": "dynamic", "force": 0.0},
             **tables,
