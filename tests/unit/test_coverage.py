@@ -118,7 +118,7 @@ def test_a_path_claims_no_more_than_its_rows_tell() -> None:
     while len(found) < CASES:
         scene = random_case(rng, rng.uniform(0.05, 0.5), log_uniform(rng, 4.0, 200.0), 1e-3)
         long = scene.interaction.attraction.range
-        pairs, top, tension = exact(scene, -10.0 * long, long, 200)
+        pairs, top, _ = exact(scene, -10.0 * long, long, 200)
         zero = pairs.displacement(0.0, top, 4.0 * long)
         deepest = max(rng.uniform(0.3, 1.0) * long, zero + 0.3 * long)
         way = np.linspace(deepest, top - 2.0 * long, int(rng.integers(8, 60))).tolist()

@@ -49,7 +49,7 @@ def endless_read() -> None:
 @pytest.mark.parametrize("hangs", [endless_loop, endless_wait, endless_read])
 def test_what_hangs_fails(hangs: object) -> None:
     assert callable(hangs)
-    with pytest.raises(pytest.fail.Exception, match="it hangs: not done after 0.1 s"), time_limit(0.1):
+    with pytest.raises(pytest.fail.Exception, match=r"it hangs: not done after 0\.1 s"), time_limit(0.1):
         hangs()
 
 
