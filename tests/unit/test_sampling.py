@@ -15,6 +15,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from contact1d.analysis.radius import tensile_radius
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Row, UnderLoad
 from contact1d.workflow.engine.progress import Silent
@@ -37,6 +38,8 @@ between blocks of twenty samples, up to 0.1 at c = 0.6."""
 SIGMAS = 4.0
 LOAD, PLACE = 0.3, 0.1
 """Load [FU], and the place about which the plate swings [LU]."""
+BODY_RADIUS, SCATTER = 100.0, 1.6
+"""Of the scene [LU]; an error from twenty blocks is off by a sixth, the radius by interpolation from √ by as much."""
 SWING, START, MEMORY = 1e-3, 0.1, 3.0
 """Standard deviation, distance at the start [LU], and the time in which it is forgotten over the settling time."""
 
@@ -68,9 +71,9 @@ class Swinging(ExactContact):
         assert isinstance(row, UnderLoad)
         self._time += row.steps * self.settings.time_step
         decayed = START * math.exp(-self._time / (MEMORY * self.settings.settle_time))
-        at_rest = self._seen.state(PLACE)
         force = row.load + self._missed + SWING * self._rng.normal()
-        return replace(at_rest, displacement=PLACE + decayed + SWING * self._rng.normal(), force=force)
+        swings = PLACE + SWING * self._rng.normal()
+        return replace(self._seen.state(swings), displacement=swings + decayed, force=force)
 
 
 class Swings(RunContext):
@@ -99,6 +102,15 @@ def test_a_thermal_mean_has_forgotten_where_it_began(make_scene: MakeScene) -> N
     left = START * math.exp(-10.0 / MEMORY) * MEMORY / 50.0
     assert abs(displacement.value - PLACE) <= SIGMAS * displacement.uncertainty
     assert abs(displacement.value - PLACE) <= left + SIGMAS * SWING / math.sqrt(200.0)
+
+
+def test_the_radius_of_the_mean_pressure_is_known_as_well_as_its_swing_allows(make_scene: MakeScene) -> None:
+    """a goes with √(2R(d − d₀)), so a sample is off by (R/a) SWING; the rest of the claim is the lattice's."""
+    outcome = sampled(make_scene, 0.0)
+    claimed = outcome.quantities["contact_radius"]
+    lattice = tensile_radius(outcome.profiles["final"]).uncertainty
+    expected = BODY_RADIUS / claimed.value * SWING / math.sqrt(200.0)
+    assert 1.0 / SCATTER < (claimed.uncertainty - lattice) / expected < SCATTER
 
 
 def test_a_mean_force_that_misses_its_load_is_no_result(make_scene: MakeScene) -> None:
