@@ -39,7 +39,7 @@ PATIENCE, LEAST = 5.0, 60.0
 UNIT = "tests/unit/"
 COVERAGE, MOTION = UNIT + "test_coverage.py", "tests/decks/test_motion.py"
 TESTS: dict[str, tuple[str, ...]] = {
-    "potentials/double_exponential.py": (UNIT + "test_potential.py",),
+    "potentials/double_exponential.py": (UNIT + "test_potential.py", UNIT + "test_table.py"),
     "potentials/table.py": (UNIT + "test_table.py",),
     "analysis/law_error.py": (UNIT + "test_law_error.py",),
     "analysis/loop.py": (UNIT + "test_loop.py",),

@@ -26,9 +26,10 @@ SHARP = 20.0
 """A claim above the error by more than this would be no estimate."""
 
 
-def pressed(**interaction: Any) -> Scene:
+def pressed(spacing: float = 1.0, **interaction: Any) -> Scene:
     """Two chains that touch over a width, at a prescribed displacement; the claim is for the force there."""
-    tables = chains(100.0, bodies={"particles": 60}, experiment={"kind": "path", "displacements": [0.2]})
+    bodies = {"particles": 60, "spacing": spacing}
+    tables = chains(100.0, bodies=bodies, experiment={"kind": "path", "displacements": [0.2]})
     tables["interaction"] |= interaction
     return scene_from_dict(tables)
 
@@ -39,8 +40,9 @@ def with_points(scene: Scene, points: int) -> Settings:
     return replace(settings, table=Table(settings.law, settings.cutoff, points))
 
 
-def test_it_is_the_sum_over_all_pairs(tmp_path: Path) -> None:
-    scene = pressed(cutoff=1.5)
+@pytest.mark.parametrize("spacing", [1.0, 0.4])
+def test_it_is_the_sum_over_all_pairs(tmp_path: Path, spacing: float) -> None:
+    scene = pressed(spacing, cutoff=1.5)
     settings = settings_for(scene)
     state = run(scene, tmp_path / "run", figures=False, settings=settings).outcome.states[-1]
     profile, law, table = state.profile, settings.law, settings.table
