@@ -16,7 +16,7 @@ $(LOCKED): FORCE
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help run test lint validation clean FORCE
+.PHONY: help run test lint mutants validation clean FORCE
 
 help: ## show this list
 	@echo 'make [TARGET] [NAME=value ...]'
@@ -34,6 +34,9 @@ lint: $(READY) ## check style, types and the direction of imports
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+mutants: $(READY) ## put small faults into the code and see whether the tests notice, a night: ARGS='--part 0.1'
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks.mutants $(ARGS)
 
 validation: $(READY) ## reproduce the paper anew: VALIDATION.md, docs/reproduced and the README's table
 	@rm -rf reproduced  # runs of an older state of the program would be taken over

@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import settings
 
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import Engine, Session
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
+from tests.limits import LIMIT, SLOW_LIMIT, time_limit
 from tests.scenes import chains
+
+settings.register_profile("repeatable", deadline=None, derandomize=True)
+settings.load_profile(
+    "repeatable"
+)  # by itself hypothesis fails an example that takes 0.2 s, and draws others each time
 
 SMALL = chains(
     100.0,
@@ -33,6 +41,22 @@ PLANE: dict[str, Any] = {
         "lower": "rigid_plane",
     },
 }
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
+    """No test waits for ever: what hangs fails, setting up and tidying up included."""
+    with time_limit(SLOW_LIMIT if item.get_closest_marker("slow") else LIMIT):
+        return (yield)
+
+
+@pytest.fixture(autouse=True, scope="session")
+def ctrl_c() -> Iterator[None]:
+    """Ctrl-C interrupts here and in what the tests start, also where a shell's `&` has it ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
 
 MakeScene = Callable[..., Scene]
 OpenDeck = Callable[[Scene], tuple[Deck, Session]]

@@ -114,9 +114,7 @@ def test_the_worker_dies_with_its_parent(tmp_path: Path, end: str) -> None:
     assert alive(pid)
     process.kill()
     process.communicate(timeout=30)
-    end_of_patience = time.monotonic() + 5.0
-    while alive(pid):
-        assert time.monotonic() < end_of_patience, "the worker outlived its parent"
+    while alive(pid):  # a worker that outlives its parent ends this test by its time limit
         time.sleep(0.02)
     assert not [name for name in shared_memory() if name.startswith(f"mpich_shm_{int(pid):x}_")]
 

@@ -39,6 +39,23 @@ def test_a_jump_after_the_maximum_leaves_the_sampled_point_and_the_last_rise_as_
     peak = largest_tension(displacement, [-t for t in tension])
     assert displacement[peak.index] == peak.position == pytest.approx(0.5)
     assert peak.uncertainty == pytest.approx(0.1)  # one increment of a unit slope
+    assert peak.misplaced == 0.0
+
+
+def test_a_fall_is_a_jump_by_its_slope_and_not_by_its_size() -> None:
+    """A rise of 0.1 LU⁻¹ and a fall twice as steep are a tooth; the same fall within a tenth of the way is a jump."""
+    rising = [1.0, 0.8, 0.6]
+    for beyond, jumps in ((0.4, False), (0.58, True)):
+        peak = largest_tension([*rising, beyond, beyond - 0.2], [-0.96, -0.98, -1.0, -0.96, -0.9])
+        assert (peak.misplaced == 0.0 and peak.position == 0.6) == jumps
+
+
+@pytest.mark.parametrize("rows", [(-2, 7), (-6, 3)])
+def test_a_maximum_two_rows_from_an_end_is_as_exact_as_any(rows: tuple[int, int]) -> None:
+    displacement = falling(0.03 + 0.1 * np.arange(*rows))
+    peak = largest_tension(displacement, [-np.exp(-((d - 0.05) ** 2)) for d in displacement])
+    assert abs(peak.smooth - 1.0) <= min(peak.uncertainty, SIXTH * 0.1**5)
+    assert abs(peak.position - 0.05) <= FOURTH * 0.1**4
 
 
 @pytest.mark.parametrize("force", [[0.0, -1.0, -2.0], [-2.0, -1.0, 0.0]])

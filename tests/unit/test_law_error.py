@@ -9,22 +9,27 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.potentials.table import Table
-from contact1d.workflow.experiments.running.law_error import GIVES, law_error
+from contact1d.workflow.experiments.running.law_error import GIVES, law_error, law_share
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import Settings, settings_for
-from tests.scenes import chains
+from tests.scenes import LAW, chains
 
 SUM = 1e-9
 """Two sums over the same pairs, relative; the tail beyond its last range is in neither."""
+SMALLEST_LOAD, WIDE = 0.1, 3.0
+"""Smallest load over the largest tension of which the share that is warned of is to tell the error; at most so many
+times as much: it is one for every body and spacing. 1.1 to 2.1 measured, spacings from 0.1 to 1, radii to 1000."""
 SHARP = 20.0
 """A claim above the error by more than this would be no estimate."""
 
 
-def pressed(**interaction: Any) -> Scene:
+def pressed(spacing: float = 1.0, **interaction: Any) -> Scene:
     """Two chains that touch over a width, at a prescribed displacement; the claim is for the force there."""
-    tables = chains(100.0, bodies={"particles": 60}, experiment={"kind": "path", "displacements": [0.2]})
+    bodies = {"particles": 60, "spacing": spacing}
+    tables = chains(100.0, bodies=bodies, experiment={"kind": "path", "displacements": [0.2]})
     tables["interaction"] |= interaction
     return scene_from_dict(tables)
 
@@ -35,8 +40,9 @@ def with_points(scene: Scene, points: int) -> Settings:
     return replace(settings, table=Table(settings.law, settings.cutoff, points))
 
 
-def test_it_is_the_sum_over_all_pairs(tmp_path: Path) -> None:
-    scene = pressed(cutoff=1.5)
+@pytest.mark.parametrize("spacing", [1.0, 0.4])
+def test_it_is_the_sum_over_all_pairs(tmp_path: Path, spacing: float) -> None:
+    scene = pressed(spacing, cutoff=1.5)
     settings = settings_for(scene)
     state = run(scene, tmp_path / "run", figures=False, settings=settings).outcome.states[-1]
     profile, law, table = state.profile, settings.law, settings.table
@@ -59,3 +65,25 @@ def test_it_covers_what_a_cutoff_or_a_table_changes_and_no_more(tmp_path: Path, 
     fine = run(exact, tmp_path / "fine", figures=False, settings=with_points(exact, 100_000)).outcome.states[-1]
     error = abs(coarse.force - fine.force)
     assert error <= law_error(scene, settings, coarse) <= SHARP * error
+
+
+@pytest.mark.parametrize("spacing", [1.0, 0.5, 0.25])
+@pytest.mark.parametrize("cutoff", [1.0, 1.5, 2.0, 2.5])
+def test_the_share_that_is_warned_of_covers_what_lies_beyond_the_cutoff(spacing: float, cutoff: float) -> None:
+    """Rigid bodies, every pair of particles summed: what the cutoff leaves out, over a tenth of the largest tension."""
+    radius = 40.0
+    bodies = {"particles": int(30.0 / spacing), "spacing": spacing}
+    tables = chains(radius, bodies=bodies, experiment={"kind": "path", "displacements": [0.0]})
+    tables["interaction"] |= {"cutoff": cutoff}
+    scene = scene_from_dict(tables)
+    law = PairInteraction(Exponential(*LAW[:2]), Exponential(*LAW[2:]))
+    x = (np.arange(bodies["particles"]) - 0.5 * (bodies["particles"] - 1)) * spacing
+    largest = beyond = 0.0
+    for apex in law.force_free_distance() + np.linspace(0.0, 1.0, 41):
+        up = (apex + x**2 / (2.0 * radius))[:, None]
+        r = np.hypot(x[:, None] - x[None, :], up)
+        tension = -law.force(r) * up / r
+        if tension.sum() > largest:
+            largest, beyond = float(tension.sum()), float(tension[r > cutoff].sum())
+    share = beyond / (SMALLEST_LOAD * largest)
+    assert share <= law_share(scene, settings_for(scene)) <= WIDE * share

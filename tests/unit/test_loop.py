@@ -75,3 +75,10 @@ def test_several_turns_make_one_loop() -> None:
 @pytest.mark.parametrize("d", [[0.0, 1.0, 0.5], [0.0, 0.0], [0.3]])
 def test_what_does_not_close_is_no_loop(d: list[float]) -> None:
     assert loop_of(d, [0.0] * len(d)) is None
+
+
+def test_of_a_way_of_one_row_only_the_ends_are_known() -> None:
+    """F is 1 as far as the turn and then −1: it may fall anywhere on the way back, so that the area is 0 to 4."""
+    loop = loop_of([0.0, 2.0, 0.0], [1.0, 1.0, -1.0])
+    assert loop is not None
+    assert (loop.area, loop.uncertainty) == pytest.approx((2.0, 2.0), rel=ROUND_OFF)

@@ -39,6 +39,15 @@ def test_the_lowest_minimum_in_the_interval_is_found_with_its_bend() -> None:
         assert lowest_minimum(QUARTIC, low, high, near=place + 0.01)[0] == pytest.approx(place, abs=ROUND_OFF)
 
 
-@pytest.mark.parametrize("near", [None, 0.0, 0.1])
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+def test_a_minimum_is_where_it_is_however_flat(scale: float) -> None:
+    assert lowest_minimum(scale * QUARTIC, -1.0, 1.0)[0] == pytest.approx(lowest_minimum(QUARTIC, -1.0, 1.0)[0])
+
+
+def test_a_level_place_without_a_bend_is_no_minimum() -> None:
+    assert math.isnan(lowest_minimum(np.array([0.0, 0.0, 0.0, 1.0]), -1.0, 1.0)[0])
+
+
+@pytest.mark.parametrize("near", [None, 0.0, 0.1, 0.5])
 def test_a_maximum_or_a_minimum_beyond_the_interval_is_none(near: float | None) -> None:
     assert math.isnan(lowest_minimum(QUARTIC, -0.3, 0.3, near)[0])

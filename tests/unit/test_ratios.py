@@ -1,0 +1,115 @@
+"""Claim: a ratio of two times is the slower over the quicker in the order that its name says.
+
+No clock: the times are made up. What takes twice as long must come out as 2, never as 1/2.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from benchmarks import deck_overhead, plain
+from benchmarks.peers.table import ratios
+from benchmarks.scaling import spread
+from contact1d.workflow.cost import per_step
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.engine.progress import Lines
+from contact1d.workflow.scene import Scene
+from tests.unit.test_benchmarks_peers import record
+from tests.unit.test_benchmarks_scaling import sized
+
+MakeScene = Callable[..., Scene]
+ROUND_OFF = 1e-12
+ALL, WITHOUT = 3.0, 2.0
+"""Made-up processor time of a step with all effects and without one [µs]."""
+STEPS, PART, SECONDS = 400, 100, 30.0
+"""A phase, of which a quarter took half a minute."""
+
+
+class Clockwork:
+    """A session whose runs take the time that they are given."""
+
+    def __init__(self, step: float) -> None:
+        self.step, self.lammps_cpu_seconds = step, 0.0
+
+    def execute(self, text: str) -> None:
+        command, count = text.split()
+        assert command == "run"
+        self.lammps_cpu_seconds += 1e-6 * self.step * int(count)
+
+
+def test_an_effect_costs_what_a_step_with_it_takes_over_one_without(
+    make_scene: MakeScene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = make_scene(neighbours={"stiffness": 0.1})
+
+    @contextmanager
+    def opened(deck: Deck, _: Path) -> Iterator[Clockwork]:
+        yield Clockwork(ALL if deck.scene.effects == scene.effects else WITHOUT)
+
+    monkeypatch.setattr(per_step, "opened", opened)
+    costs = {cost.name: cost for cost in per_step.effect_costs(scene, tmp_path)}
+    cost = costs["neighbours"]
+    assert cost.ratio == pytest.approx(ALL / WITHOUT, rel=ROUND_OFF)
+    assert (cost.with_us, cost.without_us) == pytest.approx((ALL, WITHOUT), rel=ROUND_OFF)
+
+
+def test_the_plain_way_takes_so_many_times_as_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def compared(*_: object) -> list[plain.Cost]:
+        return [plain.Cost(way, 1e-2, 1.0, 0.0, cpu, 1) for way, cpu in (("quasistatic", 2.0), ("plain", 100.0))]
+
+    monkeypatch.setattr(plain, "compared", compared)
+    monkeypatch.setattr(plain, "RESULTS", tmp_path / "plain.json")
+    monkeypatch.setattr(sys, "argv", ["plain.py", "--tolerance", "1e-2"])
+    plain.main()
+    rows = {row["way"]: row["plain_over_it"] for row in json.loads(plain.RESULTS.read_text())["rows"]}
+    assert rows == {"quasistatic": 50.0, "plain": 1.0}
+
+
+class Read:
+    """A session that knows what it was given."""
+
+    def execute(self, text: str) -> None:
+        self.text = text
+
+
+def test_a_generated_deck_that_is_slower_is_above_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    hand = (deck_overhead.HAND / "plane.lmp").read_text()
+
+    @contextmanager
+    def session(_: Path) -> Iterator[Read]:
+        yield Read()
+
+    monkeypatch.setattr(deck_overhead.Engine, "session", session)
+    monkeypatch.setattr(deck_overhead, "loop_time", lambda opened, _: WITHOUT if hand in opened.text else ALL)
+    generated, by_hand, ratio = deck_overhead.ratio("plane", tmp_path)
+    assert ratio == pytest.approx(ALL / WITHOUT, rel=ROUND_OFF)
+    assert generated > by_hand
+
+
+def test_a_solver_that_takes_longer_is_above_one() -> None:
+    ours, theirs = record(0.2, 0.009), record(1.0, 0.009) | {"solver": "tamaas"}
+    told = [line for line in ratios({"records": [ours, theirs]}) if "any range" in line]
+    assert "**5** (tamaas a_0/8 1 s, contact1d a_0/8 200 ms)" in told[0]
+
+
+def test_the_spread_of_costs_is_the_largest_over_the_smallest() -> None:
+    assert spread([sized(10.0, 1.0), sized(30.0, 1.0), sized(20.0, 1.0)]) == 3.0
+
+
+def test_what_is_left_of_a_phase_takes_as_long_as_what_is_done(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A quarter took half a minute, so that three of them are left: a minute and a half."""
+    now = [0.0]
+    monkeypatch.setattr("contact1d.workflow.engine.progress.time.monotonic", lambda: now[0])
+    lines = Lines(sys.stdout, quiet=1.0)
+    lines.phase("loading", STEPS)
+    now[0] = SECONDS
+    lines.advance(PART)
+    assert "step 100 of 400, about 90 s left" in capsys.readouterr().out

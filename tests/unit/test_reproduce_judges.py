@@ -1,0 +1,78 @@
+"""Claim: a row of the reproduction can fail. Where every number of every run is wrong, every row of every study does.
+
+A row that compares a value with itself, or with something that goes with it, passes whatever the runs say.
+"""
+
+from __future__ import annotations
+
+import math
+import zlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact1d.analysis.curve import Curve
+from contact1d.analysis.pressure import Profile
+from contact1d.analysis.reference.line_adhesion import barquins_reduced_force
+from contact1d.workflow.reproduce import eq3, fig4, fig6, fig7, fig8, table1
+from contact1d.workflow.reproduce.studies import STUDIES
+from contact1d.workflow.reproduce.study import Study
+from contact1d.workflow.runs.finished import Run
+from contact1d.workflow.scene import Scene, read_scene
+
+SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
+ABOUT = {
+    "adhesion_force": (1.47, "FU"), "zero_load_radius": (28.53, "LU"), "critical_radius": (15.0, "LU"),
+    "largest_force": (40.0, "FU"), "largest_radius": (30.0, "LU"), "contact_radius": (30.0, "LU"),
+}  # fmt: skip
+"""About what the paper's scene has, so that nothing fails by its size alone."""
+WRONG = (1.4, 3.0)
+"""Factors by which each number of each run is wrong, drawn from its name: the widest tolerance of a row is 10 %, but
+for shares that are to lie below a bound."""
+ROWS = 30
+CLAIMED = 1e-3
+"""Uncertainty that the wrong numbers claim, relative."""
+
+
+class WrongRuns(dict[str, Run]):
+    """A finished run of any name. With horizontal freedom the larger preloads have failed, at a wrong place."""
+
+    def __init__(self, paper: Scene) -> None:
+        super().__init__()
+        self._paper = paper
+
+    def __missing__(self, name: str) -> Run:
+        rng = np.random.default_rng(zlib.crc32(name.encode()))
+
+        def wrong(value: float) -> float:
+            return float(value * rng.uniform(*WRONG))
+
+        document: dict[str, Any] = {"status": "done"}
+        for quantity, (value, unit) in ABOUT.items():
+            number = wrong(value)
+            entry = {"value": number, "uncertainty": CLAIMED * number, "unit": unit}
+            document[quantity] = entry | {"si": {"value": 1e-9 * wrong(value), "uncertainty": 0.0, "unit": unit}}
+        if "horizontal" in name and "dynamic" not in name and float(name.split("_")[0].removeprefix("preload")) > 2.0:
+            document = {"status": "failed", "error": {"message": "it went through at displacement 9.9 LU"}}
+        count = 200
+        x = np.arange(count) - 0.5 * (count - 1)
+        profile = Profile(x, 0.0 * x, 0.0 * x, rng.uniform(-0.3, 0.3, count), 0.0 * x)
+        a = np.linspace(45.0, 12.0, ROWS)
+        force = wrong(1.47) * barquins_reduced_force(a / 28.53)
+        d = np.linspace(wrong(0.5), -0.5, ROWS)
+        curve = Curve(d, force, a, np.full(ROWS, 0.3), ["unloading"] * ROWS, np.full(ROWS, 1e-3))
+        self[name] = Run(Path(name), document, self._paper, curve, {"zero_load": profile, "deepest": profile}, {})
+        return self[name]
+
+
+@pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.name)
+def test_no_row_passes_where_every_run_is_wrong(study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in (eq3, fig4, fig6, fig7, fig8, table1):
+        monkeypatch.setattr(module, "save", lambda *_: None, raising=False)
+    paper = read_scene(SCENES / "paper.toml")
+    found = study.judge(paper, WrongRuns(paper), tmp_path)
+    assert found.checks
+    assert all(math.isfinite(check.value) for check in found.checks)  # what is none fails for another reason
+    assert [check.name for check in found.checks if check.verdict == "PASS"] == []
