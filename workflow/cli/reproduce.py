@@ -32,7 +32,7 @@ def reproduce(
     """
     kept = f"finished runs are kept in {out}, and the same command goes on"
     with command("the reproduction", kept=kept, blame=RUN_FAILED) as progress:
-        from contact1d.workflow.reproduce.page import count
+        from contact1d.workflow.reproduce.page import outcome
         from contact1d.workflow.reproduce.studies import NAMES, PAGE
         from contact1d.workflow.reproduce.studies import reproduce as do
         from contact1d.workflow.scene.problems import nearest
@@ -45,10 +45,10 @@ def reproduce(
         record = do(out, only or (), workers, progress)
     for study in record.studies:
         colour = "red" if any(check.verdict == "FAIL" for check in study.checks) else None
-        typer.secho(f"{study.name:<16} {count(study.checks)}", fg=colour)
+        typer.secho(f"{study.name:<16} {outcome(study.checks)}", fg=colour)
         for check in study.checks:
             if check.verdict == "FAIL":
                 typer.secho(f"  FAIL {check.name}: {check.value:.6g} {check.unit}, {check.reference:.6g}", fg="red")
-    typer.echo(f"\n{count(record.checks)}, in {record.wall_s:.0f} s; {out / PAGE}")
+    typer.echo(f"\n{outcome(record.checks)}, in {record.wall_s:.0f} s; {out / PAGE}")
     if record.failed:
         raise typer.Exit(FAILS)

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from contact1d.workflow.reproduce.check import WIDE, Check
 from contact1d.workflow.reproduce.page import (
     EVIDENCE,
-    count,
+    outcome,
     failures,
     judged,
     limits,
@@ -101,9 +101,11 @@ def _made(record: Record) -> str:
 
 
 def _outcome(record: Record) -> str:
-    head = f"**{count(record.checks)}.**"
+    head = f"**{outcome(record.checks)}.**"
     if failed := failures(record):
-        rows = [(f"`{f.study.name}`", f.check.name, ours(f.check), reference(f.check), tolerance(f.check)) for f in failed]
+        rows = [
+            (f"`{f.study.name}`", f.check.name, ours(f.check), reference(f.check), tolerance(f.check)) for f in failed
+        ]
         head += f" These fail:\n\n{table(('study', 'checked', 'ours', 'reference', 'tolerance'), rows).rstrip()}"
     return f"{head}\n\n{_wide(judged(record.checks))}"
 
@@ -140,7 +142,7 @@ def _study(study: StudyRecord) -> list[str]:
 
 
 def _result(study: StudyRecord) -> str:
-    words = count(study.checks)
+    words = outcome(study.checks)
     deviations = [
         abs(c.ratio - 1.0)
         for c in judged(study.checks)

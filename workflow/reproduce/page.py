@@ -146,7 +146,7 @@ def judged(checks: Iterable[Check]) -> tuple[Check, ...]:
     return tuple(check for check in checks if check.standing == "judged")
 
 
-def count(checks: Sequence[Check]) -> str:
+def outcome(checks: Sequence[Check]) -> str:
     """How the rows came out: "12 of 14 rows pass, 2 differ as expected; apart from these 3 repeat another"."""
     own = judged(checks)
     differ = sum(check.verdict == "DIFFERS" for check in own)
@@ -214,7 +214,7 @@ def html_page(record: Record, folder: Path) -> str:
     """
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters |= {
-        "anchor": anchor, "count": count, "duration": duration, "limits": limits, "ours": ours, "paragraphs": paragraphs,
+        "anchor": anchor, "outcome": outcome, "duration": duration, "limits": limits, "ours": ours, "paragraphs": paragraphs,
         "printed": printed, "ratio": ratio, "reference": reference, "symbols": symbols, "tolerance": tolerance,
         "verdict": verdict,
     }  # fmt: skip

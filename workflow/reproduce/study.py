@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -78,3 +78,8 @@ class Rows:
 def warnings(run: Run) -> tuple[str, ...]:
     """Names of a run's warnings; one that failed may have none."""
     return tuple(str(warning["name"]) for warning in run.document.get("warnings", ()))
+
+
+def repeated(check: Check) -> Check:
+    """The row, marked as one that says what another says."""
+    return replace(check, standing="repeats")
