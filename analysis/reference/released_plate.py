@@ -74,7 +74,7 @@ class ReleasedPlate:
             found = solve_ivp(
                 slope, (0.0, LONGEST), [start, 0.0], method="LSODA", events=apart, rtol=STEP_ERROR, atol=STEP_ERROR
             )
-            return found.status == 1
+            return bool(found.status == 1)
 
         held, broken = 1e-3 * limit, limit * (1.0 - 1e-9)
         if not lost(broken):

@@ -1,7 +1,7 @@
 """The adhesive reduction beside JKR as it is: what F_A and a₀ don't fix, and where on the map of Maugis the scenes lie.
 
-In the units F_A, a₀ and a₀²/R JKR has no parameter: a_cr/a₀ = 4^{-1/3}, d = ã² − (2/3)√ã, and at prescribed displacement
-the work of separation ∫ −F dd from F = 0 on. Maugis and Dugdale have one, by which a_cr/a₀ goes from 0 (DMT) to JKR's.
+In the units F_A, a₀ and a₀²/R JKR has no parameter: a_cr/a₀ = 4^{-1/3}, d = ã² − (2/3)√ã, and at prescribed
+displacement the work of separation ∫ −F dd from F = 0 on. Maugis and Dugdale have one, by which a_cr/a₀ goes from 0 (DMT) to JKR's.
 """
 
 from __future__ import annotations
@@ -10,11 +10,13 @@ import math
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from contact1d.analysis.reference.interaction import Floats
 from contact1d.analysis.reference.jkr import (
     CRITICAL_RADIUS_RATIO,
     FIXED_GRIPS_RADIUS_RATIO,
@@ -27,8 +29,8 @@ from contact1d.analysis.reference.maugis_dugdale import LAMBDA_OVER_TABOR, Maugi
 from contact1d.analysis.reference.tabor import JKR_PULL_OFF, JKR_TABOR, tabor_number
 from contact1d.workflow.identify import estimated, jkr_target, material_scene
 from contact1d.workflow.reproduce.check import Check
-from contact1d.workflow.reproduce.figures import Series, displacement_figure, save
 from contact1d.workflow.reproduce.fig8 import READ
+from contact1d.workflow.reproduce.figures import Series, displacement_figure, save
 from contact1d.workflow.reproduce.page import number, share
 from contact1d.workflow.reproduce.paper import CONTACT_MODULUS, SURFACE_ENERGY, TABLE_1, changed
 from contact1d.workflow.reproduce.runs import found
@@ -94,8 +96,11 @@ def scenes(paper: Scene) -> Scenes:
 
 def jkr_work() -> float:
     """∫ −F̃ dd̃ from ã = 1 to the fold at prescribed displacement, in F_A a₀²/R: 0.42."""
-    steepness = lambda a: 2.0 * a - 1.0 / (3.0 * math.sqrt(a))  # noqa: E731
-    return -float(quad(lambda a: float(jkr_reduced_force(a)) * steepness(a), FIXED_GRIPS_RADIUS_RATIO, 1.0)[0])
+
+    def work(a: float) -> float:
+        return -float(jkr_reduced_force(a)) * (2.0 * a - 1.0 / (3.0 * math.sqrt(a)))
+
+    return float(quad(work, FIXED_GRIPS_RADIUS_RATIO, 1.0)[0])
 
 
 def judge(paper: Scene, runs: Runs, folder: Path) -> Findings:
@@ -109,10 +114,13 @@ def judge(paper: Scene, runs: Runs, folder: Path) -> Findings:
         scene = runs[case.pull_off].scene
         said.append(
             f"For {case.words} a_cr/a_0 is {_short(ratio)} (JKR {number(ratio.reference, 3)}), d at F = 0 "
-            f"{_short(place)} a_0²/R ({number(place.reference, 3)}), d at F_A {_short(edge)} ({number(edge.reference, 3)}) "
-            f"and the work of separation {_short(work)} F_A a_0²/R ({number(work.reference, 3)}). On the map of Maugis its "
+            f"{_short(place)} a_0²/R ({number(place.reference, 3)}), d at F_A {_short(edge)} "
+            f"({number(edge.reference, 3)}) "
+            f"and the work of separation {_short(work)} F_A a_0²/R ({number(work.reference, 3)}). On the map of "
+            "Maugis its "
             f"a_cr/a_0 belongs to Tabor's μ = {number(tabor.value, 2)}, the range of its attraction to "
-            f"{number(_by_range(case, runs, scene), 2)}; JKR is for μ above {JKR_TABOR:g}. At that μ the pull-off force is "
+            f"{number(_by_range(case, runs, scene), 2)}; JKR is for μ above {JKR_TABOR:g}. At that μ the pull-off "
+            "force is "
             f"{number(load.value, 3)} πWR: γ read with {JKR_PULL_OFF:g}, by Eq. (9), is "
             f"{share(load.value / JKR_PULL_OFF - 1.0)} too large."
         )
@@ -141,25 +149,24 @@ def _checks(row: Rows, case: Case) -> list[Check]:
     d, f = d[apart], f[apart]
     ratio = a_cr.value / a_0.value
     spread = ratio * (a_cr.uncertainty / a_cr.value + a_0.uncertainty / a_0.value)
-    places = [(_zero(d[::n], f[::n]), float(d[::n][np.argmin(f[::n])]), _work(d[::n], f[::n])) for n in (1, 2)]
+    places = [(_zero(d[::n], f[::n]), _lowest(d[::n], f[::n]), _work(d[::n], f[::n])) for n in (1, 2)]
     (zero, lowest, work), rough = places
-    step = float(np.abs(np.diff(d)).max())
     tabor, load = _on_map(ratio)
     other = _on_map(ratio - spread)
     both, limit = [case.parting, case.pull_off], "model: one layer of springs, and a law whose range is not short"
-    more = {"comparison": "uncertainty", "differs": True}
+    more: dict[str, Any] = {"comparison": "uncertainty", "differs": True}
     words = f", {case.words}"
     return [
         row(f"a_cr/a_0{words}", ratio, spread, "1", CRITICAL_RADIUS_RATIO, "JKR, 4^{-1/3}", "closed form", 0.0, limit,
             on=[case.pull_off], **more),
         row(f"d at F = 0 over a_0²/R{words}", zero / unit, abs(zero - rough[0]) / unit, "1", 1.0 / 3.0, "JKR",
             "closed form", 0.0, limit, on=both, despite=READ, **more),
-        row(f"d at F_A over a_0²/R{words}", lowest / unit, step / unit, "1",
+        row(f"d at F_A over a_0²/R{words}", lowest / unit, abs(lowest - rough[1]) / unit, "1",
             CRITICAL_RADIUS_RATIO**2 - 2.0 / 3.0 * math.sqrt(CRITICAL_RADIUS_RATIO), "JKR", "closed form", 0.0, limit,
             on=both, despite=READ, **more),
         row(f"work of separation from F = 0 over F_A a_0²/R{words}", work / (force.value * unit),
-            abs(work - rough[2]) / (force.value * unit), "1", jkr_work(), "JKR at prescribed displacement", "closed form",
-            0.0, limit, on=both, despite=READ, **more),
+            abs(work - rough[2]) / (force.value * unit), "1", jkr_work(), "JKR at prescribed displacement",
+            "closed form", 0.0, limit, on=both, despite=READ, **more),
         row(f"Tabor's μ by a_cr/a_0 on the map of Maugis{words}", tabor, abs(tabor - other[0]), "1", JKR_TABOR,
             "JKR's zone begins there", "closed form", ZONE, limit, on=[case.pull_off], differs=True),
         row(f"F_A/πWR of Maugis and Dugdale at that μ{words}", load, abs(load - other[1]), "1", JKR_PULL_OFF,
@@ -186,13 +193,20 @@ def _by_range(case: Case, runs: Runs, scene: Scene) -> float:
     return tabor_number(radius, identified_contact_modulus(force, radius, a_0), energy, reach)
 
 
-def _zero(d: np.ndarray, force: np.ndarray) -> float:
+def _zero(d: Floats, force: Floats) -> float:
     """d of the first F = 0 on the way apart."""
     after = int(np.argmax(force < 0.0))
     return float(np.interp(0.0, force[[after, after - 1]], d[[after, after - 1]]))
 
 
-def _work(d: np.ndarray, force: np.ndarray) -> float:
+def _lowest(d: Floats, force: Floats) -> float:
+    """d of the largest tension, by a parabola through three rows."""
+    i = int(np.argmin(force))
+    left, middle, right = force[i - 1 : i + 2]
+    return float(d[i] + 0.5 * (d[i + 1] - d[i]) * (left - right) / (left - 2.0 * middle + right))
+
+
+def _work(d: Floats, force: Floats) -> float:
     """∫ −F dd from F = 0 on, by trapezoids."""
     zero = _zero(d, force)
     beyond = d < zero

@@ -106,6 +106,11 @@ class Check:
         return self.allowed / self.off if self.off else math.inf
 
     @property
+    def is_wide(self) -> bool:
+        """Whether it allows more than WIDE times what it reaches; not one that is met exactly."""
+        return WIDE < self.margin < math.inf
+
+    @property
     def unanswered(self) -> tuple[str, ...]:
         """Warnings of its runs that the row gives no answer to."""
         return tuple(name for name, answer in self.warnings.items() if not answer)

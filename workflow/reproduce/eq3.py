@@ -68,7 +68,8 @@ def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
     finding = (
         f"Force and energy of both reductions are Hertz's within {share(worst_deviation(over_hertz))} over two decades "
         f"of displacement and radius: {agreement(over_hertz)}. They converge with the orders "
-        f"{number(orders[0].value, 3)} and {number(orders[1].value, 3)} in the spacing: {agreement(orders)}. The sum over "
+        f"{number(orders[0].value, 3)} and {number(orders[1].value, 3)} in the spacing: {agreement(orders)}. The sum "
+        "over "
         f"the springs is {number(factors[1].value / factors[1].reference, 4)} times what Eq. (2) has as printed: with "
         "its 2√2/15 the stiffness of Eq. (3) would not follow; 8√2/15 is what it needs.\n\nThe reduction of the paper "
         f"has {number(widths[0].value, 4)} times the contact radius of the two spheres, that of the MDR "
@@ -194,7 +195,8 @@ def _drawn_cone(row: Rows) -> Check:
         "force of two equal cones as drawn over Sneddon's (geike_popov)", ours.value / expected,
         ours.uncertainty / expected, "1", 0.5 * math.pi,
         "closed form of the springs: the reduction as drawn is for parabolas only", "closed form",
-        (BASE["h"] * SLOPE / DEPTH) ** 2 / 3.0 + claimed(row.runs[name], "largest_force"), LATTICE, on=[name], wide=LEVEL,
+        (BASE["h"] * SLOPE / DEPTH) ** 2 / 3.0 + claimed(row.runs[name], "largest_force"), LATTICE, on=[name],
+        wide=LEVEL,
     )  # fmt: skip
 
 

@@ -74,7 +74,7 @@ def judge(paper: Scene, runs: Runs, folder: Path) -> Findings:
 
 
 def against_solver(row: Rows, scene: Scene, run: Run, solved: SolvedPullOff, name: str, words: str = "") -> list[Check]:
-    """F_A, a_0 and a_cr of a run beside the solver's, each within what the run claims, and that within its tolerance."""
+    """F_A, a_0 and a_cr of a run beside the solver's, within what the run claims, and that within its tolerance."""
     model = chain_model(scene)
     expected = (
         ("adhesion_force", "adhesion force F_A", "FU", solved.adhesion_force, ""),

@@ -56,8 +56,10 @@ def judge_neighbours(paper: Scene, runs: Runs, folder: Path) -> Findings:
         checks += rows if name != RUN else [repeated(check) for check in rows]
         forces.append(rows[0].value)
     finding = (
-        f"Springs between neighbours of {_stiffness(paper):g} FU/LU change F_A by {share(abs(forces[1] / forces[0] - 1.0))}, "
-        f"of {NEIGHBOURS[-1]:g} FU/LU by {share(abs(forces[-1] / forces[0] - 1.0))}; the independent solver has the same: "
+        f"Springs between neighbours of {_stiffness(paper):g} FU/LU change F_A by "
+        f"{share(abs(forces[1] / forces[0] - 1.0))}, "
+        f"of {NEIGHBOURS[-1]:g} FU/LU by {share(abs(forces[-1] / forces[0] - 1.0))}; the independent solver has the "
+        "same: "
         f"{agreement(checks)}."
     )
     return Findings(finding, checks, {})
@@ -75,7 +77,8 @@ def _stiffness(scene: Scene) -> float:
 FIG5 = Study(
     "fig5",
     "Fig. 5: the iteration in time",
-    "A compressive force is applied and the plate comes to rest; then a tensile force: where an equilibrium is reached it "
+    "A compressive force is applied and the plate comes to rest; then a tensile force: where an equilibrium is "
+    "reached it "
     "is smaller than the adhesion force. Iterating yields the adhesion force and the critical radius.",
     iteration_scenes,
     judge_iteration,

@@ -10,11 +10,11 @@ from collections.abc import Iterable, Sequence
 from contact1d.workflow.reproduce.check import WIDE, Check
 from contact1d.workflow.reproduce.page import (
     EVIDENCE,
-    outcome,
     failures,
     judged,
     limits,
     ours,
+    outcome,
     paragraphs,
     passed,
     reference,
@@ -112,7 +112,7 @@ def _outcome(record: Record) -> str:
 
 def _wide(checks: Sequence[Check]) -> str:
     """How many rows allow much more than they reach, and for which reasons."""
-    reasons = Counter(check.wide or "no reason given" for check in checks if WIDE < check.margin < math.inf)
+    reasons = Counter(check.wide or "no reason given" for check in checks if check.is_wide)
     exact = sum(math.isinf(check.margin) for check in checks)
     head = f"{sum(reasons.values())} of {len(checks)} rows allow more than {WIDE:g} times what they reach"
     listed = [f"- {number} because {reason}" for reason, number in reasons.most_common()]

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from jinja2 import Environment, StrictUndefined
 
-from contact1d.workflow.reproduce.check import WIDE, Check, Evidence
+from contact1d.workflow.reproduce.check import Check, Evidence
 from contact1d.workflow.reproduce.record import Record, StudyRecord
 from contact1d.workflow.units import rounded
 
@@ -126,7 +126,7 @@ def duration(seconds: float) -> str:
 
 def limits(check: Check) -> str:
     """What keeps the two apart, why the row allows more than it needs, and what it says to warnings of its runs."""
-    wide = (f"wider than needed: {check.wide}",) if check.wide and check.margin > WIDE else ()
+    wide = (f"wider than needed: {check.wide}",) if check.wide and check.is_wide else ()
     answers = (f"warning {name}: {answer or 'not answered'}" for name, answer in check.warnings.items())
     return "; ".join((check.limited_by, *wide, *answers))
 
@@ -171,7 +171,7 @@ def agreement(checks: Sequence[Check]) -> str:
 
 def worst_deviation(checks: Iterable[Check]) -> float:
     """Largest |ours/reference − 1|; infinite where a row has no number."""
-    return max((math.inf if math.isnan(d) else d for d in (abs(c.value / c.reference - 1.0) for c in checks)))
+    return max(math.inf if math.isnan(d) else d for d in (abs(c.value / c.reference - 1.0) for c in checks))
 
 
 def symbols(text: str) -> str:
@@ -214,8 +214,8 @@ def html_page(record: Record, folder: Path) -> str:
     """
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters |= {
-        "anchor": anchor, "outcome": outcome, "duration": duration, "limits": limits, "ours": ours, "paragraphs": paragraphs,
-        "printed": printed, "ratio": ratio, "reference": reference, "symbols": symbols, "tolerance": tolerance,
+        "anchor": anchor, "duration": duration, "limits": limits, "ours": ours, "outcome": outcome,
+        "paragraphs": paragraphs, "printed": printed, "ratio": ratio, "reference": reference, "symbols": symbols, "tolerance": tolerance,
         "verdict": verdict,
     }  # fmt: skip
     text = files("contact1d.workflow.reproduce").joinpath("page.html").read_text(encoding="utf-8")

@@ -17,7 +17,7 @@ from contact1d.analysis.reference.jkr import jkr_reduced_force
 from contact1d.workflow.identify import Target, estimated
 from contact1d.workflow.reproduce.fig8 import ASKED, DEEPEST, READ, STEPS, lengthened_run, scenes_8a
 from contact1d.workflow.reproduce.figures import pressure_radius_figure, save
-from contact1d.workflow.reproduce.page import number
+from contact1d.workflow.reproduce.page import share
 from contact1d.workflow.reproduce.paper import TABLE_1, changed, curve_scene
 from contact1d.workflow.reproduce.runs import branch, found
 from contact1d.workflow.reproduce.study import Findings, Rows, Runs, Scenes, Study
@@ -100,11 +100,11 @@ def judge_pressure(_: Scene, runs: Runs, folder: Path) -> Findings:
     outside = [k for k, value in zip(STIFFNESSES, others, strict=True) if abs(value / by_law - 1.0) > ASKED / reduced]
     finding = (
         f"At a = {PLACE:g} LU, {1e9 * PLACE * units.length:.0f} nm, the run carries a mean pressure of {ours:.0f} MPa "
-        f"(largest of the curve: {pressure.max():.0f} MPa): {_passes(checks[0].verdict)}. Eq. (8) with the same F_A and "
-        f"a_0 says {by_law:.0f} MPa.\n\nThe first number depends on the bulk stiffness, which the paper does not print: "
-        f"with the interaction found anew each time it is {said} FU/LU. Of these {_which(beyond)} be outside what "
-        f'"about {PRINTED:.0f}" leaves, and {_which(outside)} be farther from Eq. (8) than {number(100 * ASKED / reduced, 2)} %. '
-        "The stiffness of 1 FU/LU was chosen by the nearness of the curve to JKR's."
+        f"(largest of the curve: {pressure.max():.0f} MPa): {_passes(checks[0].verdict)}. Eq. (8) with the same F_A "
+        f"and a_0 says {by_law:.0f} MPa.\n\nThe first number depends on the bulk stiffness, which the paper does not "
+        f"print: with the interaction found anew each time it is {said} FU/LU. Of these {_which(beyond)} be outside "
+        f"what 'about {PRINTED:.0f}' leaves, and {_which(outside)} be farther from Eq. (8) than "
+        f"{share(ASKED / reduced)}. The stiffness of 1 FU/LU was chosen by the nearness of the curve to JKR's."
     )
     return Findings(finding, checks, {"mean_pressure.png": "Mean pressure over the contact radius, R = 1000 LU"})
 
