@@ -1,7 +1,8 @@
 """The adhesive reduction beside JKR as it is: what F_A and a₀ don't fix, and where on the map of Maugis the scenes lie.
 
 In the units F_A, a₀ and a₀²/R JKR has no parameter: a_cr/a₀ = 4^{-1/3}, d = ã² − (2/3)√ã, and at prescribed
-displacement the work of separation ∫ −F dd from F = 0 on. Maugis and Dugdale have one, by which a_cr/a₀ goes from 0 (DMT) to JKR's.
+displacement the work of separation ∫ −F dd from F = 0 on. Maugis and Dugdale have one, by which a_cr/a₀ goes from 0
+(DMT) to JKR's.
 """
 
 from __future__ import annotations

@@ -87,7 +87,8 @@ def exponents(row: Rows, radii: Sequence[float], name: Callable[[float], str], w
     limit = f"{'digits of Table 1; ' if printed else ''}interval of the fit, what the runs claim"
     checks = [
         row(f"exponent of {QUANTITIES[q]} over R {words} ({THEORY[q]})", fit.exponent, fit.spread, "1", 0.5, source,
-            kind, digits[q] + fit.spread, limit, on=on, comparison="absolute", paper=0.5, wide=DIGITS if printed else ALIKE)
+            kind, digits[q] + fit.spread, limit, on=on, comparison="absolute", paper=0.5,
+            wide=DIGITS if printed else ALIKE)
         for q, fit in fits.items()
     ]  # fmt: skip
     force, radius = checks[:2]

@@ -20,7 +20,6 @@ from contact1d.workflow.reproduce.page import (
     reference,
     share,
     tolerance,
-    verdict,
 )
 from contact1d.workflow.reproduce.record import Record, StudyRecord
 
@@ -134,7 +133,16 @@ def _study(study: StudyRecord) -> list[str]:
     head = f"### {prose(study.title)} (`{study.name}`)"
     said = [*paragraphs(f"The paper: {study.statement}"), *paragraphs(f"Found: {study.finding}")]
     rows = [
-        (c.name, c.source, c.evidence, ours(c), reference(c), tolerance(c), limits(c), _badge(verdict(c)))
+        (
+            c.name,
+            c.source,
+            c.evidence,
+            ours(c),
+            reference(c),
+            tolerance(c),
+            limits(c),
+            _badge(c.verdict) + (f", {c.standing}" if c.standing != "judged" else ""),
+        )
         for c in study.checks
     ]
     names = ("checked", "against", "evidence", "ours", "reference", "tolerance", "limited by", "verdict")

@@ -131,11 +131,6 @@ def limits(check: Check) -> str:
     return "; ".join((check.limited_by, *wide, *answers))
 
 
-def verdict(check: Check) -> str:
-    """PASS, FAIL or DIFFERS, and the standing of a row that is counted apart."""
-    return check.verdict if check.standing == "judged" else f"{check.verdict}, {check.standing}"
-
-
 def passed(checks: Iterable[Check]) -> int:
     """How many rows pass."""
     return sum(check.verdict == "PASS" for check in checks)
@@ -215,8 +210,8 @@ def html_page(record: Record, folder: Path) -> str:
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters |= {
         "anchor": anchor, "duration": duration, "limits": limits, "ours": ours, "outcome": outcome,
-        "paragraphs": paragraphs, "printed": printed, "ratio": ratio, "reference": reference, "symbols": symbols, "tolerance": tolerance,
-        "verdict": verdict,
+        "paragraphs": paragraphs, "printed": printed, "ratio": ratio, "reference": reference, "symbols": symbols,
+        "tolerance": tolerance,
     }  # fmt: skip
     text = files("contact1d.workflow.reproduce").joinpath("page.html").read_text(encoding="utf-8")
     figures = {name: _figure(folder / name) for study in record.studies for name in study.figures}
