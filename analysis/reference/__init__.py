@@ -4,5 +4,5 @@ Solver (energy minimisation, no molecular dynamics): `interaction` and `model` s
 `newton` how, `solver` gives equilibria, `pull_off` the adhesion force, `tension_radius` the contact radius,
 `rigid_plane` one chain on a plane. Closed forms of the model: `winkler`, `independent_pairs`, `line_adhesion`. Theory:
 `hertz`, `sneddon` (other shapes), `jkr`, `dmt`, `maugis_dugdale` (between the two), `tabor` (which of them is valid),
-`mdr` (any profile, with the adhesion rule of Heß).
+`mdr` (any profile, with the adhesion rule of Heß). The paper's setup with momentum: `released_plate`.
 """

@@ -157,7 +157,7 @@ def _result(study: StudyRecord) -> str:
         if c.comparison in ("relative", "uncertainty") and c.ratio is not None and not c.differs
     ]
     worst = max(filter(math.isfinite, deviations), default=None)
-    return words if worst is None else f"{words}, worst deviation {share(worst)}"
+    return words if worst is None else f"{words}; worst deviation {share(worst)}"
 
 
 def _verdict(checks: Sequence[Check]) -> str:
