@@ -146,6 +146,11 @@ def test_departures_from_the_square_root_are_named() -> None:
     assert "depart from 1/2 a_0 by 0.02" in fig7._departures([near, far])
 
 
+def test_scatter_is_told_where_there_is_some() -> None:
+    assert fig6._scatter([CHECK]) == "The scatter of the paper is not found here."
+    assert "There is scatter: F_A." in fig6._scatter([CHECK, replace(CHECK, value=2.0)])
+
+
 def test_chains_that_never_slip_are_not_said_to() -> None:
     assert fig6._ending([]) == "No preload made the chains slip past each other."
     assert "0.387 LU" in fig6._ending([replace(CHECK, value=0.387, reference=0.3815)])

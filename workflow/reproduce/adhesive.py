@@ -128,7 +128,7 @@ def judge(paper: Scene, runs: Runs, folder: Path) -> Findings:
     rows = [check for checks in groups.values() for check in checks]
     differ = sum(check.verdict == "DIFFERS" for check in rows)
     head = (
-        f"F_A and a_0 are JKR's because they are fitted, and F/F_A over a/a_0 is near it; of {len(rows)} other numbers "
+        f"F_A and a_0 are JKR's because they are fitted, and F/F_A over a/a_0 is near it (`fig8b`); of {len(rows)} other numbers "
         f"{differ} differ. What a run says of displacements, of work, or of a_cr of an adhesive body is the "
         "one-dimensional image's and not the body's."
     )

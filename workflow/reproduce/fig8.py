@@ -133,12 +133,12 @@ def judge_8a(paper: Scene, runs: Runs, folder: Path) -> Findings:
     law = {f"N = {n}": (f"curve_local_N{n}", local_counted(paper, n)) for n in LOCAL_COUNTS}
     closed = _closed_form_checks("fig8a", law, runs)
     save(reduced_figure([_series(name, runs[run]) for name, run in names.items()]), folder / "fig8a.png")
+    farthest = max(zip(checks, names, strict=True), key=lambda one: one[0].value)[1]
     a_0 = [found(runs[lengthened_run(n)], "zero_load_radius").value for n in LENGTHENED]
     finding = (
         f"A chain longer than the contact needs changes a_0 by {share(float(np.ptp(a_0)) / a_0[0])} at most. "
-        f"{_summary(checks)} The finest spacing is farthest: its interaction is found anew for it, and its range is "
-        "not "
-        f"that of the others.\n\nIn the local limit, beside the model's closed form, {agreement(closed)}."
+        f"{_summary(checks)} Farthest is {farthest}; for every spacing the interaction is found anew, with a range of "
+        f"its own.\n\nIn the local limit, beside the model's closed form, {agreement(closed)}."
     )
     caption = "Reduced force over reduced radius for different numbers of particles"
     return Findings(finding, checks + closed, {"fig8a.png": caption})
