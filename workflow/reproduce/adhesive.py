@@ -30,7 +30,7 @@ from contact1d.analysis.reference.maugis_dugdale import LAMBDA_OVER_TABOR, Maugi
 from contact1d.analysis.reference.tabor import JKR_PULL_OFF, JKR_TABOR, tabor_number
 from contact1d.workflow.identify import estimated, jkr_target, material_scene
 from contact1d.workflow.reproduce.check import Check
-from contact1d.workflow.reproduce.fig8 import READ
+from contact1d.workflow.reproduce.curves import READ
 from contact1d.workflow.reproduce.figures import Series, displacement_figure, save
 from contact1d.workflow.reproduce.page import number, share
 from contact1d.workflow.reproduce.paper import CONTACT_MODULUS, SURFACE_ENERGY, TABLE_1, changed
@@ -128,7 +128,8 @@ def judge(paper: Scene, runs: Runs, folder: Path) -> Findings:
     rows = [check for checks in groups.values() for check in checks]
     differ = sum(check.verdict == "DIFFERS" for check in rows)
     head = (
-        f"F_A and a_0 are JKR's because they are fitted, and F/F_A over a/a_0 is near it (`fig8b`); of {len(rows)} other numbers "
+        "F_A and a_0 are JKR's because they are fitted, and F/F_A over a/a_0 is near it, as in Fig. 8b; of "
+        f"{len(rows)} other numbers "
         f"{differ} differ. What a run says of displacements, of work, or of a_cr of an adhesive body is the "
         "one-dimensional image's and not the body's."
     )

@@ -42,7 +42,7 @@ from contact1d.workflow.reproduce.section2 import (
 from contact1d.workflow.reproduce.study import Findings, Rows, Runs, Study
 from contact1d.workflow.scene import Reduction, Scene
 
-LATTICE = "lattice: a sum over springs for an integral, with the edge anywhere between two particles; the run's claim"
+LATTICE = "lattice: the edge lies anywhere between two particles; the run's claim"
 BY_CHANCE = "the bound is that of the worst place of the edge between two particles, and here it lies well"
 LEVEL = "tip and edge lie alike between particles, so that their errors cancel"
 TABLE_STEP = 1.0
@@ -82,7 +82,7 @@ def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
         f"has {number(widths[0].value, 4)} times the contact radius of the two spheres, that of the MDR "
         f"{number(widths[1].value, 4)} times. The former holds for a parabola: a cone taken as it is drawn has "
         f"{number(drawn.value, 4)} times its force. The transform of the MDR has force, displacement and radius of "
-        f"{len(SHAPES)} other shapes: {agreement(shapes)}. All this is without adhesion; with it see `adhesive`."
+        f"{len(SHAPES)} other shapes: {agreement(shapes)}. All this is without adhesion; with it see the last study."
     )
     return Findings(
         finding,
@@ -99,7 +99,8 @@ def _sweep_checks(row: Rows, reduction: Reduction, name: str) -> list[Check]:
         found_here = [(ratio(case, row.runs[case.name], what), case.off(what)) for case in cases]
         (value, claim), bound = max(found_here, key=lambda one: abs(one[0][0] - 1.0) / (one[0][1] + one[1]))
         checks.append(
-            row(f"{what} over Hertz's, worst of {len(cases)} for its lattice: {WORDS[name]} ({reduction})", value, claim, "1", 1.0,
+            row(f"{what} over Hertz's, worst of {len(cases)} for its lattice: "
+                f"{WORDS[name]} ({reduction})", value, claim, "1", 1.0,
                 f"Hertz in SI, {source}", "closed form", bound + claim, LATTICE, on=[case.name for case in cases],
                 wide=BY_CHANCE, standing="repeats" if name == "R" else "judged")
         )  # fmt: skip

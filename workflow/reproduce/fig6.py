@@ -131,7 +131,8 @@ def judge(paper: Scene, runs: Runs, folder: Path) -> Findings:
     swings = ", ".join(f"{share(float(np.ptp(v) / v.mean()))} at {r:g}" for r, v in momentum.items())
     finding = (
         f"{_scatter(spreads)} At rest the largest deviations of F_A and a_cr from their means are "
-        f"{share(spreads[0].value)} and {share(spreads[1].value)}; beside the independent solver, which unloads from the "
+        f"{share(spreads[0].value)} and {share(spreads[1].value)}; beside the independent solver, which unloads from "
+        "the "
         f"smallest and the largest F_D anew, {agreement(solved)}. With horizontal freedom "
         f"they are {share(spreads[2].value)} and {share(spreads[3].value)}, as the aligned state stays stable. "
         f"{_ending(slipped)} "

@@ -144,7 +144,8 @@ def _departures(checks: Sequence[Check]) -> str:
     off = [f"{c.name.split()[2]} by {number(c.value - 0.5, 2)}" for c in checks if c.off > c.uncertainty]
     if not off:
         return "None of the first three departs from 1/2 by more than that."
-    return f"Beyond these intervals depart from 1/2 {', '.join(off)}: neighbour springs and particles that are not opposite."
+    why = "neighbour springs, and particles that are not opposite"
+    return f"Beyond these intervals depart from 1/2 {', '.join(off)}: {why}."
 
 
 def _said(check: Check) -> str:

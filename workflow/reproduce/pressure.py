@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.reference.jkr import jkr_reduced_force
 from contact1d.workflow.identify import Target, estimated
-from contact1d.workflow.reproduce.fig8 import ASKED, DEEPEST, READ, STEPS, lengthened_run, scenes_8a
+from contact1d.workflow.reproduce.curves import DEEPEST, READ, STEPS, lengthened_run, scenes_8a
+from contact1d.workflow.reproduce.fig8 import ASKED
 from contact1d.workflow.reproduce.figures import pressure_radius_figure, save
 from contact1d.workflow.reproduce.page import share
 from contact1d.workflow.reproduce.paper import TABLE_1, changed, curve_scene
