@@ -5,5 +5,6 @@ Solver (energy minimisation, no molecular dynamics): `interaction` and `model` s
 `tension_radius` the contact radius, `rigid_plane` one chain on a plane. Closed forms of the model: `winkler`,
 `independent_pairs`, `folded_pairs` and `pair_lattice` (pairs that snap), `boltzmann_pairs` (with noise),
 `line_adhesion`. Theory: `hertz`, `sneddon` (other shapes), `jkr`, `dmt`, `maugis_dugdale` (between the two), `tabor`
-(which of them is valid), `mdr` (any profile, with the adhesion rule of Heß).
+(which of them is valid), `mdr` (any profile, with the adhesion rule of Heß). The paper's setup with momentum:
+`released_plate`.
 """

@@ -50,13 +50,23 @@ BOUND = replace(
     source="bound that was asked for", evidence="set bound", comparison="at most", limited_by="range & lattice",
     paper=None,
 )  # fmt: skip
+LIMIT = replace(
+    FORCE, study="fig8a", name="a_cr/a_0", value=0.53, uncertainty=0.001, unit="1", reference=0.63, source="JKR",
+    evidence="closed form", tolerance=0.01, limited_by="model", paper=None, differs=True,
+)  # fmt: skip
+AGAIN = replace(LIMIT, name="F_A again", value=1.0, reference=1.0, differs=False, standing="repeats")
 NOTHING = replace(FORCE, name="zero-load radius", value=math.nan, uncertainty=math.nan, unit="LU", reference=28.53)
 
 
 def record() -> Record:
     table1 = StudyRecord("table1", "Table 1", "The paper says 1 < 2.", "Found F_A.", (FORCE, NOTHING), {}, 3, 90.0)
     fig8a = StudyRecord(
-        "fig8a", "F(a) is JKR | any N", "Says.", "One.\n\nTwo.", (BOUND,), {"fig8a.png": 'F "over" a', "no.png": "Lost"}
+        "fig8a",
+        "F(a) is JKR | any N",
+        "Says.",
+        "One.\n\nTwo.",
+        (BOUND, LIMIT, AGAIN),
+        {"fig8a.png": 'F "over" a', "no.png": "Lost"},
     )
     return Record((table1, fig8a), {"contact1d": "0.1.0"}, 61.0)
 
@@ -130,7 +140,8 @@ class Walk(HTMLParser):
     ],
 )
 def test_each_comparison_has_its_own_verdict(comparison: Comparison, value: float, verdict: Verdict) -> None:
-    check = replace(FORCE, value=value, uncertainty=0.5, reference=2.0, tolerance=0.125, comparison=comparison)
+    allowed = 0.0 if comparison == "uncertainty" else 0.125
+    check = replace(FORCE, value=value, uncertainty=0.5, reference=2.0, tolerance=allowed, comparison=comparison)
     assert check.verdict == verdict
 
 
@@ -142,14 +153,16 @@ def test_a_record_comes_back_from_its_file_as_it_was(tmp_path: Path) -> None:
     assert again.studies[1] == record().studies[1]
     assert again.checks[0] == FORCE
     assert math.isnan(again.checks[1].value)
-    assert [check.verdict for check in again.checks] == ["PASS", "FAIL", "FAIL"]
+    assert [check.verdict for check in again.checks] == ["PASS", "FAIL", "FAIL", "DIFFERS", "PASS"]
 
 
 def test_a_number_that_is_none_is_null_in_the_file_and_fails() -> None:
     document = json.loads(record().to_json())
     assert document["rows"][1]["ours"] == {"value": None, "uncertainty": None, "unit": "LU"}
     assert document["rows"][1]["ratio"] is None
-    assert (document["passed"], document["failed"]) == (1, 2)
+    assert document["verdicts"] == {
+        "judged": {"PASS": 1, "FAIL": 2, "DIFFERS": 1}, "repeats": {"PASS": 1}, "by construction": {}
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -182,7 +195,8 @@ def test_numbers_are_written_for_people() -> None:
         (replace(FORCE, tolerance=4e-6), "within 4 × 10⁻⁶"),
         (replace(FORCE, tolerance=0.02, comparison="absolute"), "within 0.02 FU"),
         (BOUND, "at most 0.08"),
-        (replace(FORCE, comparison="uncertainty"), "within the uncertainty"),
+        (replace(FORCE, comparison="uncertainty", tolerance=0.0), "within the uncertainty"),
+        (replace(FORCE, comparison="uncertainty"), "within the uncertainty, itself at most 1.5 %"),
     ],
 )
 def test_a_tolerance_is_said_in_words(check: Check, words: str) -> None:
@@ -234,13 +248,16 @@ def test_the_page_has_every_row_with_its_verdict(tmp_path: Path) -> None:
         ["✗ FAIL", NOTHING.name, "1.47 LU", "no number", "28.53 LU Table 1 of the paper", "–",
          "within 1.5 %", "print: three digits"],
         ["✗ FAIL", BOUND.name, "–", "0.1", "0.08 bound that was asked for", "1.25", "at most 0.08", "range & lattice"],
+        ["≠ DIFFERS", "acr/a0", "–", "0.5300 ± 0.0010", "0.63 JKR", "0.84", "within 1 %", "model"],
+        ["✓ PASS repeats", "FA again", "–", "1.0000 ± 0.0010", "1 JKR", "1", "within 1 %", "model"],
     ]  # fmt: skip
 
 
 def test_the_page_lists_and_links_the_rows_that_fail_and_escapes_text(tmp_path: Path) -> None:
     text = html_page(record(), tmp_path)
-    assert "1 of 3 rows pass" in text
+    assert "1 of 3 rows pass, 1 differs as expected; counted apart: 1 repeat another" in text
     assert {"table1-2", "fig8a-1"} <= set(Walk(text).targets)
+    assert "fig8a-2" not in Walk(text).targets
     assert "table1-1" not in Walk(text).targets
     assert "distance |ours − JKR| &lt;all N&gt;" in text
     assert "<all N>" not in text
@@ -282,7 +299,10 @@ def test_a_cell_stays_a_cell() -> None:
 
 def test_validation_shows_failing_rows_evidence_and_what_is_not_validated() -> None:
     text = validation_markdown(record())
-    assert "**1 of 3 rows pass.** These fail:" in text
+    assert "**1 of 3 rows pass, 1 differs as expected; counted apart: 1 repeat another.** These fail:" in text
+    assert "| DIFFERS |" in text
+    assert "| PASS, repeats |" in text
+    assert "0 of 4 rows allow more than 20 times what they reach." in text
     assert r"distance \|ours − JKR\| &lt;all N>" in text
     assert text.count("**FAIL**") == 2
     assert [len(re.findall(rf"^\| {name} \|", text, re.MULTILINE)) for name in ("set bound", "printed value")] == [1, 1]
@@ -295,8 +315,9 @@ def test_validation_shows_failing_rows_evidence_and_what_is_not_validated() -> N
 def test_the_readme_has_one_row_for_each_study() -> None:
     lines = readme_table(record()).splitlines()
     assert lines[2:] == [
-        "| `table1` | Table 1 | 1 of 2 rows pass, worst deviation 0.91 % | **FAIL** |",
-        r"| `fig8a` | F(a) is JKR \| any N | 0 of 1 rows pass | **FAIL** |",
+        "| `table1` | Table 1 | 1 of 2 rows pass; worst deviation 0.91 % | **FAIL** |",
+        r"| `fig8a` | F(a) is JKR \| any N | 0 of 1 rows pass, 1 differs as expected; counted apart: 1 repeat "
+        "another | **FAIL** |",
     ]
 
 

@@ -32,6 +32,7 @@ def reproduce(
     """
     kept = f"finished runs are kept in {out}, and the same command goes on"
     with command("the reproduction", kept=kept, blame=RUN_FAILED) as progress:
+        from contact1d.workflow.reproduce.page import outcome
         from contact1d.workflow.reproduce.studies import NAMES, PAGE
         from contact1d.workflow.reproduce.studies import reproduce as do
         from contact1d.workflow.scene.problems import nearest
@@ -43,12 +44,11 @@ def reproduce(
                 stop(f"--only {name}: no such study; {hint}there are {', '.join(NAMES)}", CALL_IS_WRONG)
         record = do(out, only or (), workers, progress)
     for study in record.studies:
-        passed = sum(check.verdict == "PASS" for check in study.checks)
-        colour = None if passed == len(study.checks) else "red"
-        typer.secho(f"{study.name:<16} {passed:>3} of {len(study.checks):>3} pass   {study.title}", fg=colour)
+        colour = "red" if any(check.verdict == "FAIL" for check in study.checks) else None
+        typer.secho(f"{study.name:<16} {outcome(study.checks)}", fg=colour)
         for check in study.checks:
             if check.verdict == "FAIL":
                 typer.secho(f"  FAIL {check.name}: {check.value:.6g} {check.unit}, {check.reference:.6g}", fg="red")
-    typer.echo(f"\n{record.passed} of {len(record.checks)} rows pass, in {record.wall_s:.0f} s; {out / PAGE}")
-    if record.passed < len(record.checks):
+    typer.echo(f"\n{outcome(record.checks)}, in {record.wall_s:.0f} s; {out / PAGE}")
+    if record.failed:
         raise typer.Exit(FAILS)

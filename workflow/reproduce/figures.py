@@ -144,6 +144,21 @@ def closed_form_figure(series: Sequence[Series], laws: Sequence[Series]) -> Figu
     return figure
 
 
+def displacement_figure(series: Sequence[Series], law: Series) -> Figure:
+    """F/F_A over d R/a₀² of runs (points) and of JKR (line)."""
+    figure = new_figure((6.4, 4.4))
+    axis = figure.subplots()
+    axis.plot(law.x, law.y, "-", color=THEORY, linewidth=1.8, label=law.name)
+    _points(axis, series)
+    axis.axhline(0.0, color="black", linewidth=0.8)
+    axis.set_xlim(-3.0, 0.7)
+    axis.set_ylim(-1.15, 1.6)
+    axis.set_xlabel(r"displacement $d\,R/a_0^2$")
+    axis.set_ylabel("force $F/F_A$")
+    axis.legend(frameon=False, fontsize=9, loc="upper left")
+    return figure
+
+
 def pressure_compared_figure(x: Array, ours: Array, places: Array, solver: Array, radius: float) -> Figure:
     """Pressure of the zero-load state, the solver's as a line, the contact radius marked (Fig. 4)."""
     figure = new_figure((6.4, 4.0))

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Iterable, Sequence
 
-from contact1d.workflow.reproduce.check import Check
+from contact1d.workflow.reproduce.check import WIDE, Check
 from contact1d.workflow.reproduce.page import (
     EVIDENCE,
     failures,
+    judged,
+    limits,
     ours,
+    outcome,
     paragraphs,
     passed,
     reference,
@@ -24,7 +28,11 @@ HEAD = """# Validation
 Written by `contact1d reproduce`, which makes every quantitative statement of Geike and Popov, *Reduction of
 three-dimensional contact problems to one-dimensional ones*, Tribology International 40 (2007), anew and judges each
 by a rule that stands in its row. The same numbers with figures are in `reproduce.html`, and for programs in
-`reproduce.json`. Nobody edits this file by hand; a row that fails stays in it."""
+`reproduce.json`. Nobody edits this file by hand; a row that fails stays in it.
+
+PASS: the two agree. FAIL: they don't, or a run that the row rests on has a warning that the row does not answer.
+DIFFERS: they are known to differ, a limit of the model; if they came to agree, that row would fail. A row that repeats
+another, or that is true by construction, says so and is counted apart."""
 
 READING = """Ours is value ± uncertainty, the uncertainty being the run's own estimate. LU and FU are the model's
 units of length and force. A tolerance is relative to the reference unless it has a unit."""
@@ -92,28 +100,49 @@ def _made(record: Record) -> str:
 
 
 def _outcome(record: Record) -> str:
-    failed = failures(record)
-    head = f"**{record.passed} of {len(record.checks)} rows pass.**"
-    if not failed:
-        return head
-    rows = [(f"`{f.study.name}`", f.check.name, ours(f.check), reference(f.check), tolerance(f.check)) for f in failed]
-    return f"{head} These fail:\n\n{table(('study', 'checked', 'ours', 'reference', 'tolerance'), rows).rstrip()}"
+    head = f"**{outcome(record.checks)}.**"
+    if failed := failures(record):
+        rows = [
+            (f"`{f.study.name}`", f.check.name, ours(f.check), reference(f.check), tolerance(f.check)) for f in failed
+        ]
+        head += f" These fail:\n\n{table(('study', 'checked', 'ours', 'reference', 'tolerance'), rows).rstrip()}"
+    return f"{head}\n\n{_wide(judged(record.checks))}"
+
+
+def _wide(checks: Sequence[Check]) -> str:
+    """How many rows allow much more than they reach, and for which reasons."""
+    reasons = Counter(check.wide or "no reason given" for check in checks if check.is_wide)
+    exact = sum(math.isinf(check.margin) for check in checks)
+    head = f"{sum(reasons.values())} of {len(checks)} rows allow more than {WIDE:g} times what they reach"
+    listed = [f"- {number} because {reason}" for reason, number in reasons.most_common()]
+    head += f" ({exact} more are met exactly)" if exact else ""
+    return "\n".join([f"{head}{':' if listed else '.'}", *([""] if listed else []), *listed])
 
 
 def _evidence(checks: Sequence[Check]) -> str:
     rows = []
     for name, meaning in EVIDENCE.items():
-        held = [check for check in checks if check.evidence == name]
+        held = [check for check in judged(checks) if check.evidence == name]
         if held:
-            rows.append((name, meaning, str(len(held)), str(passed(held))))
-    return "## Evidence\n\n" + table(("held against", "which is", "rows", "pass"), rows).rstrip()
+            differ = sum(check.verdict == "DIFFERS" for check in held)
+            rows.append((name, meaning, str(len(held)), str(passed(held)), str(differ)))
+    return "## Evidence\n\n" + table(("held against", "which is", "rows", "pass", "differ"), rows).rstrip()
 
 
 def _study(study: StudyRecord) -> list[str]:
     head = f"### {prose(study.title)} (`{study.name}`)"
     said = [*paragraphs(f"The paper: {study.statement}"), *paragraphs(f"Found: {study.finding}")]
     rows = [
-        (c.name, c.source, c.evidence, ours(c), reference(c), tolerance(c), c.limited_by, _badge(c.verdict))
+        (
+            c.name,
+            c.source,
+            c.evidence,
+            ours(c),
+            reference(c),
+            tolerance(c),
+            limits(c),
+            _badge(c.verdict) + (f", {c.standing}" if c.standing != "judged" else ""),
+        )
         for c in study.checks
     ]
     names = ("checked", "against", "evidence", "ours", "reference", "tolerance", "limited by", "verdict")
@@ -121,18 +150,22 @@ def _study(study: StudyRecord) -> list[str]:
 
 
 def _result(study: StudyRecord) -> str:
-    checks = study.checks
-    words = f"{passed(checks)} of {len(checks)} rows pass"
-    deviations = [abs(c.ratio - 1.0) for c in checks if c.comparison == "relative" and c.ratio is not None]
+    words = outcome(study.checks)
+    deviations = [
+        abs(c.ratio - 1.0)
+        for c in judged(study.checks)
+        if c.comparison in ("relative", "uncertainty") and c.ratio is not None and not c.differs
+    ]
     worst = max(filter(math.isfinite, deviations), default=None)
-    return words if worst is None else f"{words}, worst deviation {share(worst)}"
+    return words if worst is None else f"{words}; worst deviation {share(worst)}"
 
 
 def _verdict(checks: Sequence[Check]) -> str:
     if not checks:
         return "–"
-    return _badge("PASS" if passed(checks) == len(checks) else "FAIL")
+    found = {check.verdict for check in judged(checks)}
+    return _badge(next(word for word in ("FAIL", "PASS", "DIFFERS") if word in found or word == "DIFFERS"))
 
 
-def _badge(verdict: str) -> str:
-    return "**FAIL**" if verdict == "FAIL" else verdict
+def _badge(word: str) -> str:
+    return f"**{word}**" if word.startswith("FAIL") else word

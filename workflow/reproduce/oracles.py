@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from contact1d.analysis.reference.independent_pairs import IndependentPairs
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.jkr import jkr_reduced_force
 from contact1d.analysis.reference.line_adhesion import barquins_reduced_force
 from contact1d.analysis.reference.model import ChainModel
+from contact1d.analysis.reference.solver import ChainSolver, State
 from contact1d.workflow.scene import Parabola, Scene
 
 Array = NDArray[np.float64]
 ROW_REACH, ROW_POINTS, ROW_HALF = 5.0, 4001, 20
 """Distances [longest ranges] and particles to each side that the largest tension of a row is looked for with."""
+NEAR = 0.02
+"""Around the expected displacement [LU] an equilibrium under a force is looked for."""
 HIGHEST = 1.5
 """F/F_A up to which curves are compared with theory."""
 
@@ -48,6 +52,17 @@ def chain_model(scene: Scene) -> ChainModel:
         neighbour_stiffness=0.0 if scene.neighbours is None else scene.neighbours.stiffness,
         horizontal=scene.horizontal is not None,
     )
+
+
+def equilibrium_under(model: ChainModel, force: float, near: float) -> State:
+    """The solver's state under a force [FU] by bisection of the displacement around `near` [LU]."""
+    solver = ChainSolver(model)
+    start = solver.equilibrium(near)
+
+    def excess(d: float) -> float:
+        return solver.equilibrium(d, start).force - force
+
+    return solver.equilibrium(float(brentq(excess, near - NEAR, near + NEAR, xtol=1e-12)), start)
 
 
 def independent_pairs(scene: Scene) -> IndependentPairs:

@@ -24,8 +24,9 @@ from contact1d.workflow.units import rounded
 EVIDENCE: dict[Evidence, str] = {
     "closed form": "an equation that is evaluated without any part of this program",
     "independent solver": "the energy minimiser in analysis/reference, which shares no code with what it judges",
-    "printed value": "a number that the paper prints or draws, good to its digits: it shows that the model is the "
-    "paper's, not that the model is right",
+    "printed value": "a number that the paper prints, good to its digits: it shows that the model is the paper's, not "
+    "that the model is right",
+    "paper's words": "something that the paper says without a number for it, put into one",
     "set bound": "a limit that was set beforehand where nobody gives a number, such as how closely curves fall "
     "together",
 }
@@ -104,7 +105,8 @@ def tolerance(check: Check) -> str:
         case "at most":
             return f"at most {reference(check)}"
         case "uncertainty":
-            return "within the uncertainty"
+            bound = f", itself at most {share(check.tolerance)}" if check.tolerance else ""
+            return f"within the uncertainty{bound}"
 
 
 def share(part: float, digits: int = 2) -> str:
@@ -122,9 +124,49 @@ def duration(seconds: float) -> str:
     return f"{minutes} min" if minutes < 60 else f"{minutes // 60} h {minutes % 60} min"
 
 
+def limits(check: Check) -> str:
+    """What keeps the two apart, why the row allows more than it needs, and what it says to warnings of its runs."""
+    wide = (f"wider than needed: {check.wide}",) if check.wide and check.is_wide else ()
+    answers = (f"warning {name}: {answer or 'not answered'}" for name, answer in check.warnings.items())
+    return "; ".join((check.limited_by, *wide, *answers))
+
+
 def passed(checks: Iterable[Check]) -> int:
     """How many rows pass."""
     return sum(check.verdict == "PASS" for check in checks)
+
+
+def judged(checks: Iterable[Check]) -> tuple[Check, ...]:
+    """The rows that count: not those that repeat another or are true by construction."""
+    return tuple(check for check in checks if check.standing == "judged")
+
+
+def outcome(checks: Sequence[Check]) -> str:
+    """How the rows came out: "12 of 14 rows pass, 2 differ as expected; apart from these 3 repeat another"."""
+    own = judged(checks)
+    differ = sum(check.verdict == "DIFFERS" for check in own)
+    asked = len(own) - sum(check.differs for check in own)
+    parts = [f"{passed(own)} of {asked} rows pass"] if asked or not differ else []
+    failing = sum(check.differs for check in own) - differ
+    parts += [f"{differ} differ{'s' * (differ == 1)} as expected"] * bool(differ)
+    parts += [f"{failing} expected to differ do not"] * bool(failing)
+    apart = [
+        f"{len(rows)} {words}"
+        for standing, words in (("repeats", "repeat another"), ("by construction", "true by construction"))
+        if (rows := [check for check in checks if check.standing == standing])
+    ]
+    return ", ".join(parts) + (f"; counted apart: {', '.join(apart)}" if apart else "")
+
+
+def agreement(checks: Sequence[Check]) -> str:
+    """What rows say together, for a sentence: "all 8 rows pass", "2 of 8 rows fail"."""
+    failed = sum(check.verdict == "FAIL" for check in checks)
+    return f"{failed} of {len(checks)} rows fail" if failed else f"all {len(checks)} rows pass"
+
+
+def worst_deviation(checks: Iterable[Check]) -> float:
+    """Largest |ours/reference − 1|; infinite where a row has no number."""
+    return max(math.inf if math.isnan(d) else d for d in (abs(c.value / c.reference - 1.0) for c in checks))
 
 
 def symbols(text: str) -> str:
@@ -167,8 +209,9 @@ def html_page(record: Record, folder: Path) -> str:
     """
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters |= {
-        "anchor": anchor, "duration": duration, "ours": ours, "paragraphs": paragraphs, "passed": passed,
-        "printed": printed, "ratio": ratio, "reference": reference, "symbols": symbols, "tolerance": tolerance,
+        "anchor": anchor, "duration": duration, "limits": limits, "ours": ours, "outcome": outcome,
+        "paragraphs": paragraphs, "printed": printed, "ratio": ratio, "reference": reference, "symbols": symbols,
+        "tolerance": tolerance,
     }  # fmt: skip
     text = files("contact1d.workflow.reproduce").joinpath("page.html").read_text(encoding="utf-8")
     figures = {name: _figure(folder / name) for study in record.studies for name in study.figures}

@@ -40,6 +40,8 @@ TABLE_1 = (
     Row(1600.0, 36.14, 1.87, 7.7e-9, 61.8e-6),
     Row(2000.0, 40.36, 2.09, 8.6e-9, 77.6e-6),
 )
+HALF_DIGIT = {"a_0": 0.005, "F_A": 0.005, "one LU": 0.05, "one FU": 0.05}
+"""Rounding of the printed numbers, in their units."""
 LOCAL_SPACING = 4.0
 """Spacing of the scenes in the local limit, wider than the cutoff of some 3.8 LU: only opposite particles meet."""
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
-from contact1d.workflow.reproduce.check import Check
+from contact1d.workflow.reproduce.check import Check, Standing
 
 RECORD = "reproduce.json"
 
@@ -57,15 +58,17 @@ class Record:
         return tuple(check for study in self.studies for check in study.checks)
 
     @property
-    def passed(self) -> int:
-        """How many rows pass."""
-        return sum(check.verdict == "PASS" for check in self.checks)
+    def failed(self) -> tuple[Check, ...]:
+        """The rows that fail, whatever their standing."""
+        return tuple(check for check in self.checks if check.verdict == "FAIL")
 
     def to_json(self) -> str:
         """Return the text of reproduce.json."""
         document = {
-            "passed": self.passed,
-            "failed": len(self.checks) - self.passed,
+            "verdicts": {
+                standing: dict(Counter(check.verdict for check in self.checks if check.standing == standing))
+                for standing in get_args(Standing)
+            },
             "rows": [check.as_row() for check in self.checks],
             "studies": [
                 {

@@ -10,7 +10,7 @@ from pathlib import Path
 from contact1d.files import write_whole
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import FolderError
-from contact1d.workflow.reproduce import eq3, fig4, fig6, fig7, fig8, table1
+from contact1d.workflow.reproduce import adhesive, eq3, fig4, fig5, fig6, fig7, fig8, pressure, table1
 from contact1d.workflow.reproduce.markdown import validation_markdown
 from contact1d.workflow.reproduce.page import html_page
 from contact1d.workflow.reproduce.paper import calibrated
@@ -25,6 +25,8 @@ from contact1d.workflow.scene import Scene
 STUDIES: tuple[Study, ...] = (
     eq3.STUDY_EQ3,
     fig4.STUDY,
+    fig5.NEIGHBOURS_STUDY,
+    fig5.FIG5,
     fig6.STUDY,
     fig7.FIG7,
     fig7.EXPONENTS,
@@ -32,7 +34,8 @@ STUDIES: tuple[Study, ...] = (
     fig8.FIG8B,
     fig8.JKR_OR_BARQUINS,
     table1.TABLE1,
-    table1.MEAN_PRESSURE_STUDY,
+    pressure.MEAN_PRESSURE_STUDY,
+    adhesive.STUDY,
 )
 NAMES = tuple(study.name for study in STUDIES)
 PAGE, VALIDATION = "reproduce.html", "VALIDATION.md"
@@ -96,7 +99,7 @@ def _merged(folder: Path, records: tuple[StudyRecord, ...]) -> tuple[StudyRecord
 
 def _longest_first(studies: Sequence[Study]) -> list[Study]:
     """Fig. 8a and Fig. 6 have the longest runs: begun first, they don't leave a processor idle at the end."""
-    order = {"fig8a": 0, "jkr_or_barquins": 1, "fig6": 2, "fig8b": 3}
+    order = {"fig8a": 0, "fig5": 1, "fig6": 2, "fig8b": 3}
     return sorted(studies, key=lambda study: order.get(study.name, len(order)))
 
 

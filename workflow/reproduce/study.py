@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
-from contact1d.workflow.reproduce.check import Check
+from contact1d.workflow.reproduce.check import Check, Evidence
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene
 
@@ -43,6 +43,43 @@ class Study:
     judge: Callable[[Scene, Runs, Path], Findings]
 
 
-def checker(study: str) -> partial[Check]:
-    """A `Check` of that study, for the rest of its fields."""
-    return partial(Check, study)
+@dataclass(frozen=True)
+class Rows:
+    """Makes the rows of a study, each with the runs that it rests on and their warnings."""
+
+    study: str
+    runs: Runs
+
+    def __call__(
+        self,
+        name: str,
+        value: float,
+        uncertainty: float,
+        unit: str,
+        reference: float,
+        source: str,
+        evidence: Evidence,
+        tolerance: float,
+        limited_by: str,
+        *,
+        on: Sequence[str],
+        despite: Mapping[str, str] | None = None,
+        **more: Any,
+    ) -> Check:
+        """A `Check`; `on`: names of its runs, `despite`: why it stands beside a warning of theirs, by name."""
+        found = {warning for run in on for warning in warnings(self.runs[run])}
+        answers = {warning: (despite or {}).get(warning, "") for warning in sorted(found)}
+        return Check(
+            self.study, name, value, uncertainty, unit, reference, source, evidence, tolerance, limited_by,
+            runs=tuple(on), warnings=answers, **more,
+        )  # fmt: skip
+
+
+def warnings(run: Run) -> tuple[str, ...]:
+    """Names of a run's warnings; one that failed may have none."""
+    return tuple(str(warning["name"]) for warning in run.document.get("warnings", ()))
+
+
+def repeated(check: Check) -> Check:
+    """The row, marked as one that says what another says."""
+    return replace(check, standing="repeats")
