@@ -26,7 +26,7 @@ BIN_MARGIN = 1e-3
 
 def write_system(deck: Deck, folder: Path) -> None:
     """Write what a deck reads: system.data, and the table if it has one."""
-    scene, settings = deck.scene, deck.settings
+    scene, settings = deck.written
     both = bodies(scene, settings)
     anchors = len(both[-1].anchors)
     mass = settings.plate_mass / anchors if scene.plate is not None else scene.bodies.mass
