@@ -11,9 +11,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from contact1d.workflow.deck.box import bin_size
 from contact1d.workflow.deck.effects import Contribution, Stage, contributions
 from contact1d.workflow.deck.effects.base import number
 from contact1d.workflow.deck.fragments import DeckError, Fragment, fragment
+from contact1d.workflow.deck.lattice import bodies
 from contact1d.workflow.deck.steps import STEPS, Phase, Row
 from contact1d.workflow.deck.units import DeckUnits, units_for
 from contact1d.workflow.scene import Scene
@@ -25,6 +27,8 @@ MINIMISER_ITERATIONS = 20_000
 RELAXATION = 0.1
 """First step of a relaxation over the time step of a run in time: ten times as much is 0.5/ω_max."""
 NUMBERS_PER_LINE = 6
+CHOSEN_BINS = ("far_bin", "wide_bin")
+"""Variables with which effects choose the edge of a bin."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +57,8 @@ class Deck:
             brought.append(self._plane())
         if self.units.are_own:
             brought.append(self._units())
+        if scene.interaction is not None:
+            brought += self._bins(brought)
         return tuple(sorted(brought, key=lambda part: part.stage))
 
     @cached_property
@@ -205,6 +211,12 @@ class Deck:
     def _guide(self) -> Contribution:
         variables = {} if self.scene.horizontal is not None else {"guide_x": "0.0"}
         return Contribution("guide", Stage.GUIDE, ("guide",), variables)
+
+    def _bins(self, brought: Sequence[Contribution]) -> list[Contribution]:
+        scene, settings = self.written
+        chosen = [float(part.variables[name]) for part in brought for name in CHOSEN_BINS if name in part.variables]
+        edge = bin_size(bodies(scene, settings), scene, settings, max(chosen, default=0.0))
+        return [Contribution("bins", Stage.MOTION, ("bins",), {"bin_edge": number(edge)})] if edge else []
 
     def _units(self) -> Contribution:
         variables = {"unit_length": number(self.units.length), "unit_force": number(self.units.force)}
