@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -21,6 +21,8 @@ from contact1d.workflow.scene import Scene
 Array = NDArray[np.float64]
 ATOM_UNITS = {"x": "LU", "f": "FU", "v_opposite_x": "FU", "v_opposite_z": "FU"}
 """What is measured of every atom, and its unit."""
+MOST_REPEATS = 200
+"""Repeats of a row after which it counts as never coming to rest: near a snap the motion is slower without end."""
 
 
 @dataclass(frozen=True)
@@ -129,17 +131,23 @@ class Contact:
         self.session.execute(self._unfinished, phase=self._phases[-1].name)
         self._unfinished = ""
 
-    def replay(self, phases: Sequence[Phase]) -> list[State]:
-        """Run a whole schedule."""
+    def replay(self, phases: Sequence[Phase], at_rest: Callable[[State], bool] | None = None) -> list[State]:
+        """Run a whole schedule; one state for each row. A row that does not end `at_rest` is repeated until it does."""
         states = []
         for phase in phases:
             steps = sum(getattr(row, "steps", 0) for row in phase.rows)
             self.begin(phase.name, phase.begin, steps or None)
-            states += [self.row(row) for row in phase.rows]
+            states += [self._rested(row, at_rest) for row in phase.rows]
             if phase.state:
                 self.write_state()
         self.finish()
         return states
+
+    def _rested(self, row: Row, at_rest: Callable[[State], bool] | None) -> State:
+        state, repeats = self.row(row), 0
+        while at_rest is not None and not at_rest(state) and repeats < MOST_REPEATS:
+            state, repeats = self.row(row), repeats + 1
+        return state
 
     def _values(self) -> dict[str, str]:
         """What is measured beside the atoms, and its unit."""
