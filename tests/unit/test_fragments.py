@@ -86,9 +86,10 @@ def test_steps_need_nothing_that_no_part_defines() -> None:
     """What a step needs is a column of its rows, a loop variable, or of the method or plate that has the step."""
     of_method = {"force_tolerance", "minimiser_iterations", "plate_force", "plate_velocity"}
     of_bodies = {"plate_rest", "plate_displacement", "opposite_x", "opposite_z"}
+    of_units = header_of("units", "Needs") | header_of("units", "Defines")
     for name in NAMES:
         if name.startswith("steps/"):
-            assert header_of(name, "Needs") <= LOOP_VARIABLES | of_method | of_bodies
+            assert header_of(name, "Needs") <= LOOP_VARIABLES | of_method | of_bodies | of_units
     for kind in STEPS:
         assert set(kind.columns()) <= header_of(f"steps/{kind.step}", "Needs")
 

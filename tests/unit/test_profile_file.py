@@ -47,12 +47,12 @@ UNREADABLE = {
     "empty cell of tabs": ("r\tz\n0\t0\n0.5\t\n", "line 3: z is empty"),
     "nan": ("0,0\n0.5,nan\n1,1\n", "line 2: z is nan"),
     "infinity": ("0,0\n0.5, -inf\n1,1\n", "line 2: z is -inf"),
-    "text": ("r,z\n0,0\n0.5,broken\n1,1\n", "line 3: z 'broken' is no number"),
-    "text behind names": ("r,z\nµm,µm\n0,0\n1,1\n", "line 2: r 'µm' is no number"),
-    "decimal comma": ("r;z\n0;0\n0,5;0,25\n", "line 3: r '0,5' is no number"),
-    "line counted with comments": ("# one\n\n0,0\n# four\nx,1\n", "line 5: r 'x' is no number"),
-    "one column": ("0\n0.5\n1\n", "line 1: '0' is one column; r and z are needed"),
-    "one column among two": ("0,0\n0.5\n1,1\n", "line 2: '0.5' is one column; r and z are needed"),
+    "text": ("r,z\n0,0\n0.5,broken\n1,1\n", "line 3: z is no number"),
+    "text behind names": ("r,z\nµm,µm\n0,0\n1,1\n", "line 2: r is no number"),
+    "decimal comma": ("r;z\n0;0\n0,5;0,25\n", "line 3: r is no number; write it with a decimal point"),
+    "line counted with comments": ("# one\n\n0,0\n# four\nx,1\n", "line 5: r is no number"),
+    "one column": ("0\n0.5\n1\n", "line 1: has one column; r and z are needed"),
+    "one column among two": ("0,0\n0.5\n1,1\n", "line 2: has one column; r and z are needed"),
     "nothing": ("", "has no points"),
     "comments only": ("# r z\n\n#\n", "has no points"),
     "names only": ("r,z\n", "has no points"),
@@ -271,8 +271,8 @@ def test_columns_are_found_by_their_names(text: str, expected: tuple[list[float]
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("a,b,c\n0,0,0\n", "the columns are named a, b, c"),
-        ("r,height\n0,0\n", "the columns are named r, height"),
+        ("a,b,c\n0,0,0\n", "line 1: 3 columns without numbers"),
+        ("r,height\n0,0\n", "line 1: 2 columns without numbers, and no names r and z"),
         ("r;z\n0,0;0,0\n0,5;1,5\n", "write it with a decimal point"),
     ],
 )
@@ -280,3 +280,14 @@ def test_names_that_say_nothing_and_decimal_commas_are_refused(text: str, words:
     (tmp_path / "p.csv").write_text(text, encoding="utf-8")
     with pytest.raises(ProfileFileError, match=words):
         read_profile(tmp_path / "p.csv", 1.0)
+
+
+@pytest.mark.parametrize(
+    "content", ["secret = hunter2\n", "r,z\n0,0\n1,hunter2\n", "a:hunter2,b,c\n", "0,0\nhunter2\n"]
+)
+def test_no_message_quotes_the_file(content: str, tmp_path: Path) -> None:
+    """A scene may point at any file that its reader may read, and its messages go to whoever sent the scene."""
+    (tmp_path / "p.csv").write_text(content)
+    with pytest.raises(ProfileFileError, match=r"p\.csv") as caught:
+        read_profile(tmp_path / "p.csv", 1.0)
+    assert "hunter2" not in str(caught.value)

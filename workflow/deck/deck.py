@@ -11,10 +11,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from contact1d.workflow.deck.box import bin_size
 from contact1d.workflow.deck.effects import Contribution, Stage, contributions
 from contact1d.workflow.deck.effects.base import number
 from contact1d.workflow.deck.fragments import DeckError, Fragment, fragment
+from contact1d.workflow.deck.lattice import bodies
 from contact1d.workflow.deck.steps import STEPS, Phase, Row
+from contact1d.workflow.deck.units import DeckUnits, units_for
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 
@@ -24,6 +27,8 @@ MINIMISER_ITERATIONS = 20_000
 RELAXATION = 0.1
 """First step of a relaxation over the time step of a run in time: ten times as much is 0.5/ω_max."""
 NUMBERS_PER_LINE = 6
+CHOSEN_BINS = ("far_bin", "wide_bin")
+"""Variables with which effects choose the edge of a bin."""
 
 
 @dataclass(frozen=True)
@@ -34,12 +39,26 @@ class Deck:
     settings: Settings
 
     @cached_property
+    def units(self) -> DeckUnits:
+        """Those in which the text and system.data are written."""
+        return units_for(self.scene)
+
+    @cached_property
+    def written(self) -> tuple[Scene, Settings]:
+        """Scene and settings in these units."""
+        return self.units.scene(self.scene), self.units.settings(self.settings)
+
+    @cached_property
     def parts(self) -> tuple[Contribution, ...]:
         """What bodies, lower body, effects and method bring, in deck order."""
-        scene = self.scene
-        brought = [self._bodies(), *contributions(scene, self.settings), self._guide(), self._method()]
+        scene, settings = self.written
+        brought = [self._bodies(), *contributions(scene, settings), self._guide(), self._method()]
         if scene.bodies.lower == "rigid_plane":
             brought.append(self._plane())
+        if self.units.are_own:
+            brought.append(self._units())
+        if scene.interaction is not None:
+            brought += self._bins(brought)
         return tuple(sorted(brought, key=lambda part: part.stage))
 
     @cached_property
@@ -68,7 +87,7 @@ class Deck:
 
     def row(self, kind: type[Row]) -> str:
         """One row up to its measurement: move or load, then measure."""
-        return _commands((f"steps/{kind.step}", *self._measuring, "steps/line"))
+        return _commands((f"steps/{kind.step}", *self._measuring, self._line))
 
     @property
     def row_end(self) -> str:
@@ -77,7 +96,8 @@ class Deck:
 
     def values(self, row: Row) -> str:
         """The variables of one row."""
-        return "".join(f"variable        {c} index {v}\n" for c, v in zip(row.columns(), row.texts(), strict=True))
+        texts = row.texts(self.units.to_deck)
+        return "".join(f"variable        {c} index {v}\n" for c, v in zip(row.columns(), texts, strict=True))
 
     def forget(self, kind: type[Row]) -> str:
         """Delete the variables of a row, as `next` does after the last one."""
@@ -86,7 +106,7 @@ class Deck:
     def state(self, first: bool) -> str:
         """Write the state that the last row left."""
         append = f"variable        state_append index {'no' if first else 'yes'}\n"
-        written = _commands((*self._measuring, "steps/state", *self._measured))
+        written = _commands((*self._measuring, self._state, *self._measured))
         return append + written + "variable        state_append delete\n"
 
     def text(self, phases: Sequence[Phase]) -> str:
@@ -105,6 +125,14 @@ class Deck:
         return "\n".join(blocks)
 
     @property
+    def _line(self) -> str:
+        return "steps/line_in_units" if self.units.are_own else "steps/line"
+
+    @property
+    def _state(self) -> str:
+        return "steps/state_in_units" if self.units.are_own else "steps/state"
+
+    @property
     def _measuring(self) -> tuple[str, ...]:
         return (*(name for part in self.parts for name in part.step_begin), "steps/measuring")
 
@@ -114,7 +142,7 @@ class Deck:
 
     def _loop(self, phase: Phase) -> str:
         kind = type(phase.rows[0])
-        values = zip(*(row.texts() for row in phase.rows), strict=True)
+        values = zip(*(row.texts(self.units.to_deck) for row in phase.rows), strict=True)
         lists = "".join(_index(name, texts) for name, texts in zip(kind.columns(), values, strict=True))
         return (
             f"# phase {phase.name}: {len(phase.rows)} rows\n{self.begin(phase.name, phase.begin)}{lists}"
@@ -138,6 +166,7 @@ class Deck:
             raise DeckError(f"integrated twice: {', '.join(doubly)}")
         owners: dict[str, str] = {}
         needed = {name for kind in STEPS for name in fragment(f"steps/{kind.step}").needs}
+        needed |= {name for step in (self._line, self._state) for name in fragment(step).needs}
         for part in self.parts:
             for name in part.variables:
                 _own(owners, name, f"[{part.name}]")
@@ -154,31 +183,28 @@ class Deck:
         owners = self._check()
         for phase in phases:
             given = dict.fromkeys(("row_phase", *type(phase.rows[0]).columns()), "the row")
-            last = ("steps/state",) if phase.state else ()
+            last = (self._state,) if phase.state else ()
             kept = {"state_append": "the state"} if phase.state else {}
-            row = (f"steps/{type(phase.rows[0]).step}", *self._measuring, "steps/line", *self._measured)
+            row = (f"steps/{type(phase.rows[0]).step}", *self._measuring, self._line, *self._measured)
             here = owners | given | kept
             for name in (*phase.begin, *row, *row, *last):
                 _pass(here, fragment(name))
             owners = {name: owner for name, owner in here.items() if name not in given and name not in kept}
 
     def _bodies(self) -> Contribution:
-        coefficient = (
-            min(self.settings.bulk_stiffness, self._tangential) if self.settings.far else self.settings.bulk_stiffness
-        )
+        scene, settings = self.written
+        softer = min(settings.bulk_stiffness, scene.tangential_stiffness)
+        coefficient = softer if settings.far else settings.bulk_stiffness
         return Contribution("bodies", Stage.BODIES, ("bodies",), {"bulk_bond_coefficient": number(coefficient / 2)})
 
-    @property
-    def _tangential(self) -> float:
-        return self.scene.tangential_stiffness
-
     def _plane(self) -> Contribution:
-        depth = PLANE_DEPTH * max(self.settings.largest_displacement, self.scene.bodies.spacing)
+        scene, settings = self.written
+        depth = PLANE_DEPTH * max(settings.largest_displacement, scene.bodies.spacing)
         variables = {
             "plane_position": number(-depth),
             "plane_reach": number(depth),
-            "plane_half_stiffness": number(self.settings.plane_stiffness / 2),
-            "plane_stiffness": number(self.settings.plane_stiffness),
+            "plane_half_stiffness": number(settings.plane_stiffness / 2),
+            "plane_stiffness": number(settings.plane_stiffness),
         }
         return Contribution("rigid_plane", Stage.SPRINGS, ("rigid_plane",), variables)
 
@@ -186,15 +212,26 @@ class Deck:
         variables = {} if self.scene.horizontal is not None else {"guide_x": "0.0"}
         return Contribution("guide", Stage.GUIDE, ("guide",), variables)
 
+    def _bins(self, brought: Sequence[Contribution]) -> list[Contribution]:
+        scene, settings = self.written
+        chosen = [float(part.variables[name]) for part in brought for name in CHOSEN_BINS if name in part.variables]
+        edge = bin_size(bodies(scene, settings), scene, settings, max(chosen, default=0.0))
+        return [Contribution("bins", Stage.MOTION, ("bins",), {"bin_edge": number(edge)})] if edge else []
+
+    def _units(self) -> Contribution:
+        variables = {"unit_length": number(self.units.length), "unit_force": number(self.units.force)}
+        return Contribution("units", Stage.MOTION, ("units",), variables)
+
     def _method(self) -> Contribution:
+        _, settings = self.written
         if self.scene.method == "quasistatic":
             variables = {
-                "force_tolerance": number(self.settings.force_tolerance),
+                "force_tolerance": number(settings.force_tolerance),
                 "minimiser_iterations": str(MINIMISER_ITERATIONS),
-                "relaxation_step": number(RELAXATION * self.settings.time_step),
+                "relaxation_step": number(RELAXATION * settings.time_step),
             }
             return Contribution("quasistatic", Stage.MOTION, ("quasistatic",), variables)
-        variables = {"time_step": number(self.settings.time_step)}
+        variables = {"time_step": number(settings.time_step)}
         return Contribution("dynamic", Stage.MOTION, ("dynamic",), variables, integrates="particles")
 
 

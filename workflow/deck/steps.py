@@ -5,11 +5,16 @@ A field `load` is the LAMMPS variable `row_load`. A phase is a named sequence of
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass, fields
 from typing import ClassVar
 
 from contact1d.workflow.deck.effects.base import number
+
+UNITS = {"displacement": "LU", "parted": "LU", "through": "LU", "load": "FU", "rest": "FU"} | dict.fromkeys(
+    ("damping", "drag"), "FU·TU/LU"
+)
+"""Units of the numbers in rows; whole ones have none."""
 
 
 @dataclass(frozen=True)
@@ -24,9 +29,10 @@ class Row:
         """Names of the LAMMPS variables, in order."""
         return tuple(f"row_{field.name}" for field in fields(cls))
 
-    def texts(self) -> tuple[str, ...]:
-        """Their values as LAMMPS text."""
-        return tuple(str(value) if isinstance(value, int) else number(value) for value in astuple(self))
+    def texts(self, to_deck: Callable[[float, str], float]) -> tuple[str, ...]:
+        """Their values as LAMMPS text; `to_deck` takes a value with its unit to that of the deck."""
+        pairs = zip(fields(self), astuple(self), strict=True)
+        return tuple(str(v) if isinstance(v, int) else number(to_deck(v, UNITS[f.name])) for f, v in pairs)
 
 
 @dataclass(frozen=True)

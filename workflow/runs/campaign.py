@@ -14,6 +14,7 @@ import numpy as np
 from contact1d.files import PART, write_whole
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
+from contact1d.workflow.engine.failure import NO_MEMORY, TOO_LONG, TOO_WIDE
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.engine.session import EngineError
 from contact1d.workflow.errors import FolderError, RunError
@@ -26,6 +27,7 @@ from contact1d.workflow.runs.refinement import Refined, refined
 from contact1d.workflow.runs.report import FILES, curve_of, failure, results, write_results, write_tables
 from contact1d.workflow.scene import AnyScene, Scene, read_scene, scene_to_toml
 from contact1d.workflow.settings.settings import Settings, settings_for
+from contact1d.workflow.settings.size import MIX_UP, in_words, require_steps
 
 AnyPath = str | PathLike[str]
 LOCK = ".running"
@@ -60,15 +62,18 @@ def run(
     started = time.perf_counter()
     scene = _scene(scene)
     deck = Deck(scene, settings or settings_for(scene))
+    text = _planned_text(deck)
     folder = prepare(Path(folder))
     with _alone(folder):
+        _write(deck, text, folder)
         context = RunContext(deck, folder, progress or Silent(), time_limit)
         return _run(context, started, figures, refine=settings is None)
 
 
 def _run(context: RunContext, started: float, figures: bool, refine: bool) -> Run:
-    scene, folder = context.deck.scene, context.folder
-    _write(context.deck, folder)
+    scene, settings, folder = context.deck.scene, context.deck.settings, context.folder
+    if large := in_words(scene, settings.particles, settings.cutoff):
+        context.progress.note(large)
 
     def timing() -> dict[str, float]:
         total = time.perf_counter() - started
@@ -106,6 +111,12 @@ def _hint(message: str) -> str:
     """What to do about LAMMPS errors whose own words don't say it."""
     if "atoms" in message and ("missing" in message or "left the box" in message):
         return ". Particles flew apart: bring stiffnesses, masses, damping and ranges nearer to each other"
+    if TOO_WIDE in message:
+        return f". Compare spacing, radius, ranges and displacements with each other. {MIX_UP}"
+    if TOO_LONG in message:
+        return ". Bring masses, stiffnesses and dampings nearer to each other"
+    if NO_MEMORY in message:
+        return ". Fewer particles need less: a wider bodies.spacing, a smaller radius or load, a shorter cutoff"
     return ""
 
 
@@ -116,9 +127,10 @@ def write_deck(scene: AnyScene, folder: AnyPath) -> Path:
     """
     scene = _scene(scene)
     deck = Deck(scene, settings_for(scene))
+    text = _planned_text(deck)
     folder = prepare(Path(folder))
     with _alone(folder):
-        _write(deck, folder)
+        _write(deck, text, folder)
     return folder
 
 
@@ -154,11 +166,18 @@ def _alone(folder: Path) -> Iterator[None]:
             (folder / LOCK).unlink(missing_ok=True)
 
 
-def _write(deck: Deck, folder: Path) -> None:
+def _planned_text(deck: Deck) -> str:
+    """in.lammps with the planned schedule. Raises SettingsError where a row of it has too many timesteps."""
+    phases = planned(deck.scene, deck.settings)
+    require_steps(getattr(row, "steps", 0) for phase in phases for row in phase.rows)
+    return deck.text(phases)
+
+
+def _write(deck: Deck, text: str, folder: Path) -> None:
     """Replace whatever an earlier run left by what the deck needs."""
     for path in folder.iterdir():
         if path.name.removesuffix(PART) in FILES:
             path.unlink()
-    write_whole(folder / "in.lammps", deck.text(planned(deck.scene, deck.settings)))
+    write_whole(folder / "in.lammps", text)
     write_whole(folder / "scene.toml", scene_to_toml(deck.scene))
     write_system(deck, folder)

@@ -16,6 +16,8 @@ class ProfileFileError(ValueError):
 def read_profile(path: Path, scale: float) -> tuple[list[float], list[float]]:
     """Radii and heights [LU], each of the file's numbers times `scale`.
 
+    Messages name lines and never quote them: a path in a scene may point at any file.
+
     Lines that begin with # and empty ones are skipped; the first other line may be names. Further columns are ignored.
 
     Raises:
@@ -56,8 +58,8 @@ def _columns(path: Path, place: int, line: str) -> tuple[int, int]:
     if len(names) == 2 and not {"r", "z"} & set(names):
         return 0, 1
     raise ProfileFileError(
-        f"{path.name}, line {place}: the columns are named {', '.join(names)}; name the radius r and the height z, or "
-        "leave the names out and have these two columns in this order"
+        f"{path.name}, line {place}: {len(names)} columns without numbers, and no names r and z among them; name the "
+        "radius r and the height z, or leave the names out and have these two columns in this order"
     )
 
 
@@ -65,19 +67,19 @@ def _point(path: Path, place: int, line: str, columns: tuple[int, int]) -> tuple
     cells = _cells(line)
     at = f"{path.name}, line {place}"
     if len(cells) <= max(columns):
-        many = "is one column" if len(cells) == 1 else f"has {len(cells)} columns"
-        raise ProfileFileError(f"{at}: {line.strip()[:40]!r} {many}; r and z are needed")
+        many = "has one column" if len(cells) == 1 else f"has {len(cells)} columns"
+        raise ProfileFileError(f"{at}: {many}; r and z are needed")
     values = []
     for name, cell in zip("rz", (cells[column] for column in columns), strict=True):
         value = _number(cell)
         if value is None:
-            what = f"{cell[:20]!r} is no number" if cell.strip() else "is empty"
+            what = "is no number" if cell.strip() else "is empty"
             hint = "leave out a line that has no value, or interpolate it"
             if _number(cell.replace(",", ".")) is not None:
                 hint = "write it with a decimal point"
             raise ProfileFileError(f"{at}: {name} {what}; {hint}")
         if not math.isfinite(value):
-            raise ProfileFileError(f"{at}: {name} is {cell.strip()}; leave out a line that has no value")
+            raise ProfileFileError(f"{at}: {name} is {value}; leave out a line that has no value")
         values.append(value)
     return values[0], values[1]
 

@@ -210,7 +210,7 @@ class ContactEstimate:
     def displacement_at(self, force: float) -> float:
         """Displacement [LU] at which F(d) reaches a compressive force [FU] ≥ 0."""
         low = self._largest_tension[0]  # where the force begins to rise
-        high = max(1.0, 2 * self.rest)
+        high = max(self.spacing, 2 * self.rest)
         while self.contact_force(high) < force:
             high *= 2
         for _ in range(CUTS):

@@ -19,6 +19,7 @@ from contact1d.workflow.settings.chain import SettingsError as SettingsError
 from contact1d.workflow.settings.chain import chain_length, require_body, require_room
 from contact1d.workflow.settings.dynamics import dynamics_of
 from contact1d.workflow.settings.estimate import ContactEstimate, particles_estimate, plane_estimate, tabulated
+from contact1d.workflow.settings.size import require_apex, require_memory, require_reach, require_rows
 
 TABLE_MARGIN = 0.8
 """Distance from which on a table is to follow the law, over the expected smallest one. Measured: the smallest distance
@@ -41,7 +42,6 @@ STAGGER = 5e-4
 No force acts in that direction, but `fix rigid` refuses a body that is nearly a line ("Bad principal moments"): the
 least moment of inertia must be more than 1e-7 of the largest, and is 12 STAGGER² = 3e-6 of it.
 """
-MOST_PARTICLES = 10_000_000
 
 
 @dataclass(frozen=True)
@@ -160,11 +160,6 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
             f"the scene's numbers are too far apart to compute with ({error}): compare its lengths (spacing, ranges, "
             "radius), its energies (amplitudes) and its stiffnesses with each other"
         ) from None
-    if chosen.particles > MOST_PARTICLES:
-        raise SettingsError(
-            f"the contact would need {chosen.particles:.3g} particles per body, more than {MOST_PARTICLES:.0e}: a "
-            "wider bodies.spacing, a smaller radius, load or displacement needs fewer"
-        )
     return chosen
 
 
@@ -180,6 +175,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
         estimate = plane_estimate(shape, bodies.spacing, scene.bulk_stiffness)
     else:
         cutoff = _cutoff(scene, law, calibration.cutoff * tolerance)
+        require_reach(scene, cutoff)
         rest = law.force_free_distance() if law.attraction is not None else cutoff
         closest = CLOSEST_SHARE * (rest if law.attraction is not None else law.repulsion.range)
         estimate = particles_estimate(law, shape, bodies.spacing, scene.bulk_stiffness, cutoff, rest)
@@ -188,6 +184,8 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     if particles == "auto":
         particles = chain_length(scene, estimate, largest, calibration.chain * tolerance)
     require_body(bodies, largest, particles)
+    require_apex(scene, particles, cutoff)
+    require_memory(scene, particles, cutoff)
     force_scale = _force_scale(scene, law, largest)
     table_from, table = 0.0, None
     if law is not None:
@@ -197,6 +195,8 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     stiffest = _stiffest(scene, law, closest, plane)
     dynamics = dynamics_of(scene, tolerance, estimate, largest, particles, stiffest, calibration.still_step)
     different = scene.horizontal is not None and scene.tangential_stiffness != scene.bulk_stiffness
+    longest_move = MOVE_SHARE * closest if law is not None else math.inf
+    require_rows(scene, longest_move)
     return Settings(
         tolerance=tolerance,
         particles=particles,
@@ -213,7 +213,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
         force_tolerance=calibration.residual * tolerance * force_scale,
         displacement_step=_displacement_step(law, bodies.spacing, calibration.loading_increment * largest, closest),
         smooth_step=calibration.smooth_increment * law.longest_range if law is not None else 0.0,
-        longest_move=MOVE_SHARE * closest if law is not None else math.inf,
+        longest_move=longest_move,
         largest_displacement=largest,
         estimate=estimate,
         time_step=dynamics.time_step,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.law_error import law_error
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
-from contact1d.workflow.experiments.running.trust import doubts, require_trust
+from contact1d.workflow.experiments.running.trust import doubts, is_converged, require_trust
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH, Quantity
 
 PLACE = 0.1
@@ -32,7 +33,9 @@ def path(context: RunContext) -> Outcome:
     scene, settings = context.deck.scene, context.deck.settings
     phases = schedule(scene, settings)
     with context.contact() as contact:
-        passed = contact.replay(phases)
+        in_time = scene.method == "dynamic"
+        passed = contact.replay(phases, at_rest=partial(is_converged, settings) if in_time else None)
+        phases = contact.phases
     for state in passed:
         require_trust(scene, settings, state)
     asked = [wanted for _, wanted in places(scene, settings)]

@@ -42,6 +42,8 @@ RIVAL = 0.05
 """Teeth of the tension within this share of the largest are looked at more closely."""
 ZOOM = 0.25
 """Width of the window of one pass over that of the one before."""
+SAME_ROW = 1e-9
+"""Displacements nearer than this share of the whole way are one row."""
 SHARE = 0.3
 """Part of the tolerance that the schedule may use up."""
 
@@ -64,9 +66,11 @@ class Pass:
     @property
     def falling(self) -> list[State]:
         """The states of the unloading, by falling displacement, each place once: marks may stand on rows."""
-        found: list[State] = []
-        for state in sorted(self.unloading, key=lambda state: -state.displacement):
-            if not found or found[-1].displacement - state.displacement > SAME_PLACE:
+        ordered = sorted(self.unloading, key=lambda state: -state.displacement)
+        same = SAME_PLACE * (ordered[0].displacement - ordered[-1].displacement)
+        found = ordered[:1]
+        for state in ordered[1:]:
+            if found[-1].displacement - state.displacement > same:
                 found.append(state)
         return found
 
@@ -139,11 +143,12 @@ def _refined(known: Pass, preload: float, window: float) -> tuple[Phase, ...]:
     """The schedule of the next pass: loading, unloading to F = 0, pulling to the largest tension, separating."""
     climbed = sorted({s.displacement for s in known.loading if s.force < preload and s is not known.loading[-1]})
     deepest = _displacement_at(known.loading, preload)
-    loading = [d for d in climbed if d < deepest - 1e-9] + [deepest]
+    same = SAME_ROW * (deepest - known.falling[-1].displacement)
+    loading = [d for d in climbed if d < deepest - same] + [deepest]
     zero = known.zero_load
     peak = known.peak.position
     fine = _window(known, peak, window)
-    fine = fine[fine < zero - 1e-9]
+    fine = fine[fine < zero - same]
     coarse = [s.displacement for s in known.unloading if not fine[-1] <= s.displacement <= fine[0]]
     falling = sorted({deepest, zero, peak, *coarse, *fine.tolist()}, reverse=True)
     falling = [d for d in falling if d <= deepest]

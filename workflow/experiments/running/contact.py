@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -19,6 +19,10 @@ from contact1d.workflow.experiments.running.radii import RadiusRule
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
+ATOM_UNITS = {"x": "LU", "f": "FU", "v_opposite_x": "FU", "v_opposite_z": "FU"}
+"""What is measured of every atom, and its unit."""
+MOST_REPEATS = 200
+"""Repeats of a row after which it counts as never coming to rest: near a snap the motion is slower without end."""
 
 
 @dataclass(frozen=True)
@@ -109,9 +113,12 @@ class Contact:
         self._phases[-1] = replace(phase, rows=(*phase.rows, row))
         text = self._unfinished + self.deck.values(row) + self.deck.row(type(row))
         names = self._values()
-        reading = self.session.measure(text, names, ("x", "f", "v_opposite_x", "v_opposite_z"))
+        reading = self.session.measure(text, tuple(names), tuple(ATOM_UNITS))
         self._unfinished = self.deck.row_end + self.deck.forget(type(row))
-        return self._state(phase.name, dict(zip(names, reading.values, strict=True)), reading.atoms)
+        units = self.deck.units
+        numbers = {name: units.from_deck(v, names[name]) for name, v in zip(names, reading.values, strict=True)}
+        atoms = {n: units.from_deck(rows, ATOM_UNITS.get(n, "1")) for n, rows in reading.atoms.items()}
+        return self._state(phase.name, numbers, atoms)
 
     def write_state(self) -> None:
         """Write the state that the last row left to states.lammpstrj; it ends the phase."""
@@ -124,25 +131,32 @@ class Contact:
         self.session.execute(self._unfinished, phase=self._phases[-1].name)
         self._unfinished = ""
 
-    def replay(self, phases: Sequence[Phase]) -> list[State]:
-        """Run a whole schedule."""
+    def replay(self, phases: Sequence[Phase], at_rest: Callable[[State], bool] | None = None) -> list[State]:
+        """Run a whole schedule; one state for each row. A row that does not end `at_rest` is repeated until it does."""
         states = []
         for phase in phases:
             steps = sum(getattr(row, "steps", 0) for row in phase.rows)
             self.begin(phase.name, phase.begin, steps or None)
-            states += [self.row(row) for row in phase.rows]
+            states += [self._rested(row, at_rest) for row in phase.rows]
             if phase.state:
                 self.write_state()
         self.finish()
         return states
 
-    def _values(self) -> tuple[str, ...]:
-        names = ["plate_displacement", "step"]
+    def _rested(self, row: Row, at_rest: Callable[[State], bool] | None) -> State:
+        state, repeats = self.row(row), 0
+        while at_rest is not None and not at_rest(state) and repeats < MOST_REPEATS:
+            state, repeats = self.row(row), repeats + 1
+        return state
+
+    def _values(self) -> dict[str, str]:
+        """What is measured beside the atoms, and its unit."""
+        names = {"plate_displacement": "LU", "step": "1"}
         if self.scene.plate is not None:
-            names.append("plate_velocity")
+            names["plate_velocity"] = "LU/TU"
         if self.scene.cantilever is not None:
-            names += ["cantilever_plate", "cantilever_force"]
-        return (*names, *self._pushes)
+            names |= {"cantilever_plate": "LU", "cantilever_force": "FU"}
+        return names | dict.fromkeys(self._pushes, "FU")
 
     def _state(self, phase: str, numbers: dict[str, float], atoms: dict[str, Array]) -> State:
         upper = atoms["type"] == PARTICLES["upper"]

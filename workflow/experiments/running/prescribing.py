@@ -31,7 +31,7 @@ OVERSHOOT = 1.02
 BACK = 0.5
 """Move of a search that comes back to where the bodies have been, over their particles' smallest distance."""
 SAME_PLACE = 1e-12
-"""Displacements [LU] nearer than this are the same place: a force that still differs has jumped."""
+"""Displacements nearer than this over the spacing are the same place: a force that still differs has jumped."""
 LOADING_STEPS = 24
 """Rows of a planned way down, where a run would search."""
 SMALLER = (1 / 4, 1 / 16)
@@ -76,7 +76,7 @@ def approach(contact: Contact, force: float, start: float, direction: int = 1) -
         UntrustedError: see `require_trust`; also where the wanted force cannot be held.
     """
     scale = max(abs(force), contact.settings.force_scale)
-    near = APPROACH * contact.settings.tolerance * scale
+    near, spacing = APPROACH * contact.settings.tolerance * scale, contact.scene.bodies.spacing
     states = [measured(contact, start)]
     before, beyond = None, None
     while abs(states[-1].carried - force) > near:
@@ -91,7 +91,7 @@ def approach(contact: Contact, force: float, start: float, direction: int = 1) -
                 f"{'below' if direction < 0 else 'above'} it already. Take a force beyond that, or "
                 'kind = "path" to see the curve'
             )
-        if beyond is not None and abs(beyond.displacement - before.displacement) < SAME_PLACE:
+        if beyond is not None and abs(beyond.displacement - before.displacement) < SAME_PLACE * spacing:
             raise UntrustedError(
                 f"the force jumps past {force:.4g} FU at displacement {before.displacement:.6g} LU, from "
                 f"{before.carried:.4g} to {beyond.carried:.4g} FU: particles snap or slip there, and no state on this "

@@ -44,8 +44,8 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
             "surface. One layer of particles cannot carry this load: lower the load or the displacement, take a "
             "stronger repulsion, a range nearer to the spacing, or stiffer neighbour springs"
         )
-    limit = RESIDUAL_LIMIT * settings.tolerance * settings.force_scale
-    if scene.plate is None and state.residual > limit:
+    if scene.plate is None and not is_converged(settings, state):
+        limit = RESIDUAL_LIMIT * settings.tolerance * settings.force_scale
         raise UntrustedError(
             f"not converged {at}: a particle is left with a force of {state.residual:.2g} FU, above the {limit:.2g} FU "
             f"that a tolerance of {settings.tolerance:g} allows. What helps is "
@@ -57,6 +57,11 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
             f"the contact reaches the end of the chain {at}: take more bodies.particles than {settings.particles} "
             '(or "auto"), or a smaller load'
         )
+
+
+def is_converged(settings: Settings, state: State) -> bool:
+    """Whether what is left of a force on a particle is below RESIDUAL_LIMIT."""
+    return state.residual <= RESIDUAL_LIMIT * settings.tolerance * settings.force_scale
 
 
 def require_no_contradiction(settings: Settings, quantities: Mapping[str, Quantity], states: Iterable[State]) -> None:

@@ -1,0 +1,122 @@
+"""Numbers out of all proportion: a sentence before anything runs, or the right answer; never LAMMPS's own words."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from contact1d.workflow.deck.box import MOST_BINS
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.system import write_system
+from contact1d.workflow.engine.failure import NO_MEMORY, TOO_LONG, TOO_WIDE, plain_message
+from contact1d.workflow.runs.campaign import run
+from contact1d.workflow.scene import scene_from_dict
+from contact1d.workflow.settings.settings import SettingsError, settings_for
+from contact1d.workflow.settings.size import in_words
+from tests.scenes import chains
+
+LOAD = {"kind": "load", "force": 0.5}
+CLAIMED = 1e-3
+"""Of a displacement, the scenes' own tolerance."""
+
+
+REFUSED: dict[str, tuple[dict[str, Any], str]] = {
+    "a radius in metres": (chains(1e-6, experiment=LOAD), r"too sharp .* rises by 1\.25e\+05 LU .* another unit"),
+    "a radius in metres on a plane": (
+        chains(1e-6, bodies={"lower": "rigid_plane"}, interaction=None, experiment=LOAD),
+        r"too sharp for its chain",
+    ),
+    "an endless attraction": (
+        chains(100.0, law=(0.18, 0.13, 0.09, 1e20), experiment=LOAD),
+        r"would feel .* at most 5000 .* another unit",
+    ),
+    "a spacing far below the ranges": (chains(100.0, bodies={"spacing": 1e-6}, experiment=LOAD), r"would feel"),
+    "a spacing far above the radius": (chains(100.0, bodies={"spacing": 1e6}, experiment=LOAD), r"too sharp"),
+    "a load that a planet carries": (chains(100.0, experiment={"kind": "load", "force": 1e9}), r"particles per body"),
+    "more pairs than any memory holds": (
+        chains(100.0, law=(0.18, 0.13, 0.09, 150.0), bodies={"particles": 10_000_000}, experiment=LOAD),
+        r"GB of memory, and this machine has",
+    ),
+    "a path into the earth": (
+        chains(100.0, bodies={"particles": 20}, experiment={"kind": "path", "displacements": [0.0, 1e6]}),
+        r"the path would take .* rows",
+    ),
+    "a plate that never moves": (
+        chains(100.0, damping={"coefficient": "auto"}, plate={"mass": 1e30}, experiment=LOAD | {"method": "dynamic"}),
+        r"one row would take .* timesteps.* Bring masses",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_it_is_refused_in_words_before_anything_runs(name: str, tmp_path: Path) -> None:
+    tables, words = REFUSED[name]
+    with pytest.raises(SettingsError, match=words):
+        run(scene_from_dict(tables), tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_single_pair_under_a_steep_body_runs(tmp_path: Path) -> None:
+    """Its ends rise to 7e7 LU, beyond all forces: the box has larger bins, and the pair is the closed form's."""
+    scene = scene_from_dict(
+        chains(1e-4, bodies={"particles": 61, "spacing": 4.0}, experiment={"kind": "load", "force": 0.3})
+    )
+    deck = Deck(scene, settings_for(scene))
+    assert "bin_edge" in deck.head
+    done = run(scene, tmp_path / "run", figures=False)
+    pair = settings_for(scene).law
+    assert pair is not None
+    distance = done.outcome.states[-1].smallest_distance
+    assert float(pair.force(distance)) == pytest.approx(0.3, rel=CLAIMED)
+    gap = distance - 2.0 * 0.3 / scene.bulk_stiffness
+    assert done.outcome.quantities["displacement"].value == pytest.approx(pair.force_free_distance() - gap, rel=CLAIMED)
+
+
+def test_neighbours_a_million_times_stiffer_than_the_bulk_run_sideways(tmp_path: Path) -> None:
+    """The chains are rods then: both bodies move as a whole, and F(d) is that of the undeformed profiles."""
+    tables = chains(
+        100.0,
+        bodies={"particles": 60},
+        neighbours={"stiffness": 0.83e6},
+        horizontal={},
+        experiment={"kind": "path", "displacements": [0.0]},
+        accuracy={"tolerance": 1e-2},
+    )
+    scene = scene_from_dict(tables)
+    done = run(scene, tmp_path / "run", figures=False)
+    assert done.outcome.states[-1].residual < CLAIMED
+    assert "bin_edge" in Deck(scene, settings_for(scene)).head
+
+
+def test_ordinary_bodies_leave_the_bins_to_lammps(tmp_path: Path) -> None:
+    scene = scene_from_dict(chains(100.0, experiment=LOAD))
+    deck = Deck(scene, settings_for(scene))
+    assert "bin_edge" not in deck.head
+    write_system(deck, tmp_path)
+    box = [line.split()[:2] for line in (tmp_path / "system.data").read_text().splitlines() if line.endswith("hi")]
+    bins = 1.0
+    for low, high in box:
+        bins *= (float(high) - float(low)) / (0.5 * deck.settings.cutoff)
+    assert bins < MOST_BINS
+
+
+def test_a_large_system_is_told_of() -> None:
+    scene = scene_from_dict(chains(100.0, experiment=LOAD))
+    assert in_words(scene, 1000, 3.0) == ""
+    assert "1000000 particles per body, each within reach of 8" in in_words(scene, 1_000_000, 3.0)
+
+
+@pytest.mark.parametrize(
+    ("raw", "meant"),
+    [
+        ("ERROR: Too many neighbor bins (src/nbin_standard.cpp:1)", TOO_WIDE),
+        ("ERROR: Cannot use neighbor bins - box size << cutoff (src/nbin_standard.cpp:2)", TOO_WIDE),
+        ("ERROR: Domain too large for neighbor bins (src/nbin_standard.cpp:2)", TOO_WIDE),
+        ("ERROR: Invalid run command N value: 5000000000 (src/run.cpp:3)", TOO_LONG),
+        ("ERROR on proc 0: Failed to allocate 5000000000 bytes for array neigh:binhead (src/memory.cpp:4)", NO_MEMORY),
+    ],
+)
+def test_words_of_lammps_are_translated(raw: str, meant: str) -> None:
+    assert plain_message(raw).startswith(f"LAMMPS stopped: {meant} (")

@@ -1,0 +1,132 @@
+"""In which units a deck is written: the scene's own, or for very small and very large numbers units of its own.
+
+LAMMPS has lengths and energies built in: the step of `hftn`'s differences, 2e-6, the longest move of a minimiser, 0.1,
+bins and box. With the lengths of a scene in metres they are far off, so a deck whose lengths or forces are, is written
+in units of powers of ten LU and FU:
+
+    x = x_deck · length,  F = F_deck · force,  t = t_deck · √(MU · length/force);   1, 1 for ordinary scenes
+
+What the deck prints and writes (curve.txt, states.lammpstrj) is in LU and FU in any case.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from contact1d.potentials import DoubleExponential, Exponential
+from contact1d.potentials.table import Table as LawTable
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene.quantities import Table, annotation_of, keys_of
+from contact1d.workflow.scene.wording import unit_of
+from contact1d.workflow.settings.settings import Settings
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+AnyTable = TypeVar("AnyTable", bound=Table)
+Value = TypeVar("Value", float, "NDArray[Any]")
+
+ORDINARY_LENGTHS = (1e-2, 1e2)
+"""Range of the repulsion, or the spacing on a plane, for which LAMMPS's own lengths do [LU]: the force's derivative by
+steps of 2e-6 is within 1e-4 of the true one at the lower end."""
+ORDINARY_FORCES = (1e-4, 1e4)
+"""Bulk stiffness times the unit of length [FU]."""
+POWERS = {"LU": (1.0, 0.0), "FU": (0.0, 1.0), "TU": (0.5, -0.5), "MU": (0.0, 0.0), "1": (0.0, 0.0)}
+"""Powers of the two factors in each unit; TU = √(MU·LU/FU)."""
+SETTINGS = {
+    "rest": "LU", "cutoff": "LU", "table_from": "LU", "closest": "LU", "far": "LU", "displacement_step": "LU",
+    "smooth_step": "LU", "longest_move": "LU", "largest_displacement": "LU", "force_scale": "FU",
+    "force_tolerance": "FU", "bulk_stiffness": "FU/LU", "plane_stiffness": "FU/LU", "damped_stiffness": "FU/LU",
+    "time_step": "TU", "settle_time": "TU", "damping": "FU·TU/LU", "plate_damping": "FU·TU/LU",
+}  # fmt: skip
+"""Units of the settings; the others have none, are masses, or are the law, its table and the estimate."""
+
+
+@dataclass(frozen=True)
+class DeckUnits:
+    """A deck's unit of length [LU] and of force [FU]; that of mass is MU."""
+
+    length: float = 1.0
+    force: float = 1.0
+
+    @property
+    def are_own(self) -> bool:
+        """Whether they are other than the scene's."""
+        return (self.length, self.force) != (1.0, 1.0)
+
+    def of(self, unit: str) -> float:
+        """One deck unit of this kind, "FU·TU/LU" for instance, in the scene's."""
+        above, _, below = unit.partition("/")
+        names = [(name, 1.0) for name in above.split("·")] + [(name, -1.0) for name in below.split("·") if name]
+        lengths, forces = (sum(sign * POWERS[name][i] for name, sign in names) for i in (0, 1))
+        return float(self.length**lengths * self.force**forces)
+
+    def to_deck(self, value: float, unit: str) -> float:
+        """A number of the scene in deck units; the very same where they are the scene's."""
+        return value / self.of(unit) if self.are_own else value
+
+    def from_deck(self, value: Value, unit: str) -> Value:
+        """A number of the deck, or an array of such, in the scene's units."""
+        return value * self.of(unit) if self.are_own else value
+
+    def scene(self, scene: Scene) -> Scene:
+        """The scene with its numbers in deck units, and what follows from a material given as numbers."""
+        if not self.are_own:
+            return scene
+        given = {"bulk_stiffness": scene.bulk_stiffness, "bulk_stiffness_tangential": scene.tangential_stiffness}
+        bodies = scene.bodies.model_copy(update=given)
+        return self._table(scene.model_copy(update={"bodies": bodies, "material": None}))
+
+    def settings(self, settings: Settings) -> Settings:
+        """The settings in deck units, but for the estimate, which no deck asks."""
+        if not self.are_own:
+            return settings
+        changed: dict[str, Any] = {name: self.to_deck(getattr(settings, name), unit) for name, unit in SETTINGS.items()}
+        if settings.law is not None:
+            law = self._law(settings.law)
+            table = None if settings.table is None else LawTable(law, changed["cutoff"], settings.table.points)
+            changed |= {"law": law, "table": table}
+        return replace(settings, **changed)
+
+    def _law(self, law: DoubleExponential) -> DoubleExponential:
+        terms = [
+            None if term is None else Exponential(self.to_deck(term.amplitude, "FU·LU"), self.to_deck(term.range, "LU"))
+            for term in (law.repulsion, law.attraction)
+        ]
+        assert terms[0] is not None
+        return DoubleExponential(terms[0], terms[1])
+
+    def _table(self, table: AnyTable) -> AnyTable:
+        fields = {
+            name: (getattr(table, name), annotation_of(type(table), key)) for key, name in keys_of(type(table)).items()
+        }
+        return table.model_copy(
+            update={name: self._value(value, unit_of(kind)) for name, (value, kind) in fields.items()}
+        )
+
+    def _value(self, value: Any, unit: str | None) -> Any:
+        if isinstance(value, Table):
+            return self._table(value)
+        if isinstance(value, tuple):
+            return tuple(self._value(item, unit) for item in value)
+        is_number = isinstance(value, float | int) and not isinstance(value, bool)
+        return self.to_deck(value, unit) if is_number and unit not in (None, "1", "MU") else value
+
+
+def units_for(scene: Scene) -> DeckUnits:
+    """The scene's own units where LAMMPS's lengths and forces do; else powers of ten that make them ordinary."""
+    terms = scene.interaction
+    lengths = scene.bodies.spacing if terms is None else terms.repulsion.range
+    # The ranges of ordinary scenes are tenths of a LU, so a repulsion's is made one; a spacing is made a few LU.
+    length = (
+        1.0 if _within(lengths, ORDINARY_LENGTHS) else 10.0 ** (math.floor(math.log10(lengths)) + (terms is not None))
+    )
+    stiffness = scene.bulk_stiffness * length
+    force = 1.0 if _within(stiffness, ORDINARY_FORCES) else 10.0 ** round(math.log10(stiffness))
+    return DeckUnits(length, force)
+
+
+def _within(value: float, ends: tuple[float, float]) -> bool:
+    return ends[0] <= value <= ends[1]

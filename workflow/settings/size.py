@@ -1,0 +1,131 @@
+"""Whether a computer can hold the system and count the steps that a scene asks for, before anything runs."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterable
+from itertools import pairwise
+
+import numpy as np
+
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.chain import SettingsError
+
+MOST_PARTICLES = 10_000_000
+MOST_FELT = 5_000
+"""Opposite particles within reach of one."""
+MOST_ROWS = 1_000_000
+"""Rows of a prescribed path, those on the way between two places included."""
+PER_PARTICLE = 2_000.0
+"""Memory for each particle of a body, its opposite and both anchors [bytes]: measured, 2 GB at 10⁶."""
+PER_PAIR = 8.0
+"""The same for each pair of particles within reach."""
+MOST_TIMESTEPS = 2**31 - 1
+"""Timesteps of one row: LAMMPS counts no further."""
+LARGE, USUALLY_FELT = 20_000, 10.0
+"""Particles per body, each within reach of so many opposite ones, from which on a run takes minutes."""
+SHARPEST = 1e3
+"""Height of the particles beside an apex over cutoff and spacing: so far even neighbour springs bring none."""
+MIX_UP = "All lengths (spacing, radius, ranges) are in LU: are some of them in another unit?"
+
+
+def require_reach(scene: Scene, cutoff: float) -> None:
+    """Refuse an interaction that reaches over more particles than can be summed over.
+
+    Raises:
+        SettingsError: with the widest reach that is possible.
+    """
+    spacing = scene.bodies.spacing
+    if cutoff > 0.5 * MOST_FELT * spacing:
+        raise SettingsError(
+            f"with a cutoff of {cutoff:.4g} LU and a spacing of {spacing:.4g} LU a particle would feel "
+            f"{2.0 * cutoff / spacing:.2g} opposite ones, at most {MOST_FELT} are possible: take shorter ranges in "
+            f"[interaction], an interaction.cutoff below {0.5 * MOST_FELT * spacing:.4g} LU, or a wider "
+            f"bodies.spacing. {MIX_UP}"
+        )
+
+
+def require_apex(scene: Scene, particles: int, cutoff: float) -> None:
+    """Refuse a chain whose apex lies between two particles far beyond the reach of all forces (a cutoff [LU]).
+
+    Raises:
+        SettingsError: with the particles' height.
+    """
+    beside = 0.5 * scene.bodies.spacing if particles % 2 == 0 else 0.0
+    height = float(scene.bodies.height(np.asarray([beside]))[0])
+    if height > SHARPEST * max(cutoff, scene.bodies.spacing):
+        raise SettingsError(
+            f"the body is too sharp for its chain: it rises by {height:.4g} LU from its apex to the nearest particles, "
+            f"{beside:.4g} LU beside it. Take a finer bodies.spacing, a blunter bodies.profile, or an odd number of "
+            f"bodies.particles, of which one is the apex. {MIX_UP}"
+        )
+
+
+def require_memory(scene: Scene, particles: int, cutoff: float) -> None:
+    """Refuse a system that this machine has no memory for.
+
+    Raises:
+        SettingsError: with the number of particles or bytes.
+    """
+    if particles > MOST_PARTICLES:
+        raise SettingsError(
+            f"the contact would need {particles:.3g} particles per body, more than {MOST_PARTICLES:.0e}: a "
+            "wider bodies.spacing, a smaller radius, load or displacement needs fewer"
+        )
+    felt = _felt(scene, particles, cutoff)
+    needed = particles * (PER_PARTICLE + PER_PAIR * felt)
+    available = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    if needed > available:
+        raise SettingsError(
+            f"{particles} particles per body, each within reach of {felt:.0f} opposite ones, need about "
+            f"{needed / 1e9:.2g} GB of memory, and this machine has {available / 1e9:.2g} GB: a wider bodies.spacing, "
+            "a smaller radius, load or displacement needs fewer particles, a shorter cutoff fewer pairs"
+        )
+
+
+def require_rows(scene: Scene, longest_move: float) -> None:
+    """Refuse a prescribed path of too many rows; a body moves towards the other by `longest_move` [LU] at most.
+
+    Raises:
+        SettingsError: with the number of rows.
+    """
+    places = [0.0, *scene.experiment.places()]
+    way = sum(max(0.0, after - before) for before, after in pairwise(places))
+    rows = len(places) + math.floor(way / longest_move)
+    if rows > MOST_ROWS:
+        raise SettingsError(
+            f"the path would take {rows:.3g} rows, more than {MOST_ROWS:.0e}: bodies move towards each other by "
+            f"{longest_move:.3g} LU at a time, as the interaction's ranges allow. Take nearer "
+            f"experiment.displacements or longer ranges. {MIX_UP}"
+        )
+
+
+def require_steps(steps: Iterable[int]) -> None:
+    """Refuse a scene one of whose rows takes more `steps` than LAMMPS can count.
+
+    Raises:
+        SettingsError: with the number of timesteps.
+    """
+    most = max(steps, default=0)
+    if most > MOST_TIMESTEPS:
+        raise SettingsError(
+            f"one row would take {most:.3g} timesteps, at most {MOST_TIMESTEPS} can be counted: the slowest motion is "
+            "too slow beside the fastest one. Bring masses ([bodies] and [plate]), stiffnesses and dampings nearer to "
+            'each other, or leave them to the program ("auto")'
+        )
+
+
+def in_words(scene: Scene, particles: int, cutoff: float) -> str:
+    """What makes a run a long one, for its user to know before it starts; "" for a usual one."""
+    felt = _felt(scene, particles, cutoff)
+    if particles * max(1.0, felt / USUALLY_FELT) < LARGE:
+        return ""
+    return (
+        f"a large system: {particles} particles per body, each within reach of {felt:.0f} opposite ones; a "
+        "wider bodies.spacing, a smaller radius or load needs fewer"
+    )
+
+
+def _felt(scene: Scene, particles: int, cutoff: float) -> float:
+    return 0.0 if scene.interaction is None else min(particles, 2.0 * cutoff / scene.bodies.spacing + 2.0)
