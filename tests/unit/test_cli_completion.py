@@ -36,7 +36,7 @@ def folder(tmp_path: Path) -> Path:
 @pytest.mark.parametrize(
     ("words", "offered"),
     [
-        ("contact1d ", {"new", "run", "deck", "cost", "identify", "reproduce", "schema", "doctor"}),
+        ("contact1d ", {"new", "run", "deck", "cost", "identify", "reproduce", "stability", "schema", "doctor"}),
         ("contact1d run ", {"ball.toml", "scenes/"}),
         ("contact1d deck ba", {"ball.toml"}),
         ("contact1d cost sc", {"scenes/cone.toml", "scenes/more/"}),

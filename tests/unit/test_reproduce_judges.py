@@ -16,7 +16,7 @@ import pytest
 from contact1d.analysis.curve import Curve
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.reference.line_adhesion import barquins_reduced_force
-from contact1d.workflow.reproduce import eq3, fig4, fig6, fig7, fig8, table1
+from contact1d.workflow.reproduce import adhesive, eq3, fig4, fig5, fig6, fig7, fig8, pressure, table1
 from contact1d.workflow.reproduce.studies import STUDIES
 from contact1d.workflow.reproduce.study import Study
 from contact1d.workflow.runs.finished import Run
@@ -26,6 +26,7 @@ SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 ABOUT = {
     "adhesion_force": (1.47, "FU"), "zero_load_radius": (28.53, "LU"), "critical_radius": (15.0, "LU"),
     "largest_force": (40.0, "FU"), "largest_radius": (30.0, "LU"), "contact_radius": (30.0, "LU"),
+    "displacement": (0.4, "LU"),
 }  # fmt: skip
 """About what the paper's scene has, so that nothing fails by its size alone."""
 WRONG = (1.4, 3.0)
@@ -59,7 +60,7 @@ class WrongRuns(dict[str, Run]):
         count = 200
         x = np.arange(count) - 0.5 * (count - 1)
         profile = Profile(x, 0.0 * x, 0.0 * x, rng.uniform(-0.3, 0.3, count), 0.0 * x)
-        a = np.linspace(45.0, 12.0, ROWS)
+        a = np.linspace(45.0, 8.0, ROWS)
         force = wrong(1.47) * barquins_reduced_force(a / 28.53)
         d = np.linspace(wrong(0.5), -0.5, ROWS)
         curve = Curve(d, force, a, np.full(ROWS, 0.3), ["unloading"] * ROWS, np.full(ROWS, 1e-3))
@@ -69,10 +70,11 @@ class WrongRuns(dict[str, Run]):
 
 @pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.name)
 def test_no_row_passes_where_every_run_is_wrong(study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in (eq3, fig4, fig6, fig7, fig8, table1):
+    for module in (adhesive, eq3, fig4, fig5, fig6, fig7, fig8, pressure, table1):
         monkeypatch.setattr(module, "save", lambda *_: None, raising=False)
     paper = read_scene(SCENES / "paper.toml")
     found = study.judge(paper, WrongRuns(paper), tmp_path)
     assert found.checks
-    assert all(math.isfinite(check.value) for check in found.checks)  # what is none fails for another reason
+    if study.name != "adhesive":  # a ratio that is off the map of Maugis has no μ; else what is none fails for that
+        assert all(math.isfinite(check.value) for check in found.checks)
     assert [check.name for check in found.checks if check.verdict == "PASS"] == []

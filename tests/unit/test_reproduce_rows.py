@@ -195,6 +195,6 @@ def test_the_solver_finds_the_state_under_a_force() -> None:
     )  # fmt: skip
     model = chain_model(scene)
     wanted = ChainSolver(model).equilibrium(0.1)
-    state = equilibrium_under(model, wanted.force, 0.11)
+    state = equilibrium_under(model, wanted.force)
     assert state.force == pytest.approx(wanted.force, abs=SOLVER)
     assert state.displacement == pytest.approx(0.1, abs=SOLVER)

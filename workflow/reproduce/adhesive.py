@@ -177,13 +177,16 @@ def _checks(row: Rows, case: Case) -> list[Check]:
 
 
 def _on_map(ratio: float) -> tuple[float, float]:
-    """Tabor's μ and F_A/πWR where Maugis and Dugdale have this a_cr/a₀."""
+    """Tabor's μ and F_A/πWR where Maugis and Dugdale have this a_cr/a₀; NaN off their map."""
 
     def off(logarithm: float) -> float:
         contact = MaugisDugdale(math.exp(logarithm))
         return contact.critical_radius() / contact.zero_load_radius() - ratio
 
-    parameter = math.exp(float(brentq(off, *np.log(LAMBDAS))))
+    low, high = np.log(LAMBDAS)
+    if off(low) * off(high) > 0.0:
+        return math.nan, math.nan
+    parameter = math.exp(float(brentq(off, low, high)))
     return parameter / LAMBDA_OVER_TABOR, MaugisDugdale(parameter).pull_off_load()
 
 

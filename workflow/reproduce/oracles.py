@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
@@ -17,8 +19,8 @@ from contact1d.workflow.scene import Parabola, Scene
 Array = NDArray[np.float64]
 ROW_REACH, ROW_POINTS, ROW_HALF = 5.0, 4001, 20
 """Distances [longest ranges] and particles to each side that the largest tension of a row is looked for with."""
-NEAR = 0.02
-"""Around the expected displacement [LU] an equilibrium under a force is looked for."""
+STEP = 0.02
+"""Of the displacement [LU] in which an equilibrium under a force is looked for."""
 HIGHEST = 1.5
 """F/F_A up to which curves are compared with theory."""
 
@@ -54,15 +56,21 @@ def chain_model(scene: Scene) -> ChainModel:
     )
 
 
-def equilibrium_under(model: ChainModel, force: float, near: float) -> State:
-    """The solver's state under a force [FU] by bisection of the displacement around `near` [LU]."""
+def equilibrium_under(model: ChainModel, force: float) -> State:
+    """The solver's state under a force [FU]: steps of the displacement from 0 until it is passed, then bisection."""
     solver = ChainSolver(model)
-    start = solver.equilibrium(near)
+    state = solver.equilibrium(0.0)
+    towards = math.copysign(STEP, force - state.force)
+    before = state
+    while (state.force - force) * towards < 0.0:
+        before, state = state, solver.equilibrium(state.displacement + towards, state)
 
     def excess(d: float) -> float:
-        return solver.equilibrium(d, start).force - force
+        return solver.equilibrium(d, before).force - force
 
-    return solver.equilibrium(float(brentq(excess, near - NEAR, near + NEAR, xtol=1e-12)), start)
+    if before is state:
+        return state
+    return solver.equilibrium(float(brentq(excess, before.displacement, state.displacement, xtol=1e-12)), before)
 
 
 def independent_pairs(scene: Scene) -> IndependentPairs:
