@@ -16,7 +16,7 @@ from contact1d.workflow.deck.effects import Contribution, Stage, contributions
 from contact1d.workflow.deck.effects.base import number
 from contact1d.workflow.deck.fragments import DeckError, Fragment, fragment
 from contact1d.workflow.deck.lattice import bodies
-from contact1d.workflow.deck.steps import STEPS, Phase, Row
+from contact1d.workflow.deck.steps import STEPS, Displace, Phase, Row
 from contact1d.workflow.deck.units import DeckUnits, units_for
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
@@ -26,6 +26,8 @@ PLANE_DEPTH = 1e3
 MINIMISER_ITERATIONS = 20_000
 RELAXATION = 0.1
 """First step of a relaxation over the time step of a run in time: ten times as much is 0.5/ω_max."""
+GENTLE = 1e-3
+"""Residual force over one particle's at which gentle moves have led into a minimum that Newton's method finishes."""
 NUMBERS_PER_LINE = 6
 CHOSEN_BINS = ("far_bin", "wide_bin")
 """Variables with which effects choose the edge of a bin."""
@@ -87,7 +89,7 @@ class Deck:
 
     def row(self, kind: type[Row]) -> str:
         """One row up to its measurement: move or load, then measure."""
-        return _commands((f"steps/{kind.step}", *self._measuring, self._line))
+        return _commands((self._step(kind), *self._measuring, self._line))
 
     @property
     def row_end(self) -> str:
@@ -123,6 +125,9 @@ class Deck:
             blocks.append(self._loop(phase) + (self.state(first) if phase.state else ""))
             first = first and not phase.state
         return "\n".join(blocks)
+
+    def _step(self, kind: type[Row]) -> str:
+        return "steps/displace_gently" if kind is Displace and self.settings.gentle else f"steps/{kind.step}"
 
     @property
     def _line(self) -> str:
@@ -165,7 +170,7 @@ class Deck:
         if doubly:
             raise DeckError(f"integrated twice: {', '.join(doubly)}")
         owners: dict[str, str] = {}
-        needed = {name for kind in STEPS for name in fragment(f"steps/{kind.step}").needs}
+        needed = {name for kind in STEPS for name in fragment(self._step(kind)).needs}
         needed |= {name for step in (self._line, self._state) for name in fragment(step).needs}
         for part in self.parts:
             for name in part.variables:
@@ -185,7 +190,7 @@ class Deck:
             given = dict.fromkeys(("row_phase", *type(phase.rows[0]).columns()), "the row")
             last = (self._state,) if phase.state else ()
             kept = {"state_append": "the state"} if phase.state else {}
-            row = (f"steps/{type(phase.rows[0]).step}", *self._measuring, self._line, *self._measured)
+            row = (self._step(type(phase.rows[0])), *self._measuring, self._line, *self._measured)
             here = owners | given | kept
             for name in (*phase.begin, *row, *row, *last):
                 _pass(here, fragment(name))
@@ -230,6 +235,9 @@ class Deck:
                 "minimiser_iterations": str(MINIMISER_ITERATIONS),
                 "relaxation_step": number(RELAXATION * settings.time_step),
             }
+            if settings.gentle:
+                variables["gentle_move"] = number(settings.longest_move)
+                variables["gentle_tolerance"] = number(GENTLE * settings.force_scale)
             return Contribution("quasistatic", Stage.MOTION, ("quasistatic",), variables)
         variables = {"time_step": number(settings.time_step)}
         return Contribution("dynamic", Stage.MOTION, ("dynamic",), variables, integrates="particles")

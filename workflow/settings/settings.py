@@ -72,6 +72,7 @@ class Settings:
             its particles' distance from the opposite ones is put behind them. A search may come nearer than `closest`,
             in moves down to NEAR_SHARE of this.
         largest_displacement: what the estimate expects [LU].
+        gentle: whether a relaxation moves no particle by more than `longest_move` at a time.
     """
 
     tolerance: float
@@ -98,6 +99,7 @@ class Settings:
     settle_time: float
     largest_displacement: float
     estimate: ContactEstimate
+    gentle: bool = False
 
     @property
     def is_smooth(self) -> bool:
@@ -123,9 +125,10 @@ class Settings:
         return min(self.smooth_step, max(NEAR_SHARE * self.longest_move, MOVE_SHARE * smallest_distance))
 
     def in_smaller_steps(self, part: float) -> Settings:
-        """The same, with increments of a search and moves that are this part as long; nothing else changes."""
+        """The same, with increments and moves that are this part as long, also those of a relaxation."""
         return replace(
             self,
+            gentle=True,
             displacement_step=part * self.displacement_step,
             smooth_step=part * self.smooth_step,
             longest_move=part * self.longest_move,

@@ -36,7 +36,9 @@ LOADING_STEPS = 24
 """Rows of a planned way down, where a run would search."""
 SMALLER = (1 / 4, 1 / 16)
 """Parts of the increments that are tried where bodies went through each other: a body that moves by much of its
-particles' distance from the opposite ones, or by which their force changes much, lets the minimiser put one beyond."""
+particles' distance from the opposite ones, or by which their force changes much, lets the minimiser put one beyond.
+Where pairs snap together a minimiser moves particles by more than their distance whatever the increment: a relaxation
+then goes downhill in short moves."""
 
 
 def in_smaller_steps(search: Callable[[RunContext], Outcome]) -> Callable[[RunContext], Outcome]:
@@ -98,8 +100,14 @@ def approach(contact: Contact, force: float, start: float, direction: int = 1) -
                 'way has the force. Take a force outside of the jump, kind = "path" to see all of it, or stiffer '
                 "springs or a longer range, with which particles do not snap"
             )
-        if len(states) > MOST_INCREMENTS or (direction < 0 and last.smallest_distance > contact.settings.cutoff):
+        if direction < 0 and last.smallest_distance > contact.settings.cutoff:
             raise UntrustedError(f"{force:.4g} FU is never reached: the largest tension is smaller")
+        if len(states) > MOST_INCREMENTS:
+            raise UntrustedError(
+                f"{force:.4g} FU is not reached within {MOST_INCREMENTS} increments, at displacement "
+                f"{last.displacement:.4g} LU and {last.carried:.4g} FU: the ranges of the interaction are short beside "
+                "the way. Take a force that is nearer to 0, longer ranges or stiffer springs"
+            )
         step = contact.settings.increment(last.smallest_distance if direction > 0 else math.inf)
         states.append(measured(contact, _next(before, beyond, states, force, direction * step)))
     return states

@@ -1,0 +1,131 @@
+"""What the independent solver carries, the program carries: pairs that snap together, particles near their core."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact1d import RunError, run
+from contact1d.analysis.reference.interaction import Exponential, PairInteraction
+from contact1d.analysis.reference.model import ChainModel
+from contact1d.analysis.reference.solver import ChainSolver
+from contact1d.workflow.scene import Scene, scene_from_dict
+from contact1d.workflow.settings.settings import settings_for
+from tests.scenes import LAW, chains
+
+CARRIED = 0.9
+"""Force of a pair over that of its core at which a particle counts as about to be pushed through."""
+RUNS = 0.95
+"""Share of the scenes that the solver carries that must run."""
+ROWS = 1500
+"""Displacements of the solver from out of reach to the load: with 600 it leaps through a core that carries."""
+AGREES = 3e-3
+"""Of a displacement beside the range of the attraction: rows of the solver, a tenth of the scenes' tolerance."""
+STEEPEST = 0.041605
+"""Greatest negative stiffness of a pair of the law [FU/LU]."""
+
+
+def random_load(seed: int) -> dict[str, Any]:
+    """A load of a thirtieth to ten times the largest tension of a pair; pairs of 0.2 to 3 times the ratio of a fold."""
+    rng = np.random.default_rng(seed)
+    near = float(np.exp(rng.uniform(np.log(0.05), np.log(0.4))))
+    far, amplitude = near * rng.uniform(1.3, 3.0), float(np.exp(rng.uniform(np.log(0.02), 0.0)))
+    law = (amplitude, near, amplitude * far / near * rng.uniform(0.2, 0.85), far)
+    r = np.linspace(0.0, 20.0 * far, 20_001)
+    pair = PairInteraction(Exponential(*law[:2]), Exponential(*law[2:]))
+    steepest, tension = float(pair.force_slope(r).max()), -float(pair.force(r).min())
+    stiffness = 2.0 * steepest / float(np.exp(rng.uniform(np.log(0.2), np.log(3.0))))
+    force, radius = tension * 10.0 ** rng.uniform(-1.5, 1.0), float(10.0 ** rng.uniform(1.0, 2.0))
+    return chains(
+        radius, stiffness, law, accuracy={"tolerance": 1e-2}, experiment={"kind": "load", "force": float(force)}
+    )
+
+
+def carried(scene: Scene) -> tuple[float, float]:
+    """The solver's way to the load: (displacement [LU], largest force of a pair over its core's on the way).
+
+    A pair that is pushed through has infinitely much of it, and so has a load that is never reached.
+    """
+    terms = scene.interaction
+    assert terms is not None
+    assert terms.attraction is not None
+    near, far = terms.repulsion, terms.attraction
+    law = PairInteraction(Exponential(near.amplitude, near.range), Exponential(far.amplitude, far.range))
+    settings = settings_for(scene)
+    heights = scene.bodies.height(ChainModel(settings.particles, 1.0, law, radius=1.0).places() * scene.bodies.spacing)
+    model = ChainModel(settings.particles, scene.bulk_stiffness, law, heights=heights, spacing=scene.bodies.spacing)
+    solver, core, worst = ChainSolver(model), float(law.force(np.zeros(1))[0]), 0.0
+    load = scene.experiment.compression
+    assert load is not None
+    start, way = -5.0 * far.range, 2.0 * settings.largest_displacement + 7.0 * far.range
+    state = solver.equilibrium(start)
+    for displacement in np.linspace(start, start + way, ROWS)[1:]:
+        before, state = state, solver.equilibrium(float(displacement), state)
+        gap = model.undeformed_gap(state.displacement) + state.upper[:, 1] - state.lower[:, 1]
+        worst = max(worst, float(law.force(np.asarray([state.smallest_distance]))[0]) / core)
+        if gap.min() <= 0.0 or worst > 1.0:
+            return state.displacement, np.inf
+        if displacement > 0.0 and state.force >= load > before.force:
+            part = (load - before.force) / (state.force - before.force)
+            return before.displacement + part * (state.displacement - before.displacement), worst
+    return state.displacement, np.inf
+
+
+def refused(seeds: range, folder: Path) -> tuple[int, dict[int, str]]:
+    """How many of these scenes the solver carries, and which of those the program refuses."""
+    solvable, failures = 0, {}
+    for seed in seeds:
+        scene = scene_from_dict(random_load(seed))
+        if carried(scene)[1] > CARRIED:
+            continue
+        solvable += 1
+        try:
+            run(scene, folder / str(seed), figures=False)
+        except RunError as error:
+            failures[seed] = str(error)
+    return solvable, failures
+
+
+def test_scenes_that_the_solver_carries_run(tmp_path: Path) -> None:
+    solvable, failures = refused(range(10), tmp_path)
+    assert solvable >= 3
+    assert failures == {}
+
+
+@pytest.mark.slow
+def test_of_many_scenes_that_the_solver_carries_nearly_all_run(tmp_path: Path) -> None:
+    solvable, failures = refused(range(100, 200), tmp_path)
+    assert solvable >= 30
+    assert len(failures) <= (1.0 - RUNS) * solvable, failures
+
+
+def test_pairs_that_snap_together_under_a_small_load_stay_in_front_of_each_other(tmp_path: Path) -> None:
+    """A minimiser that moves particles by more than their distance leaves 0.8 of the core unused."""
+    law = (0.07053748918211555, 0.11035901885810362, 0.14768431485963754, 0.27926018055122087)
+    experiment = {"kind": "load", "force": 0.00495479304644468}
+    scene = scene_from_dict(
+        chains(60.108596439880785, 0.4050983890352833, law, accuracy={"tolerance": 1e-2}, experiment=experiment)
+    )
+    wanted, share = carried(scene)
+    assert 0.7 < share < CARRIED
+    found = run(scene, tmp_path / "run", figures=False).outcome.quantities["displacement"].value
+    assert found == pytest.approx(wanted, abs=AGREES * law[3] * 3.0)
+
+
+@pytest.mark.parametrize("ratio", [0.9, 1.01, 1.1, 2.0])
+def test_a_dynamic_path_comes_to_rest_where_pairs_snap(ratio: float, tmp_path: Path) -> None:
+    """`ratio` is the pair's greatest negative stiffness over the springs in series, k/2."""
+    stiffness = 2.0 * STEEPEST / ratio
+    experiment = {"kind": "path", "displacements": {"from": -0.5, "to": 0.1, "steps": 12}}
+    tables = chains(100.0, stiffness, LAW, bodies={"particles": 60}, accuracy={"tolerance": 1e-2})
+    forces = []
+    for timed in ({}, {"damping": {"coefficient": "auto"}}):
+        scene = scene_from_dict(tables | timed | {"experiment": experiment})
+        states = run(scene, tmp_path / str(len(timed)), figures=False).outcome.states
+        forces.append([state.force for state in states])
+    if ratio < 1.0:
+        assert forces[0] == pytest.approx(forces[1], abs=1e-2 * max(map(abs, forces[0])))
+    assert min(forces[1]) == pytest.approx(min(forces[0]), rel=0.1)
