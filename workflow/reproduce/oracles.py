@@ -19,8 +19,8 @@ from contact1d.workflow.scene import Parabola, Scene
 Array = NDArray[np.float64]
 ROW_REACH, ROW_POINTS, ROW_HALF = 5.0, 4001, 20
 """Distances [longest ranges] and particles to each side that the largest tension of a row is looked for with."""
-STEP = 0.02
-"""Of the displacement [LU] in which an equilibrium under a force is looked for."""
+STEP, BEYOND = 0.02, 0.1
+"""Of the displacement [LU] in which an equilibrium under a force is looked for, and what is added to it at both ends."""
 HIGHEST = 1.5
 """F/F_A up to which curves are compared with theory."""
 
@@ -70,7 +70,8 @@ def equilibrium_under(model: ChainModel, force: float) -> State:
 
     if before is state:
         return state
-    return solver.equilibrium(float(brentq(excess, before.displacement, state.displacement, xtol=1e-12)), before)
+    ends = (before.displacement - BEYOND * towards, state.displacement + BEYOND * towards)  # a step may end on it
+    return solver.equilibrium(float(brentq(excess, *ends, xtol=1e-12)), before)
 
 
 def independent_pairs(scene: Scene) -> IndependentPairs:
