@@ -75,7 +75,7 @@ def test_a_single_pair_under_a_steep_body_runs(tmp_path: Path) -> None:
 
 
 def test_neighbours_a_million_times_stiffer_than_the_bulk_run_sideways(tmp_path: Path) -> None:
-    """The anchors lie far beside the chains, so the box needs larger bins; one row comes to rest, no more is claimed."""
+    """The anchors lie far beside the chains, so the box needs larger bins; one row comes to rest, that is all."""
     tables = chains(
         100.0,
         bodies={"particles": 60},

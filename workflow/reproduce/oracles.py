@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 ROW_REACH, ROW_POINTS, ROW_HALF = 5.0, 4001, 20
 """Distances [longest ranges] and particles to each side that the largest tension of a row is looked for with."""
 STEP, BEYOND = 0.02, 0.1
-"""Of the displacement [LU] in which an equilibrium under a force is looked for, and what is added to it at both ends."""
+"""Of the displacement [LU] in which an equilibrium under a force is looked for, and what is added at both ends."""
 HIGHEST = 1.5
 """F/F_A up to which curves are compared with theory."""
 
