@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from contact1d.potentials import DoubleExponential
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.estimate import ContactEstimate
 
@@ -30,6 +31,17 @@ class Dynamics:
     plate_mass: float
     plate_damping: float
     settle_time: float
+
+
+def stiffest_of(scene: Scene, law: DoubleExponential | None, closest: float, plane: float) -> float:
+    """Largest stiffness [FU/LU] that a particle feels: its springs, the plane, and a row of opposite ones nearby."""
+    stiffest = max(scene.bulk_stiffness, scene.tangential_stiffness) + plane
+    if law is not None:
+        rows = 1.0 + 2.0 * law.repulsion.range / scene.bodies.spacing
+        stiffest += 2.0 * rows * float(law.stiffness(closest))
+    if scene.neighbours is not None:
+        stiffest += 4.0 * scene.neighbours.stiffness
+    return stiffest
 
 
 def dynamics_of(

@@ -81,6 +81,15 @@ def tabulated(profile: Profile, spacing: float) -> Tabulated:
     return Tabulated(places, profile.height(places))
 
 
+class NotCarriedError(ValueError):
+    """A load that no displacement carries; `most` is what some displacement does [FU]."""
+
+    def __init__(self, most: float) -> None:
+        """Keep it."""
+        super().__init__(most)
+        self.most = most
+
+
 @dataclass(frozen=True)
 class ContactEstimate:
     """Independent pairs under a profile.
@@ -191,6 +200,11 @@ class ContactEstimate:
         return float(places[:top][gone][-1]) if gone.any() else float(places[0])
 
     @cached_property
+    def _all_the_way(self) -> float:
+        """Displacement [LU] at which each particle of a body that ends stands on its opposite one."""
+        return self.rest - float(self.gap[0]) + float(self.profile.height(np.asarray([self.profile.reach]))[0])
+
+    @cached_property
     def _largest_tension(self) -> tuple[float, float]:
         """(displacement [LU], tension [FU]) where the tension is largest, looked for twice, the second time nearby."""
         low, high = self.rest - float(self.gap[-1]), self.rest
@@ -208,10 +222,16 @@ class ContactEstimate:
         return places, self.contact_forces(places)
 
     def displacement_at(self, force: float) -> float:
-        """Displacement [LU] at which F(d) reaches a compressive force [FU] ≥ 0."""
+        """Displacement [LU] at which F(d) reaches a compressive force [FU] ≥ 0.
+
+        Raises:
+            NotCarriedError: the particles stand on each other before it does.
+        """
         low = self._largest_tension[0]  # where the force begins to rise
         high = max(self.spacing, 2 * self.rest)
-        while self.contact_force(high) < force:
+        while (reached := self.contact_force(high)) < force:
+            if self.profile.reach < np.inf and high > self._all_the_way:
+                raise NotCarriedError(reached)
             high *= 2
         for _ in range(CUTS):
             places = np.linspace(low, high, PARTS)

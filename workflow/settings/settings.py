@@ -17,8 +17,14 @@ from contact1d.workflow.scene import Measured, Scene
 from contact1d.workflow.settings.calibration import CALIBRATION, Calibration
 from contact1d.workflow.settings.chain import SettingsError as SettingsError
 from contact1d.workflow.settings.chain import chain_length, require_body, require_room
-from contact1d.workflow.settings.dynamics import dynamics_of
-from contact1d.workflow.settings.estimate import ContactEstimate, particles_estimate, plane_estimate, tabulated
+from contact1d.workflow.settings.dynamics import dynamics_of, stiffest_of
+from contact1d.workflow.settings.estimate import (
+    ContactEstimate,
+    NotCarriedError,
+    particles_estimate,
+    plane_estimate,
+    tabulated,
+)
 from contact1d.workflow.settings.size import require_apex, require_memory, require_reach, require_rows
 
 TABLE_MARGIN = 0.8
@@ -153,11 +159,17 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
         calibration: in place of the one that was measured, for the study that measures it.
 
     Raises:
-        SettingsError: the numbers are so far apart that no chain, table or time step comes out of them.
+        SettingsError: the numbers are so far apart that no chain, table or time step comes out of them, or the bodies
+            can't carry the load.
     """
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             chosen = _chosen(scene, tolerance or scene.accuracy.tolerance, calibration or CALIBRATION)
+    except NotCarriedError as error:
+        raise SettingsError(
+            f"a load of {scene.experiment.compression:.6g} FU is more than these bodies carry: their particles stand "
+            f"on each other from about {error.most:.4g} FU on. Lower the load, or take a stronger repulsion"
+        ) from None
     except (OverflowError, FloatingPointError, ZeroDivisionError, MemoryError) as error:
         raise SettingsError(
             f"the scene's numbers are too far apart to compute with ({error}): compare its lengths (spacing, ranges, "
@@ -195,7 +207,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
         nearest = closest if scene.noise is not None else NEAR_SHARE * closest
         table_from = max(nearest, TABLE_MARGIN * (_distance(estimate, cutoff, largest) - _thermal_motion(scene)))
         table = table_for(law, cutoff, table_from, calibration.table * tolerance * force_scale)
-    stiffest = _stiffest(scene, law, closest, plane)
+    stiffest = stiffest_of(scene, law, closest, plane)
     dynamics = dynamics_of(scene, tolerance, estimate, largest, particles, stiffest, calibration.still_step)
     different = scene.horizontal is not None and scene.tangential_stiffness != scene.bulk_stiffness
     longest_move = MOVE_SHARE * closest if law is not None else math.inf
@@ -243,17 +255,6 @@ def _plane_stiffness(scene: Scene, tolerance: float) -> float:
     return (stiffness + 4.0 * neighbours) / tolerance
 
 
-def _stiffest(scene: Scene, law: DoubleExponential | None, closest: float, plane: float) -> float:
-    """Largest stiffness [FU/LU] that a particle feels: its springs, the plane, and a row of opposite ones nearby."""
-    stiffest = max(scene.bulk_stiffness, scene.tangential_stiffness) + plane
-    if law is not None:
-        rows = 1.0 + 2.0 * law.repulsion.range / scene.bodies.spacing
-        stiffest += 2.0 * rows * float(law.stiffness(closest))
-    if scene.neighbours is not None:
-        stiffest += 4.0 * scene.neighbours.stiffness
-    return stiffest
-
-
 def _cutoff(scene: Scene, law: DoubleExponential, share: float) -> float:
     assert scene.interaction is not None
     if scene.interaction.cutoff != "auto":
@@ -282,7 +283,7 @@ def _force_scale(scene: Scene, law: DoubleExponential | None, largest: float) ->
     if law is not None and law.attraction is not None:
         r = law.force_free_distance() + law.longest_range * np.linspace(0.0, 5.0, 2001)
         return float(-law.force(r).min())
-    return max(largest, 1e-3 * scene.bodies.spacing) * scene.bulk_stiffness / 2
+    return (largest if largest > 0.0 else 1e-3 * scene.bodies.spacing) * scene.bulk_stiffness / 2
 
 
 def _displacement_step(law: DoubleExponential | None, spacing: float, step: float, closest: float) -> float:

@@ -1,0 +1,17 @@
+"""Claim: a load that no displacement carries is refused in words, at once: particles stand on each other before."""
+
+from __future__ import annotations
+
+import pytest
+
+from contact1d.workflow.scene import scene_from_dict
+from contact1d.workflow.settings.chain import SettingsError
+from contact1d.workflow.settings.settings import settings_for
+from tests.scenes import chains
+
+
+@pytest.mark.parametrize("load", [{"kind": "load", "force": 1e4}, {"kind": "pull_off", "preload": 1e4}])
+def test_a_punch_says_how_much_it_carries(load: dict[str, object]) -> None:
+    bodies = {"profile": {"kind": "flat_punch", "radius": 5.0}}
+    with pytest.raises(SettingsError, match="more than these bodies carry.*Lower the load"):
+        settings_for(scene_from_dict(chains(100.0, bodies=bodies, experiment=load)))
