@@ -39,8 +39,8 @@ WORDS = {
 }
 EDGE, RATE_SPACINGS = 32.0, (8.0, 4.0, 2.0, 1.0)
 """Half-width of the contact [LU] in the runs that measure the rate, a whole number of each spacing in them [LU]."""
-RATE_TOLERANCE = 1e-7
-"""Of those runs, so that what the minimiser leaves is below the fourth power of the spacing."""
+RATE_TOLERANCE, SPARE = 1e-7, 4
+"""Of those runs, so that what the minimiser leaves is below the fourth power of the spacing; particles beyond."""
 REDUCTIONS: tuple[Reduction, ...] = ("geike_popov", "mdr")
 SLOPE, EXPONENT, PUNCH, DEPTH = 0.05, 4.0, 20.0, 3.0
 """Of the other shapes; lengths in LU."""
@@ -93,10 +93,12 @@ class Case:
     reduction: Reduction
     values: dict[str, float]
     tolerance: float = 1e-3
+    particles: int | None = None
 
     def scene(self) -> Scene:
         """What is run."""
-        return reduction_scene(self.reduction, **self.values, tolerance=self.tolerance)
+        scene = reduction_scene(self.reduction, **self.values, tolerance=self.tolerance)
+        return scene if self.particles is None else scene.with_({"bodies.particles": self.particles})
 
     @property
     def force(self) -> float:
@@ -135,10 +137,13 @@ def sweep(reduction: Reduction, name: str) -> list[Case]:
 
 
 def rate_cases(reduction: Reduction) -> list[Case]:
-    """Runs of falling spacing whose contact ends midway between two particles, at the half-width EDGE."""
+    """Runs of falling spacing whose contact ends midway between two of these very particles, at the half-width EDGE."""
     depth = EDGE**2 / BASE["R"] * (0.5 if reduction == "geike_popov" else 1.0)
     cases = [BASE | {"d": depth, "h": h} for h in RATE_SPACINGS]
-    return [Case(f"eq3_{reduction}_rate_{_label(values)}", reduction, values, RATE_TOLERANCE) for values in cases]
+    return [
+        Case(f"eq3_{reduction}_rate_{_label(v)}", reduction, v, RATE_TOLERANCE, 2 * round(EDGE / v["h"]) + SPARE)
+        for v in cases
+    ]
 
 
 def _label(values: dict[str, float]) -> str:

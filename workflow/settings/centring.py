@@ -16,6 +16,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.analysis.polynomial import fitting, lowest_minimum
 from contact1d.workflow.scene import Load, Scene
 from contact1d.workflow.settings.estimate import ContactEstimate
 from contact1d.workflow.settings.settings import Settings
@@ -23,6 +24,8 @@ from contact1d.workflow.settings.settings import Settings
 Array = NDArray[np.float64]
 OWN, OTHERS = 0.5, (0.25, 0.0)
 """Places of the apex between particles over the spacing: of an even chain, and those that it is held against."""
+WIDE, DEGREE = 3.0, 4
+"""Steps of the first look, on both sides of the largest tension, and degree of the polynomial that places it."""
 BEYOND = 0.1
 """Way beyond the deepest place of the estimate that is looked at, over that place and a spacing."""
 MARGIN = 1.25
@@ -92,7 +95,18 @@ class _Row:
             forces = self.forces(places)
             top = int(np.argmin(forces))
             low, high = float(places[max(top - 1, 0)]), float(places[min(top + 1, points - 1)])
-        return float(places[top]), -float(forces[top])
+        place, tension = float(places[top]), -float(forces[top])
+        return place if self.estimate.snaps else self._vertex(place), tension
+
+    def _vertex(self, near: float) -> float:
+        """The place of the largest tension by a polynomial through WIDE steps on both sides of `near` [LU].
+
+        The estimate is a row of straight lines, whose corners would place a flat top by chance.
+        """
+        width = WIDE * (self.highest - self.lowest) / POINTS[0]
+        t = np.linspace(-1.0, 1.0, POINTS[-1])
+        best, _ = lowest_minimum(fitting(t, DEGREE) @ self.forces(near + width * t), -1.0, 1.0)
+        return near if np.isnan(best) else near + width * best
 
     def crossing(self, force: float) -> float:
         """Largest displacement [LU] at which the force is `force` [FU]; that of the largest tension if none is."""

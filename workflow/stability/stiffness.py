@@ -127,7 +127,7 @@ def measure(bench: Bench, folder: Path) -> Findings:
             f"share refused of {solvable} cases that have a stable way below 0.9 of the core's force",
             share,
             0.05,
-            "issue: 95 % must run",
+            "what is asked: 95 % must run",
             "statistics of so many cases",
             "set bound",
         )
