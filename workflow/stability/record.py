@@ -90,8 +90,8 @@ class Stability:
         count = len(self.checks)
         command = "contact1d stability" + (" --full" if self.form == "full" else "")
         head = (
-            f"## Hard cases\n\nWritten by `{command}` on {self.date}, on {self.machine}, in {self.wall_s / 60:.0f} "
-            f"minutes. **{count - len(self.failed)} of {count} rows pass.** A row that fails stays. The margin is what "
+            f"## Hard cases\n\nWritten by `{command}` on {self.date}, on {self.machine}, in {self.wall_s:.0f} s. "
+            f"**{count - len(self.failed)} of {count} rows pass.** A row that fails stays. The margin is what "
             "the bound allows over what was found."
         )
         parts = [head]
