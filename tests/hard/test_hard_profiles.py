@@ -83,7 +83,10 @@ def test_contact_wider_than_its_profile_is_refused_with_the_possible_displacemen
     possible = float(found[1]) * (1.0 - LAST_FIGURE)
     results = done(tmp_path, tables(WIDE[name], path(possible), reduction=reduction)).document
     assert results["status"] == "done"
-    assert {warning["name"] for warning in results["warnings"]} <= {"tolerance"}  # of the radius at its very edge
+    assert {warning["name"] for warning in results["warnings"]} <= {
+        "tolerance",
+        "lattice",
+    }  # of the radius at its very edge, and of few particles
     assert results["largest_force"]["value"] > 0.0
 
 
@@ -198,7 +201,7 @@ def test_steep_and_nearly_flat_cones(slope: float, depth: float, reduction: str,
     x = finished.outcome.states[-1].profile.x
     heights = slope * np.abs(x) * (0.5 * math.pi if reduction == "mdr" else 1.0)
     assert finished.document["largest_force"]["value"] == pytest.approx(exact(finished, heights), rel=FORCE)
-    assert finished.document["warnings"] == []
+    assert set(finished.warnings) <= {"lattice"}  # a steep one has few particles
 
 
 def test_cone_so_flat_that_no_chain_is_long_enough_is_refused() -> None:

@@ -126,13 +126,20 @@ class WorkerProcess:
         """Return the timestep and the steps of the session, as of the last fifth of a second or of its death."""
         return self._last_board if self._board_map.closed else (self._board[0], self._board[1])
 
-    def ask(self, request: tuple[Any, ...], deadline: float, tick: Callable[[], None] | None = None) -> Any:
+    def ask(
+        self,
+        request: tuple[Any, ...],
+        deadline: float,
+        tick: Callable[[], None] | None = None,
+        meanwhile: Callable[[], object] | None = None,
+    ) -> Any:
         """Send a request and return the answer; any exception on the way kills the worker.
 
         Args:
             request: verb and arguments.
             deadline: on the clock `time.monotonic` [s].
             tick: called about five times a second while waiting.
+            meanwhile: called once, while the worker is busy.
 
         Raises:
             OutOfTimeError: the deadline passed.
@@ -140,6 +147,8 @@ class WorkerProcess:
         """
         try:
             self._connection.send(request)
+            if meanwhile:
+                meanwhile()
             while not self._ready.poll(1e3 * max(0.0, min(TICK, deadline - time.monotonic()))):
                 if time.monotonic() >= deadline:
                     raise OutOfTimeError("it ran out of time")

@@ -11,7 +11,7 @@ says what, in which phase and at which step; the files of the folder stay, and t
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -118,14 +118,22 @@ class Session:
         """
         return self.measure("", (), ("id", *names)).atoms
 
-    def measure(self, text: str, values: Sequence[str] = (), atoms: Sequence[str] = ()) -> Reading:
+    def measure(
+        self,
+        text: str,
+        values: Sequence[str] = (),
+        atoms: Sequence[str] = (),
+        meanwhile: Callable[[], object] | None = None,
+    ) -> Reading:
         """Run commands and return values and per-atom arrays, all in one round trip: one point of a curve.
+
+        What `meanwhile` does costs no time of its own, as long as LAMMPS takes longer.
 
         Raises:
             EngineError: as `execute`, or a number that was asked for is unknown or not finite.
         """
         self._commands = text
-        numbers, arrays = self._ask("measure", text, "", tuple(values), tuple(atoms))
+        numbers, arrays = self._ask("measure", text, "", tuple(values), tuple(atoms), meanwhile=meanwhile)
         return Reading(tuple(numbers), arrays)
 
     def about(self, styles: Sequence[tuple[str, str]] = ()) -> Installation:
@@ -146,11 +154,11 @@ class Session:
             self.phase = phase
             self._progress.phase(phase, expected_steps)
 
-    def _ask(self, *request: Any) -> Any:
+    def _ask(self, *request: Any, meanwhile: Callable[[], object] | None = None) -> Any:
         if self._over:
             raise EngineError(f"the session is over: {self._over}", self.phase, self.timestep, self.folder, "")
         try:
-            reply = self._worker.ask(request, self._deadline, self._tick)
+            reply = self._worker.ask(request, self._deadline, self._tick, meanwhile)
         except WorkerLostError as lost:
             late = f"the run took longer than its time limit of {self._time_limit:g} s"
             self.timestep, self.steps = self._worker.board()

@@ -36,6 +36,7 @@ THEORY = {
     "adhesion_force": "JKR 1, Barquins 1/3", "zero_load_radius": "JKR 2/3, Barquins 2/3", "critical_radius": "JKR 2/3"
 }  # fmt: skip
 ALIKE = "the errors of the runs are alike and cancel in the slope, the uncertainty takes each at its worst"
+HALVED = "the claim is what halving the rows beside the largest tension changed, not what that left"
 DIGITS = "the digits of Table 1 fix an exponent no better"
 
 
@@ -175,7 +176,7 @@ def judge_exponents(paper: Scene, runs: Runs, folder: Path) -> Findings:
             values.append(
                 row(f"{symbol} in the local limit, R = {radius:g} LU", ours.value, ours.uncertainty, unit, expected,
                     "closed form of independent pairs", "closed form", scene.accuracy.tolerance, "what the run claims",
-                    on=[local_run(radius)], comparison="uncertainty")
+                    on=[local_run(radius)], comparison="uncertainty", wide=HALVED)
             )  # fmt: skip
     finding = (
         "Where only opposite particles meet, the exponents are 1/2 by the closed form, whatever the law; the runs have "

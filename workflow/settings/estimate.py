@@ -81,6 +81,10 @@ def tabulated(profile: Profile, spacing: float) -> Tabulated:
     return Tabulated(places, profile.height(places))
 
 
+MOST_AT_ONCE = 1_000_000
+"""Pairs whose forces are looked up at once, to bound the memory."""
+
+
 class NotCarriedError(ValueError):
     """A load that no displacement carries; `most` is what some displacement does [FU]."""
 
@@ -173,9 +177,9 @@ class ContactEstimate:
         counts = np.full(heights.shape, 2.0)
         counts[: particles % 2] = 1.0
         places = np.linspace(ends[-1], ends[0], TEETH_POINTS)
-        tension = np.asarray(
-            [-float(counts @ np.interp(heights - place, self.gap, self.force, right=0.0)) for place in places]
-        )
+        at_once = np.array_split(places, 1 + places.size * heights.size // MOST_AT_ONCE)
+        sums = [np.interp(heights - some[:, None], self.gap, self.force, right=0.0) @ counts for some in at_once]
+        tension = -np.concatenate(sums)
         tops = _tops(tension, TOOTH * float(tension.max(initial=0.0)))
         return math.inf if len(tops) < 2 else float(np.min(-np.diff(places[tops])))
 

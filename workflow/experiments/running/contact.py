@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -87,6 +88,7 @@ class Contact:
         self._phases: list[Phase] = []
         self._unfinished = ""
         self._states = 0
+        self._latest: State | None = None
         self._rule = RadiusRule(deck.scene, deck.settings.tolerance)
         self._pushes = tuple(part.pushes for part in deck.parts if part.pushes)
         session.execute(deck.head, phase="setting up")
@@ -113,12 +115,18 @@ class Contact:
         self._phases[-1] = replace(phase, rows=(*phase.rows, row))
         text = self._unfinished + self.deck.values(row) + self.deck.row(type(row))
         names = self._values()
-        reading = self.session.measure(text, tuple(names), tuple(ATOM_UNITS))
+        reading = self.session.measure(text, tuple(names), tuple(ATOM_UNITS), meanwhile=self._look_back)
         self._unfinished = self.deck.row_end + self.deck.forget(type(row))
         units = self.deck.units
         numbers = {name: units.from_deck(v, names[name]) for name, v in zip(names, reading.values, strict=True)}
         atoms = {n: units.from_deck(rows, ATOM_UNITS.get(n, "1")) for n, rows in reading.atoms.items()}
-        return self._state(phase.name, numbers, atoms)
+        self._latest = self._state(phase.name, numbers, atoms)
+        return self._latest
+
+    def _look_back(self) -> None:
+        """Work out the radius of the row before, which its state keeps: LAMMPS is busy with the next one."""
+        with suppress(ValueError):  # told where the radius is asked for
+            _ = self._latest and self._latest.radius
 
     def write_state(self) -> None:
         """Write the state that the last row left to states.lammpstrj; it ends the phase."""
