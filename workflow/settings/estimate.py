@@ -171,12 +171,12 @@ class ContactEstimate:
         Summed over the particles of a chain of so many: where they let go one by one, F(d) has a tooth for each.
         """
         x: Array = self.spacing * (np.arange(particles, dtype=np.float64) - 0.5 * (particles - 1))
-        ends = self._tensions[0]
+        apart, zero = self.rest - float(self.gap[-1]), self.displacement_at(0.0)
         heights = self.rest + self.profile.height(x[x >= -self.spacing / 4])
-        heights = heights[heights - ends[-1] < self.gap[-1]]
+        heights = heights[heights - zero < self.gap[-1]]
         counts = np.full(heights.shape, 2.0)
         counts[: particles % 2] = 1.0
-        places = np.linspace(ends[-1], ends[0], TEETH_POINTS)
+        places = np.linspace(zero, apart, TEETH_POINTS)
         at_once = np.array_split(places, 1 + places.size * heights.size // MOST_AT_ONCE)
         sums = [np.interp(heights - some[:, None], self.gap, self.force, right=0.0) @ counts for some in at_once]
         tension = -np.concatenate(sums)
