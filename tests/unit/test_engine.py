@@ -113,6 +113,22 @@ def test_measure_is_execute_then_read(tmp_path: Path) -> None:
         np.testing.assert_array_equal(reading.atoms["x"], session.atoms("x")["x"])
 
 
+def test_what_is_done_meanwhile_is_done_while_lammps_is_at_work(tmp_path: Path) -> None:
+    lines = {}
+    with Engine.session(tmp_path) as session:
+        open_oscillator(session)
+        log = tmp_path / "log.lammps"
+
+        def look() -> None:
+            lines["meanwhile"] = log.read_text().count("Loop time")
+
+        before = log.read_text().count("Loop time")
+        (step,) = session.measure("run 20000", ("step",), meanwhile=look).values
+        assert step == 20000.0
+        assert lines["meanwhile"] == before
+        assert log.read_text().count("Loop time") == before + 1
+
+
 def test_steps_count_runs_and_minimiser_iterations(tmp_path: Path) -> None:
     """Runs add up, also when the step counter is set back in between; minimisation counts its iterations."""
     with Engine.session(tmp_path) as session:

@@ -55,6 +55,10 @@ def test_a_path_there_and_back_twice_has_two_branches(make_scene: MakeScene, tmp
     assert branches(run(scene, tmp_path, figures=False).folder) == ["loading", *["loading", "unloading"] * 2]
 
 
+def test_rows_of_a_slide_are_no_unloading() -> None:
+    assert [KINDS["slide"].branch(phase) for phase in ("loading", "sliding")] == ["loading", "sliding"]
+
+
 def test_nobody_is_sent_to_a_method_that_his_experiment_refuses() -> None:
     """A slide exists in time only."""
     scene = read_scene(SCENES / "pull_off_dynamic.toml")
