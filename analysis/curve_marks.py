@@ -31,11 +31,11 @@ class Peak:
     misplaced: float
 
 
-NEAREST = 1e-5
+LEAST_SEPARATION = 1e-5
 """Distance of two places over that of the outermost ones below which no polynomial is put through them."""
-WIDEST = 3
+WIDEST_REACH = 3
 """Samples on either side of the highest one under the widest polynomial."""
-JUMP = 3.0
+JUMP_RATIO = 3.0
 """A fall after the maximum over the rise before it, from which on it is a jump and no curve."""
 
 
@@ -54,7 +54,7 @@ def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Pe
         return Peak(i, top, abs(top), top, float(d[i]), 0.0)
     rise, fall = top - tension[i - 1], top - tension[i + 1]
     even = rise / max(d[i - 1] - d[i], 1e-300), fall / max(d[i] - d[i + 1], 1e-300)
-    if even[1] > JUMP * even[0] + JUMP * abs(_bend(d, tension, i)):
+    if even[1] > JUMP_RATIO * even[0] + JUMP_RATIO * abs(_bend(d, tension, i)):
         return Peak(i, top, float(even[0] * (d[i] - d[i + 1])), top, float(d[i]), 0.0)
     # A search that has come back to the maximum leaves rows beside it that no polynomial tells apart.
     d, tension, at = _apart_from(d, tension, i)
@@ -62,15 +62,15 @@ def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Pe
     if not 2 <= at < len(d) - 2:
         return Peak(i, top, abs(coarse - top), coarse, place, abs(place - float(d[at])))
     position, smooth = _vertex(d, tension, at, 2)
-    if WIDEST <= at < len(d) - WIDEST:
-        place, _ = _vertex(d, tension, at, WIDEST)
+    if WIDEST_REACH <= at < len(d) - WIDEST_REACH:
+        place, _ = _vertex(d, tension, at, WIDEST_REACH)
     return Peak(i, top, abs(smooth - coarse), smooth, position, abs(position - place))
 
 
 def _apart_from(d: Array, tension: Array, i: int) -> tuple[Array, Array, int]:
     """The samples without those that lie as good as on the inner sample i, and its new index; two neighbours stay."""
-    width = float(d[max(i - WIDEST, 0)] - d[min(i + WIDEST, len(d) - 1)])
-    kept = np.abs(d - d[i]) > NEAREST * width
+    width = float(d[max(i - WIDEST_REACH, 0)] - d[min(i + WIDEST_REACH, len(d) - 1)])
+    kept = np.abs(d - d[i]) > LEAST_SEPARATION * width
     kept[[0, i, -1]] = True
     return d[kept], tension[kept], int(kept[:i].sum())
 
@@ -131,7 +131,7 @@ def rivals(displacement: Sequence[float], force: Sequence[float], peak: Peak) ->
 
 def are_apart(d: Array) -> bool:
     """Whether neighbouring displacements are far enough from each other for a polynomial through them."""
-    return float(np.abs(np.diff(d)).min()) > NEAREST * float(np.ptp(d))
+    return float(np.abs(np.diff(d)).min()) > LEAST_SEPARATION * float(np.ptp(d))
 
 
 def _bend(d: np.ndarray, tension: np.ndarray, i: int) -> float:

@@ -30,20 +30,20 @@ SIDEWAYS_COST = 3.0
 """A stencil one sample off the middle has to be smoother by this factor to be preferred."""
 FIT_DEGREE = 4
 """Degree of the least-squares polynomial where noise hides which sample is lowest."""
-BESIDE = (3, 5, 10)
+SIDE_COUNTS = (3, 5, 10)
 """Samples on each side of the lowest one under the polynomials of growing degree."""
 SMOOTH_ORDERS = (2, 4, 6, 8)
 """Orders of the differences that show whether samples are smooth."""
-CALMER = 0.6
+DECAY_OF_DIFFERENCES = 0.6
 """Differences of one even order over those of the order before, each over that of a sawtooth of height 1, up to which
 samples count as smooth: across a jump, and of noise, the ratio is near 1."""
-SETTLES = 0.2
+LEAST_CONVERGENCE = 0.2
 """Least part of a position's change from one polynomial to the next that is believed to be left at the one after."""
-CLAIMED = 2.0
+CLAIM_FACTOR = 2.0
 """Uncertainty of a position over that. The cases without snaps are covered in 98 % without noise, in 99 % with it."""
-LIKELY = 5.0
+CANDIDATE_SIGMAS = 5.0
 """Samples within this many standard deviations of the lowest one may be the lowest one."""
-FEW = 5
+BRIDGED_SAMPLES = 5
 """Up to this many samples that noise cannot tell apart are bridged by interpolation."""
 NOISE_REACH = 20
 """Samples on each side from which the noise is estimated."""
@@ -87,10 +87,10 @@ def place_of_minimum(x: Array, y: Array, candidates: NDArray[np.intp]) -> Place:
     if index in (0, last):
         return Place(float(x[index]), float(x[last] - x[0]) / last, True)
     noise = _noise(y, index)
-    likely = candidates[y[candidates] <= y[index] + LIKELY * noise]
+    likely = candidates[y[candidates] <= y[index] + CANDIDATE_SIGMAS * noise]
     first, final = int(likely[0]), int(likely[-1])
     extent = float(x[final] - x[first])
-    if final - first < FEW - 1:
+    if final - first < BRIDGED_SAMPLES - 1:
         place = _converging(x, y, index, noise) or _interpolated(x, y, index, noise)
     else:
         place = _fitted(x, y, first, final, noise)
@@ -144,20 +144,20 @@ def _converging(x: Array, y: Array, index: int, noise: float) -> Place | None:
     the samples are not smooth, or too few.
     """
     room = min(index, len(x) - 1 - index)
-    if room < BESIDE[1] or not _is_smooth(x, y, index, noise):
+    if room < SIDE_COUNTS[1] or not _is_smooth(x, y, index, noise):
         return None
     low, high = float(x[index - 1]), float(x[index + 1])
     best: Place | None = None
     before: float | None = None
     change = 0.0
-    for beside in (b for b in BESIDE if b <= room):
+    for beside in (b for b in SIDE_COUNTS if b <= room):
         stencil = Stencil(index - beside, 2 * beside + 1, 2 * beside)
         position, shift = _minimum(x, y, stencil, low, high, before)
         if math.isnan(position):
             break
         if before is not None:
-            change = max(abs(position - before), SETTLES * change)
-            place = Place(position, CLAIMED * change + 2.0 * noise * shift)
+            change = max(abs(position - before), LEAST_CONVERGENCE * change)
+            place = Place(position, CLAIM_FACTOR * change + 2.0 * noise * shift)
             if best is not None and place.uncertainty >= best.uncertainty:
                 break
             best = place
@@ -166,15 +166,15 @@ def _converging(x: Array, y: Array, index: int, noise: float) -> Place | None:
 
 
 def _is_smooth(x: Array, y: Array, index: int, noise: float) -> bool:
-    """Whether, up to noise, the differences about a sample are CALMER with every even order."""
-    near = slice(max(0, index - BESIDE[-1]), index + BESIDE[-1] + 1)
+    """Whether, up to noise, the differences about a sample are DECAY_OF_DIFFERENCES with every even order."""
+    near = slice(max(0, index - SIDE_COUNTS[-1]), index + SIDE_COUNTS[-1] + 1)
     place, difference = x[near], y[near]
     spacing, before = float(place[-1] - place[0]) / (len(place) - 1), math.inf
     for order in SMOOTH_ORDERS:
         for k in (order - 1, order):
             difference = (difference[1:] - difference[:-1]) / (place[k:] - place[:-k]) * (k * spacing)
         rough = float(np.abs(difference).max()) / math.comb(order, order // 2)
-        if rough > max(CALMER * before, 2.0 * noise):
+        if rough > max(DECAY_OF_DIFFERENCES * before, 2.0 * noise):
             return False
         before = rough
     return True

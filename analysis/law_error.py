@@ -10,13 +10,13 @@ from contact1d.analysis.pressure import Profile
 from contact1d.potentials import DoubleExponential
 from contact1d.potentials.table import Table
 
-BEYOND = 5.0
+TAIL_REACH = 5.0
 """Ranges of the law beyond the cutoff up to which its tail is summed: all but a share exp(-5) of it."""
 
 
 def left_out(law: DoubleExponential, table: Table, profile: Profile) -> float:
     """Σ |F_table(r) - f(r)| |z|/r [FU] of a profile, offset by offset along the chain: memory for one row of pairs."""
-    reach = table.cutoff + BEYOND * law.longest_range
+    reach = table.cutoff + TAIL_REACH * law.longest_range
     x, lower, upper = profile.x, profile.z_lower, profile.z_upper
     spacing = float(x[-1] - x[0]) / (len(x) - 1)
     near = np.flatnonzero(upper - lower < reach)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-CLOSED = 1e-9
+CLOSURE = 1e-9
 """Distance of two displacements over the width of the path up to which they are one: round-off."""
 
 
@@ -40,7 +40,7 @@ def loop_of(displacement: Sequence[float], force: Sequence[float]) -> Loop | Non
     same curve as the way there, so that there the difference of the two is what counts.
     """
     d, f = np.asarray(displacement, dtype=np.float64), np.asarray(force, dtype=np.float64)
-    same = CLOSED * float(np.ptp(d))
+    same = CLOSURE * float(np.ptp(d))
     if len(d) < 3 or abs(d[-1] - d[0]) > same:
         return None
     h, mean = np.diff(d), 0.5 * (f[1:] + f[:-1])

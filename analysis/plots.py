@@ -30,11 +30,11 @@ COMPRESSION, TENSION, LOADING, UNLOADING, THEORY = "#0072B2", "#D55E00", "#56B4E
 """Okabe and Ito's colours, which the colour-blind can tell apart."""
 SIZE = (6.4, 4.2)
 DPI = 120
-SEPARATED = 1e-3
+SEPARATION_SHARE = 1e-3
 """Largest pressure over that of the other states below which a state is not drawn: the bodies are apart."""
 FEW_ROWS = 20
 """Below this many rows a branch also shows where they are: a line through one row would be invisible."""
-CARRIES = 0.01
+SHOWN_SHARE = 0.01
 """Pressure over the largest one that a figure still shows."""
 
 
@@ -181,12 +181,12 @@ def _draw_bars(axis: Axes, x: Array, height: Array, width: float) -> None:
 def _touches(profile: Profile, profiles: Mapping[str, Profile]) -> bool:
     """Whether a state's pressure is more than the far tail of a separated pair, beside the other states'."""
     largest = max(float(np.abs(other.pressure).max(initial=0.0)) for other in profiles.values())
-    return float(np.abs(profile.pressure).max(initial=0.0)) > SEPARATED * largest
+    return float(np.abs(profile.pressure).max(initial=0.0)) > SEPARATION_SHARE * largest
 
 
 def _half_width(profile: Profile) -> float:
     size = np.abs(profile.pressure)
-    shown = size > CARRIES * float(size.max(initial=0.0))
+    shown = size > SHOWN_SHARE * float(size.max(initial=0.0))
     reach = float(np.abs(profile.x[shown]).max()) if shown.any() else float(np.abs(profile.x).max())
     return min(1.15 * reach + 2.0 * float(np.median(np.diff(profile.x))), float(np.abs(profile.x).max()) + 1.0)
 

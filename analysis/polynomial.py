@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-REAL = 1e-9
+IMAGINARY_ROUND_OFF = 1e-9
 """Imaginary part up to which a root counts as real."""
 NEWTON = 20
 """Steps in which Newton's method has found a minimum that is near, or will not."""
@@ -53,7 +53,7 @@ def real_roots(c: Array, low: float, high: float) -> Array:
     companion = np.eye(len(c) - 1, k=-1)
     companion[:, -1] -= c[:-1] / c[-1]
     roots = np.asarray(np.linalg.eigvals(companion), dtype=np.complex128)
-    real = roots.real[np.abs(roots.imag) < REAL]
+    real = roots.real[np.abs(roots.imag) < IMAGINARY_ROUND_OFF]
     return real[(real >= low) & (real <= high)]
 
 

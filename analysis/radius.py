@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 NEGLIGIBLE = 1e-12
 """Tension or pressure below this share of the largest |p| is round-off."""
-CURVED = 3
+PARABOLA_POINTS = 3
 """Particles that fix a pressure parabolic in x."""
 SPOT, TOLD = 1.2, 3.0
 """Error of a radius of 0 under tension, and radius from which on particles tell the contact's two edges from each other
@@ -25,9 +25,9 @@ as well as the interpolation says, both over the spacing.
 Between them it is taken as a straight line. Over 6900 random contacts of independent pairs in closed form, with bodies
 as sharp as two spacings, it covers at least 94 % of the errors of every size of contact; without, 85 to 90 %.
 """
-ACROSS = 0.25
+MIRROR_DISTANCE = 0.25
 """Distance beyond the centre, over the spacing, from which on a largest tension is that of the other side."""
-TIE = 1e-5
+TIE_DIFFERENCE = 1e-5
 """Difference of two pressures over the largest |p| that a minimiser leaves between mirror images."""
 SAME_PLACE = 1e-9
 """Distance of two edges over the spacing below which they are one and the same minimum: round-off."""
@@ -109,15 +109,15 @@ def _edge(x: Array, p: Array, centre: float, outwards: float) -> Place:
     away = (x - centre) / outwards
     reach, own = np.flatnonzero(away >= -0.5), np.flatnonzero(away >= 0.0)
     place = place_of_minimum(x, p, reach)
-    across = (place.position - centre) / outwards < -ACROSS
-    if across and own.size and float(p[own].min()) <= float(p[reach].min()) + TIE * float(np.abs(p).max()):
+    across = (place.position - centre) / outwards < -MIRROR_DISTANCE
+    if across and own.size and float(p[own].min()) <= float(p[reach].min()) + TIE_DIFFERENCE * float(np.abs(p).max()):
         return place_of_minimum(x, p, own)
     return place
 
 
 def _check(profile: Profile) -> None:
-    if len(profile.x) < CURVED:
-        raise ValueError(f"a contact radius needs at least {CURVED} particles, got {len(profile.x)}")
+    if len(profile.x) < PARABOLA_POINTS:
+        raise ValueError(f"a contact radius needs at least {PARABOLA_POINTS} particles, got {len(profile.x)}")
     if not np.all(np.isfinite(profile.pressure)):
         raise ValueError("a contact radius needs a finite pressure on every particle")
 
@@ -134,7 +134,9 @@ def _zero(x: Array, p: Array, first: int, last: int, residual: float) -> Place:
         return Place(float(x[last]), float(x[last] - x[0]) / last, True)
     inner, outer = float(x[last]), float(x[last + 1])
     zero, other = (
-        _parabola_zero(x[: end + 1], p[: end + 1], inner, outer, residual) if end - CURVED >= first - 1 else None
+        _parabola_zero(x[: end + 1], p[: end + 1], inner, outer, residual)
+        if end - PARABOLA_POINTS >= first - 1
+        else None
         for end in (last, last - 1)
     )
     if zero is None:
@@ -152,7 +154,7 @@ def _parabola_zero(x: Array, p: Array, inner: float, outer: float, residual: flo
     special case.
     """
     width, largest = outer - inner, float(np.max(p))
-    c, b, a = polynomial.polyfit((x[-CURVED:] - inner) / width, p[-CURVED:] / largest, 2)
+    c, b, a = polynomial.polyfit((x[-PARABOLA_POINTS:] - inner) / width, p[-PARABOLA_POINTS:] / largest, 2)
     square = b**2 - 4.0 * a * c
     if square <= 0.0 or (b >= 0.0 and a >= 0.0):
         return None

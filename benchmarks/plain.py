@@ -34,7 +34,7 @@ from contact1d.workflow.deck.steps import UnderLoad
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.experiments.running.contact import Contact
-from contact1d.workflow.experiments.running.holding import AT_REST, LOST
+from contact1d.workflow.experiments.running.holding import REST_SHARE, LOSS_SHARE
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.sampling import chunk_steps
 from contact1d.workflow.reproduce.oracles import chain_model
@@ -84,14 +84,14 @@ def quasistatic(scene: Scene, tolerance: float) -> Scene:
 def held(contact: Contact, load: float, scale: float) -> bool:
     """Whether the contact comes to rest under a load [FU], or is lost."""
     settings, largest = contact.settings, 0.0
-    near = AT_REST * contact.settings.tolerance * scale
+    near = REST_SHARE * contact.settings.tolerance * scale
     stiffness = scale / settings.largest_displacement
     while True:
         state = contact.row(UnderLoad(load, chunk_steps(settings)))
         if max(abs(state.force - load), abs(state.plate_velocity) * settings.settle_time * stiffness) <= near:
             return True
         largest = max(largest, -state.force)
-        off = load < 0.0 < largest and state.plate_velocity < 0.0 and -state.force < LOST * min(largest, -load)
+        off = load < 0.0 < largest and state.plate_velocity < 0.0 and -state.force < LOSS_SHARE * min(largest, -load)
         if off or state.smallest_distance > settings.cutoff:
             return False
 

@@ -15,7 +15,7 @@ from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.experiments.load.quasistatic import beside, moved_by
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.outcome import Outcome, in_words, unmet
-from contact1d.workflow.experiments.running.prescribing import SMALLER, in_smaller_steps
+from contact1d.workflow.experiments.running.prescribing import RETRY_SHARES, in_smaller_steps
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.slowness import slowness
 from contact1d.workflow.experiments.running.trust import ThroughError
@@ -71,7 +71,7 @@ def test_a_radius_of_nothing_is_known_to_nothing(make_scene: MakeScene) -> None:
     )
 
 
-@pytest.mark.parametrize("carried", [*SMALLER, 0.0])
+@pytest.mark.parametrize("carried", [*RETRY_SHARES, 0.0])
 def test_a_search_takes_smaller_steps_before_it_gives_up(make_scene: MakeScene, tmp_path: Path, carried: float) -> None:
     tried = []
 
@@ -89,7 +89,7 @@ def test_a_search_takes_smaller_steps_before_it_gives_up(make_scene: MakeScene, 
     else:
         with pytest.raises(ThroughError, match="16 times smaller did not help"):
             in_smaller_steps(search)(context)
-        assert len(tried) == 1 + len(SMALLER)
+        assert len(tried) == 1 + len(RETRY_SHARES)
     assert context.deck is deck
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from contact1d.analysis.curve_marks import crossing, largest_tension, rivals, smooth_crossing
-from contact1d.workflow.experiments.pull_off.smooth import MISPLACED
+from contact1d.workflow.experiments.pull_off.smooth import PLACE_FACTOR
 
 PARABOLA = 1e-12  # round-off of a polynomial fit in doubles
 SIXTH = 0.5  # the constant of the interpolation error of this function, generously
@@ -70,7 +70,7 @@ def test_the_vertex_of_a_smooth_maximum_is_of_sixth_order_and_its_uncertainty_co
     peak = largest_tension(displacement, [-np.exp(-((d - 0.05) ** 2)) for d in displacement])
     assert abs(peak.smooth - 1.0) <= peak.uncertainty
     assert abs(peak.smooth - 1.0) <= SIXTH * step**5
-    assert abs(peak.position - 0.05) <= MISPLACED * peak.misplaced <= FOURTH * step**4
+    assert abs(peak.position - 0.05) <= PLACE_FACTOR * peak.misplaced <= FOURTH * step**4
 
 
 @pytest.mark.parametrize("beside", [1e-7, -1e-7])

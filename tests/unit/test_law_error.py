@@ -11,7 +11,7 @@ import pytest
 
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.potentials.table import Table
-from contact1d.workflow.experiments.running.law_error import GIVES, law_error, law_share
+from contact1d.workflow.experiments.running.law_error import COMPLIANCE_FACTOR, law_error, law_share
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import Settings, settings_for
@@ -54,7 +54,7 @@ def test_it_is_the_sum_over_all_pairs(tmp_path: Path, spacing: float) -> None:
     felt = r < settings.cutoff + 5.0 * law.longest_range
     kept = np.where(r <= settings.cutoff, table.force(np.minimum(r, settings.cutoff)), 0.0)
     error = np.sum((np.abs(kept - law.force(r)) * np.abs(up) / r)[felt])
-    assert law_error(scene, settings, state) == pytest.approx(GIVES * error, rel=SUM)
+    assert law_error(scene, settings, state) == pytest.approx(COMPLIANCE_FACTOR * error, rel=SUM)
 
 
 @pytest.mark.parametrize(("cutoff", "points"), [(1.5, 8000), (2.0, 8000), (4.0, 300), (4.0, 500)])

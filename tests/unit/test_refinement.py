@@ -18,7 +18,7 @@ from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import UntrustedError
 from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.runs.refinement import FINER, MOST_REFINEMENTS, Refined, nested, refined
+from contact1d.workflow.runs.refinement import TOLERANCE_RATIO, MOST_REFINEMENTS, Refined, nested, refined
 from contact1d.workflow.scene import Scene, read_scene, scene_from_dict
 from contact1d.workflow.settings.calibration import CALIBRATION
 from contact1d.workflow.settings.settings import Settings, settings_for
@@ -83,7 +83,7 @@ def test_it_goes_on_until_the_tolerance_is_met(monkeypatch: pytest.MonkeyPatch, 
     assert found.quantities == passes[-1].quantities
     assert found.refinement is not None
     assert found.refinement.count == 2
-    assert found.refinement.tolerance == pytest.approx(TOLERANCE / FINER**2, rel=ROUND_OFF)
+    assert found.refinement.tolerance == pytest.approx(TOLERANCE / TOLERANCE_RATIO**2, rel=ROUND_OFF)
     assert isinstance(context.progress, Heard)
     assert context.progress.notes[0] == "refining: critical_radius is known to 4.0e-04, asked 0.0001"
 
@@ -147,7 +147,7 @@ def test_a_refined_run_is_one_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     asked, heard = scene(), Heard()
     finished = run(asked, tmp_path / "refined", figures=False, progress=heard)
     document = json.loads((finished.folder / "results.json").read_text())
-    assert document["accuracy"] == {"tolerance": TOLERANCE / FINER, "refinements": 1}
+    assert document["accuracy"] == {"tolerance": TOLERANCE / TOLERANCE_RATIO, "refinements": 1}
     assert "tolerance" not in [warning["name"] for warning in document["warnings"]]
     assert any(note.startswith("refining: adhesion_force") for note in heard.notes)
     assert read_scene(finished.folder / "scene.toml") == asked
@@ -176,10 +176,10 @@ def test_doubts_are_by_the_tolerance_that_was_asked_for(tmp_path: Path, monkeypa
         strict.append(settings.tolerance)
         return {"chain_end": "too short"} if settings.tolerance < TOLERANCE else {}
 
-    finer = Deck(asked, settings_for(asked, TOLERANCE / FINER))
+    finer = Deck(asked, settings_for(asked, TOLERANCE / TOLERANCE_RATIO))
     later = replace(outcome(0.5 * TOLERANCE), warnings={"chain_end": "too short", "no_peak": "none"})
     monkeypatch.setattr(refinement, "_pass", lambda *_: (finer, later))
     monkeypatch.setattr(refinement, "doubts", doubted)
     context = RunContext(Deck(asked, settings_for(asked)), tmp_path, Silent(), 1.0)
     assert refined(context, outcome(4 * TOLERANCE)).outcome.warnings == {"no_peak": "none"}
-    assert strict == [TOLERANCE / FINER, TOLERANCE]
+    assert strict == [TOLERANCE / TOLERANCE_RATIO, TOLERANCE]

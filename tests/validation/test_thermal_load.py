@@ -22,7 +22,7 @@ from contact1d.analysis.reference.boltzmann_pairs import BoltzmannPairs
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.thermal_chain import displacement_under
-from contact1d.workflow.experiments.running.sampling import SETTLING
+from contact1d.workflow.experiments.running.sampling import SETTLING_LOOKS
 from tests.scenes import LAW
 from tests.validation.test_shipped_scenes import SCENES, THERMAL_PLACES, model_of
 
@@ -57,7 +57,7 @@ def to_first_order(temperature: float, width: float) -> tuple[float, float]:
 
 def swings(finished: Run, deviation: float) -> None:
     """The variance of d in time is that of the reference, and not 0, within the sample's own errors."""
-    d = np.asarray(finished.curve.displacement)[SETTLING:]
+    d = np.asarray(finished.curve.displacement)[SETTLING_LOOKS:]
     squares = [float(np.mean((block - d.mean()) ** 2)) for block in np.array_split(d, BLOCKS)]
     error = float(np.std(squares, ddof=1)) / math.sqrt(BLOCKS)
     assert abs(float(np.var(d)) - deviation**2) <= SIGMAS * error

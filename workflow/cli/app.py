@@ -16,7 +16,7 @@ from contact1d.workflow.cli.reproduce import reproduce
 from contact1d.workflow.cli.scenes import new, schema
 from contact1d.workflow.cli.stability import stability
 
-SELDOM = 100_000
+GARBAGE_THRESHOLD = 100_000
 """New objects after which Python looks for garbage: at 700, a tenth of what the imports take goes into looking."""
 
 app = typer.Typer(
@@ -127,7 +127,7 @@ for one in (new, run, deck, cost, identify, reproduce, stability, schema, doctor
 
 def main() -> None:
     """Entry point of the command `contact1d`."""
-    gc.set_threshold(SELDOM)
+    gc.set_threshold(GARBAGE_THRESHOLD)
     app(prog_name="contact1d")
 
 

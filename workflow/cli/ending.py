@@ -23,7 +23,7 @@ CALL_IS_WRONG = 2
 RUN_FAILED = 3
 INTERRUPTED = 130
 
-FULL = {
+FULL_DISK = {
     errno.ENOSPC: "the disk is full",
     errno.EDQUOT: "the disk quota is used up",
     errno.EFBIG: "a file would be larger than is allowed (ulimit -f)",
@@ -106,7 +106,7 @@ def _of_system(error: BaseException, what: str, folder: Path | None, left: list[
     reason = ""
     if isinstance(error, OSError) and error.errno != errno.EPIPE:  # a reader that went away is no error: typer ends
         place = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else str(folder or "")
-        reason = FULL.get(error.errno or 0, error.strerror or str(error))
+        reason = FULL_DISK.get(error.errno or 0, error.strerror or str(error))
         if error.errno in (errno.EEXIST, errno.ENOTDIR) and os.path.isfile(place):
             return f"{place} is a file; a folder is needed", CALL_IS_WRONG
         if error.errno in BAD_PLACE and place:

@@ -20,7 +20,7 @@ NAMES = {
 }
 PREFIXES = {-5: "f", -4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G", 4: "T"}
 """Of SI units, by powers of 1000."""
-EXACT = 1e-9
+EXACTNESS = 1e-9
 """A relative uncertainty below it, as of a unit that was given, is left out."""
 COLUMNS = 64
 ROWS = 9
@@ -48,7 +48,7 @@ def in_si(entry: Mapping[str, Any]) -> str:
         power = 0
     scale = 1000.0**power
     spread = uncertainty / scale
-    number = rounded(value / scale, spread) if spread > EXACT * abs(value) / scale else f"{value / scale:.5g}"
+    number = rounded(value / scale, spread) if spread > EXACTNESS * abs(value) / scale else f"{value / scale:.5g}"
     return f"{number} {PREFIXES[power]}{unit}"
 
 

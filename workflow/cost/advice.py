@@ -16,22 +16,22 @@ from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-5)
-SHARE = 0.25
+KNOB_SHARE = 0.25
 """Part of a tolerance that one knob of a combination may use up."""
-CHEAPER = 0.9
+WORTHWHILE_SAVING = 0.9
 """CPU time over that of what the tolerance chooses, below which something is worth saying: medians differ by less."""
 
 
 def combinations(
     knobs: Sequence[Knob], records: Sequence[VariantRecord], base: Change
 ) -> Iterator[tuple[str, str, Change]]:
-    """For each tolerance, every knob at its coarsest value whose error is within SHARE of it: label, what, change."""
+    """For each tolerance, every knob at its coarsest value with an error within KNOB_SHARE of it."""
     turned = [knob for knob in knobs if not knob.own_reference and not knob.alternative]
     for target in TARGETS:
         change = base
         found: list[str] = []
         for knob in turned:
-            level = _coarsest(knob, records, SHARE * target)
+            level = _coarsest(knob, records, KNOB_SHARE * target)
             if level is not None:
                 change += knob.levels[level].change
                 found.append(knob.levels[level].label)
@@ -83,7 +83,7 @@ def advise(tolerance: float, variants: Sequence[VariantRecord], noisy: bool) -> 
     else:
         text = f"tolerance {power(tolerance)}: chooses {chosen.details}: {_measured(chosen)}"
         text += "" if chosen in reaching else ", which is not enough"
-    limit = CHEAPER * chosen.cpu_s if chosen in reaching and chosen is not None else math.inf
+    limit = WORTHWHILE_SAVING * chosen.cpu_s if chosen in reaching and chosen is not None else math.inf
     less = [one for one in reaching if one.cpu_s < limit]
     if less:
         text += f"; {'cheaper' if limit < math.inf else 'the cheapest'} in this scene: {said(less[0])}"

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-ABOVE_FLOOR = 5.0
+FLOOR_FACTOR = 5.0
 """An error below this many floors belongs to the other settings, not to the knob."""
 ASYMPTOTIC = 0.1
 """Errors above it are too large for a leading term to prevail."""
-NOTHING = 1e-9
+ROUND_OFF = 1e-9
 """Errors below it are those of the reference and of round-off."""
-FEWEST = 3
+FEWEST_POINTS = 3
 """Points below which a slope would have no standard error."""
 
 
@@ -33,18 +33,18 @@ def fit_order(h: Sequence[float], errors: Sequence[float], floor: float = 0.0) -
     Args:
         h: what goes to zero as the knob gets finer, > 0.
         errors: relative, of the same length; NaN where there is none.
-        floor: error that is left where this knob has none: points within ABOVE_FLOOR times it are left out.
+        floor: error that is left where this knob has none: points within FLOOR_FACTOR times it are left out.
 
     Returns:
-        The order with its standard error, √(Σ residual²/(n − 2)/Σ(x − x̄)²), or None with fewer than FEWEST points
-        between the floor and ASYMPTOTIC.
+        The order with its standard error, √(Σ residual²/(n − 2)/Σ(x − x̄)²), or None with fewer than FEWEST_POINTS
+        points between the floor and ASYMPTOTIC.
     """
     used = [
         (math.log(one), math.log(error))
         for one, error in zip(h, errors, strict=True)
-        if math.isfinite(error) and max(ABOVE_FLOOR * floor, NOTHING) < error < ASYMPTOTIC
+        if math.isfinite(error) and max(FLOOR_FACTOR * floor, ROUND_OFF) < error < ASYMPTOTIC
     ]
-    if len(used) < FEWEST or len({x for x, _ in used}) < FEWEST:
+    if len(used) < FEWEST_POINTS or len({x for x, _ in used}) < FEWEST_POINTS:
         return None
     x, y = np.asarray(used).T
     spread = float(np.sum((x - x.mean()) ** 2))

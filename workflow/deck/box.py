@@ -26,7 +26,7 @@ BIN_MARGIN = 1e-3
 """Least free space over the length of a long bond: LAMMPS wants no box much thinner than its bins."""
 MOST_BINS = 4_000_000
 """Bins beyond which they are made larger: some 100 MB of them."""
-THINNEST = 0.02
+LEAST_SLENDERNESS = 0.02
 """Least free space over the edge of a bin: LAMMPS wants no bin above 100 times the box."""
 
 Lengths = tuple[float, float, float]
@@ -39,7 +39,7 @@ def margins(scene: Scene, settings: Settings) -> Lengths:
     if scene.plate is not None and (scene.noise is not None or scene.experiment.motion_is_result):
         head *= FLIGHT
     head -= min([0.0, *scene.experiment.places()])
-    least = max(BIN_MARGIN * settings.far, THINNEST * reach(scene, settings))
+    least = max(BIN_MARGIN * settings.far, LEAST_SLENDERNESS * reach(scene, settings))
     side, flat, head = (math.ceil(max(margin, least)) for margin in (side, 1.0, head))
     return side, flat, head
 
@@ -63,4 +63,4 @@ def bin_size(bodies: Sequence[Body], scene: Scene, settings: Settings, chosen: f
     own = edge = max(chosen, 0.5 * reach(scene, settings))
     while np.prod(np.maximum(edges / edge, 1.0)) > MOST_BINS:
         edge *= 2.0
-    return 0.0 if edge == own else min(edge, float(edges.min()) / THINNEST)
+    return 0.0 if edge == own else min(edge, float(edges.min()) / LEAST_SLENDERNESS)

@@ -26,7 +26,7 @@ PLANE_DEPTH = 1e3
 MINIMISER_ITERATIONS = 20_000
 RELAXATION = 0.1
 """First step of a relaxation over the time step of a run in time: ten times as much is 0.5/ω_max."""
-GENTLE = 1e-3
+GENTLE_RESIDUAL = 1e-3
 """Residual force over one particle's at which gentle moves have led into a minimum that Newton's method finishes."""
 NUMBERS_PER_LINE = 6
 CHOSEN_BINS = ("far_bin", "wide_bin")
@@ -237,7 +237,7 @@ class Deck:
             }
             if settings.gentle:
                 variables["gentle_move"] = number(settings.longest_move)
-                variables["gentle_tolerance"] = number(GENTLE * settings.force_scale)
+                variables["gentle_tolerance"] = number(GENTLE_RESIDUAL * settings.force_scale)
             return Contribution("quasistatic", Stage.MOTION, ("quasistatic",), variables)
         variables = {"time_step": number(settings.time_step)}
         return Contribution("dynamic", Stage.MOTION, ("dynamic",), variables, integrates="particles")

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import STAGGER, Settings
+from contact1d.workflow.settings.settings import STAGGER_SHARE, Settings
 
 Array = NDArray[np.float64]
 
@@ -75,7 +75,7 @@ def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body
         if scene.horizontal is None:
             shift[:, 0] = 0.0
     if scene.plate is not None and name == "upper":
-        shift[:, 1] = STAGGER * len(particles) * scene.bodies.spacing * (-1.0) ** np.arange(len(particles))
+        shift[:, 1] = STAGGER_SHARE * len(particles) * scene.bodies.spacing * (-1.0) ** np.arange(len(particles))
     anchors = particles + shift
     if settings.far == 0.0:
         return Body(name, particles, anchors, np.empty((0, 3)))

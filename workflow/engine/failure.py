@@ -14,7 +14,7 @@ TOO_WIDE = "the bodies reach much further than their forces"
 TOO_LONG = "a run is longer than can be counted"
 NO_MEMORY = "there is not enough memory"
 NOT_FINITE = "a place or a force is no finite number any more"
-MEANT = {
+MEANINGS = {
     r"Too many neighbor bins|Domain too large for neighbor bins|Cannot use neighbor bins": TOO_WIDE,
     r"(Illegal|Invalid) run command|Too many (timesteps|iterations)": TOO_LONG,
     r"Failed to (re)?allocate|bad_alloc|Too many (total|local) atoms|Too many atom": NO_MEMORY,
@@ -63,5 +63,5 @@ def plain_message(raw: str, log: str = "", commands: str = "") -> str:
     lost = re.match(r"Lost atoms: original (\d+) current (\d+)", text)
     if lost:
         text = f"{int(lost[1]) - int(lost[2])} of {lost[1]} atoms left the box ({text})"
-    text = next((f"{meant} ({text})" for words, meant in MEANT.items() if re.search(rf"\b({words})\b", text)), text)
+    text = next((f"{meant} ({text})" for words, meant in MEANINGS.items() if re.search(rf"\b({words})\b", text)), text)
     return f"LAMMPS stopped: {text}" + (f", at: {command}" if command else "")

@@ -26,7 +26,7 @@ from contact1d.workflow.engine.progress import Progress, Silent
 LOG = "log.lammps"
 TAIL_LINES = 25
 LONGEST_LOG = 1_000_000
-HURRY = 5.0
+CLOSING_SECONDS = 5.0
 """Seconds that LAMMPS has to close at the end of a session, past its time limit if need be."""
 
 Array = NDArray[Any]
@@ -144,7 +144,7 @@ class Session:
     def close(self) -> None:
         """Close the instance and leave the process to the next session, unless it failed. Use `Engine.session`."""
         if not self._over:
-            self._deadline = max(self._deadline, time.monotonic() + HURRY)
+            self._deadline = max(self._deadline, time.monotonic() + CLOSING_SECONDS)
             self._ask("close")
             self._over = "it was closed"
             give_back(self._worker)

@@ -7,7 +7,7 @@ from typing import Any
 
 from contact1d.workflow.errors import Contact1dError, FolderError, RunError
 from contact1d.workflow.runs.finished import load_run
-from contact1d.workflow.runs.scales import FIXING, jkr_scales
+from contact1d.workflow.runs.scales import UNIT_FIXING_RESULTS, jkr_scales
 from contact1d.workflow.scene import Circle, Parabola
 from contact1d.workflow.units import SI, Scales
 
@@ -32,13 +32,13 @@ def scales_of_run(folder: Path, contact_modulus: float, surface_energy: float) -
         run = load_run(folder)
     except (FolderError, RunError) as error:
         raise FinishedRunError(str(error)) from None
-    missing = [name for name in FIXING if name not in run.results]
+    missing = [name for name in UNIT_FIXING_RESULTS if name not in run.results]
     if missing:
         raise FinishedRunError(f"{folder} has no {' and no '.join(missing)}: use a run of kind pull_off")
     profile = run.scene.bodies.profile
     if not isinstance(profile, Parabola | Circle):
         raise FinishedRunError(f"{folder}: the profile is a {profile.kind}, and JKR is for a sphere")
-    force, radius = (run.results[name] for name in FIXING)
+    force, radius = (run.results[name] for name in UNIT_FIXING_RESULTS)
     if not (force.value > 0.0 and radius.value > 0.0):
         raise FinishedRunError(f"{folder}: F_A and a_0 must be positive; they are {force.value:g} and {radius.value:g}")
     scales = jkr_scales(force, radius, profile.radius, contact_modulus, surface_energy)

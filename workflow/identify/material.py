@@ -9,11 +9,11 @@ from contact1d.workflow.scene.material import PARABOLA_SHARE
 
 RESOLUTION = 28.5
 """Particles in a₀, unless the length unit is given: as in the first row of the paper's Table 1."""
-COARSEST = 8.0
+FEWEST_IN_RADIUS = 8.0
 """Fewest particles in a₀ that a length unit must leave."""
-FINEST = 2000.0
+MOST_IN_RADIUS = 2000.0
 """Most particles in a₀."""
-WIDEST = 0.6
+LARGEST_RADIUS_SHARE = 0.6
 """Largest a₀ over the radius of the sphere: beyond it neither a parabola nor a half space is meant."""
 PRELOAD_SHARE = 0.7
 """Preload of a scene for a material over its F_A."""
@@ -40,24 +40,24 @@ def material_scene(
         IdentifyError: a target out of reach, or a length unit that is too coarse.
     """
     require_held(target, contact_modulus, PARABOLA_SHARE["mdr"] * radius, ("N", "m"))  # the MDR's springs are E*
-    coarsest = target.zero_load_radius / COARSEST
+    coarsest = target.zero_load_radius / FEWEST_IN_RADIUS
     unit = target.zero_load_radius / RESOLUTION if length_unit is None else length_unit
     if unit > coarsest:
         raise IdentifyError(
             f"a length unit of {unit:.4g} m leaves {target.zero_load_radius / unit:.2g} particles in the zero-load "
-            f"radius of {target.zero_load_radius:.4g} m: at most {coarsest:.4g} m leaves {COARSEST:g}"
+            f"radius of {target.zero_load_radius:.4g} m: at most {coarsest:.4g} m leaves {FEWEST_IN_RADIUS:g}"
         )
-    if unit < target.zero_load_radius / FINEST:
+    if unit < target.zero_load_radius / MOST_IN_RADIUS:
         raise IdentifyError(
             f"a length unit of {unit:.4g} m puts {target.zero_load_radius / unit:.2g} particles into the zero-load "
-            f"radius of {target.zero_load_radius:.4g} m: at least {target.zero_load_radius / FINEST:.4g} m leaves "
-            f"{FINEST:g}"
+            f"radius of {target.zero_load_radius:.4g} m: at least {target.zero_load_radius / MOST_IN_RADIUS:.4g} m "
+            f"leaves {MOST_IN_RADIUS:g}"
         )
-    if target.zero_load_radius > WIDEST * radius:
+    if target.zero_load_radius > LARGEST_RADIUS_SHARE * radius:
         raise IdentifyError(
             f"the zero-load radius of {target.zero_load_radius:.4g} m is {target.zero_load_radius / radius:.2g} of the "
-            f"sphere's: JKR is for contacts small beside the sphere, here up to {WIDEST:g} of it. A larger radius, a "
-            "larger contact modulus or a smaller surface energy has that"
+            f"sphere's: JKR is for contacts small beside the sphere, here up to {LARGEST_RADIUS_SHARE:g} of it. A larger "
+            "radius, a larger contact modulus or a smaller surface energy has that"
         )
     force_unit = 2.0 * contact_modulus * unit**2
     wanted = Target(target.adhesion_force / force_unit, target.zero_load_radius / unit)

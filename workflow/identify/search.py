@@ -24,7 +24,7 @@ from contact1d.workflow.scene import Scene
 Array = NDArray[np.float64]
 MOST_RUNS = 8
 """Runs after which the search gives up; two to four are usual."""
-CLOSE = 0.3
+SEARCH_SHARE = 0.3
 """A search ends where both deviations are below this share of the scene's tolerance."""
 
 
@@ -68,7 +68,7 @@ def identify(scene: Scene, target: Target, folder: Path, progress: Progress | No
             (finished.results["adhesion_force"].value, finished.results["zero_load_radius"].value), target
         )
         found = Identified(trial, finished, (math.expm1(reached[0]), math.expm1(reached[1])), count)
-        if np.abs(reached).max() < CLOSE * scene.accuracy.tolerance:
+        if np.abs(reached).max() < SEARCH_SHARE * scene.accuracy.tolerance:
             return found
         at = at - np.linalg.solve(slopes(scene, at), reached)
     assert found is not None

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.scene import PullOff, Scene
 
-BRITTLE = 4.0 / (9.0 * math.sqrt(3.0))
+BRITTLE_RATIO = 4.0 / (9.0 * math.sqrt(3.0))
 """F_A R₁/(c a₀³) in the limit of a vanishing range."""
-REACHABLE = 0.95 * BRITTLE
+REACHABLE_RATIO = 0.95 * BRITTLE_RATIO
 """Beyond this the range would be so short that each pair snaps by itself."""
 ROUNDING = 1.0 + 1e-5
 """Keeps a nearest value possible after it was printed with six digits."""
@@ -60,10 +60,10 @@ def require_held(target: Target, layer: float, radius: float, units: tuple[str, 
         IdentifyError: with the nearest zero-load radius and the nearest adhesion force.
     """
     force, a_0 = target.adhesion_force, target.zero_load_radius
-    if force * radius / (layer * a_0**3) <= REACHABLE:
+    if force * radius / (layer * a_0**3) <= REACHABLE_RATIO:
         return
-    smallest = ROUNDING * (force * radius / (REACHABLE * layer)) ** (1.0 / 3.0)
-    largest = REACHABLE * layer * a_0**3 / radius / ROUNDING
+    smallest = ROUNDING * (force * radius / (REACHABLE_RATIO * layer)) ** (1.0 / 3.0)
+    largest = REACHABLE_RATIO * layer * a_0**3 / radius / ROUNDING
     newton, metre = units
     raise IdentifyError(
         f"an adhesion force of {force:.6g} {newton} with a zero-load radius of {a_0:.6g} {metre} is more than springs "

@@ -1,7 +1,7 @@
 """What was asked for and is not reached: the run again with finer settings, until it is, or until that helps no more.
 
-A pass has the settings and the checks of a tolerance that is FINER times smaller than that of the pass before. Two
-nested passes are evidence of how exact they are: where they differ by more than both claim, the claim is raised.
+A pass has the settings and the checks of a tolerance that is TOLERANCE_RATIO times smaller than that of the pass before.
+Two nested passes are evidence of how exact they are: where they differ by more than both claim, the claim is raised.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from contact1d.workflow.experiments.running.trust import UntrustedError, doubts
 from contact1d.workflow.settings.settings import SettingsError, settings_for
 from contact1d.workflow.units import Quantity
 
-FINER = 5.0
+TOLERANCE_RATIO = 5.0
 """Tolerance of a pass over that of the next one."""
 MOST_REFINEMENTS = 2
-HELPS = 0.8
+HELP_RATIO = 0.8
 """Uncertainty of a result over that of the pass before from which on a refinement counts as no help."""
 FOLDER = ".refined"
 """Of a pass under way, in the run folder: its files replace those of the pass before only when it is done."""
@@ -59,11 +59,11 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
             break
         context.progress.note(f"refining: {in_words(left)}, asked {scene.accuracy.tolerance:g}")
         try:
-            finer_deck, finer = _pass(context, tolerance / FINER)
+            finer_deck, finer = _pass(context, tolerance / TOLERANCE_RATIO)
         except (EngineError, UntrustedError, SettingsError) as error:
             ended = f"{_after(count)}, since the next failed: {getattr(error, 'message', error)}"
             break
-        tolerance, count = tolerance / FINER, count + 1
+        tolerance, count = tolerance / TOLERANCE_RATIO, count + 1
         before, deck, outcome = outcome, finer_deck, nested(outcome, finer)
         ended = _after(count)
         if unmet(scene, outcome) and not _helped(left, before, outcome):
@@ -94,7 +94,8 @@ def _after(count: int) -> str:
 def _helped(names: dict[str, float], before: Outcome, after: Outcome) -> bool:
     """Whether one of the named results is known clearly better."""
     return any(
-        name in after.quantities and after.quantities[name].uncertainty < HELPS * before.quantities[name].uncertainty
+        name in after.quantities
+        and after.quantities[name].uncertainty < HELP_RATIO * before.quantities[name].uncertainty
         for name in names
     )
 

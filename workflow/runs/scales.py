@@ -14,7 +14,7 @@ from contact1d.analysis.reference.jkr import identified_contact_modulus, identif
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import Quantity, Scales
 
-FIXING = ("adhesion_force", "zero_load_radius")
+UNIT_FIXING_RESULTS = ("adhesion_force", "zero_load_radius")
 """What a run must have found, and not as 0, for `surface_energy` to fix its units."""
 
 
@@ -24,7 +24,7 @@ def scales_of(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales | None
     if material is None or unfound(scene, quantities):
         return None
     if material.surface_energy is not None:
-        force, radius = (quantities[name] for name in FIXING)
+        force, radius = (quantities[name] for name in UNIT_FIXING_RESULTS)
         curvature = scene.bodies.profile.curvature_radius
         assert curvature is not None
         return jkr_scales(force, radius, curvature, material.effective_modulus(), material.surface_energy)
@@ -40,7 +40,7 @@ def unfound(scene: Scene, quantities: Mapping[str, Quantity]) -> tuple[str, ...]
     """Those of F_A and a₀ that the scene's units need and that the run did not find, or found to be 0."""
     if scene.material is None or scene.material.surface_energy is None:
         return ()
-    return tuple(name for name in FIXING if name not in quantities or not quantities[name].value > 0.0)
+    return tuple(name for name in UNIT_FIXING_RESULTS if name not in quantities or not quantities[name].value > 0.0)
 
 
 def jkr_scales(

@@ -198,7 +198,7 @@ def _punch(draft: Draft) -> Iterator[Problem]:
         yield Problem("bodies.profile.radius", "more spacings than a number holds", shown(radius), hint)
         return
     count = max(3, round(wanted))
-    if abs(wanted - count) > WHOLE * count:
+    if abs(wanted - count) > WHOLE_NUMBER_ERROR * count:
         must = "must be at least 1.5 spacings and a whole number of half spacings"
         must += f": the nearest is {0.5 * count * spacing:g} (LU)"
         yield Problem("bodies.profile.radius", must, shown(radius))
@@ -262,7 +262,7 @@ def _jkr_units(draft: Draft, has: Mapping[str, bool]) -> Iterator[Problem]:
 
 
 UNIT_KEYS = ("length_unit", "force_unit", "surface_energy")
-WHOLE = 1e-9
+WHOLE_NUMBER_ERROR = 1e-9
 """Relative error up to which a number counts as whole."""
 
 RULES: tuple[Callable[[Draft], Iterator[Problem]], ...] = (

@@ -10,7 +10,7 @@ from difflib import get_close_matches
 
 from contact1d.workflow.errors import Contact1dError
 
-SHOWN = 60
+SHOWN_LENGTH = 60
 """Characters of a given value that a message shows."""
 
 
@@ -63,12 +63,12 @@ def as_toml(value: object) -> str:
 
 
 def shown(value: object) -> str:
-    """`value` as TOML, shortened to at most `SHOWN` characters: for messages."""
+    """`value` as TOML, shortened to at most `SHOWN_LENGTH` characters: for messages."""
     try:
         text = as_toml(value)
     except (ValueError, RecursionError):  # an integer of thousands of digits; nesting without end
         return "…"
-    return text if len(text) <= SHOWN else text[: SHOWN - 1] + "…"
+    return text if len(text) <= SHOWN_LENGTH else text[: SHOWN_LENGTH - 1] + "…"
 
 
 def as_key(key: str) -> str:

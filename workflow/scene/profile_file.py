@@ -6,7 +6,7 @@ import math
 import re
 from pathlib import Path
 
-from contact1d.workflow.scene.profiles import FEWEST
+from contact1d.workflow.scene.profiles import FEWEST_POINTS
 
 
 class ProfileFileError(ValueError):
@@ -22,7 +22,7 @@ def read_profile(path: Path, scale: float) -> tuple[list[float], list[float]]:
 
     Raises:
         ProfileFileError: if there is no such file, a cell is empty or no number, a line has one column, there are
-            fewer than FEWEST points, or a number times `scale` is none that a computer holds.
+            fewer than FEWEST_POINTS points, or a number times `scale` is none that a computer holds.
     """
     try:
         lines = path.read_bytes().decode("utf-8-sig").splitlines()
@@ -42,8 +42,8 @@ def read_profile(path: Path, scale: float) -> tuple[list[float], list[float]]:
     if not rows:
         raise ProfileFileError(f"{path} has no points")
     points = [_point(path, place, line, columns) for place, line in rows]
-    if len(points) < FEWEST:
-        raise ProfileFileError(f"{path} must have at least {FEWEST} points, not {len(points)}")
+    if len(points) < FEWEST_POINTS:
+        raise ProfileFileError(f"{path} must have at least {FEWEST_POINTS} points, not {len(points)}")
     radii, heights = [scale * r for r, _ in points], [scale * z for _, z in points]
     if not all(map(math.isfinite, radii + heights)):
         raise ProfileFileError(f"{path} has numbers that are too large for the scale {scale:g}")

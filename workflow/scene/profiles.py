@@ -168,10 +168,10 @@ class Power(Shape):
         return factor * self.height(x)
 
 
-FEWEST = 4
+FEWEST_POINTS = 4
 """Points of a measured profile."""
-Radii = Annotated[tuple[Annotated[float, Ge(0.0), Unit("LU")], ...], Field(strict=False), MinLen(FEWEST)]
-Heights = Annotated[tuple[Height, ...], Field(strict=False), MinLen(FEWEST)]
+Radii = Annotated[tuple[Annotated[float, Ge(0.0), Unit("LU")], ...], Field(strict=False), MinLen(FEWEST_POINTS)]
+Heights = Annotated[tuple[Height, ...], Field(strict=False), MinLen(FEWEST_POINTS)]
 
 
 class Measured(Shape):

@@ -26,7 +26,7 @@ OWN, OTHERS = 0.5, (0.25, 0.0)
 """Places of the apex between particles over the spacing: of an even chain, and those that it is held against."""
 WIDE, DEGREE = 3.0, 4
 """Steps of the first look, on both sides of the largest tension, and degree of the polynomial that places it."""
-BEYOND = 0.1
+OVERREACH = 0.1
 """Way beyond the deepest place of the estimate that is looked at, over that place and a spacing."""
 MARGIN = 1.25
 """Claim over the change of the estimate, which knows no neighbours; measured against chains of both parities: 1.01."""
@@ -76,7 +76,7 @@ class _Row:
         x = np.abs(spacing * (np.arange(-count, count + 1) + phase))
         self.heights = estimate.rest + estimate.profile.height(np.asarray(x[x <= reach], dtype=np.float64))
         self.lowest = estimate.rest - float(estimate.gap[-1])
-        self.highest = deepest + BEYOND * (abs(deepest) + spacing)
+        self.highest = deepest + OVERREACH * (abs(deepest) + spacing)
 
     def forces(self, displacements: Array) -> Array:
         """F(d) [FU] at each of the displacements [LU]."""

@@ -12,7 +12,7 @@ from contact1d.workflow.settings.estimate import ContactEstimate
 
 CHAIN_MARGIN = 1.1
 """Length of an automatic chain over what the estimate asks for."""
-FALL = 1e-9
+FALL_SHARE = 1e-9
 """A profile counts as falling where it does by more than this share of its height."""
 ROUND_OFF = 1e-9
 """Relative, of a length that a chain only just fits into."""
@@ -62,7 +62,7 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
                 f"needs a displacement of about {largest:.4g} LU, at most {deepest:.4g} LU is possible"
             )
     heights = bodies.height(np.linspace(0.0, half, 2001))
-    falls = np.diff(heights) < -FALL * float(np.ptp(heights))
+    falls = np.diff(heights) < -FALL_SHARE * float(np.ptp(heights))
     if falls.any():
         at = half * float(np.argmax(falls)) / 2000.0
         raise SettingsError(

@@ -29,9 +29,9 @@ CUTS, PARTS = 5, 17
 `scipy.optimize.brentq` would do it too, but its import takes a quarter of the time of a whole small run."""
 DIFFERENCE = 1e-3
 """Difference of two displacements whose forces give a stiffness, over the way since the bodies feel each other."""
-FLAT = 1e-6
+FLATNESS = 1e-6
 """Rise of a gap over the mean one below which the grid is level there: made monotone, where a pair snaps."""
-SOFTEST = 0.998
+SOFTEST_SHARE = 0.998
 """Tension over the largest one at which a contact counts as softest: at the largest itself it has no stiffness left."""
 TEETH_POINTS, TOOTH = 2000, 1e-4
 """Displacements at which the tension of a chain is summed, and the fall between two of its teeth over the largest."""
@@ -155,7 +155,7 @@ class ContactEstimate:
         return max(0.0, self._largest_tension[1])
 
     def stiffness_under(self, force: float) -> float:
-        """Contact stiffness dF/dd [FU/LU] under a force [FU]; a tension above SOFTEST of the largest counts as that."""
+        """Contact stiffness dF/dd [FU/LU] under a force [FU]; above SOFTEST_SHARE of the largest tension: there."""
         if force > 0.0:
             deepest = self.displacement_at(force)
             step = DIFFERENCE * (deepest - self.rest + float(self.gap[-1]))
@@ -163,7 +163,7 @@ class ContactEstimate:
         places, forces = self._tensions
         top = int(forces.argmin())
         stiffness = np.gradient(forces, places)[top:]
-        return float(np.interp(max(force, SOFTEST * forces[top]), forces[top:], stiffness))
+        return float(np.interp(max(force, SOFTEST_SHARE * forces[top]), forces[top:], stiffness))
 
     def tooth(self, particles: int) -> float:
         """Least distance [LU] of two tops of the tension, between which it falls by TOOTH of the largest; inf for one.
@@ -186,7 +186,7 @@ class ContactEstimate:
     @cached_property
     def snap(self) -> tuple[float, float]:
         """(undeformed gap [LU] at which a pair lets go, tension [FU] that it loses then); the end, 0 if none does."""
-        level = np.flatnonzero(np.diff(self.gap) < FLAT * float(np.ptp(self.gap)) / self.gap.size)
+        level = np.flatnonzero(np.diff(self.gap) < FLATNESS * float(np.ptp(self.gap)) / self.gap.size)
         if level.size == 0:
             return float(self.gap[-1]), 0.0
         return float(self.gap[level[0]]), float(self.force[level[-1] + 1] - self.force[level[0]])

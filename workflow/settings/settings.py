@@ -32,7 +32,7 @@ TABLE_MARGIN = 0.8
 is 0.93 to 1.004 of what the estimate of independent pairs says."""
 CLOSEST_SHARE = 0.2
 """Smallest distance that is looked after over the force-free one (with attraction) or the repulsion's range."""
-LIKELY = 5.0
+THERMAL_SIGMAS = 5.0
 """Standard deviations by which a particle's thermal motion brings it nearer."""
 MOVE_SHARE = 0.25
 """Longest move of a body between two states at rest, over the smallest distance: particles stay in order, down to r
@@ -42,7 +42,7 @@ NEAR_SHARE = 0.2
 table that is smoothed any earlier lets bodies through that the law still carries."""
 FAR_SHARE = 10.0
 """Length of a long bond over the spacing, per 1/tolerance: a sideways move u bends its force by u/2L."""
-STAGGER = 5e-4
+STAGGER_SHARE = 5e-4
 """Shift of a plate's anchors out of the plane, to and fro, over the chain's length.
 
 No force acts in that direction, but `fix rigid` refuses a body that is nearly a line ("Bad principal moments"): the
@@ -269,8 +269,10 @@ def _distance(estimate: ContactEstimate, cutoff: float, displacement: float) -> 
 
 
 def _thermal_motion(scene: Scene) -> float:
-    """By how much noise brings two particles on their springs nearer to each other [LU]: LIKELY √(2 k_BT/k)."""
-    return 0.0 if scene.noise is None else LIKELY * math.sqrt(2.0 * scene.noise.temperature / scene.bulk_stiffness)
+    """By how much noise brings two particles on their springs nearer to each other [LU]: THERMAL_SIGMAS √(2 k_BT/k)."""
+    return (
+        0.0 if scene.noise is None else THERMAL_SIGMAS * math.sqrt(2.0 * scene.noise.temperature / scene.bulk_stiffness)
+    )
 
 
 def _largest_displacement(scene: Scene, estimate: ContactEstimate) -> float:

@@ -13,7 +13,7 @@ from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.chain import SettingsError
 
 MOST_PARTICLES = 10_000_000
-MOST_FELT = 5_000
+MOST_PARTNERS = 5_000
 """Opposite particles within reach of one."""
 MOST_ROWS = 1_000_000
 """Rows of a prescribed path, those on the way between two places included."""
@@ -25,7 +25,7 @@ MOST_TIMESTEPS = 2**31 - 1
 """Timesteps of one row: LAMMPS counts no further."""
 LARGE, USUALLY_FELT = 20_000, 10.0
 """Particles per body, each within reach of so many opposite ones, from which on a run takes minutes."""
-SHARPEST = 1e3
+SHARPEST_RATIO = 1e3
 """Height of the particles beside an apex over cutoff and spacing: so far even neighbour springs bring none."""
 MIX_UP = "All lengths (spacing, radius, ranges) are in LU: are some of them in another unit?"
 
@@ -37,11 +37,11 @@ def require_reach(scene: Scene, cutoff: float) -> None:
         SettingsError: with the widest reach that is possible.
     """
     spacing = scene.bodies.spacing
-    if cutoff > 0.5 * MOST_FELT * spacing:
+    if cutoff > 0.5 * MOST_PARTNERS * spacing:
         raise SettingsError(
             f"with a cutoff of {cutoff:.4g} LU and a spacing of {spacing:.4g} LU a particle would feel "
-            f"{2.0 * cutoff / spacing:.2g} opposite ones, at most {MOST_FELT} are possible: take shorter ranges in "
-            f"[interaction], an interaction.cutoff below {0.5 * MOST_FELT * spacing:.4g} LU, or a wider "
+            f"{2.0 * cutoff / spacing:.2g} opposite ones, at most {MOST_PARTNERS} are possible: take shorter ranges in "
+            f"[interaction], an interaction.cutoff below {0.5 * MOST_PARTNERS * spacing:.4g} LU, or a wider "
             f"bodies.spacing. {MIX_UP}"
         )
 
@@ -54,7 +54,7 @@ def require_apex(scene: Scene, particles: int, cutoff: float) -> None:
     """
     beside = 0.5 * scene.bodies.spacing if particles % 2 == 0 else 0.0
     height = float(scene.bodies.height(np.asarray([beside]))[0])
-    if height > SHARPEST * max(cutoff, scene.bodies.spacing):
+    if height > SHARPEST_RATIO * max(cutoff, scene.bodies.spacing):
         raise SettingsError(
             f"the body is too sharp for its chain: it rises by {height:.4g} LU from its apex to the nearest particles, "
             f"{beside:.4g} LU beside it. Take a finer bodies.spacing, a blunter bodies.profile, or an odd number of "

@@ -2,7 +2,7 @@
 
 from contact1d.workflow.deck.effects.base import BINS, Contribution, Stage, number
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import STAGGER, Settings
+from contact1d.workflow.settings.settings import STAGGER_SHARE, Settings
 
 
 def plate(scene: Scene, settings: Settings) -> Contribution:
@@ -14,7 +14,7 @@ def plate(scene: Scene, settings: Settings) -> Contribution:
         "plate_free_x": "on" if "x" in scene.plate.free else "off",
     }
     fragments: tuple[str, ...] = ("plate",)
-    width = 2.0 * STAGGER * settings.particles * scene.bodies.spacing
+    width = 2.0 * STAGGER_SHARE * settings.particles * scene.bodies.spacing
     own = max(settings.cutoff, settings.far / BINS)
     if scene.interaction is not None and width / BINS > own:
         fragments += ("wide",)

@@ -16,16 +16,22 @@ from contact1d.workflow.experiments.running.law_error import law_error
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.radii import RadiusRule
 from contact1d.workflow.experiments.running.run_context import RunContext
-from contact1d.workflow.experiments.running.sampling import BLOCKS, SETTLING, chunk_steps, mean_profile, standard_error
+from contact1d.workflow.experiments.running.sampling import (
+    BLOCKS,
+    SETTLING_LOOKS,
+    chunk_steps,
+    mean_profile,
+    standard_error,
+)
 from contact1d.workflow.experiments.running.trust import UntrustedError, doubts, require_trust
 from contact1d.workflow.scene import Load
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE, Quantity
 
-BEYOND = 2.0
+FIRST_RISE = 2.0
 """Rise of the tension that is tried first over the tolerance: rest, table and cutoff use up to one of it themselves."""
-NEAR_PULL_OFF = 0.9
+DOUBTFUL_SHARE = 0.9
 """Tension over the estimate's largest one from which on it may be the pull-off force."""
-CLOSE = 1e-3
+LEAST_STEP = 1e-3
 """Steps towards a tension, over the largest one that is expected, below which the tension itself is tried."""
 SAMPLES = 200
 """Samples taken before the statistics are judged for the first time, and again each time they are not good enough."""
@@ -64,16 +70,16 @@ def _by_a_hair(context: RunContext, load: float) -> dict[str, str]:
     of it a load is on can't be told nearer than that.
     """
     settings, tolerance = context.deck.settings, context.deck.settings.tolerance
-    if load > -NEAR_PULL_OFF * settings.estimate.pull_off_force():
+    if load > -DOUBTFUL_SHARE * settings.estimate.pull_off_force():
         return {}
     try:
         with context.contact("whether a little more is held, too") as contact:
-            _settled(context, contact, load * (1.0 + BEYOND * tolerance))
+            _settled(context, contact, load * (1.0 + FIRST_RISE * tolerance))
     except UntrustedError:
         return {
             "near_pull_off": (
-                f"the contact does not hold a tension that is larger by {BEYOND * tolerance:g}: {-load:.6g} FU is the "
-                f"pull-off force as nearly as a tolerance of {tolerance:g} can tell, and whether it is held for good "
+                f"the contact does not hold a tension that is larger by {FIRST_RISE * tolerance:g}: {-load:.6g} FU is "
+                f"the pull-off force as nearly as a tolerance of {tolerance:g} can tell, and whether it is held for good "
                 'can\'t be told. A smaller [accuracy] tolerance tells more, kind = "pull_off" gives the force itself'
             )
         }
@@ -92,7 +98,7 @@ def _settled(context: RunContext, contact: Contact, load: float) -> tuple[list[S
     while held.held and held.load > load:
         past = overshoot(settings, contact.scene.bodies.mass, held.load, -largest)
         gentle = (past * held.load - largest) / (1.0 + past)
-        close = gentle >= held.load - CLOSE * largest
+        close = gentle >= held.load - LEAST_STEP * largest
         held = hold(contact, load if close else max(load, gentle), scale)
         states += held.states
     if not held.held:
@@ -103,8 +109,8 @@ def _settled(context: RunContext, contact: Contact, load: float) -> tuple[list[S
 def _thermal(context: RunContext, contact: Contact, load: float) -> Outcome:
     scene, settings = context.deck.scene, context.deck.settings
     steps = chunk_steps(settings)
-    contact.begin("settling", expected_steps=SETTLING * steps)
-    settling = [_joined(contact, contact.row(UnderLoad(load, steps))) for _ in range(SETTLING)]
+    contact.begin("settling", expected_steps=SETTLING_LOOKS * steps)
+    settling = [_joined(contact, contact.row(UnderLoad(load, steps))) for _ in range(SETTLING_LOOKS)]
     contact.begin("sampling", expected_steps=SAMPLES * steps)
     samples: list[State] = []
     goal = settings.tolerance * max(settings.rest, abs(settings.largest_displacement))

@@ -10,7 +10,7 @@ from contact1d.workflow.experiments.load.quasistatic import load_quasistatic
 from contact1d.workflow.experiments.running.holding import held_phase
 from contact1d.workflow.experiments.running.kind import ExperimentKind, advice_at_rest
 from contact1d.workflow.experiments.running.prescribing import LOADING_STEPS, in_smaller_steps
-from contact1d.workflow.experiments.running.sampling import SETTLING, sampled_phase
+from contact1d.workflow.experiments.running.sampling import SETTLING_LOOKS, sampled_phase
 from contact1d.workflow.scene import Load, Scene
 from contact1d.workflow.settings.settings import Settings
 
@@ -26,7 +26,7 @@ def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     if scene.noise is None:
         return (held_phase("loading", scene, settings, (force,), max(abs(force), settings.force_scale), state=True),)
     return (
-        sampled_phase("settling", settings, force, SETTLING),
+        sampled_phase("settling", settings, force, SETTLING_LOOKS),
         sampled_phase("sampling", settings, force, SAMPLES, state=True),
     )
 

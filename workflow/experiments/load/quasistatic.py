@@ -16,9 +16,9 @@ from contact1d.workflow.experiments.running.trust import doubts
 from contact1d.workflow.scene import Load
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE, Quantity
 
-NOTHING_CARRIED = frozenset({"force", "mean_pressure"})
+MEANINGLESS_WITHOUT_LOAD = frozenset({"force", "mean_pressure"})
 """What is no result of a contact that is to carry nothing."""
-BESIDE = 0.02
+BRANCH_DISTANCE = 0.02
 """Distance of two displacements over the whole way from which on a change is more than interpolation error."""
 
 
@@ -85,18 +85,18 @@ def load_outcome(
         phases,
         warnings,
         spacing_uncertainty=by_spacing,
-        prescribed=NOTHING_CARRIED if scene.experiment.force == 0.0 else frozenset(),
+        prescribed=MEANINGLESS_WITHOUT_LOAD if scene.experiment.force == 0.0 else frozenset(),
     )
 
 
 def beside(states: Sequence[State]) -> list[State]:
     """Up to two states to tell how things change at the last one: one beside it, and one at least twice as far off.
 
-    Nearer than BESIDE of the way they say less than their own errors.
+    Nearer than BRANCH_DISTANCE of the way they say less than their own errors.
     """
     final = states[-1]
     others = sorted(states[:-1], key=lambda s: abs(s.displacement - final.displacement))
-    least = BESIDE * max((abs(s.displacement - final.displacement) for s in others), default=0.0)
+    least = BRANCH_DISTANCE * max((abs(s.displacement - final.displacement) for s in others), default=0.0)
     found: list[State] = []
     for state in others:
         away = abs(state.displacement - final.displacement)

@@ -17,7 +17,7 @@ from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import doubts, is_converged, require_trust
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH, Quantity
 
-PLACE = 0.1
+PLACE_ERROR = 0.1
 """How well a parabola places a maximum, over the increment of the displacement."""
 
 
@@ -119,7 +119,7 @@ def _critical_radius(branch: list[State], peak: Peak) -> Quantity | None:
     places = [row.displacement for row in rows]
     value = float(np.interp(peak.position, places[::-1], values[::-1]))
     bend = abs(values[1] - 0.5 * (values[0] + values[2]))
-    return Quantity(value, radii[1].uncertainty + bend + PLACE * abs(values[0] - values[2]), LENGTH)
+    return Quantity(value, radii[1].uncertainty + bend + PLACE_ERROR * abs(values[0] - values[2]), LENGTH)
 
 
 def _zero_load(branch: list[State], displacement: list[float], force: list[float]) -> Quantity | None:

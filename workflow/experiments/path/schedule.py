@@ -13,7 +13,7 @@ from contact1d.workflow.settings.settings import Settings
 RELAXATIONS = 14.0
 """Time that a dynamic path gives the particles at each displacement, over the time constant of their slowest decay."""
 ROUND_OFF = 1e-9
-EARLY = 8.0
+EARLINESS = 8.0
 """Square of the longest move of bodies that part over the range squared, per unit of tolerance."""
 
 
@@ -65,7 +65,7 @@ def _longest_drop(settings: Settings) -> float:
     """
     if settings.law is None or settings.is_smooth:
         return math.inf
-    return min(settings.longest_move, math.sqrt(EARLY * settings.tolerance) * settings.law.longest_range)
+    return min(settings.longest_move, math.sqrt(EARLINESS * settings.tolerance) * settings.law.longest_range)
 
 
 def _rows(scene: Scene, settings: Settings, places: Sequence[float]) -> tuple[Row, ...]:

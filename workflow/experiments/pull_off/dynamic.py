@@ -31,17 +31,17 @@ from contact1d.workflow.units import FORCE, LENGTH, Quantity
 MOST_LEVELS = 60
 BRACKET = 1.0
 """Width of the final bracket of the tension over the tolerance."""
-AIM = 0.45
+BRACKET_AIM = 0.45
 """Distance from the expected pull-off force at which both sides are tried, over the tolerance."""
 FEWEST_HELD = 4
 """States at rest from which the critical radius is extrapolated."""
-REACH = 5.0
+LONGEST_EXTRAPOLATION = 5.0
 """Farthest extrapolation over the width of the states that it starts from."""
 SPREAD = 2.0
 """Uncertainty of the extrapolation over the difference that one state less makes."""
 STRIDE = 0.8
 """Rise of a tension over what is left to the expected pull-off force, so that the last states lie near it, …"""
-NEAR = 3.0
+APPROACH_FACTOR = 3.0
 """… until that is this many times the distance at which both sides are tried."""
 EDGES = 2
 """Pairs that let go together, one at each edge of the contact: by so much the tension falls after a snap."""
@@ -91,9 +91,9 @@ class Search:
         """The tension to try next [FU]; the plate's momentum is not to carry it beyond the expected pull-off force."""
         low, high, past = self.best, self.broken, self.overshoot(self.best)
         expected = self._expected()
-        margin = AIM * self.tolerance * expected
+        margin = BRACKET_AIM * self.tolerance * expected
         gentle = (expected + past * low) / (1.0 + past)
-        if expected - low > NEAR * margin:
+        if expected - low > APPROACH_FACTOR * margin:
             gentle = min(gentle, low + STRIDE * (expected - low))
         for tension in (min(expected - margin, gentle), expected + margin):
             if low + 0.1 * margin < tension < self.lost - 0.1 * margin:
@@ -211,15 +211,15 @@ def _radius_between_snaps(
 def top_of(states: Sequence[State]) -> tuple[float, float] | None:
     """(displacement [LU], tension [FU]) of the largest tension of the polynomial through states at rest.
 
-    None where it has none within REACH of the states. Their own forces count, not the loads that they balance within a
-    threshold.
+    None where it has none within LONGEST_EXTRAPOLATION of the states. Their own forces count, not the loads that
+    they balance within a threshold.
     """
     place = np.asarray([state.displacement for state in states])
     if not are_apart(place):
         return None
     width = float(np.ptp(place))
     loss = through((place - place[-1]) / width, np.asarray([state.force for state in states]))
-    top, _ = lowest_minimum(loss, -REACH, REACH)
+    top, _ = lowest_minimum(loss, -LONGEST_EXTRAPOLATION, LONGEST_EXTRAPOLATION)
     return None if math.isnan(top) else (float(place[-1]) + width * top, -value(loss, top))
 
 

@@ -15,7 +15,7 @@ from contact1d.workflow.settings.settings import Settings
 
 UNLOADING_STEPS, TENSIONS = 80, 12
 """Rows of a planned way back, and tensions of a planned pull, where a run would search."""
-LARGEST = 1.2
+LARGEST_TENSION = 1.2
 """The last of these tensions over the estimate's pull-off force."""
 
 
@@ -29,7 +29,7 @@ def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         back = displacements(np.linspace(deepest, apart, UNLOADING_STEPS).tolist())
         return (Phase("loading", down), Phase("unloading", back, state=True))
     preload, tension = experiment.preload, settings.estimate.pull_off_force()
-    tensions = [float(-t) for t in np.linspace(0.0, LARGEST * tension, TENSIONS + 1)[1:]]
+    tensions = [float(-t) for t in np.linspace(0.0, LARGEST_TENSION * tension, TENSIONS + 1)[1:]]
     return (
         held_phase("loading", scene, settings, (preload,), max(preload, tension)),
         held_phase("unloading", scene, settings, (0.0,), max(preload, tension), state=True),

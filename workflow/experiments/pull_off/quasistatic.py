@@ -18,8 +18,8 @@ from contact1d.analysis.curve_marks import Peak, largest_tension, rivals, smooth
 from contact1d.workflow.deck.steps import Phase, displacements
 from contact1d.workflow.experiments.pull_off.marked import marked_outcome
 from contact1d.workflow.experiments.pull_off.smooth import (
-    LATTICE,
-    MISPLACED,
+    LATTICE_SHARE,
+    PLACE_FACTOR,
     SmoothPass,
     critical_shift,
     radius_rate,
@@ -38,13 +38,13 @@ Array = NDArray[np.float64]
 MOST_PASSES = 8
 WINDOW_ROWS = 8
 """Rows on either side of the largest tension in a refined pass."""
-RIVAL = 0.05
+RIVAL_SHARE = 0.05
 """Teeth of the tension within this share of the largest are looked at more closely."""
-ZOOM = 0.25
+ZOOM_FACTOR = 0.25
 """Width of the window of one pass over that of the one before."""
 SAME_ROW = 1e-9
 """Displacements nearer than this share of the whole way are one row."""
-SHARE = 0.3
+SCHEDULE_SHARE = 0.3
 """Part of the tolerance that the schedule may use up."""
 
 
@@ -109,7 +109,7 @@ def pull_off_quasistatic(context: RunContext) -> Outcome:
     scene, settings = context.deck.scene, context.deck.settings
     experiment = scene.experiment
     assert isinstance(experiment, PullOff)
-    tolerance = SHARE * settings.tolerance
+    tolerance = SCHEDULE_SHARE * settings.tolerance
     if settings.is_smooth:
         smooth = smooth_pass(context, experiment.preload, tolerance)
         return _outcome(context, smooth, experiment.preload, smooth.missed)
@@ -118,7 +118,7 @@ def pull_off_quasistatic(context: RunContext) -> Outcome:
     for _ in range(MOST_PASSES):
         before = latest
         latest = _replay(context, experiment.preload, _refined(before, experiment.preload, window))
-        window *= ZOOM
+        window *= ZOOM_FACTOR
         if _agree(before, latest, experiment.preload, tolerance):
             missed = abs(latest.peak.smooth - before.peak.smooth) + max(0.0, 0.0, *latest.rivals.values())
             return _outcome(context, latest, experiment.preload, missed)
@@ -165,7 +165,7 @@ def _window(known: Pass, peak: float, window: float) -> Array:
     """Displacements around the largest tension, falling. Where the tension has several teeth of nearly that height, as
     particles let go one by one, a coarse pass can't tell which is the highest: the window then has all of them.
     """
-    rivals = [s.displacement for s in known.unloading if -s.force >= (1.0 - RIVAL) * known.peak.tension]
+    rivals = [s.displacement for s in known.unloading if -s.force >= (1.0 - RIVAL_SHARE) * known.peak.tension]
     step = window / WINDOW_ROWS
     first, last = max(peak + window, *rivals), min(peak - window, *rivals)
     if known.refined:
@@ -202,7 +202,7 @@ def _agree(before: Pass, latest: Pass, preload: float, tolerance: float) -> bool
         and abs(latest.zero.force) <= tolerance * tension
         and tension + latest.critical.force <= tolerance * tension
         and abs(critical_shift(latest.unloading, latest.critical, latest.peak))
-        <= max(tolerance * radius.value, LATTICE * radius.uncertainty)
+        <= max(tolerance * radius.value, LATTICE_SHARE * radius.uncertainty)
     )
 
 
@@ -219,7 +219,7 @@ def _outcome(context: RunContext, found: Pass | SmoothPass, preload: float, miss
     missed = max(missed, peak.uncertainty) + residual + law_error(scene, settings, critical)
     at_zero = abs(zero.force) + law_error(scene, settings, zero)
     rate = abs(radius_rate(found.unloading, critical))
-    at_critical = abs(shift) + MISPLACED * rate * peak.misplaced + slope * law_error(scene, settings, critical)
+    at_critical = abs(shift) + PLACE_FACTOR * rate * peak.misplaced + slope * law_error(scene, settings, critical)
     if isinstance(found, Pass):
         at_critical += _rival_radius(found, critical_radius.value, missed)
     quantities = {

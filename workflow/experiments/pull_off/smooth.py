@@ -27,11 +27,11 @@ MOST_TRIES = 12
 """Rows at F = 0 after which the search gives up."""
 MOST_CUTS = 60
 """The same of looks at the largest tension, each of which may halve the increment beside it: a sharp one needs some."""
-PAST = 3
+ROWS_BEYOND_PEAK = 3
 """Rows beyond the largest tension that its polynomials need."""
-CLOSER = 2
+HALVINGS_AT_PEAK = 2
 """Halvings of the increment beside the largest tension for the sake of the contact radius there."""
-MISPLACED = 2.0
+PLACE_FACTOR = 2.0
 """Error of the place of the largest tension over the distance between those of two polynomials."""
 PER_TOOTH = 4.0
 """Rows to a tooth of the tension."""
@@ -41,7 +41,7 @@ MOST_RIVALS = 200
 """Looks at teeth that may be higher than the highest row."""
 MOST_PULLS = 2_000
 """Rows from F = 0 to the largest tension; a contact that needs more lets go nowhere near."""
-LATTICE = 0.5
+LATTICE_SHARE = 0.5
 """Part of a radius's uncertainty below which it is looked at no closer: interpolation between particles limits it."""
 
 JUMPS = (
@@ -107,7 +107,7 @@ def _searched(context: RunContext, preload: float, tolerance: float, through: bo
         contact.write_state()
         contact.begin("separating")
         # On from where the bodies have been, yet no longer a way at once than the search for a maximum goes past it.
-        nearest = pulled[-1].displacement - (PAST + 1) * contact.settings.increment()
+        nearest = pulled[-1].displacement - (ROWS_BEYOND_PEAK + 1) * contact.settings.increment()
         start = max(nearest, min(s.displacement for s in pulled))
         apart = separate(contact, start, -min(s.force for s in pulled))
         contact.finish()
@@ -147,8 +147,8 @@ def _to_largest_tension(
 ) -> tuple[list[State], float]:
     """Down from F = 0 past the largest tension and back to it, where the last state is. Also returns the miss [FU].
 
-    Rows at half the distance are put on both sides of it until they leave it as it was, and, at most CLOSER times more,
-    until the contact radius there is known.
+    Rows at half the distance are put on both sides of it until they leave it as it was, and, at most
+    HALVINGS_AT_PEAK times more, until the contact radius there is known.
     """
     tooth = contact.settings.estimate.tooth(contact.settings.particles)
     step = _increment(contact, unloaded[-1].displacement, tooth)
@@ -160,7 +160,7 @@ def _to_largest_tension(
         missed, allowed = abs(found.smooth - expected.smooth), tolerance * found.smooth
         if missed <= allowed and _near(states, found, tolerance):
             known = changed <= allowed and found.uncertainty <= allowed
-            if known and (cuts > CLOSER or _placed(states, found, tolerance)):
+            if known and (cuts > HALVINGS_AT_PEAK or _placed(states, found, tolerance)):
                 before, left = len(states), _look_at_rivals(contact, unloaded, states, allowed)
                 if len(states) == before:
                     return states, max(missed, changed, left, abs(found.smooth + states[-1].force))
@@ -195,7 +195,7 @@ def _increment(contact: Contact, zero: float, tooth: float) -> float:
 
 
 def _pulled(contact: Contact, zero: State, step: float, through: bool) -> list[State]:
-    """Rows down from F = 0 until PAST of them lie beyond the largest tension, or `through` all that may exceed it."""
+    """Rows down from F = 0 until ROWS_BEYOND_PEAK lie beyond the largest tension, or `through` all that may exceed it."""
     states: list[State] = []
     while not _passed([zero, *states]) or (
         through and -min(s.force for s in states) <= still_held(contact, states[-1])
@@ -233,13 +233,13 @@ def _near(states: list[State], peak: Peak, tolerance: float) -> bool:
 def _placed(states: list[State], peak: Peak, tolerance: float) -> bool:
     """Whether the maximum itself is placed so well that the contact radius there is known."""
     rate = abs(radius_rate(states, states[-1]))
-    return MISPLACED * rate * peak.misplaced <= _allowed(states[-1], tolerance)
+    return PLACE_FACTOR * rate * peak.misplaced <= _allowed(states[-1], tolerance)
 
 
 def _allowed(critical: State, tolerance: float) -> float:
     """Error [LU] that is left to the contact radius of the critical state."""
     radius = critical.radius_or_spot
-    return max(tolerance * radius.value, LATTICE * radius.uncertainty)
+    return max(tolerance * radius.value, LATTICE_SHARE * radius.uncertainty)
 
 
 def critical_shift(states: list[State], critical: State, peak: Peak) -> float:
@@ -258,7 +258,11 @@ def radius_rate(states: list[State], critical: State) -> float:
 def _passed(states: list[State]) -> bool:
     """Whether the last rows lie beyond a largest tension."""
     tension = [-s.force for s in states]
-    return len(tension) > PAST and max(tension) > 0.0 and tension.index(max(tension)) < len(tension) - PAST
+    return (
+        len(tension) > ROWS_BEYOND_PEAK
+        and max(tension) > 0.0
+        and tension.index(max(tension)) < len(tension) - ROWS_BEYOND_PEAK
+    )
 
 
 def _peak(states: list[State]) -> Peak:

@@ -26,13 +26,13 @@ PATIENCE = 10.0
 """Time of one row over the settling time, after which a state is measured in any case."""
 MOST_HOLDS = 50
 """Rows under one load after which it counts as never coming to rest."""
-AT_REST = 0.1
+REST_SHARE = 0.1
 """Unbalanced load over the load scale and the tolerance."""
-CALMER = 0.5
+CALMING_FACTOR = 0.5
 """Factor on the threshold of a plate that stood still while its contact did not."""
-LOST = 0.7
+LOSS_SHARE = 0.7
 """Tension over what is pulled with, below which a plate that moves off counts as lost."""
-PARTED = 0.6
+PARTING_SHARE = 0.6
 """The same of the estimate's largest tension, where LAMMPS stops: the first place at which to look for it."""
 
 
@@ -103,7 +103,7 @@ def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start:
     damping = damping_under(settings, load)
     inertia = 1.0 + settings.particles * scene.bodies.mass / settings.plate_mass
     drag = settings.particles * damping + settings.plate_damping
-    parted = settings.estimate.parted(PARTED) if load < 0.0 else _apart(settings)
+    parted = settings.estimate.parted(PARTING_SHARE) if load < 0.0 else _apart(settings)
     steps = max(FEWEST_STEPS, math.ceil(PATIENCE * settings.settle_time / settings.time_step))
     rest = at_rest(settings, scale) / inertia
     return Hold(int(start), load, damping, drag / inertia, rest, parted, _through(settings), steps)
@@ -118,7 +118,7 @@ def held_phase(
 
 def at_rest(settings: Settings, scale: float) -> float:
     """Unbalanced force [FU] at which a contact counts as at rest; `scale` is the force in question [FU]."""
-    return AT_REST * settings.tolerance * scale
+    return REST_SHARE * settings.tolerance * scale
 
 
 def hold(contact: Contact, load: float, scale: float, start: Start = Start.KEPT) -> Held:
@@ -148,7 +148,7 @@ def hold(contact: Contact, load: float, scale: float, start: Start = Start.KEPT)
         if state.displacement > row.through:
             require_trust(contact.scene, settings, state)
             raise UntrustedError(f"under {load:.4g} FU the plate went on to {state.displacement:.4g} LU")
-        row = replace(row, start=int(Start.HERE), rest=row.rest * (CALMER if calm else 1.0))
+        row = replace(row, start=int(Start.HERE), rest=row.rest * (CALMING_FACTOR if calm else 1.0))
     raise UntrustedError(
         f"the contact did not come to rest under {load:.4g} FU within {MOST_HOLDS * row.steps} timesteps "
         f"(phase {state.phase}): {unbalance:.2g} FU are unbalanced. More [damping] or [plate] damping settles it sooner"
@@ -170,4 +170,4 @@ def _lost(contact: Contact, state: State, load: float) -> bool:
     """Out of reach, or moving off with a tension that has fallen below what is pulled with."""
     if contact.settings.law is not None and state.smallest_distance > contact.settings.cutoff:
         return True
-    return load < 0.0 and state.plate_velocity < 0.0 and -state.force < -LOST * load
+    return load < 0.0 and state.plate_velocity < 0.0 and -state.force < -LOSS_SHARE * load

@@ -9,7 +9,7 @@ from contact1d.workflow.settings.settings import Settings
 
 TAIL = 10.0
 """Force of the tail beyond the cutoff, summed over particles, over the force at the cutoff times a particle's share."""
-GIVES = 2.0
+COMPLIANCE_FACTOR = 2.0
 """Error of an equilibrium over that of the force on particles held in place: they follow it, and a table's error, here
 at the distances that happen to be there, is half of what it is between two entries on average."""
 
@@ -25,11 +25,11 @@ def law_share(scene: Scene, settings: Settings) -> float:
 def law_error(scene: Scene, settings: Settings, state: State) -> float:
     """Error of the force of a measured state that table and cutoff, or the plane, cause [FU].
 
-    GIVES Σ |F_table(r) - f(r)| |z|/r over the pairs of opposite particles, F_table = 0 beyond the cutoff.
+    COMPLIANCE_FACTOR Σ |F_table(r) - f(r)| |z|/r over the pairs of opposite particles, F_table = 0 beyond the cutoff.
     """
     if settings.table is None or settings.law is None:
         return _plane_share(scene, settings) * abs(state.force)
-    return GIVES * left_out(settings.law, settings.table, state.profile)
+    return COMPLIANCE_FACTOR * left_out(settings.law, settings.table, state.profile)
 
 
 def _plane_share(scene: Scene, settings: Settings) -> float:

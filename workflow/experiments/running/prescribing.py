@@ -17,24 +17,24 @@ from contact1d.workflow.settings.settings import Settings
 
 MOST_INCREMENTS = 2_000
 """Rows of one branch of a search; a search that needs more has no end in sight."""
-ROWS_APART = 1_000.0
+SEPARATION_ROWS = 1_000.0
 """Rows in which an unloading comes from any displacement to where nothing is felt any more."""
-APPROACH = 1e-3
+FORCE_ACCURACY = 1e-3
 """How near to a wanted force a search must come, over the tolerance."""
-SEPARATED = 0.02
+SEPARATION_SHARE = 0.02
 """Tension over the largest one at which bodies that move apart count as separated."""
-PAST_PEAK = 0.5
+GROWTH_SHARE = 0.5
 """Tension over the largest one below which increments may grow."""
 GROWTH, SMOOTH_GROWTH = 1.2, 1.6
 OVERSHOOT = 1.02
 """Secant steps aim a little beyond, so that a bracket forms instead of a slow approach from one side."""
-BACK = 0.5
+RETURN_SHARE = 0.5
 """Move of a search that comes back to where the bodies have been, over their particles' smallest distance."""
 SAME_PLACE = 1e-12
 """Displacements nearer than this over the spacing are the same place: a force that still differs has jumped."""
 LOADING_STEPS = 24
 """Rows of a planned way down, where a run would search."""
-SMALLER = (1 / 4, 1 / 16)
+RETRY_SHARES = (1 / 4, 1 / 16)
 """Parts of the increments that are tried where bodies went through each other: a body that moves by much of its
 particles' distance from the opposite ones, or by which their force changes much, lets the minimiser put one beyond.
 Where pairs snap together a minimiser moves particles by more than their distance whatever the increment: a relaxation
@@ -54,7 +54,7 @@ def in_smaller_steps(search: Callable[[RunContext], Outcome]) -> Callable[[RunCo
             return search(context)
         except ThroughError as error:
             latest = error
-        for part in SMALLER:
+        for part in RETRY_SHARES:
             context.progress.note(f"the bodies went through each other: again from the start in steps of {part:g}")
             context.deck = Deck(deck.scene, deck.settings.in_smaller_steps(part))
             try:
@@ -63,7 +63,7 @@ def in_smaller_steps(search: Callable[[RunContext], Outcome]) -> Callable[[RunCo
                 latest = error
             finally:
                 context.deck = deck
-        raise ThroughError(f"{latest}. Steps {1 / SMALLER[-1]:g} times smaller did not help")
+        raise ThroughError(f"{latest}. Steps {1 / RETRY_SHARES[-1]:g} times smaller did not help")
 
     return searched
 
@@ -72,13 +72,13 @@ def approach(contact: Contact, force: float, start: float, direction: int = 1) -
     """Rows of growing displacement (direction 1; falling: −1) from `start` [LU] until the force is `force` [FU].
 
     Increments are those of the settings at most and follow the secant of the last two rows near the end. The last
-    state's force is within APPROACH·tolerance of the wanted one.
+    state's force is within FORCE_ACCURACY·tolerance of the wanted one.
 
     Raises:
         UntrustedError: see `require_trust`; also where the wanted force cannot be held.
     """
     scale = max(abs(force), contact.settings.force_scale)
-    near, spacing = APPROACH * contact.settings.tolerance * scale, contact.scene.bodies.spacing
+    near, spacing = FORCE_ACCURACY * contact.settings.tolerance * scale, contact.scene.bodies.spacing
     states = [measured(contact, start)]
     before, beyond = None, None
     while abs(states[-1].carried - force) > near:
@@ -139,7 +139,7 @@ def separate(contact: Contact, start: float, largest: float = 0.0) -> list[State
         state = measured(contact, displacement)
         states.append(state)
         largest = max(largest, -state.force)
-        past = largest > 0.0 and -state.force < PAST_PEAK * largest and state.force <= 0.0
+        past = largest > 0.0 and -state.force < GROWTH_SHARE * largest and state.force <= 0.0
         if past and (contact.settings.is_smooth or still_held(contact, state) < largest):
             step *= growth  # longer moves let go of particles early: only where no tooth can be higher any more
         if _apart(contact, state, largest):
@@ -148,12 +148,12 @@ def separate(contact: Contact, start: float, largest: float = 0.0) -> list[State
 
 
 def unloading_step(settings: Settings, start: float) -> float:
-    """First increment [LU] of an unloading from `start` [LU]: that of a search, yet in ROWS_APART the bodies are apart.
+    """First increment [LU] of an unloading from `start` [LU]: that of a search, the bodies apart in SEPARATION_ROWS.
 
     Soft springs follow the attraction far beyond what the bodies were pressed together.
     """
     way = start - settings.rest + float(settings.estimate.gap[-1])
-    return max(settings.increment(), way / ROWS_APART)
+    return max(settings.increment(), way / SEPARATION_ROWS)
 
 
 def still_held(contact: Contact, state: State) -> float:
@@ -173,17 +173,17 @@ def _apart(contact: Contact, state: State, largest: float) -> bool:
 
     Where particles snap, the force passes 0 between one that lets go and the next.
     """
-    gone = abs(state.force) < SEPARATED * largest and still_held(contact, state) < SEPARATED * largest
+    gone = abs(state.force) < SEPARATION_SHARE * largest and still_held(contact, state) < SEPARATION_SHARE * largest
     return (largest > 0.0 and gone) or state.smallest_distance > contact.settings.cutoff
 
 
 def back_to(contact: Contact, last: State, displacement: float) -> list[State]:
     """The state at a displacement [LU] after those that the way there needs from the `last` one.
 
-    Bodies that come nearer do so by BACK of their particles' smallest distance at a time.
+    Bodies that come nearer do so by RETURN_SHARE of their particles' smallest distance at a time.
     """
     states = [last]
-    while displacement - states[-1].displacement > (longest := BACK * states[-1].smallest_distance):
+    while displacement - states[-1].displacement > (longest := RETURN_SHARE * states[-1].smallest_distance):
         longest = max(longest, contact.settings.longest_move)
         states.append(measured(contact, min(states[-1].displacement + longest, displacement)))
     return [*states[1:], measured(contact, displacement)]

@@ -15,7 +15,7 @@ from contact1d.workflow.settings.settings import Settings
 CHUNK = 0.25
 """Time between two samples of a thermal contact over the settling time."""
 FEWEST_STEPS = 20
-SETTLING = 40
+SETTLING_LOOKS = 40
 """Looks (of a quarter of a settling time each) that a thermal contact has to forget its start."""
 BLOCKS = 20
 """Blocks whose means give the standard error: each is long against the settling time."""

@@ -11,7 +11,7 @@ import math
 from contact1d.workflow.scene import Damping, Plate, Scene
 from contact1d.workflow.settings.settings import Settings, settings_for
 
-SLOW = 10.0
+SLOWNESS_RATIO = 10.0
 """Timesteps to settle over those with automatic values from which on it is told: seconds become minutes."""
 
 
@@ -25,7 +25,7 @@ def slowness(scene: Scene, settings: Settings) -> str:
         return ""
     automatic = settings_for(same, settings.tolerance)
     times = _steps(scene, settings) / _steps(same, automatic)
-    if times < SLOW:
+    if times < SLOWNESS_RATIO:
         return ""
     drag, usual = (_drag(s, c) for s, c in ((scene, settings), (same, automatic)))
     return (

@@ -24,7 +24,7 @@ class ThroughError(UntrustedError):
 
 END_SHARE_LIMIT = 1.0
 """Pressure at a chain's end over the largest one, per unit of tolerance, from which on the chain cuts the contact."""
-INSIDE = 0.5
+INSIDE_SHARE = 0.5
 """The same from which on the end of the chain is inside the contact."""
 RESIDUAL_LIMIT = 0.1
 """Largest residual force of a particle over the force scale, per unit of tolerance, for a converged state."""
@@ -90,7 +90,7 @@ def _reaches_end(scene: Scene, profile: Profile) -> bool:
     pressure = profile.pressure
     if scene.interaction is not None and scene.interaction.attraction is not None:
         largest = float(pressure.min())
-        inside = end_pressure_share(profile) > INSIDE  # the chain is shorter than the compressed middle
+        inside = end_pressure_share(profile) > INSIDE_SHARE  # the chain is shorter than the compressed middle
         return inside or (largest < 0.0 and largest in (pressure[0], pressure[-1]))
     return bool(max(pressure[0], pressure[-1]) > 0.0)
 

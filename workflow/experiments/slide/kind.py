@@ -5,7 +5,7 @@ from __future__ import annotations
 from contact1d.workflow.deck.steps import Phase, UnderLoad
 from contact1d.workflow.experiments.running.holding import held_phase
 from contact1d.workflow.experiments.running.kind import ExperimentKind
-from contact1d.workflow.experiments.running.sampling import SETTLING, sampled_phase
+from contact1d.workflow.experiments.running.sampling import SETTLING_LOOKS, sampled_phase
 from contact1d.workflow.experiments.slide.slide import slide, slide_rows
 from contact1d.workflow.scene import Scene, Slide
 from contact1d.workflow.settings.settings import Settings
@@ -18,7 +18,7 @@ def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     force = experiment.normal_force
     loading = held_phase("loading", scene, settings, (force,), force)
     if scene.noise is not None:
-        loading = sampled_phase("loading", settings, force, SETTLING)
+        loading = sampled_phase("loading", settings, force, SETTLING_LOOKS)
     rows, stride = slide_rows(scene, settings)
     return loading, Phase("sliding", (UnderLoad(force, stride),) * rows, state=True, begin=("steps/drive",))
 

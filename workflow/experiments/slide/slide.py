@@ -11,7 +11,7 @@ from contact1d.workflow.experiments.running.contact import Contact, State
 from contact1d.workflow.experiments.running.holding import hold
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
-from contact1d.workflow.experiments.running.sampling import SETTLING, chunk_steps, standard_error
+from contact1d.workflow.experiments.running.sampling import SETTLING_LOOKS, chunk_steps, standard_error
 from contact1d.workflow.experiments.running.trust import UntrustedError, doubts, require_trust
 from contact1d.workflow.scene import Scene, Slide
 from contact1d.workflow.settings.settings import Settings
@@ -57,8 +57,8 @@ def _loaded(contact: Contact, force: float) -> State:
         contact.begin("loading")
         return hold(contact, force, force).last
     steps = chunk_steps(contact.settings)
-    contact.begin("loading", expected_steps=SETTLING * steps)
-    return [contact.row(UnderLoad(force, steps)) for _ in range(SETTLING)][-1]
+    contact.begin("loading", expected_steps=SETTLING_LOOKS * steps)
+    return [contact.row(UnderLoad(force, steps)) for _ in range(SETTLING_LOOKS)][-1]
 
 
 def slide_rows(scene: Scene, settings: Settings) -> tuple[int, int]:
