@@ -34,7 +34,7 @@ from contact1d.workflow.deck.steps import UnderLoad
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.experiments.running.contact import Contact
-from contact1d.workflow.experiments.running.holding import REST_SHARE, LOSS_SHARE
+from contact1d.workflow.experiments.running.holding import LOSS_SHARE, REST_SHARE
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.sampling import chunk_steps
 from contact1d.workflow.reproduce.oracles import chain_model

@@ -18,7 +18,7 @@ from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import UntrustedError
 from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.runs.refinement import TOLERANCE_RATIO, MOST_REFINEMENTS, Refined, nested, refined
+from contact1d.workflow.runs.refinement import MOST_REFINEMENTS, TOLERANCE_RATIO, Refined, nested, refined
 from contact1d.workflow.scene import Scene, read_scene, scene_from_dict
 from contact1d.workflow.settings.calibration import CALIBRATION
 from contact1d.workflow.settings.settings import Settings, settings_for

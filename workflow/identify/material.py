@@ -56,8 +56,8 @@ def material_scene(
     if target.zero_load_radius > LARGEST_RADIUS_SHARE * radius:
         raise IdentifyError(
             f"the zero-load radius of {target.zero_load_radius:.4g} m is {target.zero_load_radius / radius:.2g} of the "
-            f"sphere's: JKR is for contacts small beside the sphere, here up to {LARGEST_RADIUS_SHARE:g} of it. A larger "
-            "radius, a larger contact modulus or a smaller surface energy has that"
+            f"sphere's: JKR is for contacts small beside the sphere, here up to {LARGEST_RADIUS_SHARE:g} of it. A "
+            "larger radius, a larger contact modulus or a smaller surface energy has that"
         )
     force_unit = 2.0 * contact_modulus * unit**2
     wanted = Target(target.adhesion_force / force_unit, target.zero_load_radius / unit)

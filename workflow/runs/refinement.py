@@ -1,6 +1,6 @@
 """What was asked for and is not reached: the run again with finer settings, until it is, or until that helps no more.
 
-A pass has the settings and the checks of a tolerance that is TOLERANCE_RATIO times smaller than that of the pass before.
+A pass has the settings and the checks of a tolerance that is TOLERANCE_RATIO times smaller than that of the one before.
 Two nested passes are evidence of how exact they are: where they differ by more than both claim, the claim is raised.
 """
 

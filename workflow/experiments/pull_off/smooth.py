@@ -195,7 +195,7 @@ def _increment(contact: Contact, zero: float, tooth: float) -> float:
 
 
 def _pulled(contact: Contact, zero: State, step: float, through: bool) -> list[State]:
-    """Rows down from F = 0 until ROWS_BEYOND_PEAK lie beyond the largest tension, or `through` all that may exceed it."""
+    """Rows down from F = 0 until ROWS_BEYOND_PEAK lie beyond the largest tension, `through`: all that may exceed it."""
     states: list[State] = []
     while not _passed([zero, *states]) or (
         through and -min(s.force for s in states) <= still_held(contact, states[-1])
