@@ -80,7 +80,7 @@ def _by_a_hair(context: RunContext, load: float) -> dict[str, str]:
             "near_pull_off": (
                 f"the contact does not hold a tension that is larger by {FIRST_RISE * tolerance:g}: {-load:.6g} FU is "
                 f"the pull-off force as nearly as a tolerance of {tolerance:g} can tell, and whether it is held for "
-                'good can\'t be told. A smaller [accuracy] tolerance tells more, kind = "pull_off" gives the force itself'
+                'good can\'t be told. A smaller tolerance tells more, kind = "pull_off" gives the force itself'
             )
         }
     return {}
