@@ -29,7 +29,7 @@ from contact1d.workflow.deck.effects import EFFECTS, Contribution
 from contact1d.workflow.deck.fragments import fragment
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import Engine, Session
-from contact1d.workflow.reproduce.markdown import table
+from contact1d.workflow.judging.markdown import table
 from contact1d.workflow.runs.campaign import RunError, run
 from contact1d.workflow.scene import Scene, read_scene
 from contact1d.workflow.settings.settings import Settings, settings_for

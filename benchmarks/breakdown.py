@@ -21,7 +21,7 @@ from benchmarks.peers.contact1d_peer import SETTINGS, hertz_tables
 from benchmarks.peers.contacts import displacements
 from contact1d.workflow.engine.process import WorkerProcess
 from contact1d.workflow.experiments.running.contact import Contact
-from contact1d.workflow.reproduce.markdown import table
+from contact1d.workflow.judging.markdown import table
 from contact1d.workflow.scene import scene_from_dict
 
 README = Path(__file__).parent / "README.md"

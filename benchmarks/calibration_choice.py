@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from contact1d.workflow.cost.advice import TARGETS, power
-from contact1d.workflow.reproduce.markdown import table
+from contact1d.workflow.judging.markdown import table
 from contact1d.workflow.settings.calibration import FILE, Calibration, calibration_of, meanings
 
 HERE = Path(__file__).parent

@@ -15,7 +15,7 @@ from typing import Any
 
 from benchmarks.peers.table import comparisons
 from benchmarks.scaling import MEMORY, SPREAD
-from contact1d.workflow.reproduce.markdown import table
+from contact1d.workflow.judging.markdown import table
 
 ROOT = Path(__file__).parents[1]
 RESULTS = Path(__file__).parent / "results"

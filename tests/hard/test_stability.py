@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from contact1d.workflow.reproduce.check import Check
+from contact1d.workflow.judging.check import Check
 from contact1d.workflow.stability.case import Class, Findings, at_most
-from contact1d.workflow.stability.record import Answer, Stability, margin
+from contact1d.workflow.stability.record import Answer, Stability
 from contact1d.workflow.stability.suite import NAMES, measured
 
 FAILS: dict[str, set[str]] = {
@@ -64,4 +64,4 @@ def test_a_row_without_a_number_fails_and_stays_in_the_table() -> None:
 )
 def test_the_margin_is_what_is_allowed_over_what_is_found(comparison: str, value: float, expected: float) -> None:
     row = Check("kind", "row", value, 0.0, "1", 1.0, "theory", "closed form", 0.2, "–", comparison)  # type: ignore[arg-type]
-    assert margin(row) == pytest.approx(expected)
+    assert row.margin == pytest.approx(expected)

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from contact1d.analysis.reference.solver import ChainSolver
+from contact1d.workflow.judging.check import Check
+from contact1d.workflow.judging.words import agreement, limits, outcome
 from contact1d.workflow.reproduce import adhesive, fig6, fig7, table1
-from contact1d.workflow.reproduce.check import Check
 from contact1d.workflow.reproduce.oracles import chain_model, equilibrium_under
-from contact1d.workflow.reproduce.page import agreement, limits, outcome
 from contact1d.workflow.reproduce.paper import TABLE_1
 from contact1d.workflow.reproduce.record import read_record
 from contact1d.workflow.reproduce.section2 import Case

@@ -32,7 +32,7 @@ def reproduce(
     """
     kept = f"finished runs are kept in {out}, and the same command goes on"
     with command("the reproduction", kept=kept, blame=RUN_FAILED) as progress:
-        from contact1d.workflow.reproduce.page import outcome
+        from contact1d.workflow.judging.words import outcome
         from contact1d.workflow.reproduce.studies import NAMES, PAGE
         from contact1d.workflow.reproduce.studies import reproduce as do
         from contact1d.workflow.scene.problems import nearest

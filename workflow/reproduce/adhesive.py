@@ -29,12 +29,13 @@ from contact1d.analysis.reference.jkr import (
 from contact1d.analysis.reference.maugis_dugdale import LAMBDA_OVER_TABOR, MaugisDugdale
 from contact1d.analysis.reference.tabor import JKR_PULL_OFF, JKR_TABOR, tabor_number
 from contact1d.workflow.identify import estimated, jkr_target, material_scene
-from contact1d.workflow.reproduce.check import Check
+from contact1d.workflow.judging.check import Check
+from contact1d.workflow.judging.figures import Series, save
+from contact1d.workflow.judging.runs import found
+from contact1d.workflow.judging.words import number, share
 from contact1d.workflow.reproduce.curves import READ
-from contact1d.workflow.reproduce.figures import Series, displacement_figure, save
-from contact1d.workflow.reproduce.page import number, share
+from contact1d.workflow.reproduce.figures import displacement_figure
 from contact1d.workflow.reproduce.paper import CONTACT_MODULUS, SURFACE_ENERGY, TABLE_1, changed
-from contact1d.workflow.reproduce.runs import found
 from contact1d.workflow.reproduce.study import Findings, Rows, Runs, Scenes, Study
 from contact1d.workflow.reproduce.table1 import pull_off_run
 from contact1d.workflow.runs.finished import Run

@@ -14,10 +14,11 @@ from pathlib import Path
 import numpy as np
 
 from contact1d.analysis.reference import hertz, sneddon
-from contact1d.workflow.reproduce.check import Check
-from contact1d.workflow.reproduce.figures import ReductionPanel, reductions_figure, save
-from contact1d.workflow.reproduce.page import agreement, number, share
-from contact1d.workflow.reproduce.runs import found
+from contact1d.workflow.judging.check import Check
+from contact1d.workflow.judging.figures import save
+from contact1d.workflow.judging.runs import found
+from contact1d.workflow.judging.words import agreement, number, share
+from contact1d.workflow.reproduce.figures import ReductionPanel, reductions_figure
 from contact1d.workflow.reproduce.section2 import (
     BASE,
     DEPTH,

@@ -9,11 +9,12 @@ import numpy as np
 from contact1d.analysis.reference.pull_off import PullOff as SolvedPullOff
 from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.analysis.reference.tension_radius import state_radius
-from contact1d.workflow.reproduce.check import Check
-from contact1d.workflow.reproduce.figures import pressure_compared_figure, save
+from contact1d.workflow.judging.check import Check
+from contact1d.workflow.judging.figures import save
+from contact1d.workflow.judging.runs import found
+from contact1d.workflow.judging.words import agreement, number, share
+from contact1d.workflow.reproduce.figures import pressure_compared_figure
 from contact1d.workflow.reproduce.oracles import chain_model, row_tension
-from contact1d.workflow.reproduce.page import agreement, number, share
-from contact1d.workflow.reproduce.runs import found
 from contact1d.workflow.reproduce.study import Findings, Rows, Runs, Scenes, Study
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import PullOff, Scene

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from contact1d.analysis.reference.pull_off import pull_off
+from contact1d.workflow.judging.words import agreement, share, worst_deviation
 from contact1d.workflow.reproduce.fig4 import RUN, STENCIL, against_solver
 from contact1d.workflow.reproduce.oracles import chain_model
-from contact1d.workflow.reproduce.page import agreement, share, worst_deviation
 from contact1d.workflow.reproduce.paper import changed
 from contact1d.workflow.reproduce.study import Findings, Rows, Runs, Scenes, Study, repeated
 from contact1d.workflow.scene import PullOff, Scene

@@ -16,13 +16,14 @@ from scipy.optimize import brentq
 
 from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.analysis.reference.released_plate import ReleasedPlate
-from contact1d.workflow.reproduce.check import Check
+from contact1d.workflow.judging.check import Check
+from contact1d.workflow.judging.figures import Series, save
+from contact1d.workflow.judging.runs import found
+from contact1d.workflow.judging.words import agreement, number, share
 from contact1d.workflow.reproduce.fig4 import STENCIL, against_solver
-from contact1d.workflow.reproduce.figures import Series, history_figure, save
+from contact1d.workflow.reproduce.figures import history_figure
 from contact1d.workflow.reproduce.oracles import chain_model, independent_pairs, interaction
-from contact1d.workflow.reproduce.page import agreement, number, share
 from contact1d.workflow.reproduce.paper import changed, local
-from contact1d.workflow.reproduce.runs import found
 from contact1d.workflow.reproduce.study import Findings, Rows, Runs, Scenes, Study
 from contact1d.workflow.reproduce.table1 import printed_scatter
 from contact1d.workflow.scene import Scene

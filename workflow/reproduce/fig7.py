@@ -14,12 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import linregress, t
 
-from contact1d.workflow.reproduce.check import Check, Evidence
-from contact1d.workflow.reproduce.figures import Series, save, scaling_figure
+from contact1d.workflow.judging.check import Check, Evidence
+from contact1d.workflow.judging.figures import Series, save
+from contact1d.workflow.judging.runs import found
+from contact1d.workflow.judging.words import agreement, measured, number, share, worst_deviation
+from contact1d.workflow.reproduce.figures import scaling_figure
 from contact1d.workflow.reproduce.oracles import independent_pairs
-from contact1d.workflow.reproduce.page import agreement, measured, number, share, worst_deviation
 from contact1d.workflow.reproduce.paper import HALF_DIGIT, TABLE_1, changed, local, with_radius
-from contact1d.workflow.reproduce.runs import found
 from contact1d.workflow.reproduce.study import Findings, Rows, Runs, Scenes, Study
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import Quantity

@@ -11,7 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from contact1d.analysis.reference.tension_radius import state_radius
-from contact1d.workflow.reproduce.check import Check, Standing
+from contact1d.workflow.judging.check import Check, Standing
+from contact1d.workflow.judging.figures import Series, save
+from contact1d.workflow.judging.runs import found
+from contact1d.workflow.judging.words import agreement, share, worst_deviation
 from contact1d.workflow.reproduce.curves import (
     DYNAMIC_FORCES,
     LENGTHENED,
@@ -29,11 +32,10 @@ from contact1d.workflow.reproduce.curves import (
     scenes_8b,
 )
 from contact1d.workflow.reproduce.fig4 import AGAINST, CAREFUL, STENCIL
-from contact1d.workflow.reproduce.figures import Series, closed_form_figure, reduced_figure, save
+from contact1d.workflow.reproduce.figures import closed_form_figure, reduced_figure
 from contact1d.workflow.reproduce.oracles import chain_model, distances, equilibrium_under, independent_pairs, reduced
-from contact1d.workflow.reproduce.page import agreement, share, worst_deviation
 from contact1d.workflow.reproduce.paper import TABLE_1, local, with_radius
-from contact1d.workflow.reproduce.runs import branch, found
+from contact1d.workflow.reproduce.runs import branch
 from contact1d.workflow.reproduce.study import Findings, Rows, Runs, Study
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene

@@ -5,31 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contact1d.analysis.plots import THEORY, new_figure, save_figure
+from contact1d.analysis.plots import THEORY, new_figure
 from contact1d.analysis.reference.jkr import jkr_reduced_force
 from contact1d.analysis.reference.line_adhesion import barquins_reduced_force, brittle_reduced_force
+from contact1d.workflow.judging.figures import COLOURS, MARKERS, Array, Series
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999933")
-"""Okabe and Ito's colours, and one more."""
-MARKERS = "osD^vP*Xh"
 WIDE = (9.2, 4.0)
-
-
-def save(figure: Figure, path: Path) -> None:
-    """Save whole or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    save_figure(figure, path)
 
 
 @dataclass(frozen=True)
@@ -63,16 +52,6 @@ def reductions_figure(panels: Sequence[ReductionPanel]) -> Figure:
     for axis in (left, right):
         axis.legend(frameon=False)
     return figure
-
-
-@dataclass(frozen=True)
-class Series:
-    """Points with a name; `spread` their uncertainty or None."""
-
-    name: str
-    x: Array
-    y: Array
-    spread: Array | None = None
 
 
 def history_figure(force: Sequence[Series], radius: Sequence[Series], limit: float) -> Figure:

@@ -3,24 +3,13 @@
 from __future__ import annotations
 
 import math
-import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
-from contact1d.workflow.reproduce.check import WIDE, Check
-from contact1d.workflow.reproduce.page import (
-    EVIDENCE,
-    failures,
-    judged,
-    limits,
-    ours,
-    outcome,
-    paragraphs,
-    passed,
-    reference,
-    share,
-    tolerance,
-)
+from contact1d.workflow.judging.check import WIDE, Check
+from contact1d.workflow.judging.markdown import prose, table
+from contact1d.workflow.judging.words import judged, limits, ours, outcome, passed, reference, share, tolerance
+from contact1d.workflow.reproduce.page import EVIDENCE, failures, paragraphs
 from contact1d.workflow.reproduce.record import Record, StudyRecord
 
 HEAD = """# Validation
@@ -75,22 +64,6 @@ def readme_table(record: Record) -> str:
     """Return one row for each study: its name, what was asked, the result in words, PASS or FAIL."""
     rows = [(f"`{study.name}`", study.title, _result(study), _verdict(study.checks)) for study in record.studies]
     return table(("study", "asked", "result", "verdict"), rows)
-
-
-def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a Markdown table; what would break a cell is escaped."""
-    lines: list[Sequence[str]] = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(cell(text) for text in line) + " |" for line in lines) + "\n"
-
-
-def cell(text: str) -> str:
-    """Return `text` on one line, with nothing in it that ends a cell or opens a tag."""
-    return re.sub(r"\s+", " ", prose(text.replace("\\", "\\\\").replace("|", "\\|"))).strip()
-
-
-def prose(text: str) -> str:
-    """Return `text` with no tag in it, and `R^{2/3}` as R^(2/3)."""
-    return re.sub(r"\^\{([^{}]+)\}", r"^(\1)", text.replace("<", "&lt;"))
 
 
 def _made(record: Record) -> str:

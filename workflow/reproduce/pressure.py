@@ -15,12 +15,14 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.reference.jkr import jkr_reduced_force
 from contact1d.workflow.identify import Target, estimated
+from contact1d.workflow.judging.figures import save
+from contact1d.workflow.judging.runs import found
+from contact1d.workflow.judging.words import share
 from contact1d.workflow.reproduce.curves import DEEPEST, READ, STEPS, lengthened_run, scenes_8a
 from contact1d.workflow.reproduce.fig8 import ASKED
-from contact1d.workflow.reproduce.figures import pressure_radius_figure, save
-from contact1d.workflow.reproduce.page import share
+from contact1d.workflow.reproduce.figures import pressure_radius_figure
 from contact1d.workflow.reproduce.paper import TABLE_1, changed, curve_scene
-from contact1d.workflow.reproduce.runs import branch, found
+from contact1d.workflow.reproduce.runs import branch
 from contact1d.workflow.reproduce.study import Findings, Rows, Runs, Scenes, Study
 from contact1d.workflow.reproduce.table1 import pull_off_run, scales
 from contact1d.workflow.scene import Scene

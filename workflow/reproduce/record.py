@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, get_args
 
-from contact1d.workflow.reproduce.check import Check, Standing
+from contact1d.workflow.judging.check import Check, Standing
 
 RECORD = "reproduce.json"
 

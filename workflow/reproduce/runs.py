@@ -9,22 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.engine.progress import Progress
-from contact1d.workflow.errors import FolderError, RunError
+from contact1d.workflow.errors import RunError
+from contact1d.workflow.judging.runs import there
 from contact1d.workflow.runs.finished import Run, read_run
 from contact1d.workflow.runs.many import completed
 from contact1d.workflow.runs.pool import pool
-from contact1d.workflow.runs.report import versions
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.units import Quantity
 
 Array = NDArray[np.float64]
-NOTHING = Quantity(float("nan"), float("nan"), "")
-"""Stands for a result of a run that failed."""
-
-
-def found(run: Run, name: str) -> Quantity:
-    """A result; NaN where the run has none, since it failed."""
-    return run.results.get(name, NOTHING)
 
 
 def finish(scenes: Mapping[str, Scene], folder: Path, workers: int, progress: Progress) -> dict[str, Run]:
@@ -49,15 +41,6 @@ def finish(scenes: Mapping[str, Scene], folder: Path, workers: int, progress: Pr
             done[missing[index]] = entry if isinstance(entry, Run) else read_run(entry.folder)
             progress.advance(1)
     return done
-
-
-def there(scene: Scene, folder: Path) -> Run | None:
-    """The run in `folder`, if it is of this scene and of these versions, and whole."""
-    try:
-        run = read_run(folder)
-    except FolderError:
-        return None
-    return run if run.scene == scene and run.document.get("versions") == versions() else None
 
 
 def branch(run: Run) -> tuple[Array, Array, Array, Array]:

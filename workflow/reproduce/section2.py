@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact1d.analysis.reference import hertz
-from contact1d.workflow.reproduce.runs import found
+from contact1d.workflow.judging.runs import found
 from contact1d.workflow.reproduce.study import Scenes
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Reduction, Scene, scene_from_dict

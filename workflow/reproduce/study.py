@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from contact1d.workflow.reproduce.check import Check, Evidence
+from contact1d.workflow.judging.check import Check, Evidence
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene
 

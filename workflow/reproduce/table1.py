@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from contact1d.workflow.reproduce.page import agreement, number, share, worst_deviation
+from contact1d.workflow.judging.runs import found
+from contact1d.workflow.judging.words import agreement, number, share, worst_deviation
 from contact1d.workflow.reproduce.paper import CONTACT_MODULUS, HALF_DIGIT, SURFACE_ENERGY, TABLE_1, with_radius
-from contact1d.workflow.reproduce.runs import found
 from contact1d.workflow.reproduce.study import Findings, Rows, Runs, Scenes, Study
 from contact1d.workflow.runs.scales import jkr_scales
 from contact1d.workflow.scene import Scene

@@ -16,9 +16,9 @@ from typing import Any
 
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.errors import FolderError, RunError
-from contact1d.workflow.reproduce.check import Check, Evidence
-from contact1d.workflow.reproduce.runs import found as result
-from contact1d.workflow.reproduce.runs import there
+from contact1d.workflow.judging.check import Check, Evidence
+from contact1d.workflow.judging.runs import found as result
+from contact1d.workflow.judging.runs import there
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import SceneError, scene_from_dict

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from contact1d.workflow.reproduce.figures import Series
+from contact1d.workflow.judging.figures import Series
 from contact1d.workflow.scene import scene_from_dict, scene_to_toml
 from contact1d.workflow.stability.case import Bench, Class, Findings, at_most
 from contact1d.workflow.stability.figures import points_figure

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from contact1d.analysis.plots import THEORY, new_figure
-from contact1d.workflow.reproduce.figures import COLOURS, MARKERS, Series, save
+from contact1d.workflow.judging.figures import COLOURS, MARKERS, Series, save
 
 SIZE = (6.4, 4.2)
 

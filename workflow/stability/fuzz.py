@@ -19,7 +19,7 @@ import numpy as np
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.errors import RunError
 from contact1d.workflow.experiments import planned
-from contact1d.workflow.reproduce.figures import Series
+from contact1d.workflow.judging.figures import Series
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import SceneError, read_scene
 from contact1d.workflow.settings.settings import SettingsError, settings_for

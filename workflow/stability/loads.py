@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import brentq
 
-from contact1d.workflow.reproduce.check import Check
-from contact1d.workflow.reproduce.figures import Series
-from contact1d.workflow.reproduce.runs import found as result
+from contact1d.workflow.judging.check import Check
+from contact1d.workflow.judging.figures import Series
+from contact1d.workflow.judging.runs import found as result
 from contact1d.workflow.stability.case import Bench, Class, Findings, Refused, at_most, over_claim, warned
 from contact1d.workflow.stability.figures import points_figure
 from contact1d.workflow.stability.pairs import PairCase, reach, shaped

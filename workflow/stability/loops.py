@@ -8,8 +8,8 @@ import numpy as np
 
 from contact1d.analysis.reference.folded_pairs import FoldedPairs
 from contact1d.analysis.reference.interaction import Floats
-from contact1d.workflow.reproduce.check import Check
-from contact1d.workflow.reproduce.figures import Series
+from contact1d.workflow.judging.check import Check
+from contact1d.workflow.judging.figures import Series
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.stability.case import Bench, Class, Findings, Refused, at_most, over_claim, said
 from contact1d.workflow.stability.figures import points_figure

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from contact1d.analysis.reference.interaction import Floats
-from contact1d.workflow.reproduce.check import Check
-from contact1d.workflow.reproduce.figures import Series
+from contact1d.workflow.judging.check import Check
+from contact1d.workflow.judging.figures import Series
 from contact1d.workflow.stability.case import Bench, Class, Findings, at_most
 from contact1d.workflow.stability.figures import points_figure
 from contact1d.workflow.stability.opened import LAW, contact_of

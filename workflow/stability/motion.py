@@ -18,8 +18,8 @@ from contact1d.analysis.reference.interaction import Exponential, PairInteractio
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.solver import ChainSolver
 from contact1d.workflow.engine.session import EngineError
-from contact1d.workflow.reproduce.check import Check
-from contact1d.workflow.reproduce.figures import Series
+from contact1d.workflow.judging.check import Check
+from contact1d.workflow.judging.figures import Series
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 from contact1d.workflow.stability.case import Bench, Class, Findings, at_most

@@ -16,8 +16,8 @@ from scipy.optimize import brentq
 
 from contact1d.workflow.deck.steps import Displace
 from contact1d.workflow.experiments.running.contact import Contact
-from contact1d.workflow.reproduce.check import Check
-from contact1d.workflow.reproduce.figures import Series
+from contact1d.workflow.judging.check import Check
+from contact1d.workflow.judging.figures import Series
 from contact1d.workflow.stability.case import Bench, Class, Findings, Refused, at_most, over_claim, said
 from contact1d.workflow.stability.figures import points_figure
 from contact1d.workflow.stability.opened import contact_of

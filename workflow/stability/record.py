@@ -13,9 +13,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from contact1d.workflow.reproduce.check import Check
-from contact1d.workflow.reproduce.markdown import prose, table
-from contact1d.workflow.reproduce.page import number, ours, reference, tolerance
+from contact1d.workflow.judging.check import Check
+from contact1d.workflow.judging.markdown import prose, table
+from contact1d.workflow.judging.words import number, ours, reference, tolerance
 from contact1d.workflow.stability.case import Class, Findings
 
 RECORD, TABLE = "stability.json", "stability.md"
@@ -68,7 +68,7 @@ class Stability:
             "machine": self.machine,
             "passed": len(self.checks) - len(self.failed),
             "failed": len(self.failed),
-            "rows": [check.as_row() | {"margin": margin(check)} for check in self.checks],
+            "rows": [check.as_row() for check in self.checks],
             "classes": [
                 {
                     "name": answer.asked.name,
@@ -105,23 +105,6 @@ class Stability:
         return "\n\n".join(parts) + "\n"
 
 
-def margin(check: Check) -> float | None:
-    """What the rule allows over what was found; None where nothing is found to be off, or there is no number."""
-    if not math.isfinite(check.value):
-        return None
-    off = abs(check.value - check.reference)
-    match check.comparison:
-        case "relative":
-            allowed = check.tolerance * abs(check.reference)
-        case "absolute":
-            allowed = check.tolerance
-        case "uncertainty":
-            allowed = check.uncertainty
-        case "at most":
-            allowed, off = check.reference, check.value
-    return allowed / off if off > 0.0 else None
-
-
 def bound(check: Check) -> str:
     """The reference with what is allowed beside it."""
     return tolerance(check) if check.comparison == "at most" else f"{reference(check)}, {tolerance(check)}"
@@ -133,10 +116,9 @@ def machine() -> str:
 
 
 def _margin(check: Check) -> str:
-    found = margin(check)
-    if found is None:
-        return "exact" if math.isfinite(check.value) else "–"
-    return number(found, 2)
+    if not math.isfinite(check.value):
+        return "–"
+    return number(check.margin, 2) if math.isfinite(check.margin) else "exact"
 
 
 def _badge(check: Check) -> str:

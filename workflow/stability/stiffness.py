@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from contact1d.workflow.reproduce.check import Check
-from contact1d.workflow.reproduce.figures import Series
-from contact1d.workflow.reproduce.runs import found as result
+from contact1d.workflow.judging.check import Check
+from contact1d.workflow.judging.figures import Series
+from contact1d.workflow.judging.runs import found as result
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.stability.case import (
     Bench,

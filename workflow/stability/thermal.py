@@ -12,9 +12,9 @@ from scipy.stats import chi2
 from contact1d.analysis.reference.boltzmann_pairs import BoltzmannPairs
 from contact1d.analysis.reference.folded_pairs import FoldedPairs
 from contact1d.analysis.reference.interaction import Exponential, Floats, PairInteraction
-from contact1d.workflow.reproduce.check import Check
-from contact1d.workflow.reproduce.figures import Series
-from contact1d.workflow.reproduce.runs import found as result
+from contact1d.workflow.judging.check import Check
+from contact1d.workflow.judging.figures import Series
+from contact1d.workflow.judging.runs import found as result
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.stability.case import Bench, Class, Findings, Refused, at_most, over_claim, said, warned
 from contact1d.workflow.stability.figures import points_figure
