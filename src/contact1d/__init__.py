@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from contact1d.analysis.atoms import atoms
     from contact1d.workflow.engine.failure import EngineError
     from contact1d.workflow.errors import Contact1dError, FolderError, RunError
-    from contact1d.workflow.runs.campaign import run, write_deck
+    from contact1d.workflow.runs.advised import run
+    from contact1d.workflow.runs.campaign import write_deck
     from contact1d.workflow.runs.finished import Run, load_run
     from contact1d.workflow.runs.many import run_many
     from contact1d.workflow.scene import Scene, SceneError, read_scene
@@ -56,7 +57,8 @@ _HOMES = {
     "analysis.atoms": ("atoms",),
     "workflow.engine.failure": ("EngineError",),
     "workflow.errors": ("Contact1dError", "FolderError", "RunError"),
-    "workflow.runs.campaign": ("run", "write_deck"),
+    "workflow.runs.advised": ("run",),
+    "workflow.runs.campaign": ("write_deck",),
     "workflow.runs.finished": ("Run", "load_run"),
     "workflow.runs.many": ("run_many",),
     "workflow.scene": ("Scene", "SceneError", "read_scene"),

@@ -233,7 +233,7 @@ def test_six_mistakes_are_six_lines_in_the_order_of_the_scene() -> None:
         f"bodies.particles = 2: {COUNT}",
         f'bodies.bulk_stiffness = "0.83": must be a number greater than 0 (FU/LU), or "auto"; {QUOTED}',
         "interaction.attraction.range = 0.1: must be greater than the range of the repulsion, 0.13 (LU); "
-        "the bodies would never attract each other",
+        "the bodies would never attract each other: raise it to 0.26, or lower repulsion.range to 0.05",
         'cantilever: not in a pull_off: only a slide is pulled through a spring; remove it, or use kind = "slide"',
         "experiment.preload = -1: must be greater than 0 (FU)",
         f'neighbors: unknown table; did you mean "neighbours"? allowed here: {SCENE_TABLES}',

@@ -68,11 +68,11 @@ def run(
     """Run a scene and print its numbers, each with its uncertainty."""
     folder = out if out is not None else Path("runs") / scene.stem
     with command("the run", folder, "no numbers were written", quiet) as progress:
-        checked = read(scene, set_, without)
+        checked = read(scene, set_, without, progress)
         from contact1d.workflow.engine.process import start_ahead
 
         start_ahead()  # LAMMPS loads while numpy and the rest of the program do
-        from contact1d.workflow.runs.campaign import run as run_scene
+        from contact1d.workflow.runs.advised import run as run_scene
 
         finished = run_scene(checked, folder, figures, progress, time_limit)
     from contact1d.workflow.cli.summary import pressure_plot, quantities

@@ -50,13 +50,26 @@ def stop(message: str, code: int) -> NoReturn:
     raise SystemExit(code)
 
 
-def read(path: Path, overrides: list[str] | None, without: list[str] | None) -> Scene:
-    """The scene in a file as the options change it; with every problem told, the end of the command."""
+def read(path: Path, overrides: list[str] | None, without: list[str] | None, progress: Progress | None = None) -> Scene:
+    """The scene in a file as the options change it; with every problem told, the end of the command.
+
+    With a `progress`, which is told of it, what would mend the scene is tried.
+    """
     from contact1d.workflow.scene import SceneError, read_scene
 
     try:
         return read_scene(path, tuple(overrides or ()), tuple(without or ()))
     except SceneError as error:
+        if progress is not None and all(problem.ways for problem in error.problems):
+            from contact1d.workflow.runs.advised import mended
+
+            error = mended(
+                lambda change: read_scene(
+                    path, (*(overrides or ()), *change.overrides), (*(without or ()), *change.without)
+                ),
+                error,
+                progress,
+            )
         stop(_problems(str(path), error), CALL_IS_WRONG)
 
 

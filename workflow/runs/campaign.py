@@ -84,7 +84,11 @@ def _run(context: RunContext, started: float, figures: bool, refine: bool) -> Ru
         outcome = perform(context)
         last = refined(context, outcome) if refine else Refined(context.deck, outcome)
     except (EngineError, UntrustedError) as error:
-        facts = {"message": getattr(error, "message", str(error)), "phase": context.phase, "step": context.timestep}
+        facts = {
+            "message": error.message if isinstance(error, EngineError) else str(error),
+            "phase": context.phase,
+            "step": context.timestep,
+        }
         write_results(folder, failure(scene, facts, timing()))
         where = f" [phase {context.phase}, step {context.timestep}]"
         raise RunError(f"{facts['message']}{_hint(str(facts['message']))}{where}", folder) from error

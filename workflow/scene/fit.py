@@ -114,12 +114,19 @@ def _law(draft: Draft) -> Iterator[Problem]:
     A, a, B, b = values
     if b <= a:
         must = f"must be greater than the range of the repulsion, {a:g} (LU)"
-        yield Problem("interaction.attraction.range", must, shown(b), "the bodies would never attract each other")
+        farther, nearer = float(f"{2.0 * a:.6g}"), float(f"{0.5 * b:.6g}")
+        hint = f"the bodies would never attract each other: raise it to {farther:g}, or lower "
+        hint += f"repulsion.range to {nearer:g}"
+        ways = ({"interaction.attraction.range": farther}, {"interaction.repulsion.range": nearer})
+        yield Problem("interaction.attraction.range", must, shown(b), hint, ways)
         return
     ratio = math.log(A) - math.log(a) - math.log(B) + math.log(b)
     if ratio <= 0:
         must = f"must be less than {A / a * b:.6g} (FU·LU), so that A/a > B/b and particles repel when they touch"
-        yield Problem("interaction.attraction.amplitude", must, shown(B), "lower it, or raise repulsion.amplitude")
+        weaker, stronger = float(f"{0.25 * A / a * b:.6g}"), float(f"{4.0 * B / b * a:.6g}")
+        hint = f"lower it to {weaker:g}, or raise repulsion.amplitude to {stronger:g}"
+        ways = ({"interaction.attraction.amplitude": weaker}, {"interaction.repulsion.amplitude": stronger})
+        yield Problem("interaction.attraction.amplitude", must, shown(B), hint, ways)
         return
     r0 = ratio * a * b / (b - a)
     cutoff = draft.get("interaction", "cutoff", default="auto")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from difflib import get_close_matches
 
 from contact1d.workflow.errors import Contact1dError
@@ -16,12 +16,16 @@ SHOWN_LENGTH = 60
 
 @dataclass(frozen=True)
 class Problem:
-    """One mistake: where (`path`), what was `given` (as TOML, or None), what is allowed, and what to do (`hint`)."""
+    """One mistake: where (`path`), what was `given` (as TOML, or None), what is allowed, and what to do (`hint`).
+
+    `ways`: values by dotted keys, each set of which would make a scene of it, where the program can tell.
+    """
 
     path: str
     message: str
     given: str | None = None
     hint: str = ""
+    ways: tuple[Mapping[str, object], ...] = field(default=(), compare=False)
 
     def __str__(self) -> str:
         """One line: `path = given: message; hint`."""

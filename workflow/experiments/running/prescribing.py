@@ -63,7 +63,8 @@ def in_smaller_steps(search: Callable[[RunContext], Outcome]) -> Callable[[RunCo
                 latest = error
             finally:
                 context.deck = deck
-        raise ThroughError(f"{latest}. Steps {1 / RETRY_SHARES[-1]:g} times smaller did not help")
+        smaller = f"Steps {1 / RETRY_SHARES[-1]:g} times smaller did not help"
+        raise ThroughError(f"{latest.message}. {smaller}", latest.advice)
 
     return searched
 

@@ -15,11 +15,24 @@ from contact1d.workflow.units import Quantity
 
 
 class UntrustedError(RuntimeError):
-    """The run ended, but its result can't be trusted; the message says why and what to do."""
+    """The run ended, but its result can't be trusted: why, and what to do where nothing was found by trying it."""
+
+    def __init__(self, message: str, advice: str = "") -> None:
+        """Keep both; `advice` may stand in the message itself."""
+        super().__init__(message, advice)
+        self.message, self.advice = message, advice
+
+    def __str__(self) -> str:
+        """Return both, one behind the other."""
+        return f"{self.message}: {self.advice}" if self.advice else self.message
 
 
 class ThroughError(UntrustedError):
     """The bodies went through each other, which may be the way there and not the load (`in_smaller_steps`)."""
+
+
+class ChainEndError(UntrustedError):
+    """The contact is wider than its chain."""
 
 
 END_SHARE_LIMIT = 1.0
@@ -39,10 +52,11 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
     """
     at = f"at displacement {state.displacement:.4g} LU (phase {state.phase})"
     if state.depth > 0.0:
+        aside = "" if scene.horizontal is None else "leave out [horizontal], which lets particles step aside, "
         raise ThroughError(
             f"the bodies went through each other {at}: a particle lies {state.depth:.3g} LU below the opposite "
-            "surface. One layer of particles cannot carry this load: lower the load or the displacement, take a "
-            "stronger repulsion, a range nearer to the spacing, or stiffer neighbour springs"
+            "surface. One layer of particles cannot carry this load",
+            f"{aside}lower the load or the displacement, or take a stronger repulsion",
         )
     if scene.plate is None and not is_converged(settings, state):
         limit = RESIDUAL_LIMIT * settings.tolerance * settings.force_scale
@@ -53,9 +67,9 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
             + ", or a larger [accuracy] tolerance"
         )
     if _reaches_end(scene, state.profile):
-        raise UntrustedError(
-            f"the contact reaches the end of the chain {at}: take more bodies.particles than {settings.particles} "
-            '(or "auto"), or a smaller load'
+        raise ChainEndError(
+            f"the contact reaches the end of the chain {at}",
+            f'take more bodies.particles than {settings.particles} (or "auto"), or a smaller load',
         )
 
 

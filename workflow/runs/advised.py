@@ -1,0 +1,85 @@
+"""A scene to a finished run folder, or to an error that says what was tried against it and helps."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from contact1d.workflow.engine.progress import Progress, Silent
+from contact1d.workflow.errors import Contact1dError, RunError
+from contact1d.workflow.experiments.running.trust import UntrustedError
+from contact1d.workflow.runs import campaign
+from contact1d.workflow.runs.finished import Run
+from contact1d.workflow.runs.remedies import Reader, Tried, tried
+from contact1d.workflow.runs.report import RESULTS, write_results
+from contact1d.workflow.scene import AnyScene, Scene, SceneError, read_scene
+from contact1d.workflow.scene.problems import Problem
+from contact1d.workflow.settings.settings import Settings, SettingsError, settings_for
+
+TRIAL = 10.0
+"""Wall time of LAMMPS in one trial [s]."""
+
+
+def run(
+    scene: AnyScene,
+    folder: campaign.AnyPath,
+    figures: bool = True,
+    progress: Progress | None = None,
+    time_limit: float = campaign.TIME_LIMIT,
+    settings: Settings | None = None,
+) -> Run:
+    """As `workflow.runs.campaign.run`; where it fails, changes of the scene are tried for up to PATIENCE seconds.
+
+    Arguments and errors are the same; an error says with which changes the scene gives a result.
+    """
+    progress = progress or Silent()
+    try:
+        return campaign.run(scene, folder, figures, progress, time_limit, settings)
+    except SceneError as error:
+        raise mended(lambda change: read_scene(scene, change.overrides, change.without), error, progress) from None
+    except SettingsError as error:
+        found = _tried(scene, error, progress)
+        raise SettingsError(f"{error}. {found}" if str(found) else str(error)) from error.__cause__
+    except RunError as error:
+        if not isinstance(error.__cause__, UntrustedError):
+            raise
+        raise _said(error, error.__cause__, _tried(scene, error, progress)) from error.__cause__
+
+
+def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
+    """The error of a scene, and which of the ways to mend it give a result.
+
+    Args:
+        reader: gives the scene with a change.
+        error: the scene's, without.
+        progress: told of every trial.
+    """
+    found = tried(reader, error, _attempt, progress.note)
+    if not str(found):
+        return error
+    first, *others = error.problems
+    hint = f"{first.hint}. {found}" if first.hint else str(found)
+    return SceneError([Problem(first.path, first.message, first.given, hint, first.ways), *others])
+
+
+def _tried(source: AnyScene, error: Contact1dError, progress: Progress) -> Tried:
+    return tried(lambda change: read_scene(source, change.overrides, change.without), error, _attempt, progress.note)
+
+
+def _attempt(scene: Scene) -> None:
+    """Run a scene as it is, without refinement, for at most TRIAL seconds. Raises Contact1dError."""
+    with TemporaryDirectory() as folder:
+        campaign.run(scene, Path(folder) / "trial", figures=False, time_limit=TRIAL, settings=settings_for(scene))
+
+
+def _said(error: RunError, cause: UntrustedError, found: Tried) -> RunError:
+    """The error with what was found in place of advice that nobody tried; results.json says the same."""
+    document = json.loads((error.folder / RESULTS).read_text(encoding="utf-8"))
+    facts = document["error"]
+    advice = f". {found}" if found.helped else f": {cause.advice}" if cause.advice else ""
+    facts["message"] = f"{cause.message}{advice}"
+    if found.failed and not found.helped:
+        facts["message"] += f". {found}"
+    write_results(error.folder, document)
+    return RunError(f"{facts['message']} [phase {facts['phase']}, step {facts['step']}]", error.folder)

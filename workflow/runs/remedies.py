@@ -1,0 +1,193 @@
+"""What helps a scene that gives no result, found by trying it: changes as the command line has them.
+
+The changes that are known to help against such a failure are tried one by one; where none of them does, each is tried
+together with one against what it failed by itself, and so on, as long as PATIENCE lasts.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from contact1d.workflow.errors import Contact1dError
+from contact1d.workflow.experiments.running.trust import ChainEndError, ThroughError, UntrustedError
+from contact1d.workflow.scene import Load, PullOff, Scene, SceneError, Slide
+from contact1d.workflow.scene.problems import as_toml
+from contact1d.workflow.settings.estimate import NotCarriedError
+
+PATIENCE = 20.0
+"""Wall time [s] after which no further change is tried; a whole run of a shipped scene takes a few tenths."""
+ENOUGH = 2
+"""Changes that help after which no other is tried."""
+STEP = 3.0
+"""Factor of a change to a load, a stiffness or an amplitude."""
+
+Reader = Callable[["Change"], Scene]
+"""The scene with a change. Raises SceneError."""
+Attempt = Callable[[Scene], object]
+"""Runs a scene; raises a Contact1dError where it gives no result."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """Values by dotted keys, and effects that are left out."""
+
+    values: Mapping[str, object] = field(default_factory=dict)
+    without: tuple[str, ...] = ()
+
+    @property
+    def overrides(self) -> tuple[str, ...]:
+        """The values as `read_scene` takes them."""
+        return tuple(
+            f"{key}={value if isinstance(value, str) else as_toml(value)}" for key, value in self.values.items()
+        )
+
+    def __str__(self) -> str:
+        """As options of `contact1d run`."""
+        return " ".join([*(f"--without {name}" for name in self.without), *(f"--set {one}" for one in self.overrides)])
+
+    def then(self, other: Change) -> Change:
+        """Both; of two values for a key the other's."""
+        return Change({**self.values, **other.values}, tuple(dict.fromkeys((*self.without, *other.without))))
+
+    def touches(self, other: Change) -> bool:
+        """Whether both change the same."""
+        return bool(self.values.keys() & other.values.keys() or set(self.without) & set(other.without))
+
+
+@dataclass(frozen=True)
+class Tried:
+    """What was tried: the changes with which the scene gives a result, and those with which it does not."""
+
+    helped: tuple[Change, ...] = ()
+    failed: tuple[Change, ...] = ()
+
+    def __str__(self) -> str:
+        """A sentence, or nothing where nothing was tried."""
+        if self.helped:
+            also = "".join(f", and so does {one}" for one in self.helped[1:])
+            return f"Tried: {self.helped[0]} gives a result{also}" + (
+                f"; {', '.join(map(str, self.failed))} did not" if self.failed else ""
+            )
+        return f"Tried in vain: {', '.join(map(str, self.failed))}" if self.failed else ""
+
+
+def tried(reader: Reader, error: Contact1dError, attempt: Attempt, note: Callable[[str], None]) -> Tried:
+    """Try what may help a scene that failed by `error`.
+
+    Args:
+        reader: gives the scene with a change.
+        error: why it gives no result without.
+        attempt: runs a changed scene.
+        note: told of every trial.
+    """
+    until = time.monotonic() + PATIENCE
+    waiting = deque((change, 1) for change in _changes(reader, Change(), error))
+    helped: list[Change] = []
+    failed: list[Change] = []
+    while waiting and time.monotonic() < until and len(helped) < ENOUGH:
+        change, together = waiting.popleft()
+        if helped and together > 1:
+            break  # one change helps: no need for two
+        note(f"trying what helps: {change}")
+        try:
+            attempt(reader(change))
+        except Contact1dError as another:
+            failed.append(change)
+            waiting.extend((change.then(more), together + 1) for more in _changes(reader, change, another))
+        else:
+            helped.append(change)
+    return Tried(tuple(helped), tuple(failed))
+
+
+def _changes(reader: Reader, made: Change, error: Contact1dError) -> Iterator[Change]:
+    """What may help against `error`, beside the change that was `made` already."""
+    if isinstance(error, SceneError):
+        if made == Change():
+            yield from _ways(error)
+        return
+    scene = reader(made)
+    for what in _kinds(error):
+        change = what(scene)
+        if change is not None and not change.touches(made):
+            yield change
+
+
+def _ways(error: SceneError) -> Iterator[Change]:
+    """What would make a scene of it: every way of its first problem, with the first way of each other."""
+    if all(problem.ways for problem in error.problems):
+        first, *others = error.problems
+        for way in first.ways:
+            yield Change(
+                {key: value for values in (way, *(other.ways[0] for other in others)) for key, value in values.items()}
+            )
+
+
+def _kinds(error: Contact1dError) -> tuple[Callable[[Scene], Change | None], ...]:
+    """What is known to help against such an error, what helps most often first."""
+    cause = error.__cause__
+    if isinstance(cause, ThroughError):
+        return (_without_horizontal, _smaller_load, _weaker_attraction, _stronger_core, _shorter_attraction)
+    if isinstance(cause, ChainEndError):
+        return (_longer_chain, _smaller_load)
+    if isinstance(cause, NotCarriedError):
+        return (_smaller_load, _stronger_core)
+    if isinstance(cause, UntrustedError):
+        return (_without_horizontal, _stiffer_springs, _smaller_load, _longer_chain)
+    return ()
+
+
+def _without_horizontal(scene: Scene) -> Change | None:
+    """Particles of opposite chains that may move aside go past each other: under load a pair is unstable sideways."""
+    pulled = isinstance(scene.experiment, Slide) or (scene.plate is not None and "x" in scene.plate.free)
+    return None if scene.horizontal is None or pulled else Change(without=("horizontal",))
+
+
+def _longer_chain(scene: Scene) -> Change | None:
+    given = scene.bodies.particles != "auto" and not scene.bodies.profile.has_edge
+    return Change({"bodies.particles": "auto"}) if given else None
+
+
+def _smaller_load(scene: Scene) -> Change | None:
+    experiment = scene.experiment
+    if isinstance(experiment, PullOff):
+        return Change({"experiment.preload": _rounded(experiment.preload / STEP)})
+    if isinstance(experiment, Load):
+        return Change({"experiment.force": _rounded(experiment.force / STEP)})
+    if isinstance(experiment, Slide):
+        return Change({"experiment.normal_force": _rounded(experiment.normal_force / STEP)})
+    return None
+
+
+def _stronger_core(scene: Scene) -> Change | None:
+    if scene.interaction is None:
+        return None
+    key = "interaction.repulsion.amplitude"
+    return Change({key: _rounded(STEP * scene.interaction.repulsion.amplitude)})
+
+
+def _weaker_attraction(scene: Scene) -> Change | None:
+    if scene.interaction is None or scene.interaction.attraction is None:
+        return None
+    key = "interaction.attraction.amplitude"
+    return Change({key: _rounded(scene.interaction.attraction.amplitude / STEP)})
+
+
+def _shorter_attraction(scene: Scene) -> Change | None:
+    if scene.interaction is None or scene.interaction.attraction is None:
+        return None
+    shorter = _rounded(0.5 * scene.interaction.attraction.range)
+    return Change({"interaction.attraction.range": shorter}) if shorter > scene.interaction.repulsion.range else None
+
+
+def _stiffer_springs(scene: Scene) -> Change | None:
+    given = scene.bodies.bulk_stiffness
+    return None if given == "auto" else Change({"bodies.bulk_stiffness": _rounded(STEP * given)})
+
+
+def _rounded(value: float) -> float:
+    """Three digits."""
+    return float(f"{value:.3g}") if math.isfinite(value) else value
