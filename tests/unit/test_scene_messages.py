@@ -60,7 +60,7 @@ def test_a_number_must_be_finite(value: str) -> None:
     assert lines(f"bodies.mass={value}") == [f"bodies.mass = {given}: must be a finite number greater than 0 (MU)"]
 
 
-QUOTED = "a number stands without quotes and without its unit"
+QUOTED = "a number stands without quotes"
 SCENE_TABLES = (
     "title, bodies, interaction, neighbours, horizontal, damping, noise, plate, cantilever, material, accuracy, "
     "experiment"
@@ -72,13 +72,16 @@ KINDS = '"load", "path", "pull_off" or "slide"'
 DISPLACEMENTS = "must be a list, each item a number (LU), or a table with from, to, steps, return"
 
 ONE_LINE_EACH: list[tuple[list[str], str]] = [
-    (['bodies.spacing="1.0 nm"'], f'bodies.spacing = "1.0 nm": must be a number greater than 0 (LU); {QUOTED}'),
+    (
+        ['bodies.spacing="1.0"'],
+        f'bodies.spacing = "1.0": must be a number greater than 0 (LU); {QUOTED}, or with its unit: "10 mm"',
+    ),
     (["bodies.particles=2"], f"bodies.particles = 2: {COUNT}"),
     (["bodies.particles=200.0"], f"bodies.particles = 200.0: {COUNT}; write 200"),
     (["bodies.particles=20.5"], f"bodies.particles = 20.5: {COUNT}"),
     (["bodies.particles=true"], f"bodies.particles = true: {COUNT}"),
     (["bodies.particles=atuo"], f'bodies.particles = "atuo": {COUNT}'),
-    (["bodies.particles='200'"], f'bodies.particles = "200": {COUNT}; {QUOTED}'),
+    (["bodies.particles='200'"], f'bodies.particles = "200": {COUNT}; {QUOTED} and unit'),
     (["interaction.cutoff=-1"], 'interaction.cutoff = -1: must be greater than 0 (LU), or "auto"'),
     (["interaction.cutoff=far"], 'interaction.cutoff = "far": must be a number greater than 0 (LU), or "auto"'),
     ([*PLATE, "plate.mass=0"], 'plate.mass = 0: must be greater than 0 (MU), or "auto"'),
@@ -231,7 +234,8 @@ def test_six_mistakes_are_six_lines_in_the_order_of_the_scene() -> None:
         "experiment.preload=-1",
     ) == [
         f"bodies.particles = 2: {COUNT}",
-        f'bodies.bulk_stiffness = "0.83": must be a number greater than 0 (FU/LU), or "auto"; {QUOTED}',
+        f'bodies.bulk_stiffness = "0.83": must be a number greater than 0 (FU/LU), or "auto"; {QUOTED}, '
+        'or with its unit: "100 N/m"',
         "interaction.attraction.range = 0.1: must be greater than the range of the repulsion, 0.13 (LU); "
         "the bodies would never attract each other: raise it to 0.26, or lower repulsion.range to 0.05",
         'cantilever: not in a pull_off: only a slide is pulled through a spring; remove it, or use kind = "slide"',

@@ -187,7 +187,7 @@ def test_an_override_value_is_toml_or_else_text() -> None:
         "quasistatic",
         "quoted",
     )
-    assert refused("bodies.spacing=1\nmass=2")[0].startswith('bodies.spacing = "1\\nmass=2": must be a number')
+    assert refused("bodies.spacing=1\nmass=2")[0].startswith('bodies.spacing = "1\\nmass=2": must be a length')
 
 
 def test_one_override_needs_no_list() -> None:

@@ -10,7 +10,8 @@ from pathlib import Path
 
 from contact1d.workflow import scene as scenes
 from contact1d.workflow.scene.quantities import Table, annotation_of, keys_of
-from contact1d.workflow.scene.wording import statement
+from contact1d.workflow.scene.si_text import example, in_words
+from contact1d.workflow.scene.wording import described
 
 PAGE = Path(__file__).parents[2] / "docs" / "scene.md"
 HEAD = """# Every key of a scene
@@ -18,6 +19,15 @@ HEAD = """# Every key of a scene
 Made from the tables of `workflow/scene`. Units: LU length, FU force, MU mass, TU = √(MU·LU/FU), k_BT in FU·LU.
 A table that is absent adds nothing to the deck; tables that do not fit together are reported with what to do.
 Above the first table stands `title = "…"`, one line of text, required.
+
+A number of the model's units may as well be text with a unit of the same dimension: `radius = "10 mm"`, in lists, too,
+after `--set` and in `with_`. LU, FU and MU are then those of `[material]`: `length_unit`, `force_unit`, `mass_unit`.
+Where it gives none, and no plain number but 0 needs it, the unit of the model is that of SI: 1 m, 1 N, 1 kg, and TU is
+1 s; this is written into the scene that the run folder keeps, and the results have these units. A temperature may be
+in K or °C, and is kept as k_BT.
+
+| in model units | what | as text, for example |
+| --- | --- | --- |
 """
 TABLES = {
     "bodies": scenes.Bodies,
@@ -46,6 +56,15 @@ TABLES = {
 }
 
 
+SHOWN = ("LU", "FU", "FU/LU", "FU·LU", "FU/LU²", "MU", "TU", "LU/TU", "FU·TU/LU")
+"""Units of the model in the page's first table."""
+
+
+def head() -> str:
+    rows = [f'| {unit} | {in_words(unit).partition(", such as")[0]} | `"{example(unit)}"` |' for unit in SHOWN]
+    return HEAD + "\n".join(rows) + "\n"
+
+
 def section(name: str, table: type[Table]) -> str:
     lines = [f"\n## [{name}]\n", (table.__doc__ or "").strip().splitlines()[0] + "\n"]
     keys = keys_of(table)
@@ -55,12 +74,12 @@ def section(name: str, table: type[Table]) -> str:
         info = table.model_fields[field]
         default = "required" if info.is_required() else "none" if info.default is None else f"`{info.default}`"
         what = str(info.description).replace("|", "\\|")
-        lines.append(f"| `{key}` | {what} | {statement(annotation_of(table, key))} | {default} |")
+        lines.append(f"| `{key}` | {what} | {described(annotation_of(table, key))} | {default} |")
     return "\n".join(lines) + "\n"
 
 
 def test_the_page_of_all_keys_is_what_the_tables_say() -> None:
-    page = HEAD + "".join(section(name, table) for name, table in TABLES.items())
+    page = head() + "".join(section(name, table) for name, table in TABLES.items())
     if os.environ.get("WRITE_DOCS"):
         PAGE.write_text(page, encoding="utf-8")
     assert PAGE.read_text(encoding="utf-8") == page

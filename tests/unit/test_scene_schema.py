@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -30,9 +31,10 @@ BOUNDS = {
     "minItems": lambda value, bound: len(value) >= bound,
     "const": lambda value, wanted: value == wanted,
     "enum": lambda value, words: value in words,
+    "pattern": lambda value, pattern: re.search(pattern, value) is not None,
 }
 WORDS = {"$schema", "title", "description", "default", "type", "properties", "required", "additionalProperties"}
-WORDS |= {"oneOf", "items", *BOUNDS}
+WORDS |= {"oneOf", "anyOf", "items", *BOUNDS}
 
 
 def valid(value: Any, schema: dict[str, Any]) -> bool:
@@ -40,6 +42,8 @@ def valid(value: Any, schema: dict[str, Any]) -> bool:
     assert schema.keys() <= WORDS
     if "oneOf" in schema:
         return sum(valid(value, choice) for choice in schema["oneOf"]) == 1
+    if "anyOf" in schema:
+        return any(valid(value, choice) for choice in schema["anyOf"])
     wanted = schema["type"]
     if not isinstance(value, TYPES[wanted]) or isinstance(value, bool) != (wanted == "boolean"):
         return False
@@ -79,6 +83,11 @@ def test_every_shipped_scene_is_valid(path: Path) -> None:
         "bodies.profile={kind='cone', slope=0.1}",
         "bodies.profile={kind='table', file='tip.csv', scale=2.0}",
         "interaction.cutoff=3.0",
+        "interaction.cutoff='3 nm'",
+        "bodies.spacing='.5 µm'",
+        "experiment={kind='path', displacements=['-1.5e-3 mm', 0, '1 Å']}",
+        "experiment={kind='path', displacements={from='0 nm', to='1 nm', steps=5}}",
+        "material={upper={youngs_modulus='210 GPa', poisson_ratio=0.5}, contact_modulus='1 Pa', force_unit='1 N'}",
         "experiment={kind='path', displacements=[0.0, 1, -1.0]}",
         "experiment={kind='path', displacements={from=0.0, to=1.0, steps=5}}",
         "material={upper={youngs_modulus=1e9, poisson_ratio=0.5}, contact_modulus=1.0, surface_energy=1}",
@@ -96,6 +105,8 @@ def test_what_a_table_may_hold_is_valid(override: str) -> None:
         "title=1",
         "bodies.spacing=-1.0",
         "bodies.spacing='1'",
+        "bodies.spacing='nm'",
+        "bodies.particles='30 nm'",
         "bodies.mass=true",
         "bodies.particles=2",
         "bodies.particles=30.5",

@@ -64,7 +64,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
     "cantilever": {"stiffness": 20.0, "velocity": 0.05},
     "material": {
         "upper": STEEL, "lower": STEEL, "contact_modulus": 115e9, "length_unit": 1e-9, "force_unit": 1e-6,
-        "surface_energy": 1.0,
+        "mass_unit": 1e-12, "surface_energy": 1.0,
     },
     "experiment": {"method": "quasistatic"},
 }  # fmt: skip

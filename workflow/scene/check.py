@@ -6,17 +6,26 @@ and the rules across tables are checked in the same go.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Any, get_args
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from contact1d.workflow.scene.problems import Problem, nearest, path_of, shown
+from contact1d.workflow.scene.problems import Problem, as_toml, nearest, path_of, shown
 from contact1d.workflow.scene.quantities import Table, annotation_of, keys_of
 from contact1d.workflow.scene.tables import Scene
-from contact1d.workflow.scene.wording import branches, kinds_of, members, statement, table_of, unwrapped, words_of
+from contact1d.workflow.scene.wording import (
+    branches,
+    kinds_of,
+    members,
+    statement,
+    table_of,
+    text_of,
+    unwrapped,
+    words_of,
+)
 
 Keys = tuple[str | int, ...]
 
@@ -52,10 +61,11 @@ def mend_words(data: dict[str, Any]) -> list[Problem]:
     return problems
 
 
-def check_tables(data: dict[str, Any]) -> Checked:
-    """Check every table of `data`, a plain dict whose words were mended."""
+def check_tables(data: dict[str, Any], told: Collection[Keys] = ()) -> Checked:
+    """Check every table of `data`, a plain dict whose words were mended; what is wrong at the keys `told` was told."""
     scene, faults = _validated(data)
-    problems = tuple(_problem(data, fault) for fault in faults if not _follows(data, fault))
+    new = (fault for fault in faults if not _follows(data, fault) and _spot(fault["loc"]).keys not in told)
+    problems = tuple(_problem(data, fault) for fault in new)
     return Checked(scene, problems, frozenset(_spot(fault["loc"]).keys for fault in faults))
 
 
@@ -190,7 +200,8 @@ def _hint(spot: _Spot, given: object) -> str:
     allowed = statement(spot.annotation)
     number = allowed.startswith(("a number", "a whole number"))
     if number and isinstance(given, str) and any(character.isdigit() for character in given):
-        return "a number stands without quotes and without its unit"
+        text = text_of(spot.annotation)
+        return "a number stands without quotes" + (f", or with its unit: {as_toml(text)}" if text else " and unit")
     if isinstance(given, float) and given.is_integer() and "whole number" in allowed:
         return f"write {int(given)}"
     if len(spot.keys) == 1 and "a table" in allowed:

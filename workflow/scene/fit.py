@@ -225,6 +225,13 @@ def _material(draft: Draft) -> Iterator[Problem]:
             yield Problem("bodies.bulk_stiffness", "nothing to take it from", shown("auto"), hint)
         return
     has = {name: draft.has("material", name) for name in ("upper", "lower", "contact_modulus", *UNIT_KEYS)}
+    if not (has["upper"] or has["lower"] or has["contact_modulus"]):
+        if automatic:
+            hint = "write material.upper and material.lower, or material.contact_modulus; or give the stiffness"
+            yield Problem("bodies.bulk_stiffness", "nothing to take it from", shown("auto"), hint)
+            return
+        if has["length_unit"] and has["force_unit"] and not has["surface_energy"]:
+            return  # numbers with units, and no more
     if has["contact_modulus"] and (has["upper"] or has["lower"]):
         hint = "give E*, or E and ν of both bodies"
         yield Problem("material.contact_modulus", "not together with upper or lower", hint=hint)

@@ -26,6 +26,7 @@ Pascal = Annotated[float, Gt(0), Unit("Pa")]
 SurfaceEnergy = Annotated[float, Gt(0), Unit("J/m²")]
 Metre = Annotated[float, Gt(0), Unit("m")]
 Newton = Annotated[float, Gt(0), Unit("N")]
+Kilogram = Annotated[float, Gt(0), Unit("kg")]
 Poisson = Annotated[float, Gt(-1), Le(0.5), Unit("1")]
 
 
@@ -47,14 +48,17 @@ class Elastic(Table):
 
 
 class Material(Table):
-    """What the model stands for in SI: elasticity, and either the length unit or the surface energy."""
+    """What the model stands for in SI: elasticity, and either the units or the surface energy."""
 
     upper: Elastic | None = Field(default=None, description="the upper body")
     lower: Elastic | None = Field(default=None, description="the lower body")
     contact_modulus: Pascal | None = Field(default=None, description="E*, in place of the two bodies")
-    length_unit: Metre | None = Field(default=None, description="one LU in metres")
+    length_unit: Metre | None = Field(default=None, description="one LU in metres; absent: 1, where numbers have units")
     force_unit: Newton | None = Field(
         default=None, description='one FU in newtons, with bodies.bulk_stiffness = "auto"; absent: from the stiffness'
+    )
+    mass_unit: Kilogram | None = Field(
+        default=None, description="one MU in kilograms, for masses, times and velocities with units"
     )
     surface_energy: SurfaceEnergy | None = Field(
         default=None,

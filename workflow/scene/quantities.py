@@ -6,17 +6,36 @@ Model units: length LU (the spacing), force FU, mass MU, time TU = √(MU·LU/FU
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Literal, get_type_hints
+from typing import Annotated, Any, Literal, get_type_hints
 
 from annotated_types import Ge, Gt, Le
-from pydantic import BaseModel, ConfigDict, Discriminator, Tag
+from pydantic import BaseModel, ConfigDict, Discriminator, GetJsonSchemaHandler, Tag
+
+TEXT_PATTERN = r"^[ \t]*[+\-−]?[0-9]*\.?[0-9]+.*[A-Za-zµμÅ°%]"
+"""What a JSON schema asks of a text that is a number with a unit."""
 
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """Model unit of a number, as metadata of its type; "1" marks a number without dimension."""
+    """Unit of a number, as metadata of its type; "1" marks a number without dimension.
+
+    In a scene file it may as well be a text with any unit of the same dimension, or of those in `text` (units of SI).
+    """
 
     name: str
+    text: tuple[str, ...] = ()
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """The dimensions that a text may have, each by a unit; the first is the one that messages name."""
+        return self.text or (self.name,)
+
+    def __get_pydantic_json_schema__(self, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        """Return the schema of a number, or of such a text."""
+        number = handler(core_schema)
+        if self.name == "1":
+            return number
+        return {"anyOf": [number, {"type": "string", "pattern": TEXT_PATTERN}]}
 
 
 class Table(BaseModel):
@@ -31,6 +50,7 @@ Ratio = Annotated[float, Gt(0), Unit("1")]
 Stiffness = Annotated[float, Gt(0), Unit("FU/LU")]
 Mass = Annotated[float, Gt(0), Unit("MU")]
 Energy = Annotated[float, Gt(0), Unit("FU·LU")]
+Temperature = Annotated[float, Gt(0), Unit("FU·LU", text=("K", "J"))]
 Velocity = Annotated[float, Gt(0), Unit("LU/TU")]
 DampingCoefficient = Annotated[float, Gt(0), Unit("FU·TU/LU")]
 DampingCoefficientOrZero = Annotated[float, Ge(0), Unit("FU·TU/LU")]

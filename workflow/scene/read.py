@@ -6,6 +6,7 @@ import re
 import sys
 import tomllib
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from os import PathLike, fspath
 from pathlib import Path as FilePath
 from typing import Any
@@ -16,6 +17,7 @@ from contact1d.workflow.scene.overrides import apply_overrides, remove_effects, 
 from contact1d.workflow.scene.problems import Problem, SceneError, shown
 from contact1d.workflow.scene.profile_file import ProfileFileError, read_profile
 from contact1d.workflow.scene.quantities import Table
+from contact1d.workflow.scene.si_scene import convert_texts
 from contact1d.workflow.scene.tables import Scene
 
 AnyScene = Scene | str | PathLike[str] | Mapping[str, Any]
@@ -40,7 +42,9 @@ MEANING = {
 
 HINTS = {
     "Invalid value": "text stands in quotes; a number has digits on both sides of its point; true and false are small",
-    "Expected newline or end of document": "one key = value on a line; a decimal point is no comma; no units",
+    "Expected newline or end of document": (
+        'one key = value on a line; a decimal point is no comma; a number with a unit stands in quotes, "10 mm"'
+    ),
 }
 
 
@@ -100,9 +104,13 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
     """The scene of `plain`, which is mended on the way; `problems` are those found so far."""
     problems += mend_words(plain)
     problems += _with_points(plain, folder)
-    checked = check_tables(plain)
-    problems += checked.problems
-    problems += check_fit(plain, checked.unsound)
+    converted = convert_texts(plain)
+    checked = check_tables(plain, converted.told)
+    found = (*converted.problems, *checked.problems, *check_fit(plain, checked.unsound))
+    problems += [
+        replace(one, given=shown(converted.texts.get(one.path))) if one.path in converted.texts else one
+        for one in found
+    ]
     if problems or checked.scene is None:
         raise SceneError(sorted(problems, key=_rank))
     return checked.scene

@@ -11,7 +11,7 @@ from typing import Any
 
 from contact1d.workflow.scene.quantities import Table, annotation_of, keys_of
 from contact1d.workflow.scene.tables import Scene
-from contact1d.workflow.scene.wording import members, statement, table_of
+from contact1d.workflow.scene.wording import described, members, table_of
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
 Node = dict[str, Any]
@@ -31,9 +31,9 @@ def schema_text() -> str:
 
 
 def meaning(table: type[Table], key: str) -> str:
-    """What the key `key` of `table` is and must be: "way of the driven end: must be a number greater than 0 (LU)"."""
+    """What the key `key` of `table` is and must be: "way of the driven end; must be a number greater than 0 …"."""
     what = table.model_fields[keys_of(table)[key]].description
-    return f"{what}; must be {statement(annotation_of(table, key))}"
+    return f"{what}; must be {described(annotation_of(table, key))}"
 
 
 def _plain(node: Any, definitions: Node) -> Any:

@@ -30,6 +30,7 @@ from contact1d.workflow.scene.quantities import (
     Seed,
     Stiffness,
     Table,
+    Temperature,
     Velocity,
 )
 
@@ -122,7 +123,7 @@ class Noise(Effect):
 
     timed = True
 
-    temperature: Energy = Field(description="temperature as energy k_BT")
+    temperature: Temperature = Field(description="temperature as energy k_BT")
     seed: Seed = Field(description="seed of the random forces")
 
 

@@ -10,6 +10,7 @@ from pydantic import Discriminator, Tag
 
 from contact1d.workflow.scene.problems import as_toml
 from contact1d.workflow.scene.quantities import Table, Unit, annotation_of, keys_of
+from contact1d.workflow.scene.si_text import example
 
 
 def unwrapped(annotation: object) -> tuple[Any, tuple[Any, ...]]:
@@ -69,6 +70,25 @@ def statement(annotation: object) -> str:
         return f"a table with {', '.join(keys_of(table))}" if table.model_fields else "a table without keys"
     simple = {bool: "true or false", str: "text in quotes", int: "a whole number", float: "a number"}
     return simple[inner] + _range(marks) + _unit(marks)
+
+
+def text_of(annotation: object) -> str:
+    """An example of a text with a unit that a number of this type may be, "10 mm"; nothing where it has no unit."""
+    for member in members(annotation):
+        inner, marks = unwrapped(member)
+        units = [mark for mark in marks if isinstance(mark, Unit) and mark.name != "1" and inner is float]
+        text = (
+            example(units[0].texts[0]) if units else text_of(get_args(inner)[0]) if get_origin(inner) is tuple else ""
+        )
+        if text:
+            return text
+    return ""
+
+
+def described(annotation: object) -> str:
+    """`statement`, and for a number that has a unit that it may as well be text: "…, or text such as "10 mm""."""
+    text = text_of(annotation)
+    return statement(annotation) + (f", or text such as {as_toml(text)}" if text else "")
 
 
 def unit_of(annotation: object) -> str | None:

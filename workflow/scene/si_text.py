@@ -1,0 +1,215 @@
+"""A number with a unit as text, "10 mm": exact in SI, its dimension in words, and a sentence where it is none.
+
+Numbers and factors are fractions, so that "10 mm" is the float nearest to 0.01 and no other. The units are pint's,
+which is imported when the first such text is read.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+MODEL_IN_SI = {"LU": "m", "FU": "N", "MU": "kg", "TU": "s"}
+"""The SI unit behind each model unit: "FU·TU/LU" is a quantity in N·s/m."""
+SHORTER = {"N·m": "J", "N/m²": "Pa"}
+DIMENSIONS = {
+    "m": ("a length", "10 mm"),
+    "N": ("a force", "10 N"),
+    "Pa": ("a pressure", "210 GPa"),
+    "kg": ("a mass", "1 ng"),
+    "s": ("a time", "1 µs"),
+    "K": ("a temperature", "300 K"),
+    "J": ("an energy", "1 aJ"),
+    "J/m²": ("an energy per area", "50 mJ/m²"),
+    "N/m": ("a force per length", "100 N/m"),
+    "m/s": ("a velocity", "1 µm/s"),
+    "N·s/m": ("a drag coefficient", "1 mN·s/m"),
+    "N/s": ("a force per time", "1 mN/s"),
+    "m²": ("an area", "1 mm²"),
+    "m³": ("a volume", "1 mm³"),
+    "m/s²": ("an acceleration", "9.81 m/s²"),
+    "kg/m³": ("a density", "7.8 g/cm³"),
+    "W": ("a power", "1 W"),
+    "Hz": ("a frequency", "1 kHz"),
+    "Pa·s": ("a viscosity", "1 mPa·s"),
+    "V": ("a voltage", "1 V"),
+    "A": ("a current", "1 A"),
+    "mol": ("an amount of substance", "1 mol"),
+    "C": ("an electric charge", "1 C"),
+    "1": ("a number without a unit", "0.3"),
+}
+"""Each dimension in words, with an example, by its unit in SI."""
+COMMON = (
+    "m", "mm", "µm", "nm", "pm", "cm", "Å", "N", "kN", "mN", "µN", "nN", "Pa", "kPa", "MPa", "GPa", "J", "J/m²",
+    "mJ/m²", "N/m", "mN/m", "kg", "g", "mg", "K", "s", "ms", "µs", "ns", "m/s", "mm/s", "µm/s", "nm/s",
+)  # fmt: skip
+"""Units among which a misspelt one is looked for."""
+ZEROS = {"degree_Celsius": Fraction(27315, 100), "degree_Fahrenheit": Fraction(45967, 180)}
+"""Units of temperature whose zero is not the absolute one, by pint's name, and where it is [K]."""
+ANGLES = frozenset({"radian", "degree", "turn", "gradian", "arcminute", "arcsecond", "steradian"})
+NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+(?![.\d]))?")
+NAME = re.compile(r"[^\W\d_]+|°[CF]?|%|deg[CF]|delta_deg[CF]")
+POWER = re.compile(r"(\*\*|\^)?[-+⁻]?[\d⁰¹²³⁴⁵⁶⁷⁸⁹]+")
+LONGEST = 60
+"""Characters of a text that may be a number with a unit."""
+LARGEST = 1e300
+"""Numbers beyond it are none."""
+
+
+class UnitTextError(ValueError):
+    """A text that is no quantity of the wanted dimension; the message continues "must be …" or stands for itself."""
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit as read: its size in base units of SI, where its zero is, its dimension, and whether it is of angles."""
+
+    factor: Fraction
+    zero: Fraction
+    dimension: Any
+    angular: bool = False
+
+
+def in_words(unit: str) -> str:
+    """What a quantity in `unit` (of SI or of the model) is, with an example: "a force, such as 10 N"."""
+    words, example = DIMENSIONS.get(in_si(unit)) or (f"a quantity in {in_si(unit)}", f"1 {in_si(unit)}")
+    return f"{words}, such as {example}"
+
+
+def example(unit: str) -> str:
+    """A text that a quantity in `unit` may be: "10 mm"."""
+    return (DIMENSIONS.get(in_si(unit)) or ("", f"1 {in_si(unit)}"))[1]
+
+
+def in_si(unit: str) -> str:
+    """The unit in SI of the same dimension: N·s/m for FU·TU/LU."""
+    for model, si in MODEL_IN_SI.items():
+        unit = unit.replace(model, si)
+    return SHORTER.get(unit, unit)
+
+
+def split(text: str) -> tuple[str, str]:
+    """The number and the unit of "10 mm", each as text. Raises UnitTextError where there is no number or no unit."""
+    plain = text.strip().replace("−", "-")
+    found = NUMBER.match(plain)
+    if found is None or len(plain) > LONGEST:
+        raise UnitTextError("does not begin with a number")
+    number, unit = found[0], plain[found.end() :].strip()
+    if not unit:
+        raise UnitTextError("has no unit")
+    if unit[0] == ",":
+        raise UnitTextError("has a comma in its number: decimals follow a point, and thousands are not parted")
+    if re.match(r"[eE](?![^\W\d_])", unit):
+        raise UnitTextError("has an exponent that is no whole number")
+    if unit[0] in ".'_" or unit[0].isdigit():
+        raise UnitTextError(f"has something behind the number {number} that is no unit")
+    if re.fullmatch(r"(LU|FU|MU|TU)\b.*", unit):
+        raise UnitTextError(f"is in units of the model: write {number} without quotes and unit")
+    return number, unit
+
+
+def si_value(text: str, unit: str, *also: str) -> tuple[Fraction, str]:
+    """The quantity `text` in SI, and that of `unit` and `also` whose dimension it has.
+
+    Args:
+        text: such as "10 mm".
+        unit: wanted dimension, as a unit of SI or of the model; "1" for a number without dimension.
+        also: further dimensions that are taken, as units of SI.
+
+    Raises:
+        UnitTextError: with a sentence that begins "must be …".
+    """
+    wanted = f"must be {in_words(unit)}"
+    meant = _meant(text, unit)
+    instead = f"; did you mean {meant}?" if meant else ""
+    try:
+        number, given = split(text)
+        found = _unit(given)
+    except UnitTextError as error:
+        raise UnitTextError(f"{wanted}; {_quoted(text)} {error}{instead}") from None
+    size = float(number)
+    if not -LARGEST < size < LARGEST:
+        raise UnitTextError(f"{wanted}; {_quoted(text)} is larger than any number that a computer holds")
+    exact = Fraction(number) if size else Fraction(0)  # 1e-999999999 is 0, and no fraction of so many digits
+    value = exact * found.factor + found.zero
+    for name in (unit, *also):
+        if found.dimension == _dimension(in_si(name)) and not found.angular:
+            return value, name
+    if found.angular and in_si(unit) == "1":
+        instead = f": its tangent is {math.tan(value):.6g}"
+    what = "an angle" if found.angular else _named(found.dimension)
+    raise UnitTextError(f"{wanted}; {_quoted(text)} is {what}{instead}")
+
+
+def _quoted(text: str) -> str:
+    short = text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
+    return "".join(c if c.isprintable() else "?" for c in short) or "an empty text"
+
+
+def _named(dimension: Any) -> str:
+    """What has this dimension, in words."""
+    for name, (words, _) in DIMENSIONS.items():
+        if dimension == _dimension(name):
+            return words
+    return "another quantity"
+
+
+def _meant(text: str, unit: str) -> str:
+    """The text with the unit that was meant, or nothing: 10 GPa where it says 10 gpa."""
+    try:
+        number, given = split(text)
+    except UnitTextError:
+        return ""
+    if given.replace("·", "").replace(" ", "") == "Nm" and in_si(unit) == "J":
+        return f"{number} N·m"
+    for common in COMMON:
+        same = common.lower() == given.lower() and common != given
+        if same and _dimension(common) == _dimension(in_si(unit)):
+            return f"{number} {common}"
+    return ""
+
+
+@cache
+def _registry() -> Any:
+    """Pint's units, with exact factors."""
+    import pint
+
+    return pint.UnitRegistry(non_int_type=Fraction)
+
+
+@cache
+def _dimension(unit: str) -> Any:
+    return _registry().parse_units("" if unit == "1" else _for_pint(unit)).dimensionality
+
+
+def _for_pint(unit: str) -> str:
+    """`unit` as pint reads it: J/m2 and J/m^2 are J/m**2."""
+    plain = unit.translate(str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")).replace("·", "*").replace("×", "*")
+    plain = re.sub(r"(\*\*|\^)", "", plain)
+    return re.sub(r"(?<=[^\W\d_])(-?\d+)", r"**\1", plain)
+
+
+@cache
+def _unit(unit: str) -> Unit:
+    """What the text `unit` means. Raises UnitTextError."""
+    names = [part for part in re.split(r"[\s·*×/()]+", POWER.sub("", unit)) if part]
+    unknown = [name for name in names if not NAME.fullmatch(name) or name not in _registry()]
+    if unknown or not names:
+        raise UnitTextError(f"has a unit that is not known, {(unknown or [unit])[0]}")
+    if re.search(r"\d{2}", unit):
+        raise UnitTextError("has a power that no unit has")
+    known = {_registry().get_name(name) for name in names}
+    relative = any(name.startswith(("degree_", "delta_")) for name in known)
+    if relative and (unit not in names or known.isdisjoint(ZEROS)):
+        raise UnitTextError("has a temperature that is not counted from absolute zero: write K")
+    try:
+        found = _registry().parse_units(_for_pint(unit))
+        factor, _ = _registry().get_base_units(found, check_nonmult=False)
+    except Exception as error:  # pint's parser meets nonsense with errors of many kinds that have no class in common
+        raise UnitTextError("has a unit that cannot be read") from error
+    zero = next((ZEROS[name] for name in known if name in ZEROS), Fraction(0))
+    return Unit(Fraction(factor), zero, found.dimensionality, not known.isdisjoint(ANGLES))
