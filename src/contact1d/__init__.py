@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from contact1d.workflow.runs.many import run_many
     from contact1d.workflow.scene import Scene, SceneError, read_scene
     from contact1d.workflow.settings.chain import SettingsError
+    from contact1d.workflow.sweep.sweep import Sweep, sweep
     from contact1d.workflow.units import Quantity
 
 __all__ = [
@@ -45,11 +46,13 @@ __all__ = [
     "Scene",
     "SceneError",
     "SettingsError",
+    "Sweep",
     "atoms",
     "load_run",
     "read_scene",
     "run",
     "run_many",
+    "sweep",
     "write_deck",
 ]
 
@@ -63,6 +66,7 @@ _HOMES = {
     "workflow.runs.many": ("run_many",),
     "workflow.scene": ("Scene", "SceneError", "read_scene"),
     "workflow.settings.chain": ("SettingsError",),
+    "workflow.sweep.sweep": ("Sweep", "sweep"),
     "workflow.units": ("Quantity",),
 }
 

@@ -15,6 +15,7 @@ from contact1d.workflow.cli.identify import identify
 from contact1d.workflow.cli.reproduce import reproduce
 from contact1d.workflow.cli.scenes import new, schema
 from contact1d.workflow.cli.stability import stability
+from contact1d.workflow.cli.sweep import sweep
 
 GARBAGE_THRESHOLD = 100_000
 """New objects after which Python looks for garbage: at 700, a tenth of what the imports take goes into looking."""
@@ -121,7 +122,7 @@ def doctor() -> None:
         raise typer.Exit(FAILS)
 
 
-for one in (new, run, deck, cost, identify, reproduce, stability, schema, doctor):
+for one in (new, run, sweep, deck, cost, identify, reproduce, stability, schema, doctor):
     app.command()(one)
 
 

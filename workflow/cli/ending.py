@@ -147,8 +147,9 @@ def _of_program(error: BaseException, what: str, blame: int) -> tuple[str, int] 
     from contact1d.workflow.identify import IdentifyError
     from contact1d.workflow.identify.finished import FinishedRunError
     from contact1d.workflow.settings.settings import SettingsError
+    from contact1d.workflow.sweep.executors import ExecutorError
 
-    if isinstance(error, FolderError | FinishedRunError):
+    if isinstance(error, FolderError | FinishedRunError | ExecutorError):
         return str(error), CALL_IS_WRONG
     if isinstance(error, SettingsError | IdentifyError):
         return (str(error) if blame == CALL_IS_WRONG else f"{what} failed: {error}"), blame

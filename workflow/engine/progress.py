@@ -16,8 +16,8 @@ QUIET_SECONDS = 5.0
 class Progress(Protocol):
     """A listener to a run."""
 
-    def phase(self, name: str, expected_steps: int | None = None) -> None:
-        """Begin a phase of that many steps; None where the number is unknown."""
+    def phase(self, name: str, expected_steps: int | None = None, counted: str = "step") -> None:
+        """Begin a phase of that many steps, or of what else is counted; None where the number is unknown."""
 
     def advance(self, steps: int) -> None:
         """Note that so many more steps of the phase are done."""
@@ -32,7 +32,7 @@ class Progress(Protocol):
 class Silent:
     """Nobody listens."""
 
-    def phase(self, name: str, expected_steps: int | None = None) -> None:
+    def phase(self, name: str, expected_steps: int | None = None, counted: str = "step") -> None:
         """Do nothing."""
 
     def advance(self, steps: int) -> None:
@@ -56,16 +56,16 @@ class Lines:
     def __init__(self, stream: TextIO, quiet: float = QUIET_SECONDS) -> None:
         """Write nothing yet."""
         self._stream, self._quiet = stream, quiet
-        self._name, self._expected, self._done = "", None, 0
+        self._name, self._expected, self._done, self._counted = "", None, 0, "step"
         self._start = self._last = time.monotonic()
 
     _expected: int | None
 
-    def phase(self, name: str, expected_steps: int | None = None) -> None:
+    def phase(self, name: str, expected_steps: int | None = None, counted: str = "step") -> None:
         """Write the name and the expected steps."""
-        self._name, self._expected, self._done = name, expected_steps, 0
+        self._name, self._expected, self._done, self._counted = name, expected_steps, 0, counted
         self._start = self._last = time.monotonic()
-        self.note(name if expected_steps is None else f"{name}: {expected_steps} steps")
+        self.note(name if expected_steps is None else f"{name}: {expected_steps} {counted}s")
 
     def advance(self, steps: int) -> None:
         """Count; write the count if the last line is old enough."""
@@ -76,9 +76,11 @@ class Lines:
         self._last = now
         share = ""
         if self._expected and 0 < self._done <= self._expected:
-            left = (now - self._start) * (self._expected / self._done - 1.0)
-            share = f" of {self._expected}, about {left:.0f} s left"
-        self.note(f"{self._name}: step {self._done}{share}")
+            rate = self._done / (now - self._start)
+            share = (
+                f" of {self._expected}, {rate:.3g} a second, about {(self._expected - self._done) / rate:.0f} s left"
+            )
+        self.note(f"{self._name}: {self._counted} {self._done}{share}")
 
     def note(self, text: str) -> None:
         """Write the line at once."""
@@ -104,7 +106,7 @@ class Bar:
         self._rich = Progress(*columns, console=Console(file=stream), transient=True)
         self._task: Any = None
 
-    def phase(self, name: str, expected_steps: int | None = None) -> None:
+    def phase(self, name: str, expected_steps: int | None = None, counted: str = "step") -> None:
         """Replace the bar by that of the new phase."""
         self._drop()
         self._rich.start()

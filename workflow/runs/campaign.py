@@ -64,7 +64,7 @@ def run(
     deck = Deck(scene, settings or settings_for(scene))
     text = _planned_text(deck)
     folder = prepare(Path(folder))
-    with _alone(folder):
+    with alone(folder):
         _write(deck, text, folder)
         context = RunContext(deck, folder, progress or Silent(), time_limit)
         return _run(context, started, figures, refine=settings is None)
@@ -133,7 +133,7 @@ def write_deck(scene: AnyScene, folder: AnyPath) -> Path:
     deck = Deck(scene, settings_for(scene))
     text = _planned_text(deck)
     folder = prepare(Path(folder))
-    with _alone(folder):
+    with alone(folder):
         _write(deck, text, folder)
     return folder
 
@@ -157,13 +157,13 @@ def prepare(folder: Path) -> Path:
 
 
 @contextmanager
-def _alone(folder: Path) -> Iterator[None]:
-    """Hold the folder against other runs; the system lets go of it whatever happens to this process."""
+def alone(folder: Path, busy: str = "another run is at work in") -> Iterator[None]:
+    """Hold the folder against others; the system lets go of it whatever happens to this process."""
     with (folder / LOCK).open("w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
-            raise FolderError(f"another run is at work in {folder}; choose another folder") from None
+            raise FolderError(f"{busy} {folder}; choose another folder") from None
         try:
             yield
         finally:

@@ -5,7 +5,7 @@ from contact1d.workflow.scene.material import Elastic, Material, Reduction
 from contact1d.workflow.scene.problems import Problem, SceneError
 from contact1d.workflow.scene.profiles import Circle, Cone, FlatPunch, Measured, Parabola, Power, Profile
 from contact1d.workflow.scene.quantities import Table, Unit
-from contact1d.workflow.scene.read import AnyScene, read_scene, scene_from_dict
+from contact1d.workflow.scene.read import AnyScene, read_scene, read_tables, scene_from_dict
 from contact1d.workflow.scene.tables import (
     EFFECTS,
     Accuracy,
@@ -58,6 +58,7 @@ __all__ = [
     "Table",
     "Unit",
     "read_scene",
+    "read_tables",
     "scene_from_dict",
     "scene_to_toml",
 ]

@@ -62,12 +62,22 @@ def read_scene(source: AnyScene, overrides: Iterable[str] = (), without: Iterabl
     """
     if isinstance(source, Mapping | Scene):
         return scene_from_dict(source, overrides, without)
-    if isinstance(source, str) and ("\n" in source or "=" in source):
-        return scene_from_dict(_tables(source, "scene"), overrides, without)
+    is_text = isinstance(source, str) and _is_text(source)
+    return scene_from_dict(read_tables(source), overrides, without, "." if is_text else FilePath(source).parent)
+
+
+def read_tables(source: str | PathLike[str]) -> dict[str, Any]:
+    """The tables of a TOML file, by its path, or of TOML text, unchecked. Raises SceneError with one problem."""
     if not isinstance(source, str | PathLike):
         given = type(source).__name__
         raise SceneError([Problem("scene", f"must be a path, TOML text, tables or a Scene, not {given}")])
-    return scene_from_dict(_parsed(fspath(source)), overrides, without, FilePath(source).parent)
+    if isinstance(source, str) and _is_text(source):
+        return _tables(source, "scene")
+    return _parsed(fspath(source))
+
+
+def _is_text(source: str) -> bool:
+    return "\n" in source or "=" in source
 
 
 def scene_from_dict(

@@ -1,0 +1,94 @@
+"""Where points run: processes on this machine, or jobs of Slurm, each with many points."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from shutil import which
+from warnings import catch_warnings, simplefilter
+
+from contact1d.workflow.errors import Contact1dError
+from contact1d.workflow.runs.cores import cores
+from contact1d.workflow.runs.pool import pool
+
+NAMES = ("local", "slurm")
+JOB_POINTS = 100
+"""Points of a job of Slurm: to begin one takes as long as some tens of quick runs."""
+AHEAD = 4
+"""Chunks for each worker that are handed in before their turn, so that none waits for the parent."""
+
+
+class ExecutorError(Contact1dError, RuntimeError):
+    """An executor that isn't there."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where points run.
+
+    Attributes:
+        opened: a context with an executor in it; opened again after a process that died took the first one with it.
+        chunk: points that are handed in together.
+        window: chunks that are under way or wait.
+    """
+
+    opened: Callable[[], AbstractContextManager[Executor]]
+    chunk: int
+    window: int
+
+
+def place_of(name: str, workers: int | None, folder: Path, partition: str | None = None) -> Place:
+    """The place of that name.
+
+    Args:
+        name: "local" or "slurm".
+        workers: processes here, or jobs at a time; None: as many as there are processors.
+        folder: of the sweep, where Slurm's scripts and outputs go.
+        partition: of Slurm; None: its default one.
+
+    Raises:
+        ExecutorError: there is no such place, or what it needs isn't installed; the message says what to install.
+    """
+    count = workers or cores()
+    if name == "local":
+        return Place(lambda: pool(count), 1, AHEAD * count)
+    if name != "slurm":
+        raise ExecutorError(f"there is no executor {name!r}: take {' or '.join(NAMES)}")
+    if find_spec("executorlib") is None:
+        raise ExecutorError("Slurm is reached through executorlib: install it with pip install 'contact1d[cluster]'")
+    if which("sbatch") is None:
+        raise ExecutorError("there is no sbatch on this machine: start the sweep where jobs of Slurm are handed in")
+    return Place(lambda: _slurm(folder / "slurm", partition or _default_partition()), JOB_POINTS, count)
+
+
+@contextmanager
+def given(executor: Executor) -> Iterator[Executor]:
+    """An executor that the caller opened and will close."""
+    yield executor
+
+
+@contextmanager
+def _slurm(folder: Path, partition: str) -> Iterator[Executor]:
+    resources = {"cores": 1, "partition": partition}
+    with catch_warnings():
+        simplefilter("ignore")  # its own use of pydantic, and that it cannot check a partition
+        from executorlib import SlurmClusterExecutor
+
+        opened = SlurmClusterExecutor(resource_dict=resources, cache_directory=str(folder))
+    with opened as executor:
+        yield executor
+
+
+def _default_partition() -> str:
+    """Slurm's default partition, which executorlib must be told: it hands in an empty name otherwise."""
+    from subprocess import run
+
+    listed = run(["sinfo", "--noheader", "--format=%P"], capture_output=True, text=True, check=False)
+    names = listed.stdout.split()
+    if not names:
+        raise ExecutorError(f"sinfo knows no partition: {listed.stderr.strip() or 'is Slurm running?'}")
+    return next((name for name in names if name.endswith("*")), names[0]).rstrip("*")

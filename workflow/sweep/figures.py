@@ -1,0 +1,136 @@
+"""Each result of a sweep over its axes: the first along x, the others as lines; seeds are averaged."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from contact1d.analysis.plots import DPI, SIZE, new_figure, plain_axes
+from contact1d.files import whole
+from contact1d.workflow.sweep.axes import Axis, SweepPlan
+from contact1d.workflow.sweep.table import cell, read_table
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+SEED = "noise.seed"
+MOST_LINES = 8
+"""Lines that a legend names; more are told apart by colour along the second axis."""
+LOG_SPAN = 20.0
+"""Largest value of an axis over its smallest one from which on its scale is logarithmic."""
+CONSTANT = 1e-6
+"""Relative spread up to which a result counts as the same at all points."""
+
+Line = dict[float, list[tuple[float, float]]]
+"""By place on the first axis, values and uncertainties: one for each seed."""
+
+
+def draw(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> list[Path]:
+    """A figure <quantity>.png for each result, in the sweep's folder.
+
+    Args:
+        folder: of the sweep, with its table.
+        plan: what it is of.
+        units: the results by name, with their units.
+    """
+    drawn = []
+    for name, unit in units.items():
+        lines = _lines(folder, plan, name)
+        if _varies(lines):
+            path = folder / f"{name}.png"
+            with whole(path) as part:
+                sweep_figure(plan, name, unit, lines).savefig(part, format="png", dpi=DPI)
+            drawn.append(path)
+    return drawn
+
+
+def sweep_figure(plan: SweepPlan, name: str, unit: str, lines: Mapping[tuple[str, ...], Line]) -> Figure:
+    """One result over the first axis, a line for each combination of the others."""
+    along, others = _roles(plan)
+    figure = new_figure(SIZE)
+    axis = figure.subplots()
+    colours = _colours(len(lines))
+    for (labels, line), colour in zip(lines.items(), colours, strict=True):
+        places = sorted(line)
+        means, errors = np.transpose([_mean(line[place]) for place in places])
+        words = [f"{_short(other.key)} = {label}" for other, label in zip(others, labels, strict=True)]
+        axis.errorbar(
+            places, means, errors, marker="o", markersize=4, capsize=2, linewidth=1.2, color=colour,
+            label=", ".join(words) or None,
+        )  # fmt: skip
+    _scale(axis, along)
+    axis.set_xlabel(along.key)
+    axis.set_ylabel(f"{name.replace('_', ' ')} ({unit})" if unit != "1" else name.replace("_", " "))
+    axis.set_title(plan.title, loc="left", fontsize=10)
+    if others and len(lines) <= MOST_LINES:
+        axis.legend(frameon=False, fontsize=8)
+    elif others:
+        first, last = (", ".join(labels) for labels in (next(iter(lines)), list(lines)[-1]))
+        names = ", ".join(_short(other.key) for other in others)
+        axis.text(
+            0.99, 1.01, f"{names}: {first} (dark) … {last} (light)", transform=axis.transAxes, ha="right", fontsize=8
+        )
+    return plain_axes(figure)
+
+
+def _roles(plan: SweepPlan) -> tuple[Axis, list[Axis]]:
+    """The axis along x, and those that tell lines apart: side by side (zip) there is one line."""
+    axes = [axis for axis in plan.axes if axis.key != SEED and len(axis.values) > 1] or list(plan.axes[:1])
+    return axes[0], [] if plan.combine == "zip" else axes[1:]
+
+
+def _lines(folder: Path, plan: SweepPlan, name: str) -> dict[tuple[str, ...], Line]:
+    along, others = _roles(plan)
+    lines: dict[tuple[str, ...], Line] = defaultdict(lambda: defaultdict(list))
+    places = _places(along)
+    for row in read_table(folder):
+        if row[name] == "":
+            continue
+        value, uncertainty = float(row[name]), float(row[f"{name}_uncertainty"])
+        lines[tuple(row[other.key] for other in others)][places[row[along.key]]].append((value, uncertainty))
+    return lines
+
+
+def _varies(lines: Mapping[tuple[str, ...], Line]) -> bool:
+    """Whether there is anything to see: what a scene prescribes is the same everywhere, but for a search's accuracy."""
+    values = [value for line in lines.values() for seeds in line.values() for value, _ in seeds]
+    return len(values) > 1 and max(values) - min(values) > CONSTANT * max(map(abs, values))
+
+
+def _places(axis: Axis) -> dict[str, float]:
+    """Where each value of an axis is drawn: numbers at their place, words one after the other."""
+    numbers = all(isinstance(value, int | float) for value in axis.values)
+    return {str(cell(value)): float(value if numbers else place) for place, value in enumerate(axis.values)}
+
+
+def _mean(known: list[tuple[float, float]]) -> tuple[float, float]:
+    """Mean and standard error of several seeds; value and uncertainty of one."""
+    values, uncertainties = np.transpose(known)
+    if len(values) == 1:
+        return float(values[0]), float(uncertainties[0])
+    return float(values.mean()), float(values.std(ddof=1) / math.sqrt(len(values)))
+
+
+def _scale(axis: Axes, along: Axis) -> None:
+    """Logarithmic where the values span much; words under their places."""
+    if not all(isinstance(value, int | float) for value in along.values):
+        axis.set_xticks(range(len(along.values)), [str(cell(value)) for value in along.values])
+    elif min(along.values) > 0.0 and max(along.values) >= LOG_SPAN * min(along.values):
+        axis.set_xscale("log")
+
+
+def _colours(count: int) -> list[Any]:
+    from matplotlib import colormaps
+
+    return list(colormaps["viridis"](np.linspace(0.0, 0.85, count)))
+
+
+def _short(key: str) -> str:
+    """The last two words of a dotted key: `attraction.range`."""
+    return ".".join(key.split(".")[-2:])

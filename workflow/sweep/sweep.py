@@ -1,0 +1,258 @@
+"""A sweep: the points that are missing run, through an executor; the table and figures have them all.
+
+What is done is told by the run folders alone, so a sweep that was broken off at any moment goes on by the same command.
+"""
+
+from __future__ import annotations
+
+import errno
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from dataclasses import dataclass, field
+from itertools import chain, islice
+from pathlib import Path
+from typing import Any
+
+from contact1d.files import write_whole
+from contact1d.workflow.engine.progress import Progress, Silent
+from contact1d.workflow.errors import Contact1dError, FolderError
+from contact1d.workflow.runs.campaign import LOCK, AnyPath, alone, run
+from contact1d.workflow.scene import Scene, SceneError
+from contact1d.workflow.scene.problems import as_toml
+from contact1d.workflow.settings.settings import SettingsError
+from contact1d.workflow.sweep.axes import AnySweep, SweepPlan, read_sweep
+from contact1d.workflow.sweep.executors import Place, given, place_of
+from contact1d.workflow.sweep.points import points, require_keys
+from contact1d.workflow.sweep.table import MANY_ROWS, Answer, answer_in, write_parquet, write_table
+
+RECORD = "sweep.toml"
+RUNS = "runs"
+"""Folder of the run folders."""
+DEADLY = 2
+"""Times that a process may die with a point under way: the second time it was alone with it."""
+FULL_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+Task = tuple[Scene, Path]
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A sweep that has run, or ran as far as it got.
+
+    Attributes:
+        folder: with results.csv, figures, and a run folder for each point in runs/.
+        counts: how many points ended as `done`, `failed`, `refused`, or are `missing`.
+        quantities: the results by name, columns of the table beside <name>_uncertainty, and their units.
+    """
+
+    folder: Path
+    counts: dict[str, int]
+    quantities: Mapping[str, str]
+
+
+@dataclass
+class _Ledger:
+    """What became of the points: their names in order, and answers that no folder holds."""
+
+    names: list[str] = field(default_factory=list)
+    answers: dict[str, Answer] = field(default_factory=dict)
+    refusals: dict[int, str] = field(default_factory=dict)
+
+
+def sweep(
+    source: AnySweep,
+    folder: AnyPath,
+    executor: Executor | str = "local",
+    workers: int | None = None,
+    figures: bool = True,
+    progress: Progress | None = None,
+    partition: str | None = None,
+) -> Sweep:
+    """Run every point of a sweep that has not run yet, and write the table and figures of all.
+
+    Args:
+        source: a sweep file, by its path, or its tables.
+        folder: of the sweep; one of an earlier state of this sweep goes on.
+        executor: "local", "slurm", or anything with the interface of `concurrent.futures`.
+        workers: processes, or jobs of Slurm, at a time; None: as many as there are processors.
+        figures: whether to draw.
+        progress: told of each point.
+        partition: of Slurm; None: its default.
+
+    Raises:
+        SceneError: the sweep file is wrong, or an axis names no key of the scene; nothing is written.
+        FolderError: the folder holds another sweep or something else, or this sweep is at work in it.
+        ExecutorError: there is no such executor.
+    """
+    plan = read_sweep(source)
+    require_keys(plan)
+    folder = Path(folder).absolute()
+    if isinstance(executor, str):
+        place = place_of(executor, workers, folder, partition)
+    else:
+        place = Place(lambda: given(executor), 1, 4 * (workers or 16))
+    record = _record(plan)
+    _require_own(folder, record)
+    ledger = _Ledger()
+    with alone(folder, "a sweep is at work in"):
+        write_whole(folder / RECORD, record)
+        try:
+            _run_missing(plan, folder, place, ledger, progress or Silent())
+        finally:
+            done = _finish(plan, folder, ledger)
+        if figures:
+            from contact1d.workflow.sweep.figures import draw
+
+            draw(folder, plan, done.quantities)
+    return done
+
+
+def _record(plan: SweepPlan) -> str:
+    """What makes a sweep the same: its base scene and the keys of its axes. Values may be added."""
+    axes = ", ".join(f'"{axis.key}"' for axis in plan.axes)
+    base = "\n".join(f"{key} = {as_toml(value)}" for key, value in sorted(plan.base.items()))
+    return f"# The sweep in this folder: its base scene and the keys of its axes.\naxes = [{axes}]\n[base]\n{base}\n"
+
+
+def _require_own(folder: Path, record: str) -> None:
+    """Make the folder, or see that it is this sweep's."""
+    if folder.is_file():
+        raise FolderError(f"{folder} is a file; a sweep needs a folder")
+    if (folder / RECORD).is_file():
+        if (folder / RECORD).read_text(encoding="utf-8") != record:
+            raise FolderError(
+                f"{folder} holds another sweep: its base scene or the keys of its axes differ; choose another folder"
+            )
+    elif folder.is_dir() and any(entry.name != LOCK for entry in folder.iterdir()):
+        raise FolderError(f"{folder} holds files that are not of a sweep; choose another folder")
+    folder.mkdir(parents=True, exist_ok=True)
+
+
+def _run_missing(plan: SweepPlan, folder: Path, place: Place, ledger: _Ledger, progress: Progress) -> None:
+    progress.phase("sweep", len(plan), "point")
+    for name, answer in _answered(_missing(plan, folder, ledger, progress), place):
+        if answer.status != "done":
+            progress.note(f"{name}: {answer.status}: {answer.reason}")
+            ledger.answers[name] = answer
+        progress.advance(1)
+
+
+def _missing(plan: SweepPlan, folder: Path, ledger: _Ledger, progress: Progress) -> Iterator[Task]:
+    """Scenes and folders of points that have no answer yet, each once; the others are noted on the way."""
+    seen = set()
+    for index, point in enumerate(points(plan)):
+        ledger.names.append(point.name)
+        if point.scene is None:
+            ledger.refusals[index] = point.reason
+            said = ", ".join(f"{axis.key} = {value}" for axis, value in zip(plan.axes, point.values, strict=True))
+            progress.note(f"{said}: refused: {point.reason}")
+        elif point.name not in seen:
+            seen.add(point.name)
+            if answer_in(folder / RUNS, point.name) is None:
+                yield point.scene, folder / RUNS / point.name
+                continue
+        progress.advance(1)
+
+
+def _answered(tasks: Iterator[Task], place: Place) -> Iterator[tuple[str, Answer]]:
+    """Run tasks, `place.window` chunks at a time; yields name and answer as they come.
+
+    A process that dies takes its executor along. Then what was under way runs again, one by one, so that one task alone
+    has to answer for the second death.
+    """
+    doubtful: list[Task] = []
+    while True:
+        chunk, window = (1, 1) if doubtful else (place.chunk, place.window)
+        queue = iter(doubtful) if doubtful else tasks
+        first = next(queue, None)
+        if first is None:
+            return
+        broken: list[Task] = []
+        alone_at_work = bool(doubtful)
+        doubtful = []
+        with place.opened() as executor:
+            yield from _through(executor, chain([first], queue), chunk, window, broken)
+        if alone_at_work:
+            culprit, rest = broken[:1], [*broken[1:], *queue]
+            for _, path in culprit:
+                yield path.name, Answer("failed", "its process was killed twice, most often for want of memory")
+            doubtful = rest
+        else:
+            doubtful = broken
+
+
+def _through(
+    executor: Executor, tasks: Iterator[Task], chunk: int, window: int, broken: list[Task]
+) -> Iterator[tuple[str, Answer]]:
+    """Answers of an executor as they come; what is under way when it breaks is put into `broken`."""
+    waiting: dict[Future[list[Answer]], list[Task]] = {}
+    while True:
+        while not broken and len(waiting) < window and (some := list(islice(tasks, chunk))):
+            try:
+                waiting[executor.submit(attempt_all, some)] = some
+            except BrokenExecutor:
+                broken += some
+        if not waiting:
+            return
+        for future in wait(waiting, return_when=FIRST_COMPLETED).done:
+            some = waiting.pop(future)
+            try:
+                answers = future.result()
+            except BrokenExecutor:
+                broken += some
+                continue
+            except OSError:
+                raise
+            except Exception as error:  # of the executor: a job that was cancelled, a node that went away
+                answers = [Answer("failed", f"it was not run: {type(error).__name__}: {error}")] * len(some)
+            yield from ((path.name, answer) for (_, path), answer in zip(some, answers, strict=True))
+
+
+def attempt_all(tasks: Sequence[Task]) -> list[Answer]:
+    """Run scenes one after the other in this process, which loads LAMMPS once."""
+    return [_attempt(scene, folder) for scene, folder in tasks]
+
+
+def _attempt(scene: Scene, folder: Path) -> Answer:
+    """Run a scene. A full disk is raised: no other point would fare better."""
+    try:
+        run(scene, folder, figures=False)
+    except (SceneError, SettingsError) as error:
+        return Answer("refused", str(error))
+    except OSError as error:
+        if error.errno in FULL_DISK:
+            raise
+        return Answer("failed", str(error))
+    except Contact1dError as error:
+        return Answer("failed", getattr(error, "message", str(error)))
+    except Exception as error:
+        return Answer("failed", f"{type(error).__name__}: {error}")
+    return Answer("done", run=folder.name)
+
+
+def _finish(plan: SweepPlan, folder: Path, ledger: _Ledger) -> Sweep:
+    counts: dict[str, int] = {}
+
+    def rows() -> Iterator[tuple[tuple[Any, ...], Answer]]:
+        counts.clear()
+        for index, values in enumerate(plan.values()):
+            answer = _answer(index, folder, ledger)
+            counts[answer.status] = counts.get(answer.status, 0) + 1
+            yield values, answer
+
+    units = write_table(folder, [axis.key for axis in plan.axes], rows)
+    if len(plan) >= MANY_ROWS:
+        write_parquet(folder)
+    return Sweep(folder, counts, units)
+
+
+def _answer(index: int, folder: Path, ledger: _Ledger) -> Answer:
+    if index >= len(ledger.names):
+        return Answer("missing", "the sweep was broken off before it")
+    if index in ledger.refusals:
+        return Answer("refused", ledger.refusals[index])
+    name = ledger.names[index]
+    found = answer_in(folder / RUNS, name)
+    if found is not None:
+        return Answer(found.status, found.reason, f"{RUNS}/{name}")
+    return ledger.answers.get(name) or Answer("missing", "the sweep was broken off before it")

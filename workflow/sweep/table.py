@@ -1,0 +1,105 @@
+"""One table of all results: a row for each point, in the order of the axes, from what the run folders hold."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from contact1d.files import whole
+from contact1d.workflow.errors import Contact1dError
+from contact1d.workflow.runs.report import RESULTS
+from contact1d.workflow.scene.problems import as_toml
+
+TABLE = "results.csv"
+PARQUET = "results.parquet"
+MANY_ROWS = 100_000
+"""Rows from which on the table is written as Parquet as well."""
+FIXED = ("status", "reason", "run")
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What became of a point: `done`, `failed`, `refused` (no run can be made of it), or `missing` so far.
+
+    `run` is its folder, relative to the sweep's; empty where there is none.
+    """
+
+    status: str
+    reason: str = ""
+    run: str = ""
+
+
+def answer_in(folder: Path, name: str) -> Answer | None:
+    """What the run folder of that name says; None where no run came to its end there."""
+    document = _document(folder / name)
+    if document is None:
+        return None
+    status = str(document["status"])
+    return Answer(status, "" if status == "done" else str(document["error"]["message"]), name)
+
+
+def write_table(
+    folder: Path, axes: Iterable[str], rows: Callable[[], Iterable[tuple[tuple[Any, ...], Answer]]]
+) -> dict[str, str]:
+    """Write results.csv. Two passes over the runs, one of them in memory at a time.
+
+    Args:
+        folder: of the sweep.
+        axes: their keys.
+        rows: makes the rows, in order: values of the axes, and the answer.
+
+    Returns:
+        The quantities: names, and the unit of each.
+    """
+    units: dict[str, str] = {}
+    for _, answer in rows():
+        for name, entry in _quantities(folder, answer).items():
+            units.setdefault(name, str(entry["unit"]))
+    numbers = [column for name in units for column in (name, f"{name}_uncertainty")]
+    with whole(folder / TABLE) as part, part.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([*axes, *FIXED, *numbers])
+        for values, answer in rows():
+            known = _quantities(folder, answer)
+            cells = [known[name][key] if name in known else "" for name in units for key in ("value", "uncertainty")]
+            writer.writerow([*map(cell, values), answer.status, answer.reason, answer.run, *cells])
+    return units
+
+
+def cell(value: Any) -> Any:
+    """A value of an axis as a cell: numbers and words as they are, tables and lists as in a scene file."""
+    return value if isinstance(value, str | int | float) and not isinstance(value, bool) else as_toml(value)
+
+
+def write_parquet(folder: Path) -> None:
+    """The table again as results.parquet. Raises Contact1dError where pyarrow isn't installed."""
+    try:
+        from pyarrow import csv as arrow
+        from pyarrow import parquet
+    except ImportError:
+        raise Contact1dError("Parquet needs pyarrow: install it with pip install 'contact1d[tables]'") from None
+    with whole(folder / PARQUET) as part:
+        parquet.write_table(arrow.read_csv(folder / TABLE), part)
+
+
+def _quantities(folder: Path, answer: Answer) -> dict[str, dict[str, Any]]:
+    document = _document(folder / answer.run) if answer.status == "done" else None
+    return {name: entry for name, entry in (document or {}).items() if isinstance(entry, dict) and "value" in entry}
+
+
+def _document(folder: Path) -> dict[str, Any] | None:
+    try:
+        document: dict[str, Any] = json.loads((folder / RESULTS).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return document
+
+
+def read_table(folder: Path) -> Iterator[dict[str, str]]:
+    """The rows of results.csv, one by one, cells as text."""
+    with (folder / TABLE).open(newline="", encoding="utf-8") as file:
+        yield from csv.DictReader(file)
