@@ -84,7 +84,7 @@ def test_lines_begin_a_phase_and_then_wait() -> None:
         lines.close()
     assert quiet.getvalue().splitlines() == ["loading: 100 steps", "unknown", "done"]
     spoken = talkative.getvalue().splitlines()
-    assert spoken[1].startswith("loading: step 25 of 100, about ")
+    assert spoken[1].startswith("loading: step 25 of 100, ")
     assert spoken[3] == "unknown: step 7"
 
 

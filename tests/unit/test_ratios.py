@@ -112,4 +112,4 @@ def test_what_is_left_of_a_phase_takes_as_long_as_what_is_done(
     lines.phase("loading", STEPS)
     now[0] = SECONDS
     lines.advance(PART)
-    assert "step 100 of 400, about 90 s left" in capsys.readouterr().out
+    assert "step 100 of 400, 3.33 a second, about 90 s left" in capsys.readouterr().out
