@@ -58,6 +58,11 @@ class Curve:
 PROFILE_COLUMNS = ("x", "z_lower", "z_upper", "pressure", "shear")
 FRICTION_COLUMNS = ("time", "drive", "plate_x", "plate_z", "friction", "normal_force", "cantilever_force")
 """Of a slide: times [TU], places [LU], forces [FU]."""
+TANGENTIAL_COLUMNS = (
+    "tangential_displacement", "tangential_force", "normal_force", "stick_radius", "stick_radius_uncertainty",
+    "dissipated_energy",
+)  # fmt: skip
+"""Of a tangential, in curve.csv: places [LU], forces [FU], the energy dissipated so far [FU·LU]."""
 
 
 def write_columns(path: Path, columns: Mapping[str, Column]) -> None:
@@ -88,6 +93,11 @@ def read_curve(path: Path) -> Curve:
 def read_friction(path: Path) -> dict[str, Array]:
     """Read friction.csv: FRICTION_COLUMNS by name. Raises ValueError as `read_curve`."""
     return {name: _numbers(cells) for name, cells in _read(path, FRICTION_COLUMNS).items()}
+
+
+def read_tangential(path: Path) -> dict[str, Array]:
+    """Read the TANGENTIAL_COLUMNS of a curve.csv by name. Raises ValueError as `read_curve`."""
+    return {name: _numbers(cells) for name, cells in _read(path, TANGENTIAL_COLUMNS).items()}
 
 
 def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Column]:

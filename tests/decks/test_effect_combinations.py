@@ -1,6 +1,6 @@
 """Every set of effects: it either runs in LAMMPS, row by row and as a deck with bitwise the same states, or is refused.
 
-There are 2⁷ sets of effects, four experiments with their methods and two lower bodies; all of them are tried, so every
+There are 2⁸ sets of effects, five experiments with their methods and two lower bodies; all of them are tried, so every
 effect alone (with what it requires) and every pair of effects is among them.
 """
 
@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.steps import DisplaceInTime, Phase, UnderLoad, displacements
+from contact1d.workflow.deck.steps import DisplaceInTime, Draw, Phase, UnderLoad, displacements
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Engine
@@ -33,6 +33,7 @@ TABLES: dict[str, dict[str, Any]] = {
     },
     "neighbours": {"stiffness": 0.3},
     "horizontal": {},
+    "friction": {"coefficient": 0.3},
     "damping": {"coefficient": "auto"},
     "noise": {"temperature": 1e-3, "seed": 1},
     "plate": {},
@@ -43,8 +44,12 @@ EXPERIMENTS: dict[str, dict[str, Any]] = {
     "path": {"displacements": [0.0, 0.05]},
     "pull_off": {"preload": 0.1},
     "slide": {"normal_force": 0.1, "distance": 2.0},
+    "tangential": {"normal_force": 0.1, "displacements": [0.0, 0.01, -0.02]},
 }
-METHODS = {kind: ("quasistatic", "dynamic") if kind != "slide" else ("dynamic",) for kind in EXPERIMENTS}
+METHODS: dict[str, tuple[str, ...]] = dict.fromkeys(EXPERIMENTS, ("quasistatic", "dynamic")) | {
+    "slide": ("dynamic",),
+    "tangential": ("quasistatic",),
+}
 STEPS = 25
 SUM = 1e-12
 """The force on the plate is a sum over 20 particles, by LAMMPS and by numpy in their own orders."""
@@ -57,8 +62,11 @@ def fits(kind: str, method: str, lower: str, effects: frozenset[str]) -> bool:
     Particles act on each other through an interaction; a rigid plane is touched, holds nothing and pulls nothing along
     x. Damping, noise, plate and cantilever exist in time only. Time needs damping to come to rest; a plate moves where
     a force is prescribed, and not where its place is. Noise needs an average, which a load and a slide take. A
-    cantilever slides a plate, whose particles have to follow it along x.
+    cantilever slides a plate, whose particles have to follow it along x. Coulomb's friction is a rigid plane's, in a
+    tangential and alone: its history has no minimum to be found, and no time.
     """
+    if kind == "tangential" or "friction" in effects:
+        return kind == "tangential" and lower == "rigid_plane" and effects == {"friction"}
     timed = effects & {"damping", "noise", "plate", "cantilever"}
     if lower == "rigid_plane":
         held = kind in ("load", "path") and not effects & {"interaction", "horizontal"}
@@ -97,7 +105,7 @@ def scene_of(make_scene: MakeScene, case: Case, **bodies: Any) -> Scene:
     tables: dict[str, Any] = {name: TABLES[name] if name in effects else None for name in EFFECTS}
     if kind == "slide" and "plate" in effects:
         tables["plate"] = {"free": ["x", "z"]}
-    experiment = {"kind": kind} | EXPERIMENTS[kind] | ({"method": method} if kind != "slide" else {})
+    experiment = {"kind": kind} | EXPERIMENTS[kind] | ({"method": method} if len(METHODS[kind]) > 1 else {})
     return make_scene(**tables, experiment=experiment, bodies={"lower": lower} | bodies)
 
 
@@ -107,6 +115,11 @@ ALLOWED = [case for case in ALL if fits(*case)]
 
 def phases_of(kind: str, method: str) -> tuple[Phase, ...]:
     """A few rows of each kind of step that the experiment uses, forth and back, with a state after each phase."""
+    if kind == "tangential":
+        return (
+            Phase("forward", (Draw(0.05, 0.0), Draw(0.05, 0.01), Draw(0.1, 0.02)), state=True),
+            Phase("backward", (Draw(0.1, -0.01), Draw(-0.02, -0.02)), state=True),
+        )
     if method == "quasistatic":
         return (
             Phase("loading", displacements((0.0, 0.02, 0.05)), state=True),
@@ -212,11 +225,14 @@ def test_all_other_sets_are_refused(make_scene: MakeScene) -> None:
 
 
 def test_every_effect_and_every_pair_is_among_the_runs() -> None:
-    """All pairs but those of a cantilever with a rigid plane's missing lower body are allowed somewhere."""
+    """All pairs but those of a cantilever with a rigid plane's missing lower body are allowed somewhere.
+
+    Friction stands alone.
+    """
     run = {pair for case in ALLOWED for pair in combinations(EFFECTS, 2) if set(pair) <= case[3]}
-    assert run == set(combinations(EFFECTS, 2))
+    assert run == set(combinations([name for name in EFFECTS if name != "friction"], 2))
     alone = [case[3] for case in ALLOWED]
     required = {"noise": {"damping", "plate"}, "plate": {"damping"}, "horizontal": {"interaction"}}
-    for name in ("interaction", "neighbours", "horizontal", "damping", "noise", "plate"):
+    for name in ("interaction", "neighbours", "horizontal", "friction", "damping", "noise", "plate"):
         assert frozenset({name} | required.get(name, set())) in alone
     assert frozenset({"interaction", "horizontal", "damping", "plate", "cantilever"}) in alone

@@ -35,6 +35,9 @@ ALL: dict[str, Any] = {
     "experiment": {"kind": "slide", "normal_force": 0.1, "distance": 5.0},
 }
 PLANE: dict[str, Any] = {"interaction": None, "bodies": {"lower": "rigid_plane"}}
+TANGENTIAL = {"kind": "tangential", "normal_force": 0.1, "displacements": {"from": 0.0, "to": 0.01, "steps": 3}}
+ON_PLANES: dict[str, Any] = {"friction": PLANE | {"friction": {"coefficient": 0.3}, "experiment": TANGENTIAL}}
+"""What stands on a rigid plane only, each effect with the scene that it is taken from."""
 TIMED: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
 LOAD = {"kind": "load", "force": 0.1}
 PULL_OFF = {"kind": "pull_off", "preload": 1.0}
@@ -92,7 +95,8 @@ def decks(scene: Scene, effect: str) -> tuple[str, str]:
 
 def is_slot(line: str, effect: str) -> bool:
     """Shared slots that an effect fills."""
-    return effect == "interaction" and line.startswith("pair_style ")
+    slots = {"interaction": "pair_style ", "friction": "atom_style "}
+    return effect in slots and line.startswith(slots[effect])
 
 
 def is_rest_of(rest: list[str], whole: list[str]) -> bool:
@@ -105,7 +109,7 @@ def is_rest_of(rest: list[str], whole: list[str]) -> bool:
 @pytest.mark.parametrize("effect", EFFECTS)
 def test_one_effect_off(make_scene: MakeScene, effect: str, noise: bool) -> None:
     """From a slide with every effect, and from one without noise, in which damping has lines of its own."""
-    scene = make_scene(**(ALL if noise else ALL | {"noise": None}))
+    scene = make_scene(**ON_PLANES.get(effect, ALL if noise else ALL | {"noise": None}))
     if effect not in scene.effects:
         return
     first, second = decks(scene, effect)
@@ -127,6 +131,8 @@ def test_one_effect_off(make_scene: MakeScene, effect: str, noise: bool) -> None
         assert removed[line] >= count or line in EMPTY
     if effect == "horizontal":
         assert list(added) == ["variable        guide_x index 0.0"]
+    elif effect == "friction":
+        assert list(added) == ["atom_style      bond"]
     elif effect == "noise":
         extra = set(added) - set(fragment_lines("damping"))
         assert [line.split()[1] for line in extra] == ["damping_coefficient"]

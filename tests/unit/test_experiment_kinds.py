@@ -59,6 +59,10 @@ def test_rows_of_a_slide_are_no_unloading() -> None:
     assert [KINDS["slide"].branch(phase) for phase in ("loading", "sliding")] == ["loading", "sliding"]
 
 
+def test_rows_of_a_tangential_are_named_by_their_way() -> None:
+    assert [KINDS["tangential"].branch(phase) for phase in ("forward", "backward_2")] == ["forward", "backward"]
+
+
 def test_nobody_is_sent_to_a_method_that_his_experiment_refuses() -> None:
     """A slide exists in time only."""
     scene = read_scene(SCENES / "pull_off_dynamic.toml")

@@ -62,13 +62,13 @@ def test_a_number_must_be_finite(value: str) -> None:
 
 QUOTED = "a number stands without quotes"
 SCENE_TABLES = (
-    "title, bodies, interaction, neighbours, horizontal, damping, noise, plate, cantilever, material, accuracy, "
-    "experiment"
+    "title, bodies, interaction, neighbours, horizontal, friction, damping, noise, plate, cantilever, material, "
+    "accuracy, experiment"
 )
 SHAPES = '"parabola", "circle", "cone", "flat_punch", "power" or "table"'
 BODIES = "particles, spacing, profile, reduction, bulk_stiffness, bulk_stiffness_tangential, mass, lower"
 COUNT = 'must be a whole number from 3 to 10000000, or "auto"'
-KINDS = '"load", "path", "pull_off" or "slide"'
+KINDS = '"load", "path", "pull_off", "slide" or "tangential"'
 DISPLACEMENTS = "must be a list, each item a number (LU), or a table with from, to, steps, return"
 
 ONE_LINE_EACH: list[tuple[list[str], str]] = [

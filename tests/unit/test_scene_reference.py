@@ -41,6 +41,7 @@ TABLES = {
     "interaction.repulsion, interaction.attraction": scenes.Exponential,
     "neighbours": scenes.Neighbours,
     "horizontal": scenes.Horizontal,
+    "friction": scenes.Friction,
     "damping": scenes.Damping,
     "noise": scenes.Noise,
     "plate": scenes.Plate,
@@ -53,6 +54,7 @@ TABLES = {
     "experiment.displacements, as a table": scenes.Span,
     "experiment, kind pull_off": scenes.PullOff,
     "experiment, kind slide": scenes.Slide,
+    "experiment, kind tangential": scenes.Tangential,
 }
 
 

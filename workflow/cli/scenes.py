@@ -19,6 +19,7 @@ class Kind(StrEnum):
     LOAD = "load"
     PATH = "path"
     SLIDE = "slide"
+    TANGENTIAL = "tangential"
 
 
 def new(

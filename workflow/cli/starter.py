@@ -53,12 +53,23 @@ SCENES: dict[str, dict[str, Any]] = {
         "accuracy": {"tolerance": 2e-2},
         "experiment": {"kind": "slide", "normal_force": 1.0, "distance": 6.0},
     },
+    "tangential": {
+        "bodies": BODY["bodies"] | {"reduction": "mdr", "bulk_stiffness": 1.0, "lower": "rigid_plane"},
+        "friction": {"coefficient": 0.3},
+        "experiment": {
+            "kind": "tangential",
+            "normal_force": 40.0,
+            "displacements": {"from": 0.0, "to": 0.4, "steps": 40},
+        },
+    },
 }
 """What is set in the file of each kind."""
 STEEL = {"youngs_modulus": 210e9, "poisson_ratio": 0.3}
 EXAMPLES: dict[str, dict[str, Any]] = {
+    "interaction": BODY["interaction"],
     "bodies": {"bulk_stiffness_tangential": 0.83},
     "neighbours": {"stiffness": 0.3},
+    "friction": {"coefficient": 0.3},
     "damping": {"coefficient": "auto"},
     "noise": {"temperature": 1e-4, "seed": 1},
     "cantilever": {"stiffness": 20.0, "velocity": 0.05},
@@ -66,7 +77,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
         "upper": STEEL, "lower": STEEL, "contact_modulus": 115e9, "length_unit": 1e-9, "force_unit": 1e-6,
         "mass_unit": 1e-12, "surface_energy": 1.0,
     },
-    "experiment": {"method": "quasistatic"},
+    "experiment": {"method": "quasistatic", "normal_displacement": 1.0},
 }  # fmt: skip
 """Values of keys that are not set and have no default."""
 

@@ -27,7 +27,8 @@ MEDIAN_ERROR = 1.25
 
 def without_effects(scene: Scene) -> tuple[dict[str, Change], dict[str, str]]:
     """How to leave out each effect that can be, by its name; and why others cannot."""
-    method = () if scene.experiment.motion_is_result else (f"experiment.method={scene.method}",)
+    has_one = scene.experiment.motion_is_result or scene.experiment.moves_as_a_whole
+    method = () if has_one else (f"experiment.method={scene.method}",)
     changes, reasons = {}, {}
     for effect in scene.effects:
         change = Change(method, (effect,))

@@ -25,6 +25,8 @@ def at_spacing(scene: Scene, spacing: float) -> tuple[str, ...]:
     keys = [f"bodies.spacing={spacing!r}", f"bodies.mass={factor * bodies.mass!r}"]
     if bodies.bulk_stiffness != "auto":
         keys.append(f"bodies.bulk_stiffness={factor * scene.bulk_stiffness!r}")
+    if bodies.bulk_stiffness_tangential is not None:
+        keys.append(f"bodies.bulk_stiffness_tangential={factor * bodies.bulk_stiffness_tangential!r}")
     if scene.neighbours is not None:
         keys.append(f"neighbours.stiffness={scene.neighbours.stiffness / factor!r}")
     if scene.damping is not None and scene.damping.coefficient != "auto":

@@ -38,6 +38,7 @@ class System:
         bond_names: name of each bond type, in order.
         masses: mass of each atom type [MU], in order.
         box: lower and upper corner, shape (2, 3) [LU].
+        radius: of the atoms [LU], where they are spheres; 0 where they are points.
     """
 
     types: Integers
@@ -46,6 +47,7 @@ class System:
     bond_names: tuple[str, ...]
     masses: tuple[float, ...]
     box: NDArray[np.float64]
+    radius: float = 0.0
 
 
 def assemble(
@@ -88,17 +90,26 @@ def assemble(
 
 
 def write_data(system: System, title: str, path: Path) -> None:
-    """Write a LAMMPS data file for `atom_style bond`, whole or not at all."""
+    """Write a LAMMPS data file for `atom_style bond`, or `hybrid sphere bond`; whole or not at all."""
     with whole(path) as part, part.open("w") as file:
         file.write(f"# {title}\n\n{len(system.types)} atoms\n{len(system.bonds)} bonds\n")
         file.write(f"{len(system.masses)} atom types\n{len(system.bond_names)} bond types\n\n")
         for axis, low, high in zip("xyz", *system.box.tolist(), strict=True):
             file.write(f"{low:.17g} {high:.17g} {axis}lo {axis}hi\n")
-        file.write("\nMasses\n\n")
-        file.writelines(f"{i} {mass:.17g}\n" for i, mass in enumerate(system.masses, 1))
-        file.write("\nAtoms # bond\n\n")
         ids = np.arange(1, len(system.types) + 1)
-        _write_rows(file, "%d 1 %d %.17g %.17g %.17g\n", ids, system.types, *system.positions.T)
+        if system.radius > 0.0:
+            # Spheres have masses of their own, by their density.
+            volume = 4.0 / 3.0 * np.pi * system.radius**3
+            density = np.asarray(system.masses)[system.types - 1] / volume
+            diameter = np.full(len(ids), 2.0 * system.radius)
+            file.write("\nAtoms # hybrid\n\n")
+            columns = (ids, system.types, *system.positions.T, diameter, density)
+            _write_rows(file, "%d %d %.17g %.17g %.17g %.17g %.17g 1\n", *columns)
+        else:
+            file.write("\nMasses\n\n")
+            file.writelines(f"{i} {mass:.17g}\n" for i, mass in enumerate(system.masses, 1))
+            file.write("\nAtoms # bond\n\n")
+            _write_rows(file, "%d 1 %d %.17g %.17g %.17g\n", ids, system.types, *system.positions.T)
         file.write("\nBonds\n\n")
         _write_rows(file, "%d %d %d %d\n", np.arange(1, len(system.bonds) + 1), *system.bonds.T)
 

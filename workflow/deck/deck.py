@@ -70,8 +70,10 @@ class Deck:
         Raises:
             DeckError: if fragments and variables do not fit together.
         """
+        atom_style = next((part.atom_style for part in self.parts if part.atom_style), "bond")
         styles = [f"pair_style      {part.pair_style}\n" for part in self.parts if part.pair_style]
-        blocks = [_block("start", {}) + "".join(styles) + "bond_style      harmonic\n"]
+        styles = [f"atom_style      {atom_style}\n", *styles, "bond_style      harmonic\n"]
+        blocks = [_block("start", {}) + "".join(styles)]
         for part in self.parts:
             for index, name in enumerate(part.fragments):
                 blocks.append(_block(name, part.variables if index == 0 else {}))
@@ -162,9 +164,10 @@ class Deck:
         Every variable is defined once, before it is needed, and used; every ID is defined once; there is one
         `pair_style` at most, and no group has two integrators.
         """
-        styles = [part.name for part in self.parts if part.pair_style]
-        if len(styles) > 1:
-            raise DeckError(f"each brings a pair_style, of which a deck has one: {', '.join(styles)}")
+        for slot in ("pair_style", "atom_style"):
+            styles = [part.name for part in self.parts if getattr(part, slot)]
+            if len(styles) > 1:
+                raise DeckError(f"each brings a {slot}, of which a deck has one: {', '.join(styles)}")
         moved = [part.integrates for part in self.parts if part.integrates]
         doubly = sorted({group for group in moved if moved.count(group) > 1})
         if doubly:
@@ -229,6 +232,8 @@ class Deck:
 
     def _method(self) -> Contribution:
         _, settings = self.written
+        if self.scene.experiment.moves_as_a_whole:
+            return Contribution("as_a_whole", Stage.MOTION, ("as_a_whole",))
         if self.scene.method == "quasistatic":
             variables = {
                 "force_tolerance": number(settings.force_tolerance),
@@ -247,7 +252,8 @@ def _block(name: str, variables: dict[str, str]) -> str:
     """A fragment with its header, below the variables that it needs."""
     lines = "".join(f"variable        {key} index {value}\n" for key, value in variables.items())
     piece = fragment(name)
-    comments = piece.text[: len(piece.text) - len(piece.text.split("\n", 4)[4])]
+    header = 5 if piece.redefines else 4
+    comments = piece.text[: len(piece.text) - len(piece.text.split("\n", header)[header])]
     return comments + lines + piece.text[len(comments) :]
 
 

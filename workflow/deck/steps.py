@@ -11,8 +11,10 @@ from typing import ClassVar
 
 from contact1d.workflow.deck.effects.base import number
 
-UNITS = {"displacement": "LU", "parted": "LU", "through": "LU", "load": "FU", "rest": "FU"} | dict.fromkeys(
-    ("damping", "drag"), "FU·TU/LU"
+UNITS = (
+    dict.fromkeys(("displacement", "place", "parted", "through"), "LU")
+    | dict.fromkeys(("load", "rest"), "FU")
+    | dict.fromkeys(("damping", "drag"), "FU·TU/LU")
 )
 """Units of the numbers in rows; whole ones have none."""
 
@@ -41,6 +43,15 @@ class Displace(Row):
 
     step: ClassVar[str] = "displace"
     displacement: float
+
+
+@dataclass(frozen=True)
+class Draw(Row):
+    """The plate is put to a displacement and a place along x [LU], in a straight line, its particles with it."""
+
+    step: ClassVar[str] = "draw"
+    displacement: float
+    place: float
 
 
 @dataclass(frozen=True)
@@ -86,7 +97,7 @@ class Hold(Row):
     steps: int
 
 
-STEPS: tuple[type[Row], ...] = (Displace, DisplaceInTime, UnderLoad, Hold)
+STEPS: tuple[type[Row], ...] = (Displace, Draw, DisplaceInTime, UnderLoad, Hold)
 
 
 @dataclass(frozen=True)

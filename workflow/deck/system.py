@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from contact1d.potentials.table import write_table
 from contact1d.workflow.deck.box import margins
 from contact1d.workflow.deck.datafile import assemble, write_data
 from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.effects.base import sphere_radius
 from contact1d.workflow.deck.lattice import bodies
 
 
@@ -17,10 +19,7 @@ def write_system(deck: Deck, folder: Path) -> None:
     both = bodies(scene, settings)
     anchors = len(both[-1].anchors)
     mass = settings.plate_mass / anchors if scene.plate is not None else scene.bodies.mass
-    write_data(
-        assemble(both, scene.neighbours is not None, scene.bodies.mass, mass, margins(scene, settings)),
-        scene.title,
-        folder / "system.data",
-    )
+    system = assemble(both, scene.neighbours is not None, scene.bodies.mass, mass, margins(scene, settings))
+    write_data(replace(system, radius=sphere_radius(scene, settings)), scene.title, folder / "system.data")
     if settings.table is not None:
         write_table(settings.table, settings.table_from, folder / "interaction.table")

@@ -9,12 +9,19 @@ from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.slowness import slowness
 from contact1d.workflow.experiments.slide import SLIDE
+from contact1d.workflow.experiments.tangential import TANGENTIAL
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 
 __all__ = ["KINDS", "kind_of", "perform", "planned"]
 
-KINDS: dict[str, ExperimentKind] = {"load": LOAD, "path": PATH, "pull_off": PULL_OFF, "slide": SLIDE}
+KINDS: dict[str, ExperimentKind] = {
+    "load": LOAD,
+    "path": PATH,
+    "pull_off": PULL_OFF,
+    "slide": SLIDE,
+    "tangential": TANGENTIAL,
+}
 """By the word that a scene has for it."""
 
 

@@ -11,17 +11,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis import plots
+from contact1d.analysis import plots, slip_plots
 from contact1d.analysis.curve import Curve
 from contact1d.analysis.pressure import Profile
+from contact1d.analysis.reference.mindlin import mindlin_path, sliding_displacement
+from contact1d.analysis.slip import stick_margin
 from contact1d.workflow.experiments.running.radii import RadiusRule
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Scene, Tangential
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 Drawings = dict[str, Callable[[], "Figure"]]
+SAME_LOAD = 1e-9
+"""Change of a load over the load up to which it is one: round-off."""
 
 
 def drawings(
@@ -40,6 +44,10 @@ def drawings(
     """
     radii = {state: _radius(scene, profile) for state, profile in profiles.items()}
     pressure: Drawings = {"pressure": partial(plots.pressure_figure, profiles, radii)}
+    if isinstance(scene.experiment, Tangential):
+        theory = _mindlin(scene, curve, friction)
+        loop = partial(slip_plots.tangential_figure, friction, curve.branch, theory)
+        return {"tangential": loop, "stick_slip": _stick_slip(scene, profiles, friction), **pressure}
     if friction:
         return {"friction": partial(plots.friction_figure, friction), **pressure}
     if scene.noise is not None:
@@ -63,6 +71,32 @@ def draw(
     """Save every figure of a run in its folder."""
     for name, figure in drawings(scene, values, curve, profiles, friction).items():
         plots.save_figure(figure(), folder / f"{name}.png")
+
+
+def _stick_slip(scene: Scene, profiles: Mapping[str, Profile], columns: Mapping[str, Array]) -> Callable[[], Figure]:
+    """The stick zone of each state, as the row at its place has it."""
+    assert scene.friction is not None
+    places, coefficient = columns["tangential_displacement"], scene.friction.coefficient
+    margins, radii = {}, {}
+    for name, profile in profiles.items():
+        row = len(places) - 1 if name == "final" else int(np.argmax(np.abs(places)))
+        moves = np.diff(places[: row + 1], prepend=0.0)
+        direction = int(np.sign(moves[moves != 0.0][-1])) if moves.any() else 0
+        margins[name] = stick_margin(profile, coefficient, direction)
+        radii[name] = float(columns["stick_radius"][row])
+    return partial(slip_plots.stick_slip_figure, profiles, coefficient, margins, radii)
+
+
+def _mindlin(scene: Scene, curve: Curve, columns: Mapping[str, Array]) -> Array | None:
+    """Cattaneo and Mindlin at the places of a parabola under one load; else None."""
+    places, loads = columns["tangential_displacement"], columns["normal_force"]
+    if scene.bodies.plane_radius is None or scene.friction is None or not scene.friction.coefficient:
+        return None
+    if np.ptp(loads) > SAME_LOAD * loads.max():
+        return None
+    ratio, coefficient = scene.tangential_stiffness / scene.bulk_stiffness, scene.friction.coefficient
+    sliding = sliding_displacement(coefficient, ratio, float(curve.displacement[0]))
+    return np.asarray(mindlin_path(places.tolist(), float(loads[0]), coefficient, sliding))
 
 
 def _radius(scene: Scene, profile: Profile) -> float:

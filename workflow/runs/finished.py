@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.atoms import atoms
-from contact1d.analysis.curve import Curve, read_curve, read_friction, read_profiles
+from contact1d.analysis.curve import Curve, read_curve, read_friction, read_profiles, read_tangential
 from contact1d.analysis.pressure import Profile
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.runs.report import RESULTS
-from contact1d.workflow.scene import Scene, SceneError, Slide, scene_from_dict
+from contact1d.workflow.scene import Scene, SceneError, Slide, Tangential, scene_from_dict
 from contact1d.workflow.units import Quantity
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ class Run:
         scene: what ran.
         curve: the measured states, arrays by name; what curve.csv holds.
         profiles: pressure and shear along x of the reported states, by name; what profile.csv holds.
-        friction: of a slide, arrays by name; what friction.csv holds.
+        friction: of a slide or a tangential, arrays by name; what friction.csv holds, or curve.csv beside the curve.
         results: quantities by name, each with uncertainty and unit, and in SI where the scene has a [material].
         outcome: what the experiment handed over; None for a run that was read from its folder, or made by `run_many`.
     """
@@ -98,7 +98,8 @@ class Run:
         """Draw a figure, by default the experiment's main one; `.savefig(path)` keeps it.
 
         Args:
-            name: "force_displacement", "force_radius", "pressure" or "friction", as the files in the folder are called.
+            name: "force_displacement", "force_radius", "pressure", "friction", "tangential" or "stick_slip", as the
+                files in the folder are called.
 
         Raises:
             ValueError: the run has no such figure; the message says which it has.
@@ -158,8 +159,11 @@ def read_run(folder: Path) -> Run:
         scene = scene_from_dict(document["scene"])
         if document["status"] == "done":
             curve, profiles = read_curve(folder / "curve.csv"), read_profiles(folder / "profile.csv")
-            slide = isinstance(scene.experiment, Slide)
-            friction = read_friction(folder / "friction.csv") if slide else {}
+            friction = {}
+            if isinstance(scene.experiment, Slide):
+                friction = read_friction(folder / "friction.csv")
+            elif isinstance(scene.experiment, Tangential):
+                friction = read_tangential(folder / "curve.csv")
         else:
             curve, profiles, friction = Curve([], [], [], [], [], []), {}, {}
             str(document["error"]["message"])

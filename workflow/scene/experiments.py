@@ -1,4 +1,4 @@
-"""The four experiments of a scene: load, path, pull_off, slide.
+"""The five experiments of a scene: load, path, pull_off, slide, tangential.
 
 A prescribed path from d₀ to d₁ in n steps holds d_i = (d₀ (n − i) + d₁ i)/n for i = 0…n, and back in the same places.
 """
@@ -12,7 +12,15 @@ from annotated_types import MinLen
 from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
-from contact1d.workflow.scene.quantities import Compression, Displacement, Force, Length, StepCount, Table
+from contact1d.workflow.scene.quantities import (
+    Compression,
+    CompressionOrNone,
+    Displacement,
+    Force,
+    Length,
+    StepCount,
+    Table,
+)
 
 Method = Literal["quasistatic", "dynamic"]
 _METHOD = (
@@ -52,16 +60,27 @@ _Listed = Annotated[tuple[Displacement, ...], Field(strict=False), MinLen(1), Ta
 Displacements = Annotated[_Listed | Annotated[Span, Tag("table")], Discriminator(_list_or_table)]
 
 
+def _list_or_number(value: object) -> str:
+    return "list" if isinstance(value, list | tuple) else "number"
+
+
+_Loads = Annotated[tuple[CompressionOrNone, ...], Field(strict=False), MinLen(1), Tag("list")]
+NormalForces = Annotated[Annotated[Compression, Tag("number")] | _Loads, Discriminator(_list_or_number)]
+NormalDisplacements = Annotated[Annotated[Displacement, Tag("number")] | _Listed, Discriminator(_list_or_number)]
+
+
 class Kind(Table):
     """What is done. Each kind says here what other rooms must know of it.
 
     Attributes:
         way_is_given: the scene prescribes the whole way, so that nothing is searched for and no state is ambiguous.
         motion_is_result: the motion itself is looked at, so that the scene exists in time only and its drag is its own.
+        moves_as_a_whole: the upper body is moved with its particles, so that nothing comes to rest by itself.
     """
 
     way_is_given: ClassVar[bool] = False
     motion_is_result: ClassVar[bool] = False
+    moves_as_a_whole: ClassVar[bool] = False
 
     @property
     def compression(self) -> float | None:
@@ -140,4 +159,50 @@ class Slide(Kind):
         return self.distance
 
 
-Experiment = Annotated[Load | Path | PullOff | Slide, Discriminator("kind")]
+class Tangential(Kind):
+    """Normal load, then tangential displacement along x, with Coulomb's friction on a rigid plane."""
+
+    way_is_given: ClassVar[bool] = True
+    moves_as_a_whole: ClassVar[bool] = True
+
+    kind: Literal["tangential"] = Field(description="normal load, then displacement along x with friction")
+    normal_force: NormalForces | None = Field(
+        default=None, description="compressive force: one, or one for each of the displacements"
+    )
+    normal_displacement: NormalDisplacements | None = Field(
+        default=None,
+        description="in place of the force: displacement in normal direction, compression positive; one, or one for "
+        "each of the displacements",
+    )
+    displacements: Displacements = Field(
+        description="displacements along x, from 0 on where the load comes on: a list or an even span"
+    )
+
+    @property
+    def compression(self) -> float | None:
+        """The largest normal force; None where displacements are given."""
+        forces = self.normal_force
+        return None if forces is None else max(forces) if isinstance(forces, tuple) else forces
+
+    def places(self) -> list[float]:
+        """Normal displacements [LU] of the rows, none where forces are given."""
+        given = self.normal_displacement
+        return [] if given is None else list(given) if isinstance(given, tuple) else [given] * len(self.along())
+
+    def along(self) -> list[float]:
+        """Displacements along x [LU] of the rows."""
+        listed = self.displacements
+        return listed.values() if isinstance(listed, Span) else list(listed)
+
+    def normal_forces(self) -> list[float]:
+        """Normal forces [FU] of the rows, none where displacements are given."""
+        forces = self.normal_force
+        return [] if forces is None else list(forces) if isinstance(forces, tuple) else [forces] * len(self.along())
+
+    @property
+    def way(self) -> float:
+        """The farthest of the displacements."""
+        return max(map(abs, self.along()))
+
+
+Experiment = Annotated[Load | Path | PullOff | Slide | Tangential, Discriminator("kind")]

@@ -8,24 +8,38 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
+from contact1d.workflow.scene.draft import ADD, Draft, missing
+from contact1d.workflow.scene.fit_friction import no_plane, tangential
 from contact1d.workflow.scene.problems import Problem, shown
-from contact1d.workflow.scene.tables import EFFECTS, TIMED, Bodies, Plate, default_method
+from contact1d.workflow.scene.tables import EFFECTS, TIMED, Plate, default_method
 
+NO_TIME = "its rows follow each other without time, each at rest"
 EXCLUDED = {
-    "load": {"cantilever": "only a slide is pulled through a spring"},
+    "load": {
+        "cantilever": "only a slide is pulled through a spring",
+        "friction": "nothing moves along x in it, so that friction does nothing",
+    },
     "path": {
         "plate": "a path prescribes the plate's place, so the plate has no motion of its own",
         "noise": "a path reads its curve off single states, and noise would be part of every one of them",
         "cantilever": "only a slide is pulled through a spring",
+        "friction": "nothing moves along x in it, so that friction does nothing",
     },
     "pull_off": {
         "noise": "a thermal pull-off depends on the waiting time, which the scene does not state",
         "cantilever": "only a slide is pulled through a spring",
+        "friction": "nothing moves along x in it, so that friction does nothing",
     },
-    "slide": {},
+    "slide": {"friction": "its friction is that of the particles' own forces"},
+    "tangential": {
+        "neighbours": "friction remembers its way, and a minimiser, which such springs need, has no way",
+        "damping": NO_TIME,
+        "noise": NO_TIME,
+        "plate": NO_TIME,
+        "cantilever": "only a slide is pulled through a spring",
+    },
 }
 """Effects that an experiment cannot have by any method, and why."""
 
@@ -34,56 +48,9 @@ NEEDED = {
     "path": ("damping",),
     "pull_off": ("damping", "plate"),
     "slide": ("horizontal", "damping", "plate", "cantilever"),
+    "tangential": (),
 }
 """Effects that a dynamic experiment cannot do without."""
-
-ADD = {
-    "damping": '[damping] with coefficient = "auto"',
-    "plate": '[plate] with mass = "auto"',
-    "cantilever": "[cantilever] with stiffness and velocity",
-    "horizontal": "[horizontal], an empty table: without it particles cannot follow a plate along x",
-}
-"""How to add a table that is missing."""
-
-
-@dataclass(frozen=True)
-class Draft:
-    """A scene that may have wrong values: `data` as in the file, and the keys at which a value is `unsound`."""
-
-    data: Mapping[str, Any]
-    unsound: frozenset[tuple[str | int, ...]]
-
-    def has(self, *keys: str) -> bool:
-        """Whether something, right or wrong, stands at `keys`."""
-        value: Any = self.data
-        for key in keys:
-            value = value.get(key) if isinstance(value, Mapping) else None
-        return value is not None
-
-    def sound(self, *keys: str) -> bool:
-        """Whether what stands at `keys`, if anything, is right, with all that is above and inside it."""
-        return not any(bad[: len(keys)] == keys[: len(bad)] for bad in self.unsound)
-
-    def get(self, *keys: str, default: Any = None) -> Any:
-        """The value at `keys`, `default` where it is absent, None where it is unsound."""
-        if not self.sound(*keys):
-            return None
-        value: Any = self.data
-        for key in keys:
-            value = value.get(key) if isinstance(value, Mapping) else None
-        return default if value is None else value
-
-    @property
-    def kind(self) -> str | None:
-        """Kind of the experiment, None if that is not known."""
-        kind = self.get("experiment", "kind")
-        return kind if isinstance(kind, str) else None
-
-    @property
-    def lower(self) -> str | None:
-        """What the lower body is, None if that is not known."""
-        lower = self.get("bodies", "lower", default=Bodies.model_fields["lower"].default)
-        return lower if isinstance(lower, str) and self.has("bodies") else None
 
 
 def _lower_body(draft: Draft) -> Iterator[Problem]:
@@ -91,6 +58,7 @@ def _lower_body(draft: Draft) -> Iterator[Problem]:
     if draft.lower == "particles" and not draft.has("interaction"):
         yield Problem("interaction", "missing", hint='add [interaction], or use bodies.lower = "rigid_plane"')
     if draft.lower != "rigid_plane":
+        yield from no_plane(draft)
         return
     if draft.kind in ("pull_off", "slide"):
         why = "hold" if draft.kind == "pull_off" else "drag"
@@ -141,7 +109,7 @@ def _tables_of_experiment(draft: Draft) -> Iterator[Problem]:
     kind = draft.kind
     if kind is None:
         if "noise" in present and "damping" not in present:
-            yield _missing("damping", "[noise]")
+            yield missing("damping", "[noise]")
         return
     for name, why in EXCLUDED[kind].items():
         if name in present:
@@ -162,11 +130,7 @@ def _tables_of_experiment(draft: Draft) -> Iterator[Problem]:
     for name in NEEDED[kind]:
         if name not in present:
             also = " and by [noise]" if given and name == "damping" and "noise" in rest else ""
-            yield _missing(name, f"a {'' if kind == 'slide' else 'dynamic '}{kind}{cause}{also}")
-
-
-def _missing(name: str, needed_by: str) -> Problem:
-    return Problem(name, f"missing, needed by {needed_by}", hint=f"add {ADD[name]}")
+            yield missing(name, f"a {'' if kind == 'slide' else 'dynamic '}{kind}{cause}{also}")
 
 
 def _plate_can_slide(draft: Draft) -> Iterator[Problem]:
@@ -262,7 +226,7 @@ def _jkr_units(draft: Draft, has: Mapping[str, bool]) -> Iterator[Problem]:
     if draft.get("bodies", "bulk_stiffness") == "auto":
         hint = "give the stiffness, or length_unit and force_unit in place of surface_energy"
         yield Problem("bodies.bulk_stiffness", "no units to take it by before the run", shown("auto"), hint)
-    if draft.kind in ("load", "slide"):
+    if draft.kind in ("load", "slide", "tangential"):
         hint = 'use kind = "pull_off", whose results give length_unit and force_unit'
         yield Problem("material.surface_energy", f"not in a {draft.kind}, which finds no F_A and a₀", hint=hint)
     elif draft.kind == "path" and (
@@ -281,6 +245,7 @@ WHOLE_NUMBER_ERROR = 1e-9
 
 RULES: tuple[Callable[[Draft], Iterator[Problem]], ...] = (
     _lower_body,
+    tangential,
     _law,
     _tables_of_experiment,
     _plate_can_slide,

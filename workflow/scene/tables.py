@@ -13,7 +13,7 @@ from annotated_types import MinLen
 from pydantic import AfterValidator, Field
 from pydantic_core import PydanticCustomError
 
-from contact1d.workflow.scene.experiments import Experiment, Method, Slide
+from contact1d.workflow.scene.experiments import Experiment, Method, Slide, Tangential
 from contact1d.workflow.scene.material import PARABOLA_SHARE, Material, Reduction
 from contact1d.workflow.scene.profiles import Parabola, Profile
 from contact1d.workflow.scene.quantities import (
@@ -26,6 +26,7 @@ from contact1d.workflow.scene.quantities import (
     Energy,
     Length,
     Mass,
+    RatioOrZero,
     RelativeTolerance,
     Seed,
     Stiffness,
@@ -110,6 +111,15 @@ class Horizontal(Effect):
     """Effect: particles may also move along x. It has no keys."""
 
 
+class Friction(Effect):
+    """Effect: Coulomb's friction of every particle on a rigid plane."""
+
+    coefficient: RatioOrZero = Field(
+        description="largest tangential over normal force of a particle; along x it gives as "
+        "bodies.bulk_stiffness_tangential says"
+    )
+
+
 class Damping(Effect):
     """Effect: viscous damping of particles."""
 
@@ -177,6 +187,7 @@ class Scene(Table):
     interaction: Interaction | None = Field(default=None, description="forces between opposite bodies")
     neighbours: Neighbours | None = Field(default=None, description="springs between neighbouring particles")
     horizontal: Horizontal | None = Field(default=None, description="particles may also move along x")
+    friction: Friction | None = Field(default=None, description="friction on a rigid plane")
     damping: Damping | None = Field(default=None, description="viscous damping of particles")
     noise: Noise | None = Field(default=None, description="thermal forces")
     plate: Plate | None = Field(default=None, description="the upper plate moves under a force")
@@ -254,6 +265,8 @@ class Scene(Table):
         """The method given, else "dynamic" if a plate, damping or noise is there, else "quasistatic"."""
         if isinstance(self.experiment, Slide):
             return "dynamic"
+        if isinstance(self.experiment, Tangential):
+            return "quasistatic"
         return self.experiment.method or default_method(self.effects)
 
 

@@ -25,13 +25,17 @@ def members(annotation: object) -> tuple[Any, ...]:
     """The members of a union but None, or the one type itself."""
     inner, _ = unwrapped(annotation)
     if get_origin(inner) in (Union, types.UnionType):
-        return tuple(member for member in get_args(inner) if member is not type(None))
+        found = _but_none(inner)
+        return members(found[0]) if len(found) == 1 else found
     return (annotation,)
 
 
 def branches(annotation: object) -> dict[str, Any]:
     """The members of a discriminated union by tag (the name that pydantic puts into its locations), or nothing."""
-    if not any(isinstance(mark, Discriminator) for mark in unwrapped(annotation)[1]):
+    inner, marks = unwrapped(annotation)
+    if get_origin(inner) in (Union, types.UnionType) and len(found := _but_none(inner)) == 1:
+        return branches(found[0])
+    if not any(isinstance(mark, Discriminator) for mark in marks):
         return {}
     return {_tag(member): member for member in members(annotation)}
 
@@ -101,6 +105,10 @@ def unit_of(annotation: object) -> str | None:
         if get_origin(inner) is tuple:
             return unit_of(get_args(inner)[0])
     return None
+
+
+def _but_none(union: object) -> tuple[Any, ...]:
+    return tuple(member for member in get_args(union) if member is not type(None))
 
 
 def _tag(member: object) -> str:

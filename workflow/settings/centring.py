@@ -17,9 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.polynomial import fitting, lowest_minimum
-from contact1d.workflow.scene import Load, Scene
+from contact1d.workflow.scene import Load, Scene, Tangential
 from contact1d.workflow.settings.estimate import ContactEstimate
 from contact1d.workflow.settings.settings import Settings
+from contact1d.workflow.settings.sliders import sliders_of, stops
 
 Array = NDArray[np.float64]
 OWN, OTHERS = 0.5, (0.25, 0.0)
@@ -28,6 +29,8 @@ WIDE, DEGREE = 3.0, 4
 """Steps of the first look, on both sides of the largest tension, and degree of the polynomial that places it."""
 OVERREACH = 0.1
 """Way beyond the deepest place of the estimate that is looked at, over that place and a spacing."""
+OVER_DEEPEST = 1.5
+"""Depth up to which friction's particles are counted, over the estimate's: few carry a load deeper than many."""
 MARGIN = 1.25
 """Claim over the change of the estimate, which knows no neighbours; measured against chains of both parities: 1.01."""
 POINTS = (200, 40, 40, 40)
@@ -54,6 +57,13 @@ def _marks(scene: Scene, settings: Settings, phase: float) -> dict[str, float]:
 
     if experiment.motion_is_result:
         return {}
+    if isinstance(experiment, Tangential):
+        reach = estimate.half_width(OVER_DEEPEST * deepest, edge)
+        count = int(reach / estimate.spacing) + 2
+        x = estimate.spacing * (np.arange(-count, count) + phase)
+        chain = sliders_of(scene, x[np.abs(x) <= reach])
+        way = stops(experiment, chain)
+        return chain.at_end(way) | {"contact_radius": radius(way[-1][0])}
     row = _Row(estimate, phase, deepest)
     if isinstance(experiment, Load):
         place = row.crossing(experiment.force)

@@ -5,8 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import IntEnum
 
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.settings import Settings
+
 BINS = 100
 """Most bins of LAMMPS's neighbour search across a box made wide by atoms that feel no pair force: they take memory."""
+
+
+DEEP = 4.0
+"""Radius of particles that are spheres over the deepest expected displacement: a wall loses what lies deeper."""
 
 
 class Stage(IntEnum):
@@ -31,6 +38,7 @@ class Contribution:
         fragments: names in `lammps_inputs/fragments`, in order.
         variables: LAMMPS variables that the fragments need, name to value.
         pair_style: its part of the shared slot `pair_style`, or "".
+        atom_style: the same of `atom_style`, where atoms have more than the bonds that they always have; or "".
         step_begin, step_end: fragments around every measurement.
         integrates: the atom group whose motion its fragment integrates, or "": a group has one integrator at most.
         pushes: the LAMMPS variable of the force [FU] with which it presses the upper body onto the lower one, beside
@@ -42,6 +50,7 @@ class Contribution:
     fragments: tuple[str, ...]
     variables: dict[str, str] = field(default_factory=dict)
     pair_style: str = ""
+    atom_style: str = ""
     step_begin: tuple[str, ...] = ()
     step_end: tuple[str, ...] = ()
     integrates: str = ""
@@ -51,3 +60,9 @@ class Contribution:
 def number(value: float) -> str:
     """A number as LAMMPS text that reads back to the same double."""
     return repr(float(value))
+
+
+def sphere_radius(scene: Scene, settings: Settings) -> float:
+    """Radius [LU] of particles that are spheres; 0 where they are points."""
+    deepest = max(settings.largest_displacement, scene.bodies.spacing)
+    return DEEP * deepest if scene.friction is not None else 0.0

@@ -41,7 +41,7 @@ class State:
         rule: what the contact radius is.
         pushed: force of other effects that presses the upper body onto the lower one [FU].
         plate_velocity: [LU/TU], 0 where the plate's place is prescribed.
-        plate_x: place of the plate along x [LU].
+        plate_x: place of the plate along x [LU], from where it stands in system.data.
         cantilever_force: [FU].
         step: LAMMPS timestep.
     """
@@ -164,6 +164,8 @@ class Contact:
             names["plate_velocity"] = "LU/TU"
         if self.scene.cantilever is not None:
             names |= {"cantilever_plate": "LU", "cantilever_force": "FU"}
+        if self.scene.friction is not None:
+            names["friction_place"] = "LU"
         return names | dict.fromkeys(self._pushes, "FU")
 
     def _state(self, phase: str, numbers: dict[str, float], atoms: dict[str, Array]) -> State:
@@ -189,6 +191,8 @@ class Contact:
             x, z, z_below, atoms["v_opposite_x"][upper], atoms["v_opposite_z"][upper], self.scene.bodies.spacing
         )
         free = [0, 2] if self.scene.horizontal is not None else [2]
+        if self.scene.experiment.moves_as_a_whole:
+            free = []
         return State(
             phase=phase,
             displacement=numbers["plate_displacement"],
@@ -196,11 +200,11 @@ class Contact:
             profile=profile,
             smallest_distance=closest,
             depth=depth,
-            residual=float(np.abs(force[upper | lower][:, free]).max()),
+            residual=float(np.abs(force[upper | lower][:, free]).max(initial=0.0)),
             rule=self._rule,
             pushed=float(sum(numbers[name] for name in self._pushes)),
             plate_velocity=-numbers.get("plate_velocity", 0.0),
-            plate_x=numbers.get("cantilever_plate", 0.0),
+            plate_x=numbers.get("cantilever_plate", 0.0) + numbers.get("friction_place", 0.0),
             cantilever_force=numbers.get("cantilever_force", 0.0),
             step=numbers["step"],
         )

@@ -81,7 +81,8 @@ def anywhere_between(scene: Scene, settings: Settings, outcome: Outcome) -> Outc
         name: Quantity(q.value, q.uncertainty + parts.get(name, 0.0), q.unit) for name, q in outcome.quantities.items()
     }
     warnings = dict(outcome.warnings)
-    shares = {name: part / abs(known[name].value) for name, part in parts.items() if known[name].value}
+    sizes = {name: outcome.compared_with.get(name, abs(known[name].value)) for name in parts}
+    shares = {name: part / sizes[name] for name, part in parts.items() if sizes[name]}
     if open_ := {name: share for name, share in shares.items() if share > scene.accuracy.tolerance}:
         warnings["lattice"] = (
             f"{in_words(open_)} only, more than the tolerance of {scene.accuracy.tolerance:g}, because the contact's "

@@ -1,0 +1,16 @@
+"""Effect [friction]: |s| ≤ μ f of each particle on a rigid plane, s its tangential force k_t u up to there."""
+
+from contact1d.workflow.deck.effects.base import Contribution, Stage, number, sphere_radius
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.settings import Settings
+
+
+def friction(scene: Scene, settings: Settings) -> Contribution:
+    """Shared slots: `atom_style`, which needs spheres in system.data. It comes after the guide, which holds x."""
+    assert scene.friction is not None
+    variables = {
+        "friction_tangential_stiffness": number(scene.tangential_stiffness),
+        "friction_coefficient": number(scene.friction.coefficient),
+        "friction_level": number(-sphere_radius(scene, settings)),
+    }
+    return Contribution("friction", Stage.PULL, ("friction",), variables, atom_style="hybrid sphere bond")
