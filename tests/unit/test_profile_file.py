@@ -10,7 +10,7 @@ import pytest
 
 from contact1d import run
 from contact1d.workflow.scene import Measured, Scene, SceneError, read_scene, scene_from_dict, scene_to_toml
-from contact1d.workflow.scene.profile_file import ProfileFileError, read_profile
+from contact1d.workflow.scene.profile_file import Points, ProfileFileError, read_profile
 
 RADII, HEIGHTS = [0.0, 0.5, 1.0, 1.5, 2.0], [0.0, 0.25, 1.0, 2.25, 4.0]
 ROWS = [f"{r},{z}" for r, z in zip(RADII, HEIGHTS, strict=True)]
@@ -27,7 +27,11 @@ READABLE = {
     "comma and blanks": PLAIN.replace(",", ", "),
     "carriage returns": PLAIN.replace("\n", "\r\n"),
     "names": "r,z\n" + PLAIN,
-    "names with units": "r [µm], z [µm]\n" + PLAIN,
+    "names in the model's units": "r [LU], z [LU]\n" + PLAIN,
+    "names of a spreadsheet": 'sep=,\n"Radius","Height"\n' + PLAIN,
+    "from the edge in": "r,z\n" + "\n".join(reversed(ROWS)),
+    "heights first": "height,radius\n" + "\n".join(",".join(reversed(row.split(","))) for row in ROWS),
+    "from side to side": "x,z\n" + "\n".join([f"-{row}" for row in reversed(ROWS[1:])] + ROWS),
     "names of semicolons": "r;z\n" + PLAIN.replace(",", ";"),
     "comments": "# scan 7\n" + ROWS[0] + "\n  # apex, above\n" + "\n".join(ROWS[1:]),
     "comments before names": "# scan 7\n\n# by hand\nr,z\n" + PLAIN,
@@ -48,7 +52,7 @@ UNREADABLE = {
     "nan": ("0,0\n0.5,nan\n1,1\n", "line 2: z is nan"),
     "infinity": ("0,0\n0.5, -inf\n1,1\n", "line 2: z is -inf"),
     "text": ("r,z\n0,0\n0.5,broken\n1,1\n", "line 3: z is no number"),
-    "text behind names": ("r,z\nµm,µm\n0,0\n1,1\n", "line 2: r is no number"),
+    "text behind names": ("r,z\nµm,N\n0,0\n1,1\n", "line 1: the unit in the names is no length"),
     "decimal comma": ("r;z\n0;0\n0,5;0,25\n", "line 3: r is no number; write it with a decimal point"),
     "line counted with comments": ("# one\n\n0,0\n# four\nx,1\n", "line 5: r is no number"),
     "one column": ("0\n0.5\n1\n", "line 1: has one column; r and z are needed"),
@@ -92,7 +96,7 @@ def lines(data: dict[str, Any], folder: Path) -> list[str]:
 @pytest.mark.parametrize("name", READABLE)
 def test_points_are_read(name: str, tmp_path: Path) -> None:
     (tmp_path / "p.csv").write_text(READABLE[name], encoding="utf-8", newline="")
-    assert read_profile(tmp_path / "p.csv", 1.0) == (RADII, HEIGHTS)
+    assert read_profile(tmp_path / "p.csv") == Points(RADII, HEIGHTS)
 
 
 @pytest.mark.parametrize("name", UNREADABLE)
@@ -100,7 +104,7 @@ def test_what_is_no_profile_is_refused_with_its_line(name: str, tmp_path: Path) 
     text, words = UNREADABLE[name]
     (tmp_path / "p.csv").write_text(text, encoding="utf-8")
     with pytest.raises(ProfileFileError) as caught:
-        read_profile(tmp_path / "p.csv", 1.0)
+        read_profile(tmp_path / "p.csv")
     assert words in str(caught.value)
     assert "p.csv" in str(caught.value)
     printed = lines(tables(file="p.csv"), tmp_path)
@@ -158,7 +162,7 @@ def test_scale_multiplies_radii_and_heights(tmp_path: Path) -> None:
     assert points(scene_from_dict(tables(file="p.csv", scale=2), folder=tmp_path))[0] == tuple(2.0 * r for r in RADII)
 
 
-@pytest.mark.parametrize("scale", [0.0, -1.0, float("inf"), float("nan"), True, "2", [1.0]])
+@pytest.mark.parametrize("scale", [0.0, -1.0, float("inf"), float("nan"), True, [1.0]])
 def test_scale_is_a_positive_number(scale: object, tmp_path: Path) -> None:
     (tmp_path / "p.csv").write_text(PLAIN)
     printed = lines(tables(file="p.csv", scale=scale), tmp_path)
@@ -170,6 +174,97 @@ def test_scale_is_a_positive_number(scale: object, tmp_path: Path) -> None:
 def test_scale_of_hundreds_of_digits_is_a_problem_of_the_scene(tmp_path: Path) -> None:
     (tmp_path / "p.csv").write_text(PLAIN)
     assert len(lines(tables(file="p.csv", scale=10**400), tmp_path)) == 1
+
+
+# Units of a file, and the two sides of a profile.
+
+UNITS = {
+    "in brackets": "r [µm], z [nm]\n",
+    "in round brackets": "z (nm); r (µm)\n",
+    "behind a stroke": "r/µm\tz / nm\n",
+    "behind an underscore": "r_um,z_nm\n",
+    "in words": "Radius in µm,Height in nm\n",
+    "below": "r,z\nµm,nm\n",
+}
+"""Names that give the same units."""
+
+
+@pytest.mark.parametrize("name", UNITS)
+def test_units_in_the_names_are_those_of_the_numbers(name: str, tmp_path: Path) -> None:
+    order = -1 if UNITS[name].startswith("z") else 1
+    part = ";" if ";" in UNITS[name] else "\t" if "\t" in UNITS[name] else ","
+    rows = [part.join(row.split(",")[::order]) for row in ROWS]
+    (tmp_path / "p.csv").write_text(UNITS[name] + "\n".join(rows), encoding="utf-8")
+    data = tables(file="p.csv")
+    units = {"length_unit": 1e-6, "force_unit": 1e-6}
+    scene = scene_from_dict(data | {"material": units}, folder=tmp_path)
+    assert points(scene)[0] == tuple(RADII)
+    # 1e-3 is rounded once, and each product once more
+    assert points(scene)[1] == pytest.approx([1e-3 * z for z in HEIGHTS], rel=1e-15)
+
+
+def in_si(**profile: Any) -> dict[str, Any]:
+    bodies = BODIES | {"profile": {"kind": "table"} | profile, "spacing": "0.5 µm", "bulk_stiffness": "1 N/m"}
+    return {"title": "si", "bodies": bodies, "experiment": {"kind": "path", "displacements": ["0.1 µm"]}}
+
+
+def test_scale_may_have_a_unit(tmp_path: Path) -> None:
+    (tmp_path / "p.csv").write_text(PLAIN)
+    radii = points(scene_from_dict(in_si(file="p.csv", scale="2 µm"), folder=tmp_path))[0]
+    assert radii == pytest.approx([2e-6 * r for r in RADII], rel=1e-15)
+
+
+def test_a_file_without_units_in_a_scene_with_units_is_one_sentence(tmp_path: Path) -> None:
+    (tmp_path / "p.csv").write_text(PLAIN)
+    assert lines(in_si(file="p.csv"), tmp_path) == [
+        'bodies.profile.file = "p.csv": is in LU, while bodies.spacing = "0.5 µm" has a unit, and nothing says what LU '
+        'and FU stand for; name its columns with their units, r [µm], z [µm], or write scale = "1 µm"; '
+        "or give material.length_unit and material.force_unit"
+    ]
+
+
+def test_a_file_with_units_in_a_scene_without_is_one_sentence(tmp_path: Path) -> None:
+    (tmp_path / "p.csv").write_text("r [µm], z [µm]\n" + PLAIN, encoding="utf-8")
+    (line,) = lines(tables(file="p.csv"), tmp_path)
+    assert 'while bodies.profile.file = "p.csv" has a unit, and nothing says what LU and FU stand for' in line
+
+
+def test_units_and_a_scale_exclude_each_other(tmp_path: Path) -> None:
+    (tmp_path / "p.csv").write_text("r [µm], z [µm]\n" + PLAIN, encoding="utf-8")
+    assert lines(in_si(file="p.csv", scale="1 nm"), tmp_path) == [
+        'bodies.profile.scale = "1 nm": not together with units in the file\'s names; remove it'
+    ]
+
+
+def test_both_sides_are_averaged(tmp_path: Path) -> None:
+    sides = "-2,4.1\n-1.5,2.3\n-1,1\n-0.5,0.3\n1e-9,0\n0.5,0.2\n1,1\n1.5,2.2\n2,3.9\n"
+    (tmp_path / "p.csv").write_text("x,z\n" + sides)
+    read = read_profile(tmp_path / "p.csv")
+    assert read.r == RADII
+    assert read.z == pytest.approx([0.0, 0.25, 1.0, 2.25, 4.0], rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("-2,4\n-1,1\n0,0\n1,1\n3,9\n", "its places left and right are not the same; shift it"),
+        ("-2,8\n-1,2\n0,0\n1,1\n2,4\n", "these differ by 50% of its height"),
+        ("4,-2\n1,-1\n0,0\n1,1\n4,2\n", "as if the columns were swapped; name them r and z"),
+        ("0,0,1\n1,1,1\n2,4,1\n3,9,1\n", "has 3 columns without names; name the radius r and the height z"),
+        ("0,0\n1,-1\n2,-4\n3,-9\n", "fall from the axis on: they count away from the plane; change their sign"),
+        ("-1.5,2.25\n-0.5,0.25\n0.5,0.25\n1.5,2.25\n", "must have at least 4 points from the axis out, not 2"),
+        ("-2.5,6\n-1.5,2\n-0.5,0\n0.5,0\n1.5,2\n2.5,6\n3.5,9\n-3,9\n", "must begin at the radius 0, not -2.5"),
+    ],
+)
+def test_an_odd_profile_is_one_sentence(text: str, words: str, tmp_path: Path) -> None:
+    (tmp_path / "p.csv").write_text(text)
+    (line,) = lines(tables(file="p.csv"), tmp_path)
+    assert words in line
+
+
+def test_a_long_scan_to_both_sides_in_lists_is_one_sentence() -> None:
+    x = [0.1 * i for i in range(-60, 61)]
+    assert len(lines(tables(r=x, z=[place**2 for place in x]), Path())) == 1
 
 
 # Where a file is, and that a scene needs it once.
@@ -265,21 +360,23 @@ def test_scene_of_a_run_folder_reads_back_without_the_file(tmp_path: Path) -> No
 )
 def test_columns_are_found_by_their_names(text: str, expected: tuple[list[float], list[float]], tmp_path: Path) -> None:
     (tmp_path / "p.csv").write_text(text, encoding="utf-8")
-    assert read_profile(tmp_path / "p.csv", 1.0) == expected
+    read = read_profile(tmp_path / "p.csv")
+    assert (read.r, read.z) == expected
 
 
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("a,b,c\n0,0,0\n", "line 1: 3 columns without numbers"),
-        ("r,height\n0,0\n", "line 1: 2 columns without numbers, and no names r and z"),
+        ("a,b,c\n0,0,0\n", "line 1: the names of its 3 columns are not known"),
+        ("r,width\n0,0\n", "line 1: the names of its 2 columns are not known"),
+        ("r,radius,z\n0,0,0\n", "line 1: 2 columns could be meant by r"),
         ("r;z\n0,0;0,0\n0,5;1,5\n", "write it with a decimal point"),
     ],
 )
 def test_names_that_say_nothing_and_decimal_commas_are_refused(text: str, words: str, tmp_path: Path) -> None:
     (tmp_path / "p.csv").write_text(text, encoding="utf-8")
     with pytest.raises(ProfileFileError, match=words):
-        read_profile(tmp_path / "p.csv", 1.0)
+        read_profile(tmp_path / "p.csv")
 
 
 @pytest.mark.parametrize(
@@ -289,5 +386,5 @@ def test_no_message_quotes_the_file(content: str, tmp_path: Path) -> None:
     """A scene may point at any file that its reader may read, and its messages go to whoever sent the scene."""
     (tmp_path / "p.csv").write_text(content)
     with pytest.raises(ProfileFileError, match=r"p\.csv") as caught:
-        read_profile(tmp_path / "p.csv", 1.0)
+        read_profile(tmp_path / "p.csv")
     assert "hunter2" not in str(caught.value)

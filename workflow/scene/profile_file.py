@@ -4,63 +4,152 @@ from __future__ import annotations
 
 import math
 import re
+import sys
+from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
+from contact1d.workflow.scene.profile_header import FORM, Header, HeaderError, header_of
 from contact1d.workflow.scene.profiles import FEWEST_POINTS
+from contact1d.workflow.scene.si_text import UnitTextError, si_value
+
+PLACE_DIFFERENCE = 1e-3
+"""Places left and right count as the same up to this share of the mean step."""
+HEIGHT_DIFFERENCE = 0.05
+"""Largest difference of both sides of a profile that are averaged, over its height."""
 
 
 class ProfileFileError(ValueError):
     """A file that is no profile; the message says in which line and what is wrong."""
 
 
-def read_profile(path: Path, scale: float) -> tuple[list[float], list[float]]:
-    """Radii and heights [LU], each of the file's numbers times `scale`.
+class ScaleError(ValueError):
+    """A scale that is none for this file; the message says why."""
+
+
+@dataclass(frozen=True)
+class Points:
+    """Radii and heights, and the unit of each as the file has it ("1 µm"; None: none is given)."""
+
+    r: list[float]
+    z: list[float]
+    r_unit: str | None = None
+    z_unit: str | None = None
+
+    def scaled(self, scale: object) -> tuple[dict[str, list[float]], dict[str, str | None]]:
+        """The lists r and z, and the unit of each (None: LU), by the scene's `scale`: None, a number, or "1 µm".
+
+        Raises:
+            ScaleError: a scale that is no size, too large, or beside units of the file's own.
+        """
+        lists, units = {"r": self.r, "z": self.z}, {"r": self.r_unit, "z": self.z_unit}
+        if scale is None:
+            return lists, units
+        if any(units.values()):
+            raise ScaleError("not together with units in the file's names; remove it")
+        if isinstance(scale, str):
+            try:
+                si_value(scale, "LU")
+            except UnitTextError as error:
+                raise ScaleError(str(error)) from None
+            return lists, dict.fromkeys(units, scale)
+        if isinstance(scale, bool) or not isinstance(scale, int | float) or not 0.0 < scale <= sys.float_info.max:
+            raise ScaleError("must be a number greater than 0 (LU), or text with a unit")
+        scaled = {key: [scale * value for value in values] for key, values in lists.items()}
+        if not all(map(math.isfinite, scaled["r"] + scaled["z"])):
+            raise ScaleError("is too large for the numbers of the file")
+        return scaled, units
+
+
+def read_profile(path: Path) -> Points:
+    """The points of a measured profile, from the axis out.
 
     Messages name lines and never quote them: a path in a scene may point at any file.
 
-    Lines that begin with # and empty ones are skipped; the first other line may be names. Further columns are ignored.
+    Lines that begin with # and empty ones are skipped; the first other line may be names. Columns of other names are
+    ignored. Points may come from the edge in; those from −x to x are folded into the mean of both sides.
 
     Raises:
         ProfileFileError: if there is no such file, a cell is empty or no number, a line has one column, there are
-            fewer than FEWEST_POINTS points, or a number times `scale` is none that a computer holds.
+            fewer than FEWEST_POINTS points, names are not known, or the two sides of a profile are not the same.
     """
+    rows = _rows(path)
+    header, rows = _header(path, rows)
+    if not rows:
+        raise ProfileFileError(f"{path} has no points")
+    points = [_point(path, place, line, (header.radius, header.height)) for place, line in rows]
+    if all(after[0] < before[0] for before, after in pairwise(points)):
+        points.reverse()
+    r, z = [r for r, _ in points], [z for _, z in points]
+    if len(r) > 1 and not _rising(r) and (_rising(z) or _rising(z[::-1])):
+        raise ProfileFileError(
+            f"{path.name}: its radii do not rise and its heights do, as if the columns were swapped; name them r and z"
+        )
+    if r[0] < 0.0 and _rising(r):
+        r, z = _folded(path, r, z)
+    if len(r) < FEWEST_POINTS:
+        raise ProfileFileError(f"{path} must have at least {FEWEST_POINTS} points from the axis out, not {len(r)}")
+    return Points(r, z, header.radius_unit, header.height_unit)
+
+
+def _rows(path: Path) -> list[tuple[int, str]]:
+    """The lines that say something, with their numbers."""
     try:
         lines = path.read_bytes().decode("utf-8-sig").splitlines()
     except FileNotFoundError:
         raise ProfileFileError(f"there is no file {path}") from None
     except UnicodeDecodeError:
-        raise ProfileFileError(f"{path} is no text (UTF-8)") from None
+        raise ProfileFileError(f"{path} is no text (UTF-8); save it as CSV in UTF-8") from None
     except OSError as error:
         raise ProfileFileError(f"{path} cannot be read: {error.strerror}") from None
     except ValueError:
         raise ProfileFileError("is no name that a file can have") from None
     rows = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
-    columns = (0, 1)
-    if rows and not any(_number(cell) is not None for cell in _cells(rows[0][1])):
-        columns = _columns(path, *rows[0])
-        rows = rows[1:]
+    return rows[1:] if rows and re.fullmatch(r"sep=.", rows[0][1].strip()) else rows
+
+
+def _header(path: Path, rows: list[tuple[int, str]]) -> tuple[Header, list[tuple[int, str]]]:
+    """What the line of names says, if there is one, and the rows below it."""
     if not rows:
-        raise ProfileFileError(f"{path} has no points")
-    points = [_point(path, place, line, columns) for place, line in rows]
-    if len(points) < FEWEST_POINTS:
-        raise ProfileFileError(f"{path} must have at least {FEWEST_POINTS} points, not {len(points)}")
-    radii, heights = [scale * r for r, _ in points], [scale * z for _, z in points]
-    if not all(map(math.isfinite, radii + heights)):
-        raise ProfileFileError(f"{path} has numbers that are too large for the scale {scale:g}")
-    return radii, heights
+        return Header(), rows
+    first = _cells(rows[0][1])
+    if any(_number(cell) is not None for cell in first):
+        many = len([cell for cell in first if cell.strip()])
+        if many > 2:
+            raise ProfileFileError(f"{path.name} has {many} columns without names; {FORM}")
+        return Header(), rows
+    below = _cells(rows[1][1]) if len(rows) > 1 else None
+    if below is not None and any(not cell.strip() or any(map(str.isdigit, cell)) for cell in below):
+        below = None
+    try:
+        header, beneath = header_of(first, below)
+    except HeaderError as error:
+        raise ProfileFileError(f"{path.name}, line {rows[0][0]}: {error}") from None
+    return header, rows[2:] if beneath else rows[1:]
 
 
-def _columns(path: Path, place: int, line: str) -> tuple[int, int]:
-    """Where r and z stand by their names; two columns of other names are r and z in this order."""
-    names = [(re.match(r"\w+", cell.strip().lower()) or [""])[0] for cell in _cells(line)]
-    if "r" in names and "z" in names:
-        return names.index("r"), names.index("z")
-    if len(names) == 2 and not {"r", "z"} & set(names):
-        return 0, 1
-    raise ProfileFileError(
-        f"{path.name}, line {place}: {len(names)} columns without numbers, and no names r and z among them; name the "
-        "radius r and the height z, or leave the names out and have these two columns in this order"
-    )
+def _rising(values: list[float]) -> bool:
+    return all(after > before for before, after in pairwise(values))
+
+
+def _folded(path: Path, x: list[float], z: list[float]) -> tuple[list[float], list[float]]:
+    """The mean of both sides of a profile from −x to x. Raises ProfileFileError where they are not the same."""
+    n = len(x)
+    step = (x[-1] - x[0]) / (n - 1)
+    if any(abs(x[i] + x[n - 1 - i]) > PLACE_DIFFERENCE * step for i in range(n)):
+        raise ProfileFileError(
+            f"{path.name} goes to both sides of 0, and its places left and right are not the same; shift it so that "
+            "the apex is at 0, or give one side, r from 0 on"
+        )
+    height = max(z) - min(z)
+    apart = max(abs(z[i] - z[n - 1 - i]) for i in range(n))
+    if apart > HEIGHT_DIFFERENCE * height:
+        raise ProfileFileError(
+            f"{path.name} goes to both sides of 0, and these differ by {apart / height:.0%} of its height, where the "
+            "model has one body of revolution; shift it so that the apex is at 0, or give one side, r from 0 on"
+        )
+    kept = range(n // 2, n)
+    return [0.5 * (x[i] - x[n - 1 - i]) for i in kept], [0.5 * (z[i] + z[n - 1 - i]) for i in kept]
 
 
 def _point(path: Path, place: int, line: str, columns: tuple[int, int]) -> tuple[float, float]:
@@ -91,6 +180,6 @@ def _cells(line: str) -> list[str]:
 
 def _number(cell: str) -> float | None:
     try:
-        return float(cell)
+        return float(cell.strip().strip('"'))
     except ValueError:
         return None

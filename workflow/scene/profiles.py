@@ -170,7 +170,7 @@ class Power(Shape):
 
 FEWEST_POINTS = 4
 """Points of a measured profile."""
-Radii = Annotated[tuple[Annotated[float, Ge(0.0), Unit("LU")], ...], Field(strict=False), MinLen(FEWEST_POINTS)]
+Radii = Annotated[tuple[Height, ...], Field(strict=False), MinLen(FEWEST_POINTS)]
 Heights = Annotated[tuple[Height, ...], Field(strict=False), MinLen(FEWEST_POINTS)]
 
 
@@ -182,9 +182,13 @@ class Measured(Shape):
 
     kind: Literal["table"] = Field(description="measured points, monotone cubics between them")
     file: str | None = Field(
-        default=None, description="CSV file with the columns r and z; it is read into the keys r and z"
+        default=None,
+        description="CSV file with the columns r and z, or r [µm] and z [µm], read into the keys r and z; from −x to x "
+        "the mean of both sides is taken",
     )
-    scale: Ratio | None = Field(default=None, description="length of one unit of the file's numbers, in LU; absent: 1")
+    scale: Length | None = Field(
+        default=None, description="length of one unit of a file's numbers that has no units in it; absent: 1 LU"
+    )
     r: Radii | None = Field(default=None, description="radii of the points, from 0, rising")
     z: Heights | None = Field(default=None, description="heights at these radii; the first one counts as 0")
 
@@ -272,6 +276,8 @@ def fault_of(r: tuple[float, ...], z: tuple[float, ...]) -> str | None:
                 f"has a gap from r = {r[at]:.6g} to {r[at + 1]:.6g}: beside a median step of {middle:.4g}, the longest "
                 f"that is read over is {GAP * middle:.4g}; measure there, or interpolate"
             )
+    if max(z) == z[0] > min(z):
+        return "has heights that fall from the axis on: they count away from the plane; change their sign"
     lowest = z.index(min(z))
     if z[lowest] < z[0]:
         return f"must have its apex at r = 0; at r = {r[lowest]:.6g} it is lower by {z[0] - z[lowest]:.4g}"

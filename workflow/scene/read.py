@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
@@ -14,12 +13,14 @@ from typing import Any
 from contact1d.workflow.scene.check import check_tables, mend_words
 from contact1d.workflow.scene.fit import check_fit
 from contact1d.workflow.scene.overrides import apply_overrides, remove_effects, set_values
+from contact1d.workflow.scene.places import Keys
 from contact1d.workflow.scene.problems import Problem, SceneError, shown
-from contact1d.workflow.scene.profile_file import ProfileFileError, read_profile
+from contact1d.workflow.scene.profile_file import ProfileFileError, ScaleError, read_profile
 from contact1d.workflow.scene.quantities import Table
-from contact1d.workflow.scene.si_scene import convert_texts
+from contact1d.workflow.scene.si_scene import Column, convert_texts
 from contact1d.workflow.scene.tables import Scene
 
+PROFILE = ("bodies", "profile")
 AnyScene = Scene | str | PathLike[str] | Mapping[str, Any]
 """What `read_scene` makes a scene of."""
 
@@ -113,10 +114,10 @@ def changed_scene(scene: Scene, changes: object, without: Iterable[str]) -> Scen
 def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -> Scene:
     """The scene of `plain`, which is mended on the way; `problems` are those found so far."""
     problems += mend_words(plain)
-    problems += _with_points(plain, folder)
-    converted = convert_texts(plain)
+    columns, unread = _with_points(plain, folder)
+    converted = convert_texts(plain, columns)
     checked = check_tables(plain, converted.told)
-    found = (*converted.problems, *checked.problems, *check_fit(plain, checked.unsound))
+    found = (*unread, *converted.problems, *checked.problems, *check_fit(plain, checked.unsound))
     problems += [
         replace(one, given=shown(converted.texts.get(one.path))) if one.path in converted.texts else one
         for one in found
@@ -126,33 +127,34 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
     return checked.scene
 
 
-def _with_points(data: dict[str, Any], folder: FilePath) -> list[Problem]:
-    """Put the points of a profile's file, if it names one, in its place in `data`."""
+def _with_points(data: dict[str, Any], folder: FilePath) -> tuple[dict[Keys, Column], list[Problem]]:
+    """Put the points of a profile's file, if it names one, in its place in `data`; says what their numbers are."""
     bodies = data.get("bodies")
     profile = bodies.get("profile") if isinstance(bodies, dict) else None
     if not isinstance(profile, dict) or profile.get("kind") != "table":
-        return []
+        return {}, []
     lists = "r" in profile or "z" in profile
     if "file" not in profile and lists and "scale" in profile:
-        beside = "not together with the lists r and z, which are in LU"
-        return [Problem("bodies.profile.scale", beside, shown(profile.pop("scale")), "it belongs to a file: remove it")]
+        beside = "not together with the lists r and z, which have units of their own"
+        hint = "it belongs to a file: remove it"
+        return {}, [Problem("bodies.profile.scale", beside, shown(profile.pop("scale")), hint)]
     if not isinstance(profile.get("file"), str):
-        return []
-    file, scale = profile.pop("file"), profile.pop("scale", 1.0)
-    stand_in = {"r": [0.0, 1.0, 2.0, 3.0], "z": [0.0, 1.0, 4.0, 9.0]}  # so that the rest of the scene is still checked
+        return {}, []
+    file, scale = profile.pop("file"), profile.pop("scale", None)
     if lists:
-        profile |= stand_in
         both = "not together with the lists r and z"
-        return [Problem("bodies.profile.file", both, shown(file), "give the one or the other")]
-    if isinstance(scale, bool) or not isinstance(scale, int | float) or not 0.0 < scale <= sys.float_info.max:
-        profile |= stand_in
-        return [Problem("bodies.profile.scale", "must be a number greater than 0", shown(scale))]
-    try:
-        profile["r"], profile["z"] = read_profile(folder / file, scale)
-    except ProfileFileError as error:
-        profile |= stand_in
-        return [Problem("bodies.profile.file", str(error), shown(file))]
-    return []
+        problem = Problem("bodies.profile.file", both, shown(file), "give the one or the other")
+    else:
+        try:
+            points, units = read_profile(folder / file).scaled(scale)
+            profile |= points
+            return {(*PROFILE, key): Column(file, unit) for key, unit in units.items()}, []
+        except ProfileFileError as error:
+            problem = Problem("bodies.profile.file", str(error), shown(file))
+        except ScaleError as error:
+            problem = Problem("bodies.profile.scale", str(error), shown(scale))
+    profile |= {"r": [0.0, 1.0, 2.0, 3.0], "z": [0.0, 1.0, 4.0, 9.0]}  # so that the rest of the scene is still checked
+    return {(*PROFILE, key): Column(file, stands_in=True) for key in ("r", "z")}, [problem]
 
 
 def _listed(words: Iterable[str]) -> list[str]:

@@ -8,14 +8,14 @@ model units are those of SI. It is then written into [material], and the scene t
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
 from contact1d.workflow.scene.places import Keys, Place, places, powers
 from contact1d.workflow.scene.problems import Problem, path_of, shown
-from contact1d.workflow.scene.quantities import Table
+from contact1d.workflow.scene.quantities import Table, Unit
 from contact1d.workflow.scene.si_text import UnitTextError, example, si_value
 from contact1d.workflow.scene.tables import Scene
 
@@ -27,6 +27,19 @@ ELASTIC = frozenset({"upper", "lower", "contact_modulus"})
 """Keys of [material] that say how stiff the bodies are."""
 LISTED = 3
 """Places that a message names before it counts the rest."""
+FILE = ("bodies", "profile", "file")
+
+
+@dataclass(frozen=True)
+class Column:
+    """A list of lengths that was read from a `file`: its unit, "1 µm", or None where they are in LU.
+
+    `stands_in`: the numbers are none of the file's, which could not be read, and say nothing.
+    """
+
+    file: str
+    unit: str | None = None
+    stands_in: bool = False
 
 
 @dataclass
@@ -38,116 +51,134 @@ class Converted:
     texts: dict[str, str] = field(default_factory=dict)
 
 
-def convert_texts(data: dict[str, Any], root: type[Table] = Scene) -> Converted:
-    """Put numbers in the place of all texts with units in `data`, a plain dict of tables of `root`."""
-    result = Converted()
-    texts = [place for place in places(root, data) if place.is_text]
-    if not texts:
-        return result
-    si = {}
-    for place in texts:
-        try:
-            si[place.keys] = _si(place)
-        except UnitTextError as error:
-            result.problems.append(Problem(path_of(place.keys), str(error), shown(place.value)))
-            result.told.add(place.keys)
-    for place in texts:  # those of [material] first, since they say what LU and FU are
-        if place.keys in si and not place.bases:
-            _put(data, place, si[place.keys], result)
-    needed = frozenset().union(*(place.bases for place in texts))
-    scales = _scales(data, root, needed, texts, result) if needed else {}
-    for place in texts:
-        if place.keys not in si or not place.bases:
-            continue
-        if scales is None:
-            result.told.add(place.keys)
-            continue
-        _put(data, place, si[place.keys] / _model_unit(place.unit.name, scales), result)
-    return result
+def convert_texts(
+    data: dict[str, Any], columns: Mapping[Keys, Column] | None = None, root: type[Table] = Scene
+) -> Converted:
+    """Put numbers in the place of all texts with units in `data`, a plain dict of tables of `root`.
 
-
-def _si(place: Place) -> Fraction:
-    """The quantity that the text says, in SI, a temperature as k_B T."""
-    value, dimension = si_value(place.value, *place.unit.texts)
-    return value * BOLTZMANN if dimension == "K" and place.unit.name != "K" else value
-
-
-def _put(data: dict[str, Any], place: Place, value: Fraction, result: Converted) -> None:
-    """Put the number in the text's place."""
-    try:
-        number = float(value)
-    except OverflowError:
-        problem = Problem(path_of(place.keys), "is larger than any number that a computer holds", shown(place.value))
-        result.problems.append(problem)
-        result.told.add(place.keys)
-        return
-    table: Any = data
-    for key in place.keys[:-1]:
-        table = table[key]
-    table[place.keys[-1]] = number
-    result.texts[path_of(place.keys)] = place.value
-
-
-def _scales(
-    data: dict[str, Any], root: type[Table], needed: frozenset[str], texts: list[Place], result: Converted
-) -> dict[str, Fraction] | None:
-    """What LU, FU and MU are in SI, those of `needed`; chosen and written into `data` where they are open.
-
-    None, and a problem in `result`, where they cannot be known.
+    `columns` are the lists of `data` that were read from a file, by their keys.
     """
-    material = data.get("material", {})
-    if not isinstance(material, dict):
-        return None  # told where tables are checked
-    if "surface_energy" in material:
-        problem = Problem(
-            path_of(texts[0].keys),
-            "LU and FU follow from the run (material.surface_energy), so that units have no size before it",
-            shown(texts[0].value),
-            f"write a number in {texts[0].unit.name}",
-        )
-        result.problems.append(problem)
-        return None
-    bodies = data.get("bodies")
-    if isinstance(bodies, dict) and bodies.get("bulk_stiffness") == "auto":
-        needed |= {"LU", "FU"}
-    given = {base: _positive(material.get(key)) for base, key in UNIT_KEYS.items() if key in material}
-    if None in given.values():
-        return None
-    chosen = needed - given.keys()
-    stiffness = bodies.get("bulk_stiffness") if isinstance(bodies, dict) else None
-    if "FU" in chosen and stiffness not in (None, "auto") and ELASTIC & material.keys():
-        message = "not a stiffness of its own where the material gives it and numbers have units"
-        problem = Problem(
-            "bodies.bulk_stiffness", message, shown(stiffness), 'write "auto": it follows from the material'
-        )
-        result.problems.append(problem)
-        return None
-    if plain := [place for place in places(root, data) if place.bases & chosen and place.is_number]:
-        result.problems.append(_mixed(plain, texts, chosen))
-        return None
-    for base in sorted(chosen):
-        material[UNIT_KEYS[base]] = 1.0
-    data["material"] = material
-    return {base: value for base, value in given.items() if value} | dict.fromkeys(chosen, Fraction(1))
+    return _Conversion(data, columns or {}, root).result()
 
 
-def _mixed(plain: list[Place], texts: list[Place], chosen: frozenset[str]) -> Problem:
-    """Plain numbers beside a number with a unit, and nothing says what the units of the model are."""
-    first, text = plain[0], next(place for place in texts if place.bases & chosen)
-    bases = [base for base in UNIT_KEYS if base in chosen and any(base in place.bases for place in plain)]
-    keys = " and ".join(f"material.{UNIT_KEYS[base]}" for base in bases)
-    what = f"what {' and '.join(bases)} stand{'s' * (len(bases) == 1)} for"
-    others = ", ".join(path_of(place.keys) for place in plain[1:LISTED])
-    others = (
-        f"; so too {others}" + (f" and {len(plain) - LISTED} more" if len(plain) > LISTED else "") if others else ""
-    )
-    return Problem(
-        path_of(first.keys),
-        f"is {'by default ' if first.absent else ''}in {first.unit.name}, while {path_of(text.keys)} = "
-        f"{shown(text.value)} has a unit, and nothing says {what}",
-        shown(first.value),
-        f'give it a unit as well, such as "{example(first.unit.texts[0])}"{others}; or give {keys}',
-    )
+class _Conversion:
+    """One scene under way: `texts` are the places of its texts, and of the columns that have a unit."""
+
+    def __init__(self, data: dict[str, Any], columns: Mapping[Keys, Column], root: type[Table]) -> None:
+        self.data, self.columns, self.root = data, columns, root
+        self.texts = [place for place in places(root, data) if place.is_text]
+        self.texts += [Place(keys, column.unit, Unit("LU")) for keys, column in columns.items() if column.unit]
+        self.done = Converted()
+
+    def result(self) -> Converted:
+        """Convert them: those in SI first, since they say what LU, FU and MU are."""
+        si = {place.keys: value for place in self.texts if (value := self._si(place)) is not None}
+        readable = [place for place in self.texts if place.keys in si]
+        for place in readable:
+            if not place.bases:
+                self._put(place, si[place.keys])
+        needed = frozenset[str]().union(*(place.bases for place in self.texts))
+        scales = self._scales(needed) if needed else {}
+        for place in readable:
+            if place.bases and scales is None:
+                self.done.told.add(place.keys)
+            elif place.bases and scales is not None:
+                self._put(place, si[place.keys] / _size(place.unit.name, scales))
+        return self.done
+
+    def _si(self, place: Place) -> Fraction | None:
+        """The quantity that the text says, in SI, a temperature as k_B T; None, and told, where it is none."""
+        try:
+            value, dimension = si_value(place.value, *place.unit.texts)
+        except UnitTextError as error:
+            self._tell(place, str(error))
+            return None
+        return value * BOLTZMANN if dimension == "K" and place.unit.name != "K" else value
+
+    def _tell(self, place: Place, message: str, hint: str = "") -> None:
+        self.done.problems.append(Problem(path_of(place.keys), message, shown(place.value), hint))
+        self.done.told.add(place.keys)
+
+    def _put(self, place: Place, value: Fraction) -> None:
+        """Put the number in the text's place, or the numbers of a column in theirs."""
+        table: Any = self.data
+        for key in place.keys[:-1]:
+            table = table[key]
+        try:
+            number = float(value)
+        except OverflowError:
+            self._tell(place, "is larger than any number that a computer holds")
+            return
+        if place.keys in self.columns:
+            table[place.keys[-1]] = [number * item for item in table[place.keys[-1]]]
+        else:
+            table[place.keys[-1]] = number
+            self.done.texts[path_of(place.keys)] = place.value
+
+    def _scales(self, needed: frozenset[str]) -> dict[str, Fraction] | None:
+        """What LU, FU and MU are in SI, those of `needed`; chosen and written into the scene where they are open.
+
+        None, and told, where they cannot be known.
+        """
+        material, bodies = self.data.get("material", {}), self.data.get("bodies", {})
+        if not isinstance(material, dict) or not isinstance(bodies, dict):
+            return None  # told where tables are checked
+        first, stiffness = self.texts[0], bodies.get("bulk_stiffness")
+        if "surface_energy" in material:
+            message = "LU and FU follow from the run (material.surface_energy), so that units have no size before it"
+            self._tell(first, message, f"write a number in {first.unit.name}")
+            return None
+        given = {base: _positive(material.get(key)) for base, key in UNIT_KEYS.items() if key in material}
+        chosen = (needed | {"LU", "FU"} if stiffness == "auto" else needed) - given.keys()
+        known = {base: value for base, value in given.items() if value is not None}
+        if len(known) < len(given):
+            return None  # told where tables are checked
+        if "FU" in chosen and stiffness not in (None, "auto") and ELASTIC & material.keys():
+            place = Place(("bodies", "bulk_stiffness"), stiffness, Unit("FU/LU"))
+            self._tell(place, "follows from the material where forces have units", 'write "auto"')
+            return None
+        if plain := [place for place in self._plain() if place.bases & chosen]:
+            self.done.problems.append(self._mixed(plain, chosen))
+            return None
+        self.data["material"] = material | {UNIT_KEYS[base]: 1.0 for base in sorted(chosen)}
+        return known | dict.fromkeys(chosen, Fraction(1))
+
+    def _plain(self) -> Iterator[Place]:
+        """The places of numbers without a unit; those from one file are one."""
+        files = set()
+        for place in places(self.root, self.data):
+            column = self.columns.get(place.keys[:-1])
+            if not place.is_number or (column is not None and (column.unit or column.stands_in)):
+                continue
+            if column is None:
+                yield place
+            elif column.file not in files:
+                files.add(column.file)
+                yield Place(FILE, column.file, Unit("LU"))
+
+    def _mixed(self, plain: list[Place], chosen: frozenset[str]) -> Problem:
+        """Plain numbers beside numbers with a unit, and nothing says what the units of the model are."""
+        first, text = plain[0], next(place for place in self.texts if place.bases)
+        if text.keys in self.columns:
+            text = replace(text, keys=FILE, value=self.columns[text.keys].file)
+        open_ = {base for place in plain for base in place.bases} & chosen
+        if not ELASTIC & self.data.get("material", {}).keys():
+            open_ |= {"LU", "FU"} - {base for base, key in UNIT_KEYS.items() if key in self.data.get("material", {})}
+        bases = [base for base in UNIT_KEYS if base in open_]
+        what = f"what {' and '.join(bases)} stand{'s' * (len(bases) == 1)} for"
+        others = ", ".join(path_of(place.keys) for place in plain[1:LISTED])
+        more = f" and {len(plain) - LISTED} more" if len(plain) > LISTED else ""
+        unit = f'give it a unit as well, such as "{example(first.unit.texts[0])}"'
+        if first.keys == FILE:
+            unit = 'name its columns with their units, r [µm], z [µm], or write scale = "1 µm"'
+        return Problem(
+            path_of(first.keys),
+            f"is {'by default ' if first.absent else ''}in {first.unit.name}, while {path_of(text.keys)} = "
+            f"{shown(text.value)} has a unit, and nothing says {what}",
+            shown(first.value),
+            f"{unit}{f'; so too {others}{more}' if others else ''}; "
+            f"or give {' and '.join(f'material.{UNIT_KEYS[base]}' for base in bases)}",
+        )
 
 
 def _positive(value: Any) -> Fraction | None:
@@ -157,13 +188,13 @@ def _positive(value: Any) -> Fraction | None:
     return Fraction(repr(value))
 
 
-def _model_unit(name: str, scales: Mapping[str, Fraction]) -> Fraction:
+def _size(name: str, scales: Mapping[str, Fraction]) -> Fraction:
     """One unit of the model, "FU·TU/LU", in SI."""
     size = Fraction(1)
     for base, power in powers(name).items():
         if base == "TU":
             square = scales["MU"] * scales["LU"] / scales["FU"]
             size *= square ** (power // 2) * (Fraction(math.sqrt(square)) if power % 2 else 1)
-        elif base in scales:
+        else:
             size *= scales[base] ** power
     return size
