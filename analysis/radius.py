@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
 from contact1d.analysis.extremum import Place, place_of_minimum
@@ -154,13 +153,18 @@ def _parabola_zero(x: Array, p: Array, inner: float, outer: float, residual: flo
     special case.
     """
     width, largest = outer - inner, float(np.max(p))
-    c, b, a = polynomial.polyfit((x[-PARABOLA_POINTS:] - inner) / width, p[-PARABOLA_POINTS:] / largest, 2)
+    first, second, third = ((float(place) - inner) / width for place in x[-PARABOLA_POINTS:])
+    high, middle, low = (float(pressure) / largest for pressure in p[-PARABOLA_POINTS:])
+    chord, slope = (low - high) / (third - first), (low - middle) / (third - second)
+    a = (slope - chord) / (second - first)
+    b = slope - a * (second + third)
+    c = low - third * (b + a * third)
     square = b**2 - 4.0 * a * c
     if square <= 0.0 or (b >= 0.0 and a >= 0.0):
         return None
-    slope = math.sqrt(square)
-    q = -0.5 * (b + math.copysign(slope, b))
+    falling = math.sqrt(square)
+    q = -0.5 * (b + math.copysign(falling, b))
     place = float(c / q if b < 0.0 else q / a)
     if not -NEGLIGIBLE <= place <= 1.0 + NEGLIGIBLE:
         return None
-    return Place(inner + width * place, NEGLIGIBLE * (abs(inner) + width) + width * residual / slope)
+    return Place(inner + width * place, NEGLIGIBLE * (abs(inner) + width) + width * residual / falling)

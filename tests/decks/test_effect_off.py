@@ -238,10 +238,34 @@ def test_on_a_rigid_plane_no_pair_style_and_no_lower_body(make_scene: MakeScene,
     write_system(Deck(scene, settings_for(scene)), tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["system.data"]
     rows = (tmp_path / "system.data").read_text().split("Atoms # bond\n\n")[1].split("\n\n")[0].splitlines()
-    assert Counter(row.split()[2] for row in rows) == {"2": 20, "4": 20}
+    assert Counter(row.split()[2] for row in rows) == {"2": 20, "4": 20} if timed else {"2": 20}
 
 
-@pytest.mark.parametrize("tables", [{}, PLANE, {"experiment": LOAD}, {"experiment": PULL_OFF}])
+RELAXING = PLANE | {"neighbours": {"stiffness": 0.3}}
+"""On a rigid plane particles find their own places only where neighbours pull them."""
+
+
+@pytest.mark.parametrize("tables", [PLANE, PLANE | {"experiment": LOAD}])
+def test_where_nothing_has_to_come_to_rest_nothing_is_minimised(make_scene: MakeScene, tables: dict[str, Any]) -> None:
+    """One run for a phase, one step for a row; no bonds, no anchors."""
+    scene = make_scene(**tables)
+    text = commands(text_of(scene))
+    for word in ("minimi", "min_style", "bond_style", "anchors", "jump ", "displace_atoms"):
+        assert word not in text
+    phases = planned(scene, settings_for(scene))
+    assert re.findall(r"^run +(.*)$", text, re.MULTILINE) == ["${row_count} post no"] * len(phases)
+    counts = re.findall(r"^variable +row_count index (\d+)$", text, re.MULTILINE)
+    assert [int(count) for count in counts] == [len(phase.rows) for phase in phases]
+
+
+def test_neighbours_on_a_rigid_plane_bring_what_moves(make_scene: MakeScene) -> None:
+    """And no line of the sweep is left."""
+    relaxing = commands(text_of(make_scene(**RELAXING)))
+    assert "minimize " in relaxing
+    assert "sweep" not in relaxing
+
+
+@pytest.mark.parametrize("tables", [{}, RELAXING, {"experiment": LOAD}, {"experiment": PULL_OFF}])
 def test_a_quasistatic_deck_has_no_time_in_it(make_scene: MakeScene, tables: dict[str, Any]) -> None:
     text = commands(text_of(make_scene(**tables)))
     for word in (" nve", "viscous", "langevin", "velocity", " rigid "):  # its timestep is that of FIRE, a minimiser
@@ -263,11 +287,14 @@ def test_each_group_has_one_integrator_at_most(make_scene: MakeScene, tables: di
     """Particles by nve where there is time, the plate by the rigid body where there is one."""
     scene = make_scene(**tables)
     found = re.findall(r"^fix +\w+ (\w+) (nve|nvt|npt|nph|rigid|move)\b", commands(text_of(scene)), re.MULTILINE)
-    wanted = [("plate", "rigid")] * (scene.plate is not None) + [("particles", "nve")] * (scene.method == "dynamic")
+    swept = [("upper", "move")] * (tables == PLANE)
+    wanted = (
+        swept + [("plate", "rigid")] * (scene.plate is not None) + [("particles", "nve")] * (scene.method == "dynamic")
+    )
     assert sorted(found) == sorted(wanted)
 
 
-@pytest.mark.parametrize("tables", [{}, PLANE, TIMED | {"experiment": LOAD}, ALL])
+@pytest.mark.parametrize("tables", [{}, RELAXING, TIMED | {"experiment": LOAD}, ALL])
 def test_measuring_is_on_only_while_a_state_is_measured(make_scene: MakeScene, tables: dict[str, Any]) -> None:
     """Every compute that a row makes is gone before the next; dumps are written at once and never stay."""
     text = commands(text_of(make_scene(**tables)))

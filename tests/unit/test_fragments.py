@@ -76,7 +76,7 @@ def test_header_agrees_with_the_text(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_fixes_and_computes_are_named_after_their_fragment(name: str) -> None:
     """`<effect>_<role>`; a step may redefine an effect's."""
-    owner = name.split("/")[-1].removesuffix("_opposite")
+    owner = name.split("/")[-1].removesuffix("_opposite").replace("standing_plane", "rigid_plane")
     for kind, identity, _ in DEFINITION.findall(commands_of(name)):
         if kind in ("fix", "compute") and identity not in header_of(name, "Redefines"):
             assert identity.startswith(f"{owner}_")
@@ -87,22 +87,24 @@ def test_steps_need_nothing_that_no_part_defines() -> None:
     of_method = {"force_tolerance", "minimiser_iterations", "plate_force", "plate_velocity"}
     of_method |= {"gentle_move", "gentle_tolerance", "friction_place"}
     of_bodies = {"plate_rest", "plate_displacement", "opposite_x", "opposite_z"}
+    of_schedule = {"row_count"}
     of_units = header_of("units", "Needs") | header_of("units", "Defines")
     for name in NAMES:
         if name.startswith("steps/"):
-            assert header_of(name, "Needs") <= LOOP_VARIABLES | of_method | of_bodies | of_units
+            assert header_of(name, "Needs") <= LOOP_VARIABLES | of_method | of_bodies | of_schedule | of_units
     for kind in STEPS:
         assert set(kind.columns()) <= header_of(f"steps/{kind.step}", "Needs")
 
 
 def test_no_id_is_defined_by_two_fragments_that_meet() -> None:
-    """Only the two kinds of lower body share names, and a deck has one of them."""
+    """Only the kinds of lower body, of upper body and of method share names, and a deck has one of each."""
     owners: dict[str, list[str]] = {}
     for name in NAMES:
         for word in header_of(name, "Defines"):
             owners.setdefault(word, []).append(name)
     twice = {word: who for word, who in owners.items() if len(who) > 1}
-    assert set(map(tuple, twice.values())) <= {("interaction", "rigid_plane")}
+    planes = ("interaction", "rigid_plane", "standing_plane")
+    assert set(map(tuple, twice.values())) <= {planes, planes[1:], ("bodies", "standing"), ("bodies", "sweep")}
 
 
 def test_every_effect_is_a_table_and_a_fragment() -> None:

@@ -74,8 +74,9 @@ def assemble(
     positions = np.concatenate([p for _, p in groups])
     types = np.concatenate([np.full(len(p), t) for t, p in groups])
     particle = np.arange(1, len(bodies) * count + 1)
-    bonds = [_bonds(1, particle, particle + len(particle))]
-    names = ["bulk"]
+    standing = len(bodies[0].anchors) == 0
+    bonds = [np.empty((0, 3), dtype=np.int64)] if standing else [_bonds(1, particle, particle + len(particle))]
+    names = [] if standing else ["bulk"]
     if neighbours:
         names.append("neighbours")
         inner = particle[particle % count != 0]
@@ -110,7 +111,8 @@ def write_data(system: System, title: str, path: Path) -> None:
             file.writelines(f"{i} {mass:.17g}\n" for i, mass in enumerate(system.masses, 1))
             file.write("\nAtoms # bond\n\n")
             _write_rows(file, "%d 1 %d %.17g %.17g %.17g\n", ids, system.types, *system.positions.T)
-        file.write("\nBonds\n\n")
+        if len(system.bonds):
+            file.write("\nBonds\n\n")
         _write_rows(file, "%d %d %d %d\n", np.arange(1, len(system.bonds) + 1), *system.bonds.T)
 
 

@@ -11,26 +11,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from contact1d.workflow.deck.box import bin_size
-from contact1d.workflow.deck.effects import Contribution, Stage, contributions
-from contact1d.workflow.deck.effects.base import number
+from contact1d.workflow.deck.effects import Contribution, contributions
 from contact1d.workflow.deck.fragments import DeckError, Fragment, fragment
-from contact1d.workflow.deck.lattice import bodies
+from contact1d.workflow.deck.parts import bins, moving, own_units, standing
 from contact1d.workflow.deck.steps import STEPS, Displace, Phase, Row
 from contact1d.workflow.deck.units import DeckUnits, units_for
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 
-PLANE_DEPTH = 1e3
-"""Distance of the wall's origin below the plane over the deepest expected displacement."""
-MINIMISER_ITERATIONS = 20_000
-RELAXATION = 0.1
-"""First step of a relaxation over the time step of a run in time: ten times as much is 0.5/ω_max."""
-GENTLE_RESIDUAL = 1e-3
-"""Residual force over one particle's at which gentle moves have led into a minimum that Newton's method finishes."""
 NUMBERS_PER_LINE = 6
-CHOSEN_BINS = ("far_bin", "wide_bin")
-"""Variables with which effects choose the edge of a bin."""
 
 
 @dataclass(frozen=True)
@@ -50,17 +39,20 @@ class Deck:
         """Scene and settings in these units."""
         return self.units.scene(self.scene), self.units.settings(self.settings)
 
+    @property
+    def swept(self) -> bool:
+        """Whether nothing has to come to rest, so that all rows of a phase are steps of one run."""
+        return self.scene.is_swept
+
     @cached_property
     def parts(self) -> tuple[Contribution, ...]:
         """What bodies, lower body, effects and method bring, in deck order."""
         scene, settings = self.written
-        brought = [self._bodies(), *contributions(scene, settings), self._guide(), self._method()]
-        if scene.bodies.lower == "rigid_plane":
-            brought.append(self._plane())
+        brought = [*contributions(scene, settings), *(standing if self.swept else moving)(scene, settings)]
         if self.units.are_own:
-            brought.append(self._units())
+            brought.append(own_units(self.units))
         if scene.interaction is not None:
-            brought += self._bins(brought)
+            brought += bins(scene, settings, brought)
         return tuple(sorted(brought, key=lambda part: part.stage))
 
     @cached_property
@@ -72,12 +64,13 @@ class Deck:
         """
         atom_style = next((part.atom_style for part in self.parts if part.atom_style), "bond")
         styles = [f"pair_style      {part.pair_style}\n" for part in self.parts if part.pair_style]
-        styles = [f"atom_style      {atom_style}\n", *styles, "bond_style      harmonic\n"]
+        bonds = "" if self.swept else "bond_style      harmonic\n"
+        styles = [f"atom_style      {atom_style}\n", *styles, bonds]
         blocks = [_block("start", {}) + "".join(styles)]
         for part in self.parts:
             for index, name in enumerate(part.fragments):
                 blocks.append(_block(name, part.variables if index == 0 else {}))
-        blocks.append(_block("output", {}))
+        blocks.append(_block(self._output, {}))
         self._check()
         # LAMMPS looks for triple quotes even in comments.
         title = "# {}\n# effects: {}; {}\n".format(
@@ -92,6 +85,13 @@ class Deck:
     def row(self, kind: type[Row]) -> str:
         """One row up to its measurement: move or load, then measure."""
         return _commands((self._step(kind), *self._measuring, self._line))
+
+    def sweep(self, rows: Sequence[Row]) -> str:
+        """All rows, each a place of the plate, in one run."""
+        places = ",".join(row.texts(self.units.to_deck)[0] for row in rows)  # one word on one line, as LAMMPS has it
+        given = {"row_displacement": f"[{places}]", "row_count": str(len(rows))}
+        values = "".join(f"variable        {name} index {value}\n" for name, value in given.items())
+        return values + _commands(("steps/sweep",)) + "".join(f"variable        {name} delete\n" for name in given)
 
     @property
     def row_end(self) -> str:
@@ -128,6 +128,12 @@ class Deck:
             first = first and not phase.state
         return "\n".join(blocks)
 
+    @property
+    def _output(self) -> str:
+        if not self.swept:
+            return "output"
+        return "output_swept_in_units" if self.units.are_own else "output_swept"
+
     def _step(self, kind: type[Row]) -> str:
         return "steps/displace_gently" if kind is Displace and self.settings.gentle else f"steps/{kind.step}"
 
@@ -141,18 +147,25 @@ class Deck:
 
     @property
     def _measuring(self) -> tuple[str, ...]:
+        if self.swept:
+            return ()
         return (*(name for part in self.parts for name in part.step_begin), "steps/measuring")
 
     @property
     def _measured(self) -> tuple[str, ...]:
+        if self.swept:
+            return ()
         return ("steps/measured", *(name for part in self.parts for name in part.step_end))
 
     def _loop(self, phase: Phase) -> str:
+        title = f"# phase {phase.name}: {len(phase.rows)} rows\n{self.begin(phase.name, phase.begin)}"
+        if self.swept:
+            return f"{title}{self.sweep(phase.rows)}variable        row_phase delete\n"
         kind = type(phase.rows[0])
         values = zip(*(row.texts(self.units.to_deck) for row in phase.rows), strict=True)
         lists = "".join(_index(name, texts) for name, texts in zip(kind.columns(), values, strict=True))
         return (
-            f"# phase {phase.name}: {len(phase.rows)} rows\n{self.begin(phase.name, phase.begin)}{lists}"
+            f"{title}{lists}"
             f"label           {phase.name}\n{self.row(kind)}{self.row_end}"
             f"next            {' '.join(kind.columns())}\njump            SELF {phase.name}\n"
             "variable        row_phase delete\n"
@@ -190,62 +203,17 @@ class Deck:
         """Go through the phases as LAMMPS does: what a step needs is defined by then, what it redefines, too."""
         owners = self._check()
         for phase in phases:
-            given = dict.fromkeys(("row_phase", *type(phase.rows[0]).columns()), "the row")
+            kind = type(phase.rows[0])
+            given = dict.fromkeys(("row_phase", *kind.columns(), *(("row_count",) if self.swept else ())), "the row")
             last = (self._state,) if phase.state else ()
             kept = {"state_append": "the state"} if phase.state else {}
-            row = (self._step(type(phase.rows[0])), *self._measuring, self._line, *self._measured)
+            row = ("steps/sweep",) if self.swept else (
+                self._step(kind), *self._measuring, self._line, *self._measured,
+            )  # fmt: skip
             here = owners | given | kept
             for name in (*phase.begin, *row, *row, *last):
                 _pass(here, fragment(name))
             owners = {name: owner for name, owner in here.items() if name not in given and name not in kept}
-
-    def _bodies(self) -> Contribution:
-        scene, settings = self.written
-        softer = min(settings.bulk_stiffness, scene.tangential_stiffness)
-        coefficient = softer if settings.far else settings.bulk_stiffness
-        return Contribution("bodies", Stage.BODIES, ("bodies",), {"bulk_bond_coefficient": number(coefficient / 2)})
-
-    def _plane(self) -> Contribution:
-        scene, settings = self.written
-        depth = PLANE_DEPTH * max(settings.largest_displacement, scene.bodies.spacing)
-        variables = {
-            "plane_position": number(-depth),
-            "plane_reach": number(depth),
-            "plane_half_stiffness": number(settings.plane_stiffness / 2),
-            "plane_stiffness": number(settings.plane_stiffness),
-        }
-        return Contribution("rigid_plane", Stage.SPRINGS, ("rigid_plane",), variables)
-
-    def _guide(self) -> Contribution:
-        variables = {} if self.scene.horizontal is not None else {"guide_x": "0.0"}
-        return Contribution("guide", Stage.GUIDE, ("guide",), variables)
-
-    def _bins(self, brought: Sequence[Contribution]) -> list[Contribution]:
-        scene, settings = self.written
-        chosen = [float(part.variables[name]) for part in brought for name in CHOSEN_BINS if name in part.variables]
-        edge = bin_size(bodies(scene, settings), scene, settings, max(chosen, default=0.0))
-        return [Contribution("bins", Stage.MOTION, ("bins",), {"bin_edge": number(edge)})] if edge else []
-
-    def _units(self) -> Contribution:
-        variables = {"unit_length": number(self.units.length), "unit_force": number(self.units.force)}
-        return Contribution("units", Stage.MOTION, ("units",), variables)
-
-    def _method(self) -> Contribution:
-        _, settings = self.written
-        if self.scene.experiment.moves_as_a_whole:
-            return Contribution("as_a_whole", Stage.MOTION, ("as_a_whole",))
-        if self.scene.method == "quasistatic":
-            variables = {
-                "force_tolerance": number(settings.force_tolerance),
-                "minimiser_iterations": str(MINIMISER_ITERATIONS),
-                "relaxation_step": number(RELAXATION * settings.time_step),
-            }
-            if settings.gentle:
-                variables["gentle_move"] = number(settings.longest_move)
-                variables["gentle_tolerance"] = number(GENTLE_RESIDUAL * settings.force_scale)
-            return Contribution("quasistatic", Stage.MOTION, ("quasistatic",), variables)
-        variables = {"time_step": number(settings.time_step)}
-        return Contribution("dynamic", Stage.MOTION, ("dynamic",), variables, integrates="particles")
 
 
 def _block(name: str, variables: dict[str, str]) -> str:

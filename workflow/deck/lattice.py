@@ -30,7 +30,7 @@ class Body:
     Attributes:
         name: "lower" or "upper".
         particles: undeformed places.
-        anchors: the bulk's ends of the bulk springs.
+        anchors: the bulk's ends of the bulk springs, shape (0, 3) where particles stand still in the body.
         far_anchors: the bulk's ends of the long bonds, shape (N, 3), or (0, 3).
     """
 
@@ -67,6 +67,9 @@ def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
 
 
 def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body:
+    none = np.empty((0, 3))
+    if scene.is_swept:
+        return Body(name, particles, none, none)
     tangential = scene.tangential_stiffness
     softer = min(settings.bulk_stiffness, tangential) if settings.far else settings.bulk_stiffness
     shift = np.zeros_like(particles)
@@ -78,7 +81,7 @@ def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body
         shift[:, 1] = STAGGER_SHARE * len(particles) * scene.bodies.spacing * (-1.0) ** np.arange(len(particles))
     anchors = particles + shift
     if settings.far == 0.0:
-        return Body(name, particles, anchors, np.empty((0, 3)))
+        return Body(name, particles, anchors, none)
     away = np.zeros(3)
     if tangential > settings.bulk_stiffness:
         away[0] = -settings.far

@@ -17,7 +17,7 @@ def write_system(deck: Deck, folder: Path) -> None:
     """Write what a deck reads: system.data, and the table if it has one."""
     scene, settings = deck.written
     both = bodies(scene, settings)
-    anchors = len(both[-1].anchors)
+    anchors = settings.particles
     mass = settings.plate_mass / anchors if scene.plate is not None else scene.bodies.mass
     system = assemble(both, scene.neighbours is not None, scene.bodies.mass, mass, margins(scene, settings))
     write_data(replace(system, radius=sphere_radius(scene, settings)), scene.title, folder / "system.data")

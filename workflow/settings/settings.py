@@ -184,7 +184,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     require_room(bodies)
     shape = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
     plane = _plane_stiffness(scene, tolerance)
-    in_series = law is None and not scene.experiment.moves_as_a_whole
+    in_series = law is None and not (scene.is_swept or scene.experiment.moves_as_a_whole)
     bond = 1.0 / (1.0 / scene.bulk_stiffness - 1.0 / plane) if in_series else scene.bulk_stiffness
     cutoff, rest, closest = 0.0, 0.0, 0.0
     if law is None:
@@ -245,13 +245,13 @@ def _plane_stiffness(scene: Scene, tolerance: float) -> float:
     """One-sided stiffness of the rigid plane.
 
     In series with a bond it is exact for a particle on its own (bond and plane 2k each give k), and without one, where
-    particles are moved with their body, it is k. Neighbour springs and
-    thermal motion see the bond alone, so with them the plane is 1/tolerance times stiffer than the chain.
+    particles are moved with their body, it is k. Neighbour springs and thermal motion see the bond alone, so with them
+    the plane is 1/tolerance times stiffer than the chain.
     """
     if scene.bodies.lower != "rigid_plane":
         return 0.0
     stiffness = scene.bulk_stiffness
-    if scene.experiment.moves_as_a_whole:
+    if scene.is_swept or scene.experiment.moves_as_a_whole:
         return stiffness
     if scene.neighbours is None and scene.noise is None:
         return 2.0 * stiffness

@@ -14,14 +14,17 @@ from contact1d.analysis.pressure import Profile, interpenetration, pressure_prof
 from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.deck.datafile import PARTICLES
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.steps import Phase, Row
+from contact1d.workflow.deck.steps import Displace, Phase, Row
 from contact1d.workflow.engine.session import EngineError, Session
 from contact1d.workflow.experiments.running.radii import RadiusRule
+from contact1d.workflow.experiments.running.sweep import FRAMES, Sweep
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 ATOM_UNITS = {"x": "LU", "f": "FU", "v_opposite_x": "FU", "v_opposite_z": "FU"}
 """What is measured of every atom, and its unit."""
+BATCH = 8
+"""Rows that go to LAMMPS at a time where they are known beforehand: waking two processes takes as long as a row."""
 MOST_REPEATS = 200
 """Repeats of a row after which it counts as never coming to rest: near a snap the motion is slower without end."""
 
@@ -88,10 +91,11 @@ class Contact:
         self._phases: list[Phase] = []
         self._unfinished = ""
         self._states = 0
-        self._latest: State | None = None
+        self._latest: list[State] = []
         self._rule = RadiusRule(deck.scene, deck.settings.tolerance)
         self._pushes = tuple(part.pushes for part in deck.parts if part.pushes)
         session.execute(deck.head, phase="setting up")
+        self._sweep = Sweep(deck, session) if deck.swept else None
 
     @property
     def phases(self) -> tuple[Phase, ...]:
@@ -111,22 +115,52 @@ class Contact:
         Raises:
             EngineError: LAMMPS failed, or lost particles.
         """
-        phase = self._phases[-1]
-        self._phases[-1] = replace(phase, rows=(*phase.rows, row))
-        text = self._unfinished + self.deck.values(row) + self.deck.row(type(row))
+        return self.rows((row,))[0]
+
+    def rows(self, rows: Sequence[Row]) -> list[State]:
+        """Run rows of the current phase, which are known beforehand, and measure each. See `row`."""
+        found: list[State] = []
+        size = BATCH if self._sweep is None else self._sweep.at_once
+        for start in range(0, len(rows), size):
+            batch = rows[start : start + size]
+            self._phases[-1] = replace(self._phases[-1], rows=(*self._phases[-1].rows, *batch))
+            self._latest = self._measured(batch) if self._sweep is None else self._swept(self._sweep, batch)
+            found += self._latest
+        return found
+
+    def _measured(self, rows: Sequence[Row]) -> list[State]:
+        texts = []
+        for row in rows:
+            texts.append(self._unfinished + self.deck.values(row) + self.deck.row(type(row)))
+            self._unfinished = self.deck.row_end + self.deck.forget(type(row))
         names = self._values()
-        reading = self.session.measure(text, tuple(names), tuple(ATOM_UNITS), meanwhile=self._look_back)
-        self._unfinished = self.deck.row_end + self.deck.forget(type(row))
-        units = self.deck.units
-        numbers = {name: units.from_deck(v, names[name]) for name, v in zip(names, reading.values, strict=True)}
-        atoms = {n: units.from_deck(rows, ATOM_UNITS.get(n, "1")) for n, rows in reading.atoms.items()}
-        self._latest = self._state(phase.name, numbers, atoms)
-        return self._latest
+        readings = self.session.measure_rows(texts, tuple(names), tuple(ATOM_UNITS), meanwhile=self._look_back)
+        units, phase, states = self.deck.units, self._phases[-1].name, []
+        for reading in readings:
+            numbers = {name: units.from_deck(v, names[name]) for name, v in zip(names, reading.values, strict=True)}
+            atoms = {n: units.from_deck(rows, ATOM_UNITS.get(n, "1")) for n, rows in reading.atoms.items()}
+            states.append(self._state(phase, numbers, atoms))
+        return states
+
+    def _swept(self, sweep: Sweep, rows: Sequence[Row]) -> list[State]:
+        first = self.session.timestep
+        self.session.measure(self._unfinished + self.deck.sweep(rows), meanwhile=self._look_back)
+        self._unfinished = ""
+        spacing, residual, phase = self.scene.bodies.spacing, sweep.round_off, self._phases[-1].name
+        states = []
+        for step, (row, profile) in enumerate(zip(rows, sweep.profiles(len(rows)), strict=True), first + 1):
+            assert isinstance(row, Displace)
+            force, closest = spacing * float(profile.pressure.sum()), float(profile.z_upper.min())
+            states.append(
+                State(phase, row.displacement, force, profile, closest, 0.0, residual, self._rule, step=float(step))
+            )
+        return states
 
     def _look_back(self) -> None:
-        """Work out the radius of the row before, which its state keeps: LAMMPS is busy with the next one."""
-        with suppress(ValueError):  # told where the radius is asked for
-            _ = self._latest and self._latest.radius
+        """Work out the radii of the rows before, which their states keep: LAMMPS is busy with the next ones."""
+        for state in self._latest:
+            with suppress(ValueError):  # told where the radius is asked for
+                _ = state.radius
 
     def write_state(self) -> None:
         """Write the state that the last row left to states.lammpstrj; it ends the phase."""
@@ -135,9 +169,10 @@ class Contact:
         self._states += 1
 
     def finish(self) -> None:
-        """Run what is left of the last row."""
+        """Run what is left of the last row; what its states were made of is not kept."""
         self.session.execute(self._unfinished, phase=self._phases[-1].name)
         self._unfinished = ""
+        (self.session.folder / FRAMES).unlink(missing_ok=True)
 
     def replay(self, phases: Sequence[Phase], at_rest: Callable[[State], bool] | None = None) -> list[State]:
         """Run a whole schedule; one state for each row. A row that does not end `at_rest` is repeated until it does."""
@@ -145,15 +180,18 @@ class Contact:
         for phase in phases:
             steps = sum(getattr(row, "steps", 0) for row in phase.rows)
             self.begin(phase.name, phase.begin, steps or None)
-            states += [self._rested(row, at_rest) for row in phase.rows]
+            if at_rest is None:
+                states += self.rows(phase.rows)
+            else:
+                states += [self._rested(row, at_rest) for row in phase.rows]
             if phase.state:
                 self.write_state()
         self.finish()
         return states
 
-    def _rested(self, row: Row, at_rest: Callable[[State], bool] | None) -> State:
+    def _rested(self, row: Row, at_rest: Callable[[State], bool]) -> State:
         state, repeats = self.row(row), 0
-        while at_rest is not None and not at_rest(state) and repeats < MOST_REPEATS:
+        while not at_rest(state) and repeats < MOST_REPEATS:
             state, repeats = self.row(row), repeats + 1
         return state
 

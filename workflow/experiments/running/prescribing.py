@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.steps import Displace
+from contact1d.workflow.deck.steps import Displace, displacements
 from contact1d.workflow.experiments.running.contact import Contact, State
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
@@ -32,8 +32,10 @@ RETURN_SHARE = 0.5
 """Move of a search that comes back to where the bodies have been, over their particles' smallest distance."""
 SAME_PLACE = 1e-12
 """Displacements nearer than this over the spacing are the same place: a force that still differs has jumped."""
+EXPECTED = 1.02
+"""End of the rows that are known beforehand over the displacement that the estimate has for the force."""
 LOADING_STEPS = 24
-"""Rows of a planned way down, where a run would search."""
+"""Rows of a planned way down, where a run would search, and of one that needs no search."""
 RETRY_SHARES = (1 / 4, 1 / 16)
 """Parts of the increments that are tried where bodies went through each other: a body that moves by much of its
 particles' distance from the opposite ones, or by which their force changes much, lets the minimiser put one beyond.
@@ -80,8 +82,8 @@ def approach(contact: Contact, force: float, start: float, direction: int = 1) -
     """
     scale = max(abs(force), contact.settings.force_scale)
     near, spacing = FORCE_ACCURACY * contact.settings.tolerance * scale, contact.scene.bodies.spacing
-    states = [measured(contact, start)]
-    before, beyond = None, None
+    states = _first(contact, start) if direction > 0 else [measured(contact, start)]
+    before, beyond = _around(states, force) if direction > 0 else (None, None)
     while abs(states[-1].carried - force) > near:
         last = states[-1]
         if direction * (last.carried - force) > 0:
@@ -112,6 +114,24 @@ def approach(contact: Contact, force: float, start: float, direction: int = 1) -
         step = contact.settings.increment(last.smallest_distance if direction > 0 else math.inf)
         states.append(measured(contact, _next(before, beyond, states, force, direction * step)))
     return states
+
+
+def _first(contact: Contact, start: float) -> list[State]:
+    """The first rows of a way down: where nothing has to come to rest, in one run past where the force is expected."""
+    end = EXPECTED * contact.settings.largest_displacement
+    if not contact.deck.swept or end <= start:
+        return [measured(contact, start)]
+    states = contact.rows(displacements(np.linspace(start, end, LOADING_STEPS + 1).tolist()))
+    for state in states:
+        require_trust(contact.scene, contact.settings, state)
+    return states
+
+
+def _around(states: list[State], force: float) -> tuple[State | None, State | None]:
+    """Of states of rising displacement the last whose force is too small, and the one after it; None for none."""
+    below = [i for i, state in enumerate(states) if state.carried <= force]
+    last = below[-1] if below else -1
+    return states[last] if below else None, states[last + 1] if last + 1 < len(states) else None
 
 
 def _next(before: State, beyond: State | None, states: list[State], force: float, step: float) -> float:
