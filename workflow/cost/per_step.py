@@ -14,6 +14,7 @@ from statistics import median, stdev
 from contact1d.workflow.cost.change import Change
 from contact1d.workflow.cost.record import EffectCost
 from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.steps import Displace
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import Engine, Session
 from contact1d.workflow.scene import Scene, SceneError
@@ -46,11 +47,11 @@ def effect_costs(scene: Scene, folder: Path, turns: int = TURNS) -> tuple[Effect
     changes, reasons = without_effects(scene)
     scenes = {"": scene} | {effect: change.scene(scene) for effect, change in changes.items()}
     with ExitStack() as stack:
+        decks = {effect: Deck(changed, settings_for(changed)) for effect, changed in scenes.items()}
         sessions = {
-            effect: stack.enter_context(opened(Deck(changed, settings_for(changed)), folder / f"step_{effect}"))
-            for effect, changed in scenes.items()
+            effect: stack.enter_context(opened(deck, folder / f"step_{effect}")) for effect, deck in decks.items()
         }
-        times = _interleaved(sessions, turns)
+        times = _interleaved(sessions, {effect: _steps(deck) for effect, deck in decks.items()}, turns)
     particles = settings_for(scene).particles * scene.chains
     return tuple(
         _cost(effect, times, particles) if effect in changes else _cost_of_all(effect, times, particles, reasons)
@@ -77,16 +78,21 @@ def opened(deck: Deck, folder: Path) -> Iterator[Session]:
     folder.mkdir(parents=True)
     write_system(deck, folder)
     with Engine.session(folder) as session:
-        session.execute(deck.head, phase="setting up")
+        session.execute(deck.head + deck.begin("standing"), phase="setting up")
         yield session
 
 
-def _interleaved(sessions: Mapping[str, Session], turns: int) -> dict[str, list[float]]:
+def _steps(deck: Deck) -> str:
+    """STEPS steps: of time, or where nothing has to come to rest as many rows."""
+    return deck.sweep((Displace(0.0),) * STEPS) if deck.swept else f"run {STEPS}"
+
+
+def _interleaved(sessions: Mapping[str, Session], texts: Mapping[str, str], turns: int) -> dict[str, list[float]]:
     """CPU time of a step [µs] in each turn of each session; the first block warms up."""
     blocks: dict[str, list[float]] = {effect: [] for effect in sessions}
     for _ in range(turns + 1):
         for effect, session in sessions.items():
             before = session.lammps_cpu_seconds
-            session.execute(f"run {STEPS}")
+            session.execute(texts[effect])
             blocks[effect].append(1e6 * (session.lammps_cpu_seconds - before) / STEPS)
     return {effect: times[1:] for effect, times in blocks.items()}
