@@ -165,6 +165,7 @@ def _parabola_zero(x: Array, p: Array, inner: float, outer: float, residual: flo
     falling = math.sqrt(square)
     q = -0.5 * (b + math.copysign(falling, b))
     place = float(c / q if b < 0.0 else q / a)
-    if not -NEGLIGIBLE <= place <= 1.0 + NEGLIGIBLE:
+    moved = residual / falling  # a pressure that is lost in the residual may have been the outermost
+    if not -NEGLIGIBLE - moved <= place <= 1.0 + NEGLIGIBLE + moved:
         return None
-    return Place(inner + width * place, NEGLIGIBLE * (abs(inner) + width) + width * residual / falling)
+    return Place(inner + width * place, NEGLIGIBLE * (abs(inner) + width) + width * moved)

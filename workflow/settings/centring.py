@@ -63,7 +63,8 @@ def _marks(scene: Scene, settings: Settings, phase: float) -> dict[str, float]:
         x = estimate.spacing * (np.arange(-count, count) + phase)
         chain = sliders_of(scene, x[np.abs(x) <= reach])
         way = stops(experiment, chain)
-        return chain.at_end(way) | {"contact_radius": radius(way[-1][0])}
+        found = chain.at_end(way)
+        return found | {"contact_radius": radius(way[-1][0]) if found["normal_force"] > 0.0 else 0.0}
     row = _Row(estimate, phase, deepest)
     if isinstance(experiment, Load):
         place = row.crossing(experiment.force)

@@ -20,6 +20,8 @@ from contact1d.analysis.slip import slip, stick_radius
 from contact1d.workflow.scene import Scene, Tangential
 
 Array = NDArray[np.float64]
+CLEAR = 1e-9
+"""Gap over the body's height in which it stands clear of the plane."""
 Stop = tuple[float, float]
 """Displacement and place along x [LU]."""
 
@@ -45,8 +47,10 @@ class Sliders:
         return self.normal * np.maximum(displacement - self.heights, 0.0)
 
     def displacement_under(self, force: float) -> float:
-        """The displacement [LU] that carries a force [FU] ≥ 0; where nothing is carried, that of the first touch."""
+        """The displacement [LU] that carries a force [FU] ≥ 0; for none, just short of the first touch."""
         heights = np.sort(self.heights)
+        if force == 0.0:
+            return float(heights[0] - CLEAR * (heights[-1] - heights[0] or 1.0))
         count = np.arange(1, len(heights) + 1)
         below = np.cumsum(heights)
         # F where the next particle begins to touch; from the last one on it has no end.

@@ -90,13 +90,13 @@ def _drawn(scene: Scene, states: Sequence[State], places: Sequence[float]) -> li
     flat = scene.bodies.profile.has_edge
     limits = [spacing * coefficient * np.maximum(state.profile.pressure, 0.0) for state in states]
     forces = [-spacing * state.profile.shear for state in states]
-    rows, dissipated, direction = [], 0.0, 0
+    rows, dissipated, direction, largest = [], 0.0, 0, max(float(limit.max()) for limit in limits)
     for i, (state, force) in enumerate(zip(states, forces, strict=True)):
         if i:
             moved = places[i] - places[i - 1]
             direction = int(np.sign(moved)) or direction
             row = slip(forces[i - 1], np.full_like(force, stiffness * moved), limits[i - 1], limits[i], stiffness)
-            _require_history(state, force - row.force, float(limits[i].max()))
+            _require_history(state, force - row.force, largest)
             dissipated += float(row.work.sum())
         stick = _whole(state, coefficient, direction) if flat else stick_radius(state.profile, coefficient, direction)
         rows.append(Drawn(state, places[i], float(force.sum()), stick, dissipated))

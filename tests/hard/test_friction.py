@@ -1,0 +1,194 @@
+"""Hard cases of friction on the rigid plane: no friction and endless friction, no way, no load, edges, and what is
+refused in words before anything runs.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact1d import Run, run
+from contact1d.analysis.reference.spring_sliders import SpringSliders
+from contact1d.workflow.scene import SceneError, scene_from_dict
+
+LOAD, RADIUS, MU = 40.0, 1000.0, 0.3
+EXACT = 1e-10
+"""Of μN: round-off of a history."""
+
+
+def scene(places: Any, coefficient: float = MU, bodies: dict[str, Any] | None = None, **load: Any) -> dict[str, Any]:
+    own = {
+        "particles": "auto", "spacing": 1.0, "reduction": "mdr", "lower": "rigid_plane",
+        "profile": {"kind": "parabola", "radius": RADIUS}, "bulk_stiffness": 1.0, "bulk_stiffness_tangential": 0.8,
+    }  # fmt: skip
+    experiment = {"kind": "tangential", "displacements": places} | (load or {"normal_force": LOAD})
+    friction = {"coefficient": coefficient}
+    return {"title": "hard", "bodies": own | (bodies or {}), "friction": friction, "experiment": experiment}
+
+
+def finished(folder: Path, tables: dict[str, Any]) -> Run:
+    return run(scene_from_dict(tables), folder, figures=False)
+
+
+def value(run: Run, name: str) -> float:
+    return run.results[name].value
+
+
+def test_without_friction_nothing_resists_and_nothing_is_lost(tmp_path: Path) -> None:
+    done = finished(tmp_path, scene([0.1, -0.3, 5.0], coefficient=0.0))
+    assert done.friction["tangential_force"].tolist() == [0.0] * 3
+    assert value(done, "dissipated_energy") == value(done, "stick_radius") == 0.0
+    assert value(done, "normal_force") == pytest.approx(LOAD, rel=EXACT)
+
+
+def test_endless_friction_sticks_all_over_and_gives_all_back(tmp_path: Path) -> None:
+    done = finished(tmp_path, scene([0.1, -0.3, 0.2], coefficient=1e6))
+    touching = int((done.profiles["final"].pressure > 0.0).sum())
+    expected = 0.8 * touching * np.array([0.1, -0.3, 0.2])
+    assert done.friction["tangential_force"] == pytest.approx(expected, rel=EXACT)
+    assert value(done, "dissipated_energy") == 0.0
+    assert value(done, "stick_radius") == pytest.approx(value(done, "contact_radius"), rel=1e-3)
+
+
+def test_no_way_is_a_normal_contact(tmp_path: Path) -> None:
+    done = finished(tmp_path, scene([0.0]))
+    assert value(done, "tangential_force") == value(done, "dissipated_energy") == 0.0
+    assert value(done, "stick_radius") == pytest.approx(value(done, "contact_radius"), rel=1e-6)
+
+
+def test_a_load_that_is_taken_away_while_stuck_takes_all_force_with_it(tmp_path: Path) -> None:
+    """All that the springs held is dissipated, little by little from the edge inwards; then the contact begins anew."""
+    done = finished(tmp_path, scene([0.1, 0.1, 0.15, 0.15], normal_force=[LOAD, 0.0, 0.0, LOAD]))
+    forces, columns = done.friction["tangential_force"], done.friction
+    assert forces[0] > 0.0
+    assert forces[1:] == pytest.approx([0.0] * 3, abs=EXACT * MU * LOAD)
+    assert done.curve.contact_radius[1:3].tolist() == pytest.approx([math.nan] * 2, nan_ok=True)
+    assert columns["stick_radius"][1:3].tolist() == [0.0, 0.0]
+    # By 0.1 from the start nothing more can have been put in than F_x times the way.
+    assert 0.5 * forces[0] * 0.1 < columns["dissipated_energy"][1] < forces[0] * 0.1
+    assert columns["dissipated_energy"][3] == columns["dissipated_energy"][1]
+
+
+def test_the_last_state_may_be_a_contact_that_is_gone(tmp_path: Path) -> None:
+    done = finished(tmp_path, scene([0.1, 0.1], normal_force=[LOAD, 0.0]))
+    for name in ("tangential_force", "contact_radius", "stick_radius"):
+        assert (value(done, name), done.results[name].uncertainty) == (0.0, 0.0) or name == "tangential_force"
+    assert value(done, "tangential_force") == 0.0
+
+
+def test_a_body_that_is_lifted_off_and_put_down_again_has_forgotten(tmp_path: Path) -> None:
+    done = finished(tmp_path, scene([0.2, 0.2, 0.5, 0.5, 0.6], normal_displacement=[0.9, -0.5, -0.5, 0.9, 0.9]))
+    again = finished(tmp_path, scene([0.1], normal_displacement=0.9))
+    assert value(done, "tangential_force") == pytest.approx(value(again, "tangential_force"), rel=EXACT)
+
+
+def test_a_contact_that_grows_while_it_is_drawn_sticks_within_the_cone_of_friction(tmp_path: Path) -> None:
+    """On one straight way from the first touch F_x/F_N = k_t u/k_n d, below μ: nothing slips, in rows or in one."""
+    rows = np.linspace(0.0, 0.9, 7)
+    places = (0.3 * rows).tolist()
+    for depths in (rows.tolist(), [0.0, 0.9]):
+        ways = places if len(depths) > 2 else [places[0], places[-1]]
+        done = finished(tmp_path, scene(ways, normal_displacement=depths))
+        assert value(done, "tangential_force") == pytest.approx(0.8 * 0.3 * value(done, "normal_force"), rel=1e-9)
+        assert value(done, "dissipated_energy") == pytest.approx(0.0, abs=1e-12)
+        assert value(done, "stick_radius") == pytest.approx(value(done, "contact_radius"), rel=1e-3)
+
+
+def test_a_contact_that_grows_on_a_steeper_way_slips_all_over(tmp_path: Path) -> None:
+    done = finished(tmp_path, scene([0.0, 0.5], normal_displacement=[0.0, 0.9]))
+    assert value(done, "tangential_force") == pytest.approx(MU * value(done, "normal_force"), rel=1e-12)
+    assert value(done, "stick_radius") == 0.0
+
+
+@pytest.mark.parametrize("nudge", [-1e-12, -1e-15, 0.0, 1e-15, 1e-12])
+def test_a_particle_on_the_edge_of_the_contact_or_of_its_stick_zone(tmp_path: Path, nudge: float) -> None:
+    """d = h(10.5), where a particle just touches, and then k_t u = μ k_n (d − h(5.5)), where one just slips."""
+    depth = 10.5**2 / RADIUS + nudge
+    place = MU / 0.8 * (10.5**2 - 5.5**2) / RADIUS + nudge
+    done = finished(tmp_path, scene([place, 0.5 * place, place], normal_displacement=depth))
+    profile = done.profiles["final"]
+    chain = SpringSliders(((profile.x - place) ** 2 / RADIUS).tolist(), 1.0, 0.8, MU)
+    expected = []
+    for stop in (0.0, place, 0.5 * place, place):
+        chain.move(depth, stop)
+        expected.append(chain.tangential_force)
+    assert done.friction["tangential_force"] == pytest.approx(expected[1:], abs=EXACT * expected[1])
+    assert value(done, "contact_radius") == pytest.approx(10.5, abs=1e-3)
+    assert done.friction["stick_radius"][0] == pytest.approx(5.5, abs=1e-3)
+
+
+def test_a_flat_punch_sticks_and_then_slips_as_a_whole(tmp_path: Path) -> None:
+    body = {"profile": {"kind": "flat_punch", "radius": 10.0}}
+    tables = scene([0.1, 0.74, 0.76, 0.5], normal_force=40.0, bodies=body)
+    done = finished(tmp_path, tables)
+    # 20 particles: each carries 2 FU and gives 0.8 u up to 0.6 FU.
+    expected = [1.6, 11.84, 12.0, 12.0 - 20.0 * 0.8 * 0.26]
+    assert done.friction["tangential_force"] == pytest.approx(expected, rel=EXACT)
+    assert done.friction["stick_radius"].tolist() == [10.0, 10.0, 0.0, 10.0]
+    assert value(done, "dissipated_energy") == pytest.approx(12.0 * 0.01, rel=1e-9)
+
+
+def test_numbers_in_metres_and_newtons_give_the_same_reduced_ones(tmp_path: Path) -> None:
+    """A deck in units of its own: lengths × 1e-6, forces × 1e-3."""
+    length, force = 1e-6, 1e-3
+    stiffness = force / length
+    body = {
+        "spacing": length, "profile": {"kind": "parabola", "radius": RADIUS * length},
+        "bulk_stiffness": stiffness, "bulk_stiffness_tangential": 0.8 * stiffness,
+    }  # fmt: skip
+    places = [0.1, -0.2, 0.3]
+    small = finished(tmp_path / "a", scene([p * length for p in places], bodies=body, normal_force=LOAD * force))
+    plain = finished(tmp_path / "b", scene(places))
+    assert small.friction["tangential_force"] / force == pytest.approx(plain.friction["tangential_force"], rel=1e-9)
+    assert value(small, "stick_radius") / length == pytest.approx(value(plain, "stick_radius"), rel=1e-6)
+    energy = value(small, "dissipated_energy") / (length * force)
+    assert energy == pytest.approx(value(plain, "dissipated_energy"), rel=1e-9)
+
+
+REFUSED: list[tuple[dict[str, Any], str, str]] = [
+    ({"neighbours": {"stiffness": 0.3}}, "neighbours", "a minimiser"),
+    ({"plate": {"damping": 0.0}}, "plate", "without time, each at rest"),
+    ({"damping": {"coefficient": "auto"}}, "damping", "without time"),
+    ({"noise": {"temperature": 1e-3, "seed": 1}}, "noise", "without time"),
+    ({"horizontal": {}}, "horizontal", "useless on a rigid plane"),
+    ({"friction": None}, "friction", "add [friction] with its coefficient"),
+]
+
+
+@pytest.mark.parametrize(("more", "path", "words"), REFUSED)
+def test_what_does_not_go_together_is_refused_with_the_reason(more: dict[str, Any], path: str, words: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict(scene([0.1]) | more)
+    assert [problem.path for problem in caught.value.problems] == [path]
+    assert words in str(caught.value)
+
+
+def test_friction_between_two_chains_is_refused_with_a_way_out() -> None:
+    law = {"repulsion": {"amplitude": 0.18, "range": 0.13}}
+    with pytest.raises(SceneError, match='use kind = "slide"'):
+        scene_from_dict(scene([0.1], bodies={"lower": "particles"}) | {"interaction": law})
+    load = {"kind": "load", "force": 1.0}
+    with pytest.raises(SceneError, match="friction: not between two chains"):
+        scene_from_dict(scene([0.1], bodies={"lower": "particles"}) | {"interaction": law, "experiment": load})
+
+
+@pytest.mark.parametrize(
+    ("load", "words"),
+    [
+        ({"normal_displacement": None}, "experiment.normal_force: missing"),
+        ({"normal_force": 1.0, "normal_displacement": 1.0}, "not together with normal_force"),
+        ({"normal_force": [1.0]}, "as many as there are displacements, 2"),
+        ({"normal_displacement": [1.0, 2.0, 3.0]}, "as many as there are displacements, 2"),
+        ({"normal_force": [0.0, 0.0]}, "never touch"),
+        ({"normal_displacement": -1.0}, "never touch"),
+    ],
+)
+def test_a_load_that_is_none_or_two_or_too_many_is_refused(load: dict[str, Any], words: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict(scene([0.1, 0.2], **load))
+    assert words in str(caught.value)
+    assert len(caught.value.problems) == 1

@@ -1,0 +1,83 @@
+"""Springs with sliders of the settings: against the reference's, which goes through particles one by one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contact1d.analysis.reference.spring_sliders import SpringSliders, displacement_under
+from contact1d.workflow.scene import Scene, Tangential, scene_from_dict
+from contact1d.workflow.settings.settings import settings_for
+from contact1d.workflow.settings.sliders import Sliders, sliders_of, stops
+
+ROUND_OFF = 1e-12
+"""Relative to the largest force: sums over 30 particles."""
+MU, NORMAL, TANGENTIAL = 0.3, 0.9, 0.7
+
+
+def chain() -> Sliders:
+    x = np.arange(-14.5, 15.0)
+    return Sliders(x, x**2 / 200.0, NORMAL, TANGENTIAL, MU)
+
+
+@given(force=st.floats(1e-6, 1e4))
+def test_a_displacement_carries_its_force(force: float) -> None:
+    found = chain().displacement_under(force)
+    assert found == pytest.approx(displacement_under(force, chain().heights.tolist(), NORMAL), rel=ROUND_OFF)
+    assert float(chain().normal_forces(found).sum()) == pytest.approx(force, rel=1e-9)
+
+
+def test_no_force_stands_clear_of_the_plane() -> None:
+    free = chain().displacement_under(0.0)
+    assert not chain().normal_forces(free).any()
+    assert 0.0 < chain().heights.min() - free < 1e-8
+
+
+def test_touches_are_heights_passed_on_the_way_in_its_order() -> None:
+    heights = np.unique(chain().heights)
+    assert chain().touches(0.0, 0.1) == [h for h in heights.tolist() if h < 0.1]
+    assert chain().touches(0.1, 0.0) == chain().touches(0.0, 0.1)[::-1]
+    assert chain().touches(0.05, 0.05) == []
+
+
+depths, ways = st.floats(-0.2, 1.0), st.floats(-2.0, 2.0)
+
+
+@given(way=st.lists(st.tuples(depths, ways), min_size=1, max_size=6))
+def test_any_way_ends_as_the_reference_says(way: list[tuple[float, float]]) -> None:
+    own, reference = chain(), SpringSliders(chain().heights.tolist(), NORMAL, TANGENTIAL, MU)
+    stretch = [(way[0][0], 0.0), *way]
+    for stop in stretch:
+        reference.move(*stop)
+    found = own.at_end(stretch)
+    assert found["tangential_force"] == pytest.approx(reference.tangential_force, abs=ROUND_OFF * 10.0)
+    assert found["dissipated_energy"] == pytest.approx(reference.dissipated, abs=ROUND_OFF * 100.0)
+    assert found["normal_force"] == pytest.approx(reference.normal_force, abs=ROUND_OFF * 10.0)
+
+
+def scene_of(**load: object) -> Scene:
+    bodies = {"particles": 40, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 100.0}, "bulk_stiffness": 1.0,
+              "lower": "rigid_plane", "reduction": "mdr"}  # fmt: skip
+    experiment = {"kind": "tangential", "displacements": [0.1, 0.2, 0.0]} | load
+    return scene_from_dict({"title": "t", "bodies": bodies, "friction": {"coefficient": MU}, "experiment": experiment})
+
+
+def test_one_load_or_one_for_each_row_and_first_the_load_comes_on() -> None:
+    for load in ({"normal_force": 2.0}, {"normal_force": [2.0, 3.0, 2.0]}, {"normal_displacement": [0.1, 0.2, 0.1]}):
+        scene = scene_of(**load)
+        assert isinstance(scene.experiment, Tangential)
+        own = sliders_of(scene, np.arange(-19.5, 20.0))
+        found = stops(scene.experiment, own)
+        assert [place for _, place in found] == [0.0, 0.1, 0.2, 0.0]
+        assert found[0][0] == found[1][0] == found[3][0]
+        if "normal_force" in load:
+            assert float(own.normal_forces(found[1][0]).sum()) == pytest.approx(2.0, rel=1e-12)
+        else:
+            assert found[2][0] == 0.2
+
+
+def test_particles_are_moved_with_their_body_so_that_the_plane_has_their_whole_stiffness() -> None:
+    settings = settings_for(scene_of(normal_force=2.0))
+    assert (settings.plane_stiffness, settings.bulk_stiffness) == (1.0, 1.0)

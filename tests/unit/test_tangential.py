@@ -1,0 +1,161 @@
+"""The experiment `tangential` from its schedule to its files; physics is in tests/validation/test_tangential.py."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact1d import load_run, run
+from contact1d.analysis import slip_plots
+from contact1d.analysis.pressure import Profile
+from contact1d.analysis.slip import stick_margin
+from contact1d.workflow.experiments.tangential.schedule import passed, schedule
+from contact1d.workflow.scene import Scene, read_scene, scene_from_dict
+from contact1d.workflow.settings.settings import settings_for
+
+SHIPPED = Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "mindlin.toml"
+COLUMNS = {"tangential_displacement", "tangential_force", "normal_force", "displacement", "contact_radius",
+           "stick_radius", "branch"}  # fmt: skip
+
+
+def scene(**changes: Any) -> Scene:
+    return read_scene(SHIPPED).with_(**changes)
+
+
+def drawn(scene: Scene) -> list[tuple[str, list[tuple[float, float]]]]:
+    phases = schedule(scene, settings_for(scene))
+    return [(phase.name, [(row.displacement, row.place) for row in phase.rows]) for phase in phases]
+
+
+def test_a_phase_for_each_stretch_and_first_the_load() -> None:
+    places = [0.0, 0.1, 0.2, 0.1, 0.1, 0.3, 0.2]
+    found = drawn(scene(experiment__displacements=places))
+    names = [(name, [place for _, place in rows]) for name, rows in found]
+    assert names == [
+        ("pressing", [0.0]), ("forward", [0.0, 0.1, 0.2]), ("backward", [0.1, 0.1]), ("forward_2", [0.3]),
+        ("backward_2", [0.2]),
+    ]  # fmt: skip
+
+
+def test_a_way_that_begins_to_the_left_is_backward_from_its_first_row() -> None:
+    assert [name for name, _ in drawn(scene(experiment__displacements=[0.0, -0.1, 0.1]))] == [
+        "pressing", "backward", "forward",
+    ]  # fmt: skip
+
+
+def test_rows_on_the_way_are_where_particles_begin_to_touch_on_a_straight_line() -> None:
+    loads: Any = {"experiment": {"kind": "tangential", "normal_displacement": [0.1, 0.13], "displacements": [0.0, 0.3]}}
+    changed = scene(**loads)
+    rows = passed(changed, settings_for(changed))
+    assert [asked for _, asked in rows] == [False, True, False, True]
+    (depth, place), _ = rows[2]
+    assert depth == pytest.approx(10.5**2 / 1000.0)
+    assert place == pytest.approx(0.3 * (depth - 0.1) / 0.03)
+
+
+def test_rows_on_the_way_are_no_more_than_the_tolerance_asks_for() -> None:
+    loads: Any = {"experiment": {"kind": "tangential", "normal_displacement": [0.0, 0.9], "displacements": [0.0, 0.1]}}
+    changed = scene(**loads, accuracy__tolerance=1e-2)
+    rows = passed(changed, settings_for(changed))
+    assert len(rows) == 3 + 10
+
+
+def test_files_of_a_run_and_the_same_run_from_its_folder(tmp_path: Path) -> None:
+    done = run(scene(experiment__displacements=[0.0, 0.2, 0.1]), tmp_path)
+    with (tmp_path / "curve.csv").open() as file:
+        header = next(csv.reader(file))
+    assert set(header) >= COLUMNS
+    assert {"tangential.png", "stick_slip.png", "pressure.png"} <= {path.name for path in tmp_path.iterdir()}
+    assert not (tmp_path / "friction.csv").exists()
+    read = load_run(tmp_path)
+    assert read == done
+    assert read.friction.keys() == done.friction.keys()
+    for name, column in done.friction.items():
+        assert np.array_equal(read.friction[name], column)
+    assert list(done.results) == [
+        "normal_force", "tangential_force", "contact_radius", "stick_radius", "dissipated_energy",
+    ]  # fmt: skip
+    for plot in (None, "stick_slip", "pressure"):
+        read.plot(plot)
+    assert done.curve.branch.tolist() == ["forward", "forward", "backward"]
+    assert done.results["dissipated_energy"].unit == "FU·LU"
+
+
+def test_with_a_material_forces_and_ways_are_in_si(tmp_path: Path) -> None:
+    body = {"youngs_modulus": 1e9, "poisson_ratio": 0.3}
+    material = {"upper": body, "lower": body, "length_unit": 1e-6, "force_unit": 1e-3}
+    automatic: Any = {"bodies.bulk_stiffness": "auto", "bodies.bulk_stiffness_tangential": None, "material": material}
+    done = run(read_scene(SHIPPED).with_(automatic | {"experiment.displacements": [0.0, 0.1]}), tmp_path, figures=False)
+    force = done.results["tangential_force"]
+    assert force.si is not None
+    assert force.si.value == pytest.approx(1e-3 * force.value)
+    with (tmp_path / "curve.csv").open() as file:
+        row = list(csv.DictReader(file))[-1]
+    assert float(row["tangential_force_N"]) == pytest.approx(1e-3 * force.value)
+    assert float(row["stick_radius_m"]) == pytest.approx(1e-6 * done.results["stick_radius"].value)
+
+
+def test_what_the_lattice_leaves_open_is_part_of_what_a_run_claims(tmp_path: Path) -> None:
+    """Whether the middle of the contact is on a particle or between two: an odd chain is within the claim."""
+    places = [0.0, 0.2, 0.05]
+    even = run(scene(experiment__displacements=places), tmp_path / "even", figures=False)
+    odd = run(scene(experiment__displacements=places, bodies__particles=75), tmp_path / "odd", figures=False)
+    for name in ("tangential_force", "contact_radius", "stick_radius", "dissipated_energy"):
+        one, other = even.results[name], odd.results[name]
+        assert abs(one.value - other.value) <= one.uncertainty + other.uncertainty
+        assert one.uncertainty > other.uncertainty
+
+
+def test_a_history_that_is_not_kept_gives_no_number(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from contact1d import RunError
+    from contact1d.workflow.experiments.tangential import tangential
+
+    monkeypatch.setattr(tangential, "AS_PREDICTED", -1.0)
+    with pytest.raises(RunError, match="LAMMPS has lost its history"):
+        run(scene(experiment__displacements=[0.1]), tmp_path, figures=False)
+
+
+def test_the_figure_of_the_way_has_all_branches_and_the_theory() -> None:
+    places = np.array([0.0, 0.1, 0.2, 0.1, 0.2])
+    columns = {"tangential_displacement": places, "tangential_force": 2.0 * places, "normal_force": np.full(5, 3.0)}
+    branches = np.array(["forward", "forward", "forward", "backward", "forward"])
+    (axis,) = slip_plots.tangential_figure(columns, branches, 2.0 * places).axes
+    drawn = [(line.get_label(), np.asarray(line.get_xdata()).tolist()) for line in axis.get_lines()]
+    assert ("forward", [0.0, 0.1, 0.2]) in drawn
+    assert ("backward", [0.2, 0.1]) in drawn
+    assert any(x == [0.1, 0.2] for _, x in drawn)
+    assert ("Cattaneo–Mindlin", places.tolist()) in drawn
+    columns["normal_force"] = np.array([1.0, 2.0, 3.0, 2.0, 1.0])
+    upper, lower = slip_plots.tangential_figure(columns, branches).axes
+    assert list(lower.get_lines()[0].get_ydata()) == [1.0, 2.0, 3.0, 2.0, 1.0]
+    assert upper.get_ylabel() == "tangential force (FU)"
+
+
+def test_the_figure_of_a_state_tells_what_sticks_from_what_slips() -> None:
+    x = np.arange(-9.5, 10.0)
+    pressure = np.maximum(1.0 - (x / 8.0) ** 2, 0.0)
+    profile = Profile(x, 0.0 * x, 0.0 * x, pressure, -np.minimum(0.1, 0.3 * pressure))
+    margin = stick_margin(profile, 0.3, 1)
+    (axis,) = slip_plots.stick_slip_figure({"final": profile}, 0.3, {"final": margin}, {"final": 6.53}).axes
+    sticking, slipping = (len(found.get_segments()) for found in axis.collections[:2])
+    assert sticking == int((margin > 0.0).sum())
+    assert slipping == int((pressure > 0.0).sum()) - sticking
+    assert "c = 6.53 LU" in axis.get_title(loc="left")
+
+
+def test_no_theory_beside_what_it_does_not_describe(tmp_path: Path) -> None:
+    cone = {"kind": "cone", "slope": 0.02}
+    done = run(scene(bodies__profile=cone, experiment__displacements=[0.0, 0.1]), tmp_path, figures=False)
+    labels = [line.get_label() for line in done.plot().axes[0].get_lines()]
+    assert "Cattaneo–Mindlin" not in labels
+
+
+def test_a_scene_of_friction_is_written_and_read_again() -> None:
+    varied: Any = {"experiment.normal_force": [1.0, 2.0], "experiment.displacements": [0.0, 0.1]}
+    for one in (scene(), read_scene(SHIPPED).with_(varied)):
+        assert read_scene(str(one)) == one
+        assert scene_from_dict(one.model_dump(by_alias=True)) == one
