@@ -28,6 +28,7 @@ BODY: dict[str, dict[str, Any]] = {
         "particles": "auto",
         "spacing": 1.0,
         "profile": {"kind": "parabola", "radius": 1000.0},
+        "reduction": "geike_popov",
         "bulk_stiffness": 0.83,
     },
     "interaction": {

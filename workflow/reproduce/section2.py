@@ -76,9 +76,13 @@ def shape_scene(kind: str, reduction: Reduction = "mdr") -> Scene:
         "power": {"kind": "power", "exponent": EXPONENT, "radius": 40.0, "height": 2.0},
         "table": {"kind": "table", "r": [float(r) for r in range(81)], "z": [2.0 * (r / 40.0) ** 4 for r in range(81)]},
     }
-    base = reduction_scene(reduction, DEPTH, 1.0, BASE["nu"], BASE["h"]).model_dump(by_alias=True, exclude_none=True)
+    sphere = reduction_scene(reduction, DEPTH, 1.0, BASE["nu"], BASE["h"])
+    base = sphere.model_dump(by_alias=True, exclude_none=True)
     base["title"] = f"{reduction}: {kind}"
     base["bodies"]["profile"] = profiles[kind]
+    if reduction == "geike_popov":  # refused with a material: a shape as drawn is no body's
+        del base["material"]
+        base["bodies"]["bulk_stiffness"] = sphere.bulk_stiffness
     return scene_from_dict(base)
 
 

@@ -18,6 +18,7 @@ from contact1d.files import write_whole
 from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.experiments.running.kind import FINER_SPACING
 from contact1d.workflow.experiments.running.outcome import Outcome, in_words, left_open_by_spacing, unmet
+from contact1d.workflow.runs.body import doubt_of_the_image, of_the_body
 from contact1d.workflow.runs.scales import scales_of, unfound
 from contact1d.workflow.scene import Scene, Tangential
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, SI, Scales
@@ -35,12 +36,12 @@ FILES = (
 def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict[str, Any]:
     """What results.json holds after a run that was done."""
     scales = scales_of(scene, outcome.quantities)
-    quantities = {name: quantity.entry() for name, quantity in outcome.quantities.items()}
+    quantities = {name: quantity.entry() for name, quantity in of_the_body(scene, outcome.quantities).items()}
     if scales is not None:
         for entry in quantities.values():
             entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
         quantities["units"] = {unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE)}
-    doubts = dict(outcome.warnings)
+    doubts = dict(outcome.warnings) | doubt_of_the_image(scene)
     if coarse := unmet(scene, outcome):
         ended = "" if outcome.refinement is None else f" ({outcome.refinement.ended})"
         doubts["tolerance"] = (

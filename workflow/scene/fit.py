@@ -13,6 +13,7 @@ from typing import Any
 from contact1d.workflow.scene.draft import ADD, Draft, missing
 from contact1d.workflow.scene.fit_friction import no_plane, tangential
 from contact1d.workflow.scene.problems import Problem, shown
+from contact1d.workflow.scene.reduction import derived_for_spheres
 from contact1d.workflow.scene.tables import EFFECTS, TIMED, Plate, default_method
 
 NO_TIME = "its rows follow each other without time, each at rest"
@@ -252,6 +253,7 @@ RULES: tuple[Callable[[Draft], Iterator[Problem]], ...] = (
     _something_holds,
     _punch,
     _material,
+    derived_for_spheres,
 )
 
 

@@ -22,6 +22,7 @@ from pydantic import Discriminator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from contact1d.workflow.scene.quantities import Height, Length, Ratio, Table, Unit
+from contact1d.workflow.scene.reduction import galin_factor
 
 if TYPE_CHECKING:
     import numpy as np
@@ -163,9 +164,7 @@ class Power(Shape):
 
     def transformed(self, x: Array) -> Array:
         """g = κ_n z."""
-        n = self.exponent
-        factor = 0.5 * math.sqrt(math.pi) * n * math.exp(math.lgamma(0.5 * n) - math.lgamma(0.5 * (n + 1)))
-        return factor * self.height(x)
+        return galin_factor(self.exponent) * self.height(x)
 
 
 FEWEST_POINTS = 4

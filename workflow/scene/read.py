@@ -16,9 +16,9 @@ from contact1d.workflow.scene.overrides import apply_overrides, remove_effects, 
 from contact1d.workflow.scene.places import Keys
 from contact1d.workflow.scene.problems import Problem, SceneError, shown
 from contact1d.workflow.scene.profile_file import ProfileFileError, ScaleError, read_profile
-from contact1d.workflow.scene.quantities import Table
+from contact1d.workflow.scene.quantities import Table, keys_of
 from contact1d.workflow.scene.si_scene import Column, convert_texts
-from contact1d.workflow.scene.tables import Scene
+from contact1d.workflow.scene.tables import Bodies, Scene
 
 PROFILE = ("bodies", "profile")
 AnyScene = Scene | str | PathLike[str] | Mapping[str, Any]
@@ -164,8 +164,14 @@ def _listed(words: Iterable[str]) -> list[str]:
 
 def _plain(value: Any) -> Any:
     """A copy of `value` in dicts and lists, without keys that hold None."""
+    if isinstance(value, Bodies) and "reduction" not in value.model_fields_set:
+        return _plain(value.model_dump(by_alias=True, exclude={"reduction"}))  # chosen anew: what changes may change it
     if isinstance(value, Table):
-        return _plain(value.model_dump(by_alias=True))
+        return {
+            key: _plain(item)
+            for key, field in keys_of(type(value)).items()
+            if (item := getattr(value, field)) is not None
+        }
     if isinstance(value, Mapping):
         return {str(key): _plain(item) for key, item in value.items() if item is not None}
     if isinstance(value, list | tuple):

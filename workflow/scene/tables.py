@@ -7,10 +7,10 @@ repulsion and B, b those of the attraction.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, cast, get_args
 
 from annotated_types import MinLen
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from contact1d.workflow.scene.experiments import Experiment, Method, Slide, Tangential
@@ -34,6 +34,7 @@ from contact1d.workflow.scene.quantities import (
     Temperature,
     Velocity,
 )
+from contact1d.workflow.scene.reduction import default_reduction
 
 if TYPE_CHECKING:
     import numpy as np
@@ -47,8 +48,9 @@ class Bodies(Table):
     spacing: Length = Field(description="distance of neighbouring particles")
     profile: Profile = Field(description="shape of the upper body")
     reduction: Reduction = Field(
-        default="geike_popov",
-        description='how the plane model stands for a 3D one: "geike_popov" (profile as drawn) or "mdr" (transformed)',
+        default=cast("Reduction", None),
+        description='how the plane model stands for a 3D one: "geike_popov" (profile as drawn) or "mdr" (transformed); '
+        'absent: "mdr" with a material, on a rigid plane and for every profile but a parabola, else "geike_popov"',
     )
     bulk_stiffness: AutoStiffness = Field(
         description='stiffness of each particle to its bulk, normal direction, or "auto": from the material'
@@ -196,6 +198,17 @@ class Scene(Table):
     accuracy: Accuracy = Field(default=Accuracy(), description="how exact")
     experiment: Experiment = Field(description="what is done")
 
+    @model_validator(mode="after")
+    def _choose_reduction(self) -> Self:
+        """Give the bodies a reduction if they have none; it still counts as one that was not given (`with_`)."""
+        bodies = self.bodies
+        if bodies.reduction is None:
+            by_default = default_reduction(self.material is not None, bodies.lower, bodies.profile.kind)
+            chosen = bodies.model_copy(update={"reduction": by_default})
+            chosen.model_fields_set.discard("reduction")
+            self.__dict__["bodies"] = chosen
+        return self
+
     def with_(self, changes: Mapping[str, Any] | None = None, *, without: Iterable[str] = (), **keywords: Any) -> Scene:
         """Return this scene with values changed, checked as a whole.
 
@@ -265,6 +278,13 @@ class Scene(Table):
         """Whether particles have no place to find: alone at rest on a rigid plane, they have what the plate's gives."""
         alone = self.bodies.lower == "rigid_plane" and self.neighbours is None
         return alone and self.method == "quasistatic" and not self.experiment.moves_as_a_whole
+
+    @property
+    def stands_for_its_image(self) -> bool:
+        """Whether the paper's reduction was chosen where another is the default: lengths are the plane image's own."""
+        bodies = self.bodies
+        by_default = default_reduction(self.material is not None, bodies.lower, bodies.profile.kind)
+        return bodies.reduction == "geike_popov" and by_default != "geike_popov"
 
     @property
     def method(self) -> Method:

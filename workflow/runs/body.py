@@ -1,0 +1,68 @@
+"""Which body the numbers of a run are of: under the paper's reduction a length of the plane image is not the body's.
+
+The reduction of Geike and Popov stands for two equal spheres R. Their force and displacement are the run's; their
+contact radius is half of the image's half-width, and their mean pressure F/πa² four times that of the image. Where
+that reduction is the scene's own choice against the default (`Scene.stands_for_its_image`), what the run calls
+`contact_radius` is reported as `image_contact_radius`, and `contact_radius` is that of the two spheres.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene.reduction import ALIKE, SPHERES, WIDER_THAN_SPHERES, wider_than_body
+from contact1d.workflow.units import Quantity
+
+IMAGE = "image_"
+"""Before the name of a length that is the image's and not the body's."""
+
+
+def _is_image(scene: Scene) -> bool:
+    """Whether lengths of the run are those of an image alone. Units that came from F_A and a₀ make a₀ the body's."""
+    by_run = scene.material is not None and scene.material.surface_energy is not None
+    return scene.stands_for_its_image and scene.bodies.profile.kind not in ALIKE and not by_run
+
+
+def of_the_body(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Quantity]:
+    """The quantities of a run, by the names that say of what they are."""
+    if not _is_image(scene):
+        return dict(quantities)
+    named: dict[str, Quantity] = {}
+    spheres = scene.bodies.profile.kind in SPHERES
+    for name, quantity in quantities.items():
+        if name.endswith("radius"):
+            named[IMAGE + name] = quantity
+            if spheres:
+                named[name] = _times(quantity, 1.0 / WIDER_THAN_SPHERES)
+        elif name == "mean_pressure":
+            if spheres:
+                named[name] = _times(quantity, WIDER_THAN_SPHERES**2)
+        else:
+            named[name] = quantity
+    return named
+
+
+def doubt_of_the_image(scene: Scene) -> dict[str, str]:
+    """The warning `reduction`: for which body the numbers hold, and by which factors they are off for another."""
+    if not _is_image(scene):
+        return {}
+    kind = scene.bodies.profile.kind
+    factor = wider_than_body(scene.bodies.profile.model_dump(by_alias=True))
+    one_body = "" if factor is None else (
+        f": under the same force the image has {factor:.4g} times its contact radius and {factor**-2:.4g} of its mean "
+        "pressure"
+    )  # fmt: skip
+    if kind in SPHERES:
+        whose = (
+            "the numbers are those of two equal spheres of this radius pressed together, whose force, displacement and "
+            f"contact radius are right; the image (image_…, curve.csv, profile.csv) is {WIDER_THAN_SPHERES:g} times as "
+            "wide as their contact. "
+        )
+    else:
+        whose = f"it was derived for two equal spheres, and a {kind.replace('_', ' ')} as drawn stands for no body. "
+    return {"reduction": f"geike_popov was chosen: {whose}For one body on a plane use mdr{one_body}"}
+
+
+def _times(quantity: Quantity, factor: float) -> Quantity:
+    return Quantity(factor * quantity.value, factor * quantity.uncertainty, quantity.unit)
