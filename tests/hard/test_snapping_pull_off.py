@@ -39,6 +39,7 @@ def scene(profile: str, ratio: float, tolerance: float = 1e-2) -> dict[str, Any]
         "title": f"{profile}, {ratio}",
         "bodies": {
             "particles": "auto", "spacing": 1.0, "profile": PROFILES[profile], "bulk_stiffness": stiffness,
+            "reduction": "geike_popov",
         },
         "interaction": {
             "repulsion": {"amplitude": 0.011, "range": 0.015}, "attraction": {"amplitude": 0.01, "range": 0.03},

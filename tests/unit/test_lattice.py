@@ -194,7 +194,7 @@ def test_without_horizontal_a_particle_keeps_its_place(make_scene: MakeScene, op
 
 
 def test_particles_in_a_rigid_plane_have_the_series_stiffness(make_scene: MakeScene, open_deck: OpenDeck) -> None:
-    """A plate lowered by d: F_i = k max(0, d − x²/2R) on every particle, with the scene's own k.
+    """A plate lowered by d: F_i = k max(0, d − x²/R) on every particle, with the scene's own k.
 
     In time each particle moves by itself.
     """
@@ -206,7 +206,7 @@ def test_particles_in_a_rigid_plane_have_the_series_stiffness(make_scene: MakeSc
     session.execute(deck.values(down) + deck.begin("down") + deck.row(DisplaceInTime))
     read = session.atoms("x", "v_opposite_z")
     x = (np.arange(PARTICLES) - 9.5) * 1.0
-    wanted = NORMAL * np.maximum(0.0, 0.3 - x**2 / 120.0)
+    wanted = NORMAL * np.maximum(0.0, 0.3 - x**2 / 60.0)
     assert 4 < (wanted > 0).sum() < PARTICLES
     force = read["v_opposite_z"][read["type"] == 2]
     assert np.abs(force - wanted).max() <= WALL_ROUND_OFF

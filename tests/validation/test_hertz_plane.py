@@ -60,7 +60,7 @@ def on_plane(
     neighbours: float = 0.0,
 ) -> tuple[State, ...]:
     """States of one chain on the plane at these displacements [LU], in that order."""
-    bodies = {"spacing": spacing, "lower": "rigid_plane"}
+    bodies = {"spacing": spacing, "lower": "rigid_plane", "reduction": "geike_popov"}
     path = {"kind": "path", "displacements": displacements.tolist()}
     scene = chains(radius, stiffness, bodies=bodies, interaction=None, experiment=path)
     if neighbours:

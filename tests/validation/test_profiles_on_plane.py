@@ -237,13 +237,14 @@ YOUNG, LENGTH, FORCE_UNIT, RADIUS = 3e9, 1e-6, 1e-3, 2000.0
 def test_geike_and_popov_is_hertz_of_two_equal_spheres(run_tables: RunTables, nu: float, lower: str) -> None:
     """F = (4/3) E* √(R/2) d^{3/2}, E* = E/2(1 − ν²), d the approach; within the lattice's error.
 
-    The half-width is √(2Rd), twice Hertz's √(Rd/2): the reduction's known price. With particles as the lower body, the
-    springs alone are read: k/2 in series under the profile as drawn, at touch with the stiffness of the material.
+    The half-width of the image is √(2Rd), twice Hertz's √(Rd/2), which is reported beside it. With particles as the
+    lower body, the springs alone are read: k/2 in series under the profile as drawn, at touch with the stiffness of the
+    material.
     """
     body = {"youngs_modulus": YOUNG, "poisson_ratio": nu}
     tables: dict[str, Any] = {
         "bodies": {"particles": "auto", "spacing": 1.0, "profile": {"kind": "parabola", "radius": RADIUS},
-                   "bulk_stiffness": "auto", "lower": lower},
+                   "reduction": "geike_popov", "bulk_stiffness": "auto", "lower": lower},
         "material": {"upper": body, "lower": body, "length_unit": LENGTH, "force_unit": FORCE_UNIT},
         "experiment": {"kind": "path", "displacements": [1.0]},
     }  # fmt: skip
@@ -262,5 +263,7 @@ def test_geike_and_popov_is_hertz_of_two_equal_spheres(run_tables: RunTables, nu
     assert si["unit"] == "N"
     assert si["value"] == pytest.approx(hertz, abs=MARGIN * lattice + FORCE * hertz)
     assert lattice < 1e-4 * hertz
-    assert results["largest_radius"]["si"]["value"] == pytest.approx(a, abs=PLACE * LENGTH)
+    assert results["image_largest_radius"]["si"]["value"] == pytest.approx(a, abs=PLACE * LENGTH)
+    assert results["largest_radius"]["si"]["value"] == pytest.approx(0.5 * a, abs=PLACE * LENGTH)
+    assert [warning["name"] for warning in results["warnings"]] == ["reduction"]
     assert results["reduction"] == "geike_popov"

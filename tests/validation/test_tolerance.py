@@ -71,8 +71,8 @@ def random_scene(random: Random) -> dict[str, Any]:
         scene["neighbours"] = {"stiffness": random.uniform(0.05, 1.0) * stiffness}
     if random.random() < 0.1:
         scene["bodies"]["lower"] = "rigid_plane"
-        depth = (random.uniform(3.0, 30.0) * spacing) ** 2 / (2.0 * radius)  # of a contact so many spacings wide
-        scene["experiment"] = {"kind": "load", "force": stiffness * depth * math.sqrt(2.0 * radius * depth) / spacing}
+        depth = (random.uniform(3.0, 30.0) * spacing) ** 2 / radius  # of a contact so many spacings wide
+        scene["experiment"] = {"kind": "load", "force": stiffness * depth * math.sqrt(radius * depth) / spacing}
         return scene
     scene["interaction"], force = random_law(random, spacing, stiffness, radius)
     if random.random() < 0.3:
@@ -116,7 +116,7 @@ def model_of(scene: dict[str, Any], particles: int) -> ChainModel:
         particles,
         bodies["bulk_stiffness"],
         law,
-        radius=bodies["profile"]["radius"],
+        radius=bodies["profile"]["radius"] * (0.5 if law is None else 1.0),  # the MDR's parabola on the plane
         spacing=bodies["spacing"],
         neighbour_stiffness=scene.get("neighbours", {"stiffness": 0.0})["stiffness"],
         horizontal="horizontal" in scene,

@@ -37,9 +37,9 @@ def measure(bench: Bench, folder: Path) -> Findings:
     """One row for each extreme; a refusal before anything runs is an answer where the row says so."""
     checks: list[Check] = []
     for radius in RADII:
-        d = WIDTH**2 / (2.0 * radius)
+        d = WIDTH**2 / radius
         places = np.arange(-30.0, 31.0)
-        exact = rigid_plane_sum(d, places, radius, 0.5)
+        exact = rigid_plane_sum(d, places, 0.5 * radius, 0.5)
         off = _on_plane(bench, f"radius_{radius:g}", {"kind": "parabola", "radius": radius}, 61, d, exact)
         checks.append(
             at_most(
@@ -47,7 +47,7 @@ def measure(bench: Bench, folder: Path) -> Findings:
                 f"force on a plane off, R = {radius:g} LU",
                 off,
                 PLANE,
-                "Σ k (d − x²/2R)",
+                "Σ k (d − x²/R)",
                 "round-off, and the minimiser's share of the tolerance",
             )
         )

@@ -65,6 +65,7 @@ class PairCase:
                 "particles": self.particles,
                 "spacing": 1.0,
                 "profile": self.profile,
+                "reduction": "geike_popov",  # as drawn: `heights`
                 "bulk_stiffness": self.stiffness,
             },
             "interaction": {
