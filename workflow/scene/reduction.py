@@ -67,7 +67,11 @@ def derived_for_spheres(draft: Draft) -> Iterator[Problem]:
             f"{factor:.4g} times this body's contact radius under the same force, {factor**-2:.4g} of its mean pressure"
         )
     else:
-        off = "half of this body's force at the same displacement" if profile.get("kind") in ALIKE else "another body's"
+        off = (
+            "half of this body's force at the same displacement"
+            if profile.get("kind") in ALIKE
+            else "the contact of another body"
+        )
     hint = 'write "mdr", which has force, displacement and radius of any axisymmetric body, or leave it out'
-    message = f"was derived for two equal spheres; with this profile its contact has {off}"
+    message = f"was derived for two equal spheres; with this profile it has {off}"
     yield Problem("bodies.reduction", message, shown("geike_popov"), hint)
