@@ -2,7 +2,7 @@
 
 The reduction of Geike and Popov stands for two equal spheres R. Their force and displacement are the run's; their
 contact radius is half of the image's half-width, and their mean pressure F/πa² four times that of the image. Where
-that reduction is the scene's own choice against the default (`Scene.stands_for_its_image`), what the run calls
+that reduction is the scene's own choice against the default, what the run calls
 `contact_radius` is reported as `image_contact_radius`, and `contact_radius` is that of the two spheres.
 """
 
@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.scene.reduction import ALIKE, SPHERES, WIDER_THAN_SPHERES, wider_than_body
+from contact1d.workflow.scene.reduction import ALIKE, SPHERES, WIDER_THAN_SPHERES, default_reduction, wider_than_body
 from contact1d.workflow.units import Quantity
 
 IMAGE = "image_"
@@ -20,8 +20,10 @@ IMAGE = "image_"
 
 def _is_image(scene: Scene) -> bool:
     """Whether lengths of the run are those of an image alone. Units that came from F_A and a₀ make a₀ the body's."""
+    bodies = scene.bodies
     by_run = scene.material is not None and scene.material.surface_energy is not None
-    return scene.stands_for_its_image and scene.bodies.profile.kind not in ALIKE and not by_run
+    by_default = default_reduction(scene.material is not None, bodies.lower, bodies.profile.kind)
+    return bodies.reduction == "geike_popov" != by_default and bodies.profile.kind not in ALIKE and not by_run
 
 
 def of_the_body(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Quantity]:

@@ -280,13 +280,6 @@ class Scene(Table):
         return alone and self.method == "quasistatic" and not self.experiment.moves_as_a_whole
 
     @property
-    def stands_for_its_image(self) -> bool:
-        """Whether the paper's reduction was chosen where another is the default: lengths are the plane image's own."""
-        bodies = self.bodies
-        by_default = default_reduction(self.material is not None, bodies.lower, bodies.profile.kind)
-        return bodies.reduction == "geike_popov" and by_default != "geike_popov"
-
-    @property
     def method(self) -> Method:
         """The method given, else "dynamic" if a plate, damping or noise is there, else "quasistatic"."""
         if isinstance(self.experiment, Slide):
