@@ -20,7 +20,13 @@ from contact1d.workflow.scene.problems import Problem, shown
 if TYPE_CHECKING:
     from contact1d.workflow.scene.draft import Draft
     from contact1d.workflow.scene.material import Reduction
+    from contact1d.workflow.scene.tables import Bodies
 
+MEANING = (
+    'how the plane model stands for a 3D one: "geike_popov" (profile as drawn) or "mdr" (transformed); absent: "mdr" with '
+    'a material, on a rigid plane and for every profile but a parabola, else "geike_popov"'
+)
+"""What the key is; None stands for absent only until the scene that the bodies belong to chooses."""
 SPHERES = ("parabola", "circle")
 """Profiles of which two make the pair of spheres of the paper."""
 ALIKE = ("flat_punch", "flat")
@@ -32,6 +38,15 @@ WIDER_THAN_SPHERES = 2.0
 def default_reduction(has_material: bool, lower: str, profile: str) -> Reduction:
     """The reduction of a scene that names none: the paper's for its own plane model alone."""
     return "mdr" if has_material or lower == "rigid_plane" or profile != "parabola" else "geike_popov"
+
+
+def with_reduction(bodies: Bodies, has_material: bool) -> Bodies:
+    """The bodies with a reduction, which still counts as not given where it is by default (`Scene.with_`)."""
+    if bodies.reduction is not None:
+        return bodies
+    chosen = bodies.model_copy(update={"reduction": default_reduction(has_material, bodies.lower, bodies.profile.kind)})
+    chosen.model_fields_set.discard("reduction")
+    return chosen
 
 
 def galin_factor(n: float) -> float:

@@ -34,7 +34,7 @@ from contact1d.workflow.scene.quantities import (
     Temperature,
     Velocity,
 )
-from contact1d.workflow.scene.reduction import default_reduction
+from contact1d.workflow.scene.reduction import MEANING, with_reduction
 
 if TYPE_CHECKING:
     import numpy as np
@@ -47,11 +47,7 @@ class Bodies(Table):
     particles: AutoParticleCount = Field(description='particles per body, or "auto": as many as the contact needs')
     spacing: Length = Field(description="distance of neighbouring particles")
     profile: Profile = Field(description="shape of the upper body")
-    reduction: Reduction = Field(
-        default=cast("Reduction", None),
-        description='how the plane model stands for a 3D one: "geike_popov" (profile as drawn) or "mdr" (transformed); '
-        'absent: "mdr" with a material, on a rigid plane and for every profile but a parabola, else "geike_popov"',
-    )
+    reduction: Reduction = Field(default=cast("Reduction", None), description=MEANING)
     bulk_stiffness: AutoStiffness = Field(
         description='stiffness of each particle to its bulk, normal direction, or "auto": from the material'
     )
@@ -200,13 +196,8 @@ class Scene(Table):
 
     @model_validator(mode="after")
     def _choose_reduction(self) -> Self:
-        """Give the bodies a reduction if they have none; it still counts as one that was not given (`with_`)."""
-        bodies = self.bodies
-        if bodies.reduction is None:
-            by_default = default_reduction(self.material is not None, bodies.lower, bodies.profile.kind)
-            chosen = bodies.model_copy(update={"reduction": by_default})
-            chosen.model_fields_set.discard("reduction")
-            self.__dict__["bodies"] = chosen
+        """Give the bodies a reduction if they have none."""
+        self.__dict__["bodies"] = with_reduction(self.bodies, self.material is not None)
         return self
 
     def with_(self, changes: Mapping[str, Any] | None = None, *, without: Iterable[str] = (), **keywords: Any) -> Scene:
