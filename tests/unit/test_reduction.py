@@ -70,7 +70,7 @@ def test_the_file_of_a_run_states_its_reduction() -> None:
 
 @pytest.mark.parametrize(("profile", "words"), [
     (CONE, "1.772 times this body's contact radius under the same force, 0.3183 of its mean pressure"),
-    (POWER, "1.397 times this body's contact radius"),
+    (POWER, "1.398 times this body's contact radius"),
     (PUNCH, "half of this body's force at the same displacement"),
     (TABLE, "the contact of another body"),
 ])  # fmt: skip

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from contact1d.workflow.scene.tables import Bodies
 
 MEANING = (
-    'how the plane model stands for a 3D one: "geike_popov" (profile as drawn) or "mdr" (transformed); absent: "mdr" with '
-    'a material, on a rigid plane and for every profile but a parabola, else "geike_popov"'
+    'how the plane model stands for a 3D one: "geike_popov" (profile as drawn) or "mdr" (transformed); absent: "mdr" '
+    'with a material, on a rigid plane and for every profile but a parabola, else "geike_popov"'
 )
 """What the key is; None stands for absent only until the scene that the bodies belong to chooses."""
 SPHERES = ("parabola", "circle")
