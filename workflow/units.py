@@ -24,6 +24,15 @@ SI = {
     ENERGY: (1, 1, "J"),
 }
 """For each model unit: powers of LU and FU in it, and its name in SI."""
+PREFIXES = {-5: "f", -4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G", 4: "T"}
+"""Of SI units, by powers of 1000."""
+
+
+def prefixed(value: float, unit: str) -> str:
+    """A value [`unit` of SI] with four digits and a prefix: `2.356 µN`."""
+    power = math.floor(math.log10(abs(value)) / 3) if value and math.isfinite(value) else 0
+    power = power if power in PREFIXES else 0
+    return f"{value / 1000.0**power:.4g} {PREFIXES[power]}{unit}"
 
 
 @dataclass(frozen=True)

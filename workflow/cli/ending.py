@@ -70,10 +70,11 @@ def read(path: Path, overrides: list[str] | None, without: list[str] | None, pro
                 error,
                 progress,
             )
-        stop(_problems(str(path), error), CALL_IS_WRONG)
+        stop(problems_in(str(path), error), CALL_IS_WRONG)
 
 
-def _problems(where: str, error: SceneError) -> str:
+def problems_in(where: str, error: SceneError) -> str:
+    """Every problem of a file on a line of its own, under their number."""
     count = len(error.problems)
     return "\n".join([f"{where}: {count} problem{'s' if count > 1 else ''}", *(f"  {one}" for one in error.problems)])
 
@@ -141,7 +142,7 @@ def _of_program(error: BaseException, what: str, blame: int) -> tuple[str, int] 
     from contact1d.workflow.scene import SceneError
 
     if isinstance(error, SceneError):
-        return _problems("the scene", error), blame
+        return problems_in("the scene", error), blame
     from contact1d.workflow.engine.failure import EngineError
     from contact1d.workflow.errors import FolderError, RunError
     from contact1d.workflow.identify import IdentifyError

@@ -1,4 +1,4 @@
-"""The command `identify`: the paper's Section 4, both ways."""
+"""The command `identify`: from a material to a scene, and the paper's Section 4, both ways."""
 
 from __future__ import annotations
 
@@ -8,14 +8,22 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from contact1d.workflow.cli.ending import CALL_IS_WRONG, command, stop
+from contact1d.workflow.cli.ending import CALL_IS_WRONG, command, problems_in, stop
 
 if TYPE_CHECKING:
     from contact1d.workflow.identify import Identified, Target
 
 
 def identify(
-    contact_modulus: Annotated[float, typer.Option(metavar="PA", help="E* of the pair of bodies.", show_default=False)],
+    material: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="MATERIAL", help="A contact in SI (TOML): bodies, attraction, load.", show_default=False
+        ),
+    ] = None,
+    contact_modulus: Annotated[
+        float | None, typer.Option(metavar="PA", help="E* of the pair of bodies.", show_default=False)
+    ] = None,
     surface_energy: Annotated[
         float | None,
         typer.Option(metavar="J/M2", help="γ of one side, half the work of adhesion.", show_default=False),
@@ -38,9 +46,25 @@ def identify(
         float | None, typer.Option(metavar="M", help="One LU; else a_0 gets some 28 particles.", show_default=False)
     ] = None,
     tolerance: Annotated[float, typer.Option(min=1e-5, max=0.1, help="Of the scene, relative.")] = 1e-3,
-    out: Annotated[Path, typer.Option(help="Folder of the identified scene and its run.")] = Path("runs/identified"),
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder of the scene and its run.", show_default="runs/<name of MATERIAL> or runs/identified"
+        ),
+    ] = None,
 ) -> None:
-    """Give a model its material (the paper's Section 4), or a material its model.
+    """Give a material its model, or a model its material (the paper's Section 4).
+
+    With MATERIAL, a file such as
+
+        radius = "5 um"
+        upper = { youngs_modulus = "72 GPa", poisson_ratio = 0.17 }
+        lower = { youngs_modulus = "72 GPa", poisson_ratio = 0.17 }
+        surface_energy = "0.05 J/m²"
+        range = "0.3 nm"
+
+    (docs/identify.md has every key): a scene with everything chosen, its run, with JKR, DMT and Maugis-Dugdale beside
+    it; or which theory holds, with its value, where no chain can stand for the contact.
 
     With `--run`: the length and force unit, in metres and newtons, with which a finished pull_off is JKR's contact of
     the material (Eq. 9, Table 1). With `--radius`: a scene whose interaction has JKR's F_A and a_0 of that sphere, or
@@ -50,8 +74,16 @@ def identify(
         "contact-modulus": contact_modulus, "surface-energy": surface_energy, "radius": radius,
         "adhesion-force": adhesion_force, "zero-load-radius": zero_load_radius, "length-unit": length_unit,
     }  # fmt: skip
+    if material is not None:
+        others = [f"--{name}" for name, value in given.items() if value is not None] + ["--run"] * (run is not None)
+        if others:
+            stop(f"{', '.join(others)}: with MATERIAL everything is in the file", CALL_IS_WRONG)
+        _from_material(material, out or Path("runs") / material.stem)
+        return
+    out = out or Path("runs/identified")
     if problems := _mistakes({name: value for name, value in given.items() if value is not None}, run):
         stop("\n".join(problems), CALL_IS_WRONG)
+    assert contact_modulus is not None
     if run is not None and surface_energy is not None:
         _units_of_run(run, contact_modulus, surface_energy)
     elif radius is not None:
@@ -70,7 +102,12 @@ def _mistakes(given: Mapping[str, float], run: Path | None) -> list[str]:
     wrong = {name: value for name, value in given.items() if not 0.0 < value < float("inf")}
     problems = [f"--{name} must be greater than 0, not {value:g}" for name, value in wrong.items()]
     if (run is None) == ("radius" not in given):
-        problems.append("give either --run (a model looks for its material) or --radius (a material for its model)")
+        problems.append(
+            "give MATERIAL, a file that describes a contact; or either --run (a model looks for its material) or "
+            "--radius (a material for its model)"
+        )
+    if "contact-modulus" not in given and problems == []:
+        problems.append("--contact-modulus is missing: E* of the pair of bodies [Pa]")
     measured = {"adhesion-force", "zero-load-radius"} & given.keys()
     if len(measured) == 1:
         problems.append("--adhesion-force and --zero-load-radius go together")
@@ -91,6 +128,28 @@ def _units_of_run(folder: Path, contact_modulus: float, surface_energy: float) -
         entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
     units = {unit: scales.in_si(1.0, 0.0, unit) for unit in ("LU", "FU")}
     typer.echo("\n".join(quantities(results | {"units": units})))
+
+
+def _from_material(file: Path, out: Path) -> None:
+    """Choose, run, and say what came out beside the theories."""
+    from contact1d.workflow.scene import SceneError
+
+    with command("the run", out) as progress:
+        from contact1d.workflow.identify import from_material
+
+        try:
+            found = from_material(file, out, progress)
+        except SceneError as error:
+            stop(problems_in(str(file), error), CALL_IS_WRONG)
+    from contact1d.workflow.cli.material import beside_theories, regime
+    from contact1d.workflow.cli.summary import quantities
+
+    typer.echo("\n".join([found.contact.title, *regime(found), "", *quantities(found.run.document)]))
+    if table := list(beside_theories(found)):
+        typer.echo("\n".join(["", *table]))
+    for name, message in {**found.doubts, **found.run.warnings}.items():
+        typer.secho(f"warning {name}: {message}", err=True, fg="yellow")
+    typer.echo(f"\n{found.run.folder}/scene.toml")
 
 
 def _scene_of_material(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from contact1d.analysis.pressure import Profile
-from contact1d.workflow.units import rounded
+from contact1d.workflow.units import PREFIXES, rounded
 
 NAMES = {
     "adhesion_force": "adhesion force (pull-off)",
@@ -18,8 +18,6 @@ NAMES = {
     "contact_radius": "contact radius a",
     "mean_pressure": "mean pressure F/(pi a^2)",
 }
-PREFIXES = {-5: "f", -4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G", 4: "T"}
-"""Of SI units, by powers of 1000."""
 EXACTNESS = 1e-9
 """A relative uncertainty below it, as of a unit that was given, is left out."""
 COLUMNS = 64
