@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import brentq
 
 from contact1d.workflow.identify.target import IdentifyError, Target, require_reachable
 from contact1d.workflow.scene import Scene, scene_from_dict
@@ -29,8 +29,6 @@ TAIL = 1e-5
 """Force at the estimate's cutoff over the law's own."""
 POINTS = 1000
 """Distances at which the estimate has the force of a row."""
-SCAN = 30
-"""Points of the first search for the largest tension."""
 
 
 def estimated(scene: Scene, target: Target) -> Scene:
@@ -57,7 +55,7 @@ def start(scene: Scene, target: Target) -> Array:
         nonlocal amplitude
         amplitude = _root(lambda a: force_off(a, reach), amplitude)
         found = _estimated(scaled(scene, np.array([amplitude, reach])))
-        return math.log(found.zero_load_radius() / target.zero_load_radius)
+        return math.log(found.zero_load_radius / target.zero_load_radius)
 
     try:
         reach = _root(radius_off, 0.0)
@@ -100,7 +98,7 @@ def slopes(scene: Scene, at: Array) -> Array:
 
     def logarithms(place: Array) -> Array:
         found = _estimated(scaled(scene, place))
-        return np.log([found.adhesion_force, found.zero_load_radius()])
+        return np.log([found.adhesion_force, found.zero_load_radius])
 
     steps = SLOPE_STEP * np.eye(2)
     columns = [(logarithms(at + step) - logarithms(at - step)) / (2.0 * SLOPE_STEP) for step in steps]
@@ -119,35 +117,20 @@ def scaled(scene: Scene, logarithms: Array) -> Scene:
 
 @dataclass(frozen=True)
 class _Estimated:
-    """F_A [FU] of independent pairs, and where they find it."""
+    """F_A [FU] and a₀ [LU] of independent pairs."""
 
     adhesion_force: float
-    critical_displacement: float
-    estimate: ContactEstimate
-    longest_range: float
-
-    def zero_load_radius(self) -> float:
-        """a₀ [LU]."""
-        force, step = self.estimate.contact_force, self.longest_range
-        low = high = self.critical_displacement
-        while force(high) <= 0.0:
-            low, high, step = high, high + step, 2.0 * step
-        zero = float(brentq(force, low, high, xtol=1e-7 * self.longest_range))
-        return self.estimate.half_width(zero, _largest_tension(self.estimate))
+    zero_load_radius: float
 
 
 def _estimated(scene: Scene) -> _Estimated:
+    """By the estimate that every run's settings begin with, on a grid that is coarser and ends sooner."""
     law = interaction_law(scene)
     assert law is not None
     cutoff, rest = law.cutoff_for(TAIL), law.force_free_distance()
     estimate = particles_estimate(law, scene.bodies, scene.bodies.spacing, scene.bulk_stiffness, cutoff, rest, POINTS)
-    last = rest - _largest_tension(estimate) + law.longest_range
-    grid = np.linspace(rest - float(estimate.gap[-1]), last, SCAN)
-    lowest = int(np.argmin([estimate.contact_force(float(d)) for d in grid]))
-    around = (float(grid[max(lowest - 1, 0)]), float(grid[min(lowest + 1, SCAN - 1)]))
-    options = {"xatol": 1e-5 * law.longest_range}
-    best = minimize_scalar(estimate.contact_force, bounds=around, method="bounded", options=options)
-    return _Estimated(-float(best.fun), float(best.x), estimate, law.longest_range)
+    zero = estimate.displacement_at(0.0)
+    return _Estimated(estimate.pull_off_force(), estimate.half_width(zero, _largest_tension(estimate)))
 
 
 def _largest_tension(estimate: ContactEstimate) -> float:
