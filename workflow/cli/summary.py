@@ -17,6 +17,8 @@ NAMES = {
     "zero_load_radius": "zero-load radius a_0",
     "contact_radius": "contact radius a",
     "mean_pressure": "mean pressure F/(pi a^2)",
+    "separation_energy": "separation energy per length",
+    "work_of_adhesion": "implied W = 2γ",
 }
 EXACTNESS = 1e-9
 """A relative uncertainty below it, as of a unit that was given, is left out."""

@@ -23,6 +23,7 @@ from contact1d.workflow.experiments.running.outcome import anywhere_between
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import UntrustedError
 from contact1d.workflow.runs.finished import Run
+from contact1d.workflow.runs.implied import formulas, with_implied
 from contact1d.workflow.runs.refinement import Refined, refined
 from contact1d.workflow.runs.report import FILES, curve_of, failure, results, write_results, write_tables
 from contact1d.workflow.scene import AnyScene, Scene, read_scene, scene_to_toml
@@ -92,7 +93,7 @@ def _run(context: RunContext, started: float, figures: bool, refine: bool) -> Ru
         write_results(folder, failure(scene, facts, timing()))
         where = f" [phase {context.phase}, step {context.timestep}]"
         raise RunError(f"{facts['message']}{_hint(str(facts['message']))}{where}", folder) from error
-    outcome = anywhere_between(scene, last.deck.settings, last.outcome)
+    outcome = with_implied(scene, last.deck.settings, anywhere_between(scene, last.deck.settings, last.outcome))
     write_whole(folder / "in.lammps", last.deck.text(outcome.phases))
     curve = curve_of(last.deck.scene, outcome)
     write_tables(folder, scene, outcome, curve)
@@ -102,7 +103,7 @@ def _run(context: RunContext, started: float, figures: bool, refine: bool) -> Ru
 
         values = {name: quantity.value for name, quantity in outcome.quantities.items()}
         draw(folder, scene, values, curve, outcome.profiles, friction)
-    document = results(scene, outcome, timing())
+    document = results(scene, outcome, timing()) | formulas(scene, outcome.quantities)
     write_results(folder, document)
     return Run(folder, document, scene, curve, outcome.profiles, friction, outcome)
 
