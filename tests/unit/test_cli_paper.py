@@ -47,8 +47,8 @@ def test_a_finished_run_gets_the_units_of_table_1(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (["--surface-energy", "1"], "give either --run"),
-        (["--surface-energy", "1", "--radius", "1e-6", "--run", "x"], "give either --run"),
+        (["--surface-energy", "1"], "or either --run"),
+        (["--surface-energy", "1", "--radius", "1e-6", "--run", "x"], "or either --run"),
         (["--radius", "1e-6"], "give --surface-energy, or --adhesion-force together"),
         (["--radius", "1e-6", "--adhesion-force", "1e-6"], "go together"),
         (["--radius", "-1", "--surface-energy", "1"], "--radius must be greater than 0, not -1"),

@@ -45,7 +45,8 @@ def test_results_are_quantities_by_name_and_as_attributes(finished: Run) -> None
     assert (force.si.value, force.si.unit) == (entry["si"]["value"], "N")
     assert finished.results.adhesion_force is force
     assert "adhesion_force" in dir(finished.results)
-    assert set(finished.results) == {"adhesion_force", "critical_radius", "zero_load_radius", "preload"}
+    found = {"adhesion_force", "critical_radius", "zero_load_radius", "preload"}
+    assert set(finished.results) == found | {"separation_energy", "work_of_adhesion"}
     with pytest.raises(KeyError, match="no pull_off_force, it has adhesion_force"):
         finished.results["pull_off_force"]
     with pytest.raises(AttributeError, match="no pull_off_force, it has adhesion_force"):

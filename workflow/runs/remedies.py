@@ -20,6 +20,8 @@ from contact1d.workflow.settings.estimate import NotCarriedError
 
 PATIENCE = 20.0
 """Wall time [s] after which no further change is tried; a whole run of a shipped scene takes a few tenths."""
+MOST_TRIALS = 12
+"""Changes that are tried at most."""
 ENOUGH = 2
 """Changes that help after which no other is tried."""
 STEP = 3.0
@@ -88,7 +90,7 @@ def tried(reader: Reader, error: Contact1dError, attempt: Attempt, note: Callabl
     waiting = deque((change, 1) for change in _changes(reader, Change(), error))
     helped: list[Change] = []
     failed: list[Change] = []
-    while waiting and time.monotonic() < until and len(helped) < ENOUGH:
+    while waiting and len(helped) < ENOUGH and len(helped) + len(failed) < MOST_TRIALS and time.monotonic() < until:
         change, together = waiting.popleft()
         if helped and together > 1:
             break  # one change helps: no need for two
