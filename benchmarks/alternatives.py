@@ -20,6 +20,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.pages import write_between
 from contact1d.potentials.table import Table
 from contact1d.workflow.cost.change import base_change
 from contact1d.workflow.cost.errors import main_results
@@ -38,7 +39,6 @@ from contact1d.workflow.units import Quantity
 Array = NDArray[np.float64]
 HERE = Path(__file__).parent
 SCENES = HERE.parent / "lammps_inputs" / "scenes"
-BEGIN, END = "<!-- alternatives: begin -->\n", "<!-- alternatives: end -->\n"
 STYLE_POINTS = {
     "spline": (1_000, 2_000, 4_000, 16_000),
     "linear": (1_000, 4_000, 16_000, 64_000),
@@ -200,9 +200,7 @@ def main() -> None:
     """The command."""
     with tempfile.TemporaryDirectory() as place:
         text = styles_markdown(Path(place)) + "\n" + thermostats_markdown(Path(place))
-    readme = HERE / "README.md"
-    before, begin, rest = readme.read_text(encoding="utf-8").partition(BEGIN)
-    readme.write_text(before + begin + text + END + rest.partition(END)[2], encoding="utf-8")
+    write_between(HERE / "README.md", "alternatives", text)
     print(text)
 
 

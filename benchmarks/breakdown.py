@@ -17,6 +17,7 @@ from time import perf_counter
 from typing import Any
 
 import contact1d.workflow.runs.campaign as campaign
+from benchmarks.pages import write_between
 from benchmarks.peers.contact1d_peer import SETTINGS, hertz_tables
 from benchmarks.peers.contacts import displacements
 from contact1d.workflow.engine.process import WorkerProcess
@@ -25,7 +26,6 @@ from contact1d.workflow.judging.markdown import table
 from contact1d.workflow.scene import scene_from_dict
 
 README = Path(__file__).parent / "README.md"
-BEGIN, END = "<!-- breakdown: begin -->\n", "<!-- breakdown: end -->\n"
 RUNS = 31
 LAMMPS = "LAMMPS: 50 minimisations, and the deck's head"
 ASKED = "the worker beside LAMMPS (per-atom arrays, LAMMPS opened and closed), and the pipe"
@@ -95,9 +95,7 @@ def main() -> None:
     times = {name: median(one[name] for one in found) for name in names}
     rows = [(name, f"{1e3 * time:.1f} ms", f"{time / whole:.0%}") for name, time in times.items()]
     text = table(("part", "wall time", "share"), rows)
-    before, begin, rest = README.read_text(encoding="utf-8").partition(BEGIN)
-    _, end, after = rest.partition(END)
-    README.write_text(f"{before}{begin}{text}{end}{after}", encoding="utf-8")
+    write_between(README, "breakdown", text)
     print(text)
 
 

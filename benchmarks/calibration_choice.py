@@ -10,13 +10,13 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
+from benchmarks.pages import write_between
 from contact1d.workflow.cost.advice import TARGETS, power
 from contact1d.workflow.judging.markdown import table
 from contact1d.workflow.settings.calibration import FILE, Calibration, calibration_of, meanings
 
 HERE = Path(__file__).parent
 RECORD = HERE / "results" / "calibration.csv"
-BEGIN, END = "<!-- calibration: begin -->\n", "<!-- calibration: end -->\n"
 PART = 0.1
 """Of the tolerance, that one share may add to the error of a main result."""
 SAME_COST = 0.03
@@ -151,8 +151,5 @@ def write_choice(rows: Sequence[Row]) -> Calibration:
     document = chosen_values(rows)
     FILE.write_text(json.dumps(document, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     if any(row.share == TOGETHER for row in rows):
-        readme = HERE / "README.md"
-        before, begin, rest = readme.read_text(encoding="utf-8").partition(BEGIN)
-        after = rest.partition(END)[2]
-        readme.write_text(before + begin + calibration_markdown(document, rows) + END + after, encoding="utf-8")
+        write_between(HERE / "README.md", "calibration", calibration_markdown(document, rows))
     return calibration_of(document)

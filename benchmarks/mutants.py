@@ -7,8 +7,8 @@ up to the first that fails. One that passes them all survives: it is printed, an
 the reason if one was written there by hand (it is kept for the same change of the same line). All files take a night;
 `--part` draws a share of each file's mutants, the same ones every time. Exit code 1 where fewer than ASKED are killed.
 
-Each run is a fork of a process that has loaded what the tests need and nothing of this program. mutmut and cosmic-ray
-were not taken: neither follows src/contact1d, whose folders are links, and both start Python anew for every mutant.
+mutmut and cosmic-ray were not taken: neither follows src/contact1d, whose folders are links, and both start Python
+anew for every mutant (`benchmarks/faulty.py` forks).
 """
 
 from __future__ import annotations
@@ -18,8 +18,6 @@ import ast
 import json
 import os
 import random
-import shutil
-import signal
 import sys
 import tempfile
 import time
@@ -30,7 +28,8 @@ from pathlib import Path
 from queue import Queue
 from typing import Any
 
-ROOT = Path(__file__).parents[1]
+from benchmarks.faulty import ROOT, copy_of_this, first_failure, load
+
 RESULTS = Path(__file__).parent / "results" / "mutants.json"
 ASKED = 0.9
 """Asked of the share that is killed."""
@@ -62,15 +61,6 @@ TESTS: dict[str, tuple[str, ...]] = {
     ),
 }  # fmt: skip
 """For each file, or folder, whose faults are looked for: the tests that are to notice. The longest name counts."""
-LOADED = (
-    "numpy",
-    "scipy.optimize",
-    "scipy.interpolate",
-    "scipy.linalg",
-    "scipy.stats",
-    "pydantic",
-    "matplotlib.figure",
-)
 OPERATORS: dict[type[ast.AST], type[ast.AST]] = {
     ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.FloorDiv: ast.Mult,
     ast.Pow: ast.Mult, ast.Mod: ast.Mult, ast.And: ast.Or, ast.Or: ast.And, ast.Lt: ast.GtE, ast.GtE: ast.Lt,
@@ -166,51 +156,9 @@ def tests_of(file: str) -> tuple[str, ...]:
     return TESTS[max((name for name in TESTS if file.startswith(name)), key=len)]
 
 
-def copy_of_this(folder: Path) -> Path:
-    """A copy of this folder in `folder`, without what was made by running it."""
-
-    def made(parent: str, names: list[str]) -> list[str]:
-        runs = ("runs", "reproduced") if Path(parent) == ROOT else ()
-        return [name for name in names if name.startswith(".") or name in ("__pycache__", *runs)]
-
-    shutil.copytree(ROOT, folder, symlinks=True, ignore=made)
-    return folder
-
-
-def passes(folder: Path, tests: Sequence[str], patience: float) -> bool:
-    """Whether the tests pass in that copy, within so many seconds."""
-    child = os.fork()
-    if child == 0:
-        os.setsid()
-        quiet = os.open(os.devnull, os.O_RDWR)
-        for stream in (0, 1, 2):
-            os.dup2(quiet, stream)
-        os.chdir(folder)
-        sys.path[:0] = [str(folder / "src"), str(folder)]
-        sys.dont_write_bytecode = True  # two mutants of one second and size would be taken for each other
-        os.environ |= {"PYTHONPATH": f"{folder}/src", "PYTHONDONTWRITEBYTECODE": "1", "OPENBLAS_NUM_THREADS": "1"}
-        code = 70
-        try:
-            import pytest
-
-            code = int(pytest.main(["-x", "-q", "-p", "no:cacheprovider", "--rootdir", str(folder), *tests]))
-        finally:
-            os._exit(code)
-    end = time.monotonic() + patience
-    while time.monotonic() < end:
-        done, status = os.waitpid(child, os.WNOHANG)
-        if done:
-            return os.waitstatus_to_exitcode(status) == 0
-        time.sleep(0.02)
-    os.killpg(child, signal.SIGKILL)
-    os.waitpid(child, 0)
-    return False
-
-
 def survivors(chosen: Sequence[Mutant], workers: int) -> list[Mutant]:
     """Those whose tests pass. Raises SystemExit where tests fail on the unchanged code."""
-    for name in LOADED:
-        __import__(name)
+    load()
     with tempfile.TemporaryDirectory() as temporary, ThreadPoolExecutor(workers) as executor:
         free: Queue[Path] = Queue()
         for number in range(workers):
@@ -218,7 +166,7 @@ def survivors(chosen: Sequence[Mutant], workers: int) -> list[Mutant]:
         taken: dict[tuple[str, ...], float] = {}
         for tests in {tests_of(mutant.file): None for mutant in chosen}:
             folder, started = free.queue[0], time.monotonic()
-            if not passes(folder, tests, 3600.0):
+            if first_failure(folder, tests, 3600.0):
                 raise SystemExit(f"the tests fail without any fault: {' '.join(tests)}")
             taken[tests] = time.monotonic() - started
 
@@ -228,7 +176,7 @@ def survivors(chosen: Sequence[Mutant], workers: int) -> list[Mutant]:
             whole = path.read_text(encoding="utf-8")
             try:
                 path.write_text(mutant.source, encoding="utf-8")
-                alive = passes(folder, tests, max(LEAST, PATIENCE * taken[tests]))
+                alive = not first_failure(folder, tests, max(LEAST, PATIENCE * taken[tests]))
             finally:
                 path.write_text(whole, encoding="utf-8")
                 free.put(folder)

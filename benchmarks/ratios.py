@@ -13,13 +13,13 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+from benchmarks.pages import write_between
 from benchmarks.peers.table import comparisons
 from benchmarks.scaling import MEMORY, SPREAD
 from contact1d.workflow.judging.markdown import table
 
 ROOT = Path(__file__).parents[1]
 RESULTS = Path(__file__).parent / "results"
-BEGIN, END = "<!-- ratios: begin -->\n", "<!-- ratios: end -->\n"
 HEAD = ("what", "asked", "reached", "by")
 NO_FIGURE = "–"
 PLAIN_ASKED = {("quasistatic", 1e-3): 100.0, ("dynamic", 1e-2): 10.0}
@@ -124,18 +124,5 @@ def _held(said: str, reached: bool) -> str:
     return said if reached else f"{said}: **not reached**"
 
 
-def write_readme(page: Path, text: str) -> None:
-    """Put the table between the markers of a page.
-
-    Raises:
-        ValueError: the page has no markers.
-    """
-    before, begin, rest = page.read_text(encoding="utf-8").partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not (begin and end):
-        raise ValueError(f"{page} has no markers {BEGIN.strip()} and {END.strip()}")
-    page.write_text(before + begin + text + end + after, encoding="utf-8")
-
-
 if __name__ == "__main__":
-    write_readme(ROOT / "README.md", markdown(read_results()))
+    write_between(ROOT / "README.md", "ratios", markdown(read_results()))

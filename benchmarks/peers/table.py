@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from benchmarks.pages import write_between
 from contact1d.analysis.plots import new_figure, save_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-BEGIN, END = "<!-- peers: begin -->", "<!-- peers: end -->"
 ENOUGH = 0.01
 """Error at which solvers are compared."""
 OURS, ELEMENTS = "contact1d", ("tamaas", "ContactMechanics")
@@ -130,11 +130,7 @@ def write_section(document: dict[str, Any], page: Path) -> None:
     Raises:
         ValueError: the page has no markers.
     """
-    before, begin, rest = page.read_text(encoding="utf-8").partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not (begin and end):
-        raise ValueError(f"{page} has no markers {BEGIN} and {END}")
-    page.write_text(f"{before}{BEGIN}\n{section(document)}\n{END}{after}", encoding="utf-8")
+    write_between(page, "peers", section(document) + "\n")
 
 
 PANELS: tuple[tuple[str, Callable[[dict[str, Any], str], float | None]], ...] = (

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from benchmarks.pages import between
 from benchmarks.peers.contacts import (
     A_0,
     DEPTH,
@@ -20,7 +21,7 @@ from benchmarks.peers.contacts import (
     law_range,
     reduced_distance,
 )  # fmt: skip
-from benchmarks.peers.table import BEGIN, END, quickest, section, write_section
+from benchmarks.peers.table import quickest, section, write_section
 
 INTERPOLATION = 1e-8  # of F_A, between 50000 radii
 ROUND_OFF = 1e-15
@@ -92,14 +93,7 @@ def test_the_table_goes_between_the_markers(tmp_path: Path) -> None:
     machine = {"processor": "P", "cores": 2, "python": "3.11", "versions": {"numpy": "2"}}
     document = {"machine": machine, "records": [record(0.2, 0.009)], "closed_form_s": {"jkr": 1e-3}}
     page = tmp_path / "README.md"
-    page.write_text(f"before\n{BEGIN}\nold\n{END}\nafter\n")
+    page.write_text("before\n<!-- peers: begin -->\nold\n<!-- peers: end -->\nafter\n")
     write_section(document, page)
-    assert page.read_text() == f"before\n{BEGIN}\n{section(document)}\n{END}\nafter\n"
+    assert between(page, "peers")[1] == section(document) + "\n"
     assert "| contact1d | a_0/8 | 200 ms | 100 ms + 200 ms | 0.9 % | 0.9 % |" in page.read_text()
-
-
-def test_a_page_without_markers_is_refused(tmp_path: Path) -> None:
-    page = tmp_path / "README.md"
-    page.write_text("nothing")
-    with pytest.raises(ValueError, match="no markers"):
-        write_section({"machine": {}, "records": []}, page)

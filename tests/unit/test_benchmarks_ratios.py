@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.ratios import BEGIN, END, HEAD, ROOT, markdown, read_results, write_readme
+from benchmarks.pages import between, write_between
+from benchmarks.ratios import HEAD, ROOT, markdown, read_results
 
 MOST_ROWS = 15
 
@@ -17,9 +18,8 @@ def test_the_table_of_the_readme_is_what_the_results_say() -> None:
     """Renew it with `python -m benchmarks.ratios`, or with WRITE_DOCS=1 pytest this file."""
     readme, made = ROOT / "README.md", markdown(read_results())
     if os.environ.get("WRITE_DOCS"):
-        write_readme(readme, made)
-    there = readme.read_text(encoding="utf-8").partition(BEGIN)[2].partition(END)[0]
-    assert there == made
+        write_between(readme, "ratios", made)
+    assert between(readme, "ratios")[1] == made
 
 
 def test_the_table_is_short_and_every_row_says_by_which_command() -> None:
@@ -48,8 +48,15 @@ def test_a_new_way_gets_a_row() -> None:
     assert "plain way over `newest` | – | 77 (tolerance 0.1) |" in markdown(results)
 
 
+def test_a_text_goes_between_its_markers(tmp_path: Path) -> None:
+    page = tmp_path / "README.md"
+    page.write_text("before\n<!-- a: begin -->\nold\n<!-- a: end -->\nafter\n")
+    write_between(page, "a", "new\n")
+    assert page.read_text() == "before\n<!-- a: begin -->\nnew\n<!-- a: end -->\nafter\n"
+
+
 def test_a_page_without_markers_is_refused(tmp_path: Path) -> None:
     page = tmp_path / "README.md"
-    page.write_text("nothing")
+    page.write_text("<!-- other: begin -->\n<!-- other: end -->\n")
     with pytest.raises(ValueError, match="no markers"):
-        write_readme(page, "table")
+        write_between(page, "table", "table")

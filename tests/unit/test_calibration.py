@@ -12,8 +12,6 @@ import pytest
 
 from benchmarks.calibration import LADDERS, SCENES
 from benchmarks.calibration_choice import (
-    BEGIN,
-    END,
     PART,
     PROMISED,
     TOGETHER,
@@ -22,6 +20,7 @@ from benchmarks.calibration_choice import (
     chosen_values,
     read_rows,
 )
+from benchmarks.pages import between
 from contact1d.workflow.cost.advice import TARGETS
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.calibration import CALIBRATION, FILE, Calibration, calibration_of
@@ -40,9 +39,10 @@ def test_the_file_in_use_follows_from_the_kept_study() -> None:
 
 
 def test_the_table_in_benchmarks_follows_from_the_kept_study() -> None:
-    page = (ROOT / "benchmarks" / "README.md").read_text(encoding="utf-8")
     rows = read_rows()
-    assert page.partition(BEGIN)[2].partition(END)[0] == calibration_markdown(chosen_values(rows), rows)
+    assert between(ROOT / "benchmarks" / "README.md", "calibration")[1] == calibration_markdown(
+        chosen_values(rows), rows
+    )
 
 
 def test_every_share_was_studied_at_every_tolerance_and_every_scene_has_a_part() -> None:
