@@ -59,8 +59,8 @@ def bin_size(bodies: Sequence[Body], scene: Scene, settings: Settings, chosen: f
     """
     groups = [group for body in bodies for group in (body.particles, body.anchors, body.far_anchors) if len(group)]
     low, high = (np.asarray([end(group, axis=0) for group in groups]) for end in (np.min, np.max))
-    edges = high.max(axis=0) - low.min(axis=0) + 2.0 * np.asarray(margins(scene, settings))
+    edges = high.max(axis=0) - low.min(axis=0) + 2.0 * np.asarray(margins(scene, settings), dtype=np.float64)
     own = edge = max(chosen, 0.5 * reach(scene, settings))
-    while np.prod(np.maximum(edges / edge, 1.0)) > MOST_BINS:
+    while np.log(np.maximum(edges / edge, 1.0)).sum() > math.log(MOST_BINS):  # the number itself may overflow
         edge *= 2.0
     return 0.0 if edge == own else min(edge, float(edges.min()) / LEAST_SLENDERNESS)

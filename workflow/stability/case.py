@@ -24,12 +24,10 @@ from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import SceneError, scene_from_dict
 from contact1d.workflow.settings.settings import SettingsError
 
-TIME_LIMIT = 120.0
-"""Of LAMMPS in one run [s]."""
 LONGEST = 160
 """Characters of a refusal in a row."""
-PATIENCE = 180
-"""Of everything in it [s]: a program that computes its settings for so long has failed as well."""
+PATIENCE, FULL_PATIENCE = 180, 3600
+"""Seconds of a run, LAMMPS and all else: what hangs has failed. The long form goes on beside other work for hours."""
 
 
 class LateError(Exception):
@@ -37,19 +35,23 @@ class LateError(Exception):
 
 
 @contextmanager
-def at_most_seconds(seconds: int) -> Iterator[None]:
-    """Raise LateError after so many seconds; for the main thread of a process, which alone hears of signals."""
+def at_most_seconds(seconds: float, of_processor: bool = False) -> Iterator[None]:
+    """Raise LateError after so many seconds of the clock, or of the work of this process alone.
+
+    For the main thread of a process, which alone hears of signals.
+    """
 
     def late(*_: object) -> None:
         raise LateError
 
-    before = signal.signal(signal.SIGALRM, late)
-    signal.alarm(seconds)
+    timer, heard = (signal.ITIMER_PROF, signal.SIGPROF) if of_processor else (signal.ITIMER_REAL, signal.SIGALRM)
+    before = signal.signal(heard, late)
+    signal.setitimer(timer, seconds)
     try:
         yield
     finally:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, before)
+        signal.setitimer(timer, 0.0)
+        signal.signal(heard, before)
 
 
 @dataclass(frozen=True)
@@ -88,7 +90,7 @@ class Bench:
             checked = scene_from_dict({"title": name} | scene)
             found = there(checked, folder)
             if found is None:
-                run(checked, folder, figures=False, progress=Silent(), time_limit=TIME_LIMIT)
+                run(checked, folder, figures=False, progress=Silent(), time_limit=float(self.patience))
                 found = there(checked, folder)
         except (SceneError, SettingsError, FolderError) as error:
             return Refused(str(error), before=True)

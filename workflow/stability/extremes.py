@@ -23,6 +23,8 @@ from contact1d.workflow.stability.pairs import TENSION, PairCase, shaped
 
 NAME = "extremes"
 RADII = (1.0, 1e3, 1e6, 1e9)
+REFUSED_COUNTS = (1, 2)
+"""Too few for a radius: refused before anything runs."""
 COUNTS, FULL_COUNTS = (3, 1000, 100_000), (3, 30, 1000, 100_000, 1_000_000)
 MASSES, FULL_MASSES = (1e-3, 1e3, 1e9), (1e-3, 1.0, 1e3, 1e6, 1e9)
 STIFFNESSES, FULL_STIFFNESSES = (1e-6, 1e-3, 1e3, 1e6), (1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6)
@@ -64,6 +66,7 @@ def measure(bench: Bench, folder: Path) -> Findings:
                 "round-off, and the minimiser's share of the tolerance",
             )
         )
+    checks.append(_too_few(bench))
     drawn = [_masses(bench, checks)]
     drawn += [_springs(bench, checks, kind) for kind in ("neighbour", "tangential")]
     points_figure(
@@ -87,6 +90,17 @@ def _on_plane(bench: Bench, name: str, profile: dict[str, Any], count: int, d: f
         },
     )
     return math.nan if isinstance(found, Refused) else abs(result(found, "largest_force").value / exact - 1.0)
+
+
+def _too_few(bench: Bench) -> Check:
+    """A body of one particle or two has no width that could be measured: a sentence before anything runs."""
+    wrong = 0
+    for count in REFUSED_COUNTS:
+        case = PairCase("few", RATIO, {"kind": "flat_punch", "radius": 0.5 * count}, count, TENSION)
+        found = bench.run(f"few_{count}", case.scene())
+        wrong += not (isinstance(found, Refused) and found.before and "bodies.particles" in found.words)
+    name = f"scenes of N in {REFUSED_COUNTS} that run, or end without naming bodies.particles"
+    return at_most(NAME, name, wrong, 0.0, "three particles make the least width", "–", "set bound")
 
 
 def _masses(bench: Bench, checks: list[Check]) -> Series:
@@ -150,7 +164,7 @@ def _springs(bench: Bench, checks: list[Check], kind: str) -> Series:
 
 EXTREMES = Class(
     NAME,
-    "Stiffness ratios 1e-6 to 1e6, radii to 1e9, 3 to 10⁵ particles, plate masses 1e-3 to 1e9",
+    "Stiffness ratios 1e-6 to 1e6, radii to 1e9, 1 to 10⁶ particles, plate masses 1e-3 to 1e9",
     "Where numbers are far apart one of them is lost in the other's rounding, a time step is chosen for the wrong one, "
     "or a minimiser stops too early.",
     measure,

@@ -20,16 +20,9 @@ from contact1d.workflow.stability.opened import LAW
 
 NAME = "faults"
 COMMAND = (sys.executable, "-m", "contact1d.workflow.cli.app", "run")
-KILLS, FULL_KILLS = (0.3, 0.8, 1.3, 2.0), tuple(float(t) for t in np.arange(0.1, 4.0, 0.1))
-"""Seconds after which a run is killed: while it starts, loads, pulls, writes."""
-SIZES, FULL_SIZES = (
-    (0, 200, 3_000, 12_000, 60_000),
-    (0, 50, 200, 800, 3_000, 6_000, 12_000, 25_000, 60_000, 120_000, 400_000),
-)
-"""Bytes beyond which no file may grow: one file after the other is the first that does not fit."""
-MOST = 120.0
+MOST = 1800.0
 """Wall time of one command [s]."""
-CODES = (0, 2, 3)
+CODES, RESULTS = (0, 2, 3), "results.json"
 SCENE = {
     "title": "pull-off that is disturbed",
     "bodies": {
@@ -46,63 +39,36 @@ SCENE = {
 
 
 def measure(bench: Bench, folder: Path) -> Findings:
-    """All three kinds; the reference is the same run undisturbed."""
+    """All three kinds; the reference is the same run undisturbed, whose phases and files are those of the others."""
     scene = bench.folder / "scene.toml"
     scene.write_text(scene_to_toml(scene_from_dict(SCENE)), encoding="utf-8")
-    _end(_start(scene, bench.folder / "undisturbed"))
-    undisturbed = _force(bench.folder / "undisturbed")
-    kills = FULL_KILLS if bench.full else KILLS
-    torn, other = 0, 0
-    for seconds in kills:
-        run = bench.folder / "killed"
-        process = _start(scene, run)
-        time.sleep(seconds)
-        process.kill()
-        process.communicate()
-        torn += _torn(run)
-        code, words = _end(_start(scene, run))
-        other += code != 0 or _force(run) != undisturbed
+    whole = bench.folder / "undisturbed"
+    phases = _lines(_start(scene, whole))
+    undisturbed = _force(whole)
+    sizes = {path.name: path.stat().st_size for path in sorted(whole.iterdir()) if path.is_file()}
+    moments = [(phases.index(line) + 1, "", f'at "{line.split(":")[0]}"') for line in dict.fromkeys(phases)]
+    moments += [(0, name, f"when {name} appears") for name in (sizes if bench.full else [RESULTS])]
     checks = [
         at_most(
-            NAME,
-            f"of {len(kills)} runs killed, those that leave a results.json that cannot be read",
-            torn,
-            0.0,
-            "whole or not at all",
-            "–",
-            "set bound",
-        ),
-        at_most(
-            NAME,
-            f"of {len(kills)} runs killed and made again in the same folder, those with another F_A",
-            other,
-            0.0,
-            "the same scene undisturbed, to the last digit",
-            "–",
-            "set bound",
-        ),
-    ]
-    sizes = FULL_SIZES if bench.full else SIZES
-    codes = []
-    for size in sizes:
-        code, words = _end(_start(scene, bench.folder / f"full_{size}", size))
-        bad = (
-            code not in CODES
-            or "Traceback" in words
-            or (code == 0 and _force(bench.folder / f"full_{size}") != undisturbed)
+            NAME, f"killed {words}: a torn results.json, or another F_A when it is run again in that folder",
+            _killed(scene, bench.folder / f"killed_{index}_{name}", index, name, undisturbed), 0.0,
+            "the same scene undisturbed, to the last digit", "–", "set bound",
         )
-        codes.append(code)
+        for index, name, words in moments
+    ]  # fmt: skip
+    codes = []
+    for name, size in sizes.items():
+        most = max(0, size - 1)
+        run = bench.folder / f"full_{most}"
+        code, words = _end(_start(scene, run, most))
+        bad = code not in CODES or "Traceback" in words or (code == 0 and _force(run) != undisturbed)
+        codes.append((most, code))
         checks.append(
             at_most(
-                NAME,
-                f"a file may not grow beyond {size} bytes: a traceback, or another exit code than 0, 2, 3",
-                float(bad),
-                0.0,
-                f"exit 0, 2 or 3 and no traceback; it is {code}",
-                "–",
-                "set bound",
+                NAME, f"disk full at the last byte of {name}: a traceback, another exit code than 0, 2, 3, another F_A",
+                float(bad), 0.0, f"exit 0, 2 or 3 and no traceback; it is {code}", "–", "set bound",
             )
-        )
+        )  # fmt: skip
     checks.append(
         at_most(
             NAME,
@@ -114,13 +80,36 @@ def measure(bench: Bench, folder: Path) -> Findings:
             "set bound",
         )
     )
+    x, y = np.array(codes, dtype=float).T
     points_figure(
         folder / f"{NAME}.png",
-        [Series("disk full", np.array(sizes, float) + 1.0, np.array(codes, float))],
+        [Series("disk full", x + 1.0, y)],
         ("bytes that a file may have", "exit code"),
         log="x",
     )
     return Findings(checks, f"{NAME}.png", "Exit code where no file may grow beyond so many bytes")
+
+
+def _killed(scene: Path, run: Path, lines: int, file: str, undisturbed: float | None) -> float:
+    """1 where a run that is killed at a line of its progress, or when a file appears, leaves what spoils the next."""
+    process = _start(scene, run)
+    assert process.stderr is not None
+    for _ in range(lines):
+        process.stderr.readline()
+    end = time.monotonic() + MOST
+    while file and not any(run.glob(f"{file}*")) and process.poll() is None and time.monotonic() < end:
+        time.sleep(0.001)
+    process.kill()
+    process.communicate()
+    torn = _torn(run)
+    code, _ = _end(_start(scene, run))
+    return float(torn or code != 0 or _force(run) != undisturbed)
+
+
+def _lines(process: subprocess.Popen[str]) -> list[str]:
+    """What a run tells of its progress."""
+    _, told = process.communicate(timeout=MOST)
+    return told.splitlines()
 
 
 def _start(scene: Path, run: Path, size: int | None = None) -> subprocess.Popen[str]:
@@ -130,7 +119,7 @@ def _start(scene: Path, run: Path, size: int | None = None) -> subprocess.Popen[
             resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
     return subprocess.Popen(
-        [*COMMAND, str(scene), "--out", str(run), "--no-figures", "-q"],
+        [*COMMAND, str(scene), "--out", str(run), "--no-figures"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -150,14 +139,14 @@ def _end(process: subprocess.Popen[str]) -> tuple[int, str]:
 
 def _force(run: Path) -> float | None:
     try:
-        return float(json.loads((run / "results.json").read_text(encoding="utf-8"))["adhesion_force"]["value"])
+        return float(json.loads((run / RESULTS).read_text(encoding="utf-8"))["adhesion_force"]["value"])
     except (OSError, ValueError, KeyError):
         return None
 
 
 def _torn(run: Path) -> bool:
     try:
-        json.loads((run / "results.json").read_text(encoding="utf-8"))
+        json.loads((run / RESULTS).read_text(encoding="utf-8"))
     except FileNotFoundError:
         return False
     except ValueError:

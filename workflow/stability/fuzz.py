@@ -7,15 +7,18 @@ of those are run.
 
 from __future__ import annotations
 
+import json
 import random
 import re
-import time
+import warnings
 from collections import Counter
+from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
 
+from contact1d.files import write_whole
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.errors import RunError
 from contact1d.workflow.experiments import planned
@@ -30,9 +33,10 @@ NAME = "fuzz"
 QUICK, FULL = 2_000, 20_000
 EVERY = 100
 """One in so many of the decks is run."""
-SEED = 12
-SLOW, RUN = 10, 60
-"""Seconds for a scene to become a deck or a sentence, and for a run."""
+PIECE = 1000
+"""Scenes of one seed."""
+SLOW, RUN, HANGS = 10, 60, 600
+"""Seconds of work for a scene to become a deck or a sentence, of LAMMPS in a run, and of the clock for what hangs."""
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 VALUES = (
     "0",
@@ -61,24 +65,50 @@ VALUES = (
 SPOILT = "\"'[]{}=#.,\\\0é\n -"
 
 
+@dataclass
+class Ends:
+    """How many scenes end how, and what the first of each kind said."""
+
+    counts: Counter[str] = field(default_factory=Counter)
+    said: dict[str, str] = field(default_factory=dict)
+
+    def add(self, other: Ends) -> None:
+        """Take in those of another piece."""
+        self.counts += other.counts
+        self.said = other.said | self.said
+
+
 def measure(bench: Bench, folder: Path) -> Findings:
-    """How many scenes end how; one row for each way that must not be."""
+    """How many scenes end how; one row for each way that must not be. A piece that is there is not made again."""
+    count = FULL if bench.full else QUICK
+    ends = Ends()
+    for seed in range(count // PIECE):
+        path = bench.folder / f"piece_{seed}.json"
+        if not path.exists():
+            write_whole(path, json.dumps(vars(_piece(bench.folder, seed))))
+        kept = json.loads(path.read_text(encoding="utf-8"))
+        ends.add(Ends(Counter(kept["counts"]), kept["said"]))
+    return _findings(ends, count, folder)
+
+
+def _piece(folder: Path, seed: int) -> Ends:
+    """PIECE scenes of one seed; the first that ends in each way is kept as a file."""
     sources = [path.read_text(encoding="utf-8") for path in _scenes()]
-    draw = random.Random(SEED)
-    ends: Counter[str] = Counter()
-    said: dict[str, str] = {}
-    count, decks, slowest = FULL if bench.full else QUICK, 0, 0.0
-    for _ in range(count):
-        path = bench.folder / "scene.toml"
+    draw, found, decks = random.Random(seed), Ends(), 0
+    path = folder / "scene.toml"
+    for _ in range(PIECE):
         path.write_text(edited(draw.choice(sources), draw), encoding="utf-8")
-        started = time.monotonic()
-        end, words = _become(path, bench.folder / "run", decks % EVERY == EVERY - 1)
-        slowest = max(slowest, time.monotonic() - started if end != "ran" else 0.0)
+        end, words = _become(path, folder / "run", decks % EVERY == EVERY - 1)
         decks += end in ("a deck", "ran")
-        ends[end] += 1
-        if end not in said:
-            said[end] = words
-            (bench.folder / f"first_{end.replace(' ', '_')}.toml").write_bytes(path.read_bytes())
+        found.counts[end] += 1
+        if end not in found.said:
+            found.said[end] = words
+            (folder / f"{end.split(':')[0].replace(' ', '_')}_{seed}.toml").write_bytes(path.read_bytes())
+    return found
+
+
+def _findings(found: Ends, count: int, folder: Path) -> Findings:
+    ends, said = found.counts, found.said
     bad = {end: found for end, found in ends.items() if end.startswith("a traceback")}
     worst = "; ".join(f"{found} × {said[end]}" for end, found in bad.items())
     checks = [
@@ -134,14 +164,17 @@ def edited(text: str, draw: random.Random) -> str:
 
 
 def _become(path: Path, folder: Path, go_on: bool) -> tuple[str, str]:
-    """How a scene file ends, in a word, and what was said."""
+    """How a scene file ends, in a word, and what was said. A warning of a library is a fault, too."""
     try:
-        with at_most_seconds(RUN + SLOW if go_on else SLOW):
-            scene = read_scene(path)
-            settings = settings_for(scene)
-            Deck(scene, settings).text(planned(scene, settings))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            with at_most_seconds(SLOW, of_processor=True):
+                scene = read_scene(path)
+                settings = settings_for(scene)
+                Deck(scene, settings).text(planned(scene, settings))
             if go_on:
-                run(scene, folder, figures=False, time_limit=RUN)
+                with at_most_seconds(HANGS):
+                    run(scene, folder, figures=False, time_limit=RUN)
                 return "ran", ""
     except (SceneError, SettingsError) as error:
         return "a sentence", str(error)

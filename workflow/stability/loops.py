@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,8 @@ WIDTHS = {"as wide as the range": 1.0, "a tenth of the range": 0.1}
 KIND, PARTICLES = "parabola", 21
 FORCE = 1e-3
 """Of the largest force: the tolerance of the scene."""
+PUNCH, SHARP, SIDE = 3, 1e-4, 0.01
+"""Equal pairs, the tolerance at which their snaps are looked at, and how near over the longest range."""
 NEAR = 1e-3
 """A row this near to a snap, over the width of a row, may be on either side of it."""
 
@@ -57,8 +60,28 @@ def measure(bench: Bench, folder: Path) -> Findings:
                         np.concatenate([pairs.loading(fine), pairs.unloading(fine[::-1], DEEPEST)]),
                     )
                 ]
+        checks.append(_beside_snaps(bench, ratio))
     points_figure(folder / f"{NAME}.png", drawn, ("displacement (LU)", "force (FU)"), lines, log="")
     return Findings(checks, f"{NAME}.png", f"A loop at ratio {RATIOS[0]:g}: every row of the run on the closed form")
+
+
+def _beside_snaps(bench: Bench, ratio: float) -> Check:
+    """Equal pairs at rows just before and just behind each of their two snaps, there and back."""
+    case = PairCase("snaps", ratio, shaped("flat_punch", PUNCH, 0.0), PUNCH, 0.0, SHARP)
+    pairs = case.exact()
+    assert pairs.fold is not None
+    off, on = (pairs.interaction.force_free_distance() - gap for gap in (pairs.fold.gap_off, pairs.fold.gap_on))
+    side = SIDE * ATTRACTION[1]
+    there = [off - 2.0 * ATTRACTION[1], off - side, off + side, on - side, on + side, max(on, 0.0) + DEEPEST]
+    scene = case.scene() | {"experiment": {"kind": "path", "displacements": [*there, *there[-2::-1]]}}
+    found = bench.run(f"snaps_{ratio:g}", scene)
+    value = math.nan
+    if not isinstance(found, Refused):
+        d, force = np.asarray(found.curve.displacement), np.asarray(found.curve.force)
+        exact = np.concatenate([pairs.loading(d[:6]), pairs.unloading(d[6:], there[-1])])
+        value = float(np.max(np.abs(force - exact))) / float(np.max(np.abs(exact)))
+    name = f"force off over the largest, worst row {SIDE:g} of the range beside snap-in and snap-off, ratio {ratio:g}"
+    return at_most(NAME, name, value, SHARP, "independent pairs with their folds", said("where a pair snaps", found))
 
 
 def _rows(words: str, found: Run | Refused, pairs: FoldedPairs) -> list[Check]:

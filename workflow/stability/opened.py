@@ -16,8 +16,8 @@ from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 
-TIME_LIMIT = 600.0
-"""Of LAMMPS [s]."""
+TIME_LIMIT = 7200.0
+"""Of LAMMPS [s], far above what anything takes: what hangs has failed."""
 LAW = {
     "repulsion": {"amplitude": 0.18, "range": 0.13},
     "attraction": {"amplitude": 0.09, "range": 0.26},

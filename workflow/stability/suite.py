@@ -25,16 +25,18 @@ from contact1d.workflow.stability import (
     modes,
     motion,
     pressed,
+    settling,
     similarity,
     stiffness,
     thermal,
 )
-from contact1d.workflow.stability.case import Bench, Class, Findings, at_most
+from contact1d.workflow.stability.case import FULL_PATIENCE, PATIENCE, Bench, Class, Findings, at_most
 from contact1d.workflow.stability.record import RECORD, TABLE, Answer, Stability, machine
 
 CLASSES: tuple[Class, ...] = (
     stiffness.STIFFNESS,
     loads.LOADS,
+    settling.SETTLING,
     loops.LOOPS,
     similarity.SIMILARITY,
     forces.FORCES,
@@ -111,7 +113,7 @@ def measured(name: str, folder: Path, full: bool) -> Answer:
     runs = folder / "runs" / name
     runs.mkdir(parents=True, exist_ok=True)
     try:
-        found = asked.measure(Bench(runs, full), folder)
+        found = asked.measure(Bench(runs, full, FULL_PATIENCE if full else PATIENCE), folder)
     except Exception as error:  # what a class did not expect is the worst of its findings, and no reason to lose others
         words = f"ended by {type(error).__name__}: {error}"
         found = Findings([at_most(name, words, math.nan, 0.0, "a class ends with rows", "–", "set bound")], "", "")

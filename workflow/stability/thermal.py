@@ -7,11 +7,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
 from scipy.stats import chi2
 
 from contact1d.analysis.reference.boltzmann_pairs import BoltzmannPairs
 from contact1d.analysis.reference.folded_pairs import FoldedPairs
 from contact1d.analysis.reference.interaction import Exponential, Floats, PairInteraction
+from contact1d.analysis.reference.model import ChainModel
+from contact1d.analysis.reference.solver import ChainSolver
+from contact1d.analysis.reference.thermal_chain import displacement_under
 from contact1d.workflow.judging.check import Check
 from contact1d.workflow.judging.figures import Series
 from contact1d.workflow.judging.runs import found as result
@@ -28,6 +32,10 @@ BODIES = {"particles": 41, "spacing": 4.0, "profile": {"kind": "parabola", "radi
 """Pull_off.toml's bodies, four times as far apart so that particles feel their opposite only."""
 LOAD = 0.25
 TEMPERATURES = (1e-4, 1e-3, 3e-3)
+WIDE_BODIES: dict[str, Any] = BODIES | {"particles": 200, "spacing": 1.0}
+WIDE_LOAD, WIDE_NEAR, WIDE_WIDTH = 1.0, 0.255, 0.1
+"""The load [FU], and the interval of displacements of its average [LU]: ten standard deviations."""
+WIDE_TEMPERATURES, FULL_WIDE_TEMPERATURES, WIDE_TOLERANCE = (0.0, 1e-3), (0.0, 1e-4, 1e-3), 1e-3
 LAW_HERE = PairInteraction(Exponential(**LAW["repulsion"]), Exponential(**LAW["attraction"]))
 HEIGHTS: Floats = np.asarray((4.0 * np.arange(-20.0, 21.0)) ** 2 / 2000.0)
 NEAR, WIDTH = 0.24, {1e-4: 0.05, 1e-3: 0.13, 3e-3: 0.22}
@@ -97,6 +105,7 @@ def measure_boltzmann(bench: Bench, folder: Path) -> Findings:
         checks.append(_swing_row(found, temperature, swing))
         drawn.append((temperature, d))
         exacts.append((temperature, exact))
+    checks += _shipped(bench)
     x, y = np.array(drawn).T
     points_figure(
         folder / f"{THERMAL}.png",
@@ -106,6 +115,27 @@ def measure_boltzmann(bench: Bench, folder: Path) -> Findings:
         log="x",
     )
     return Findings(checks, f"{THERMAL}.png", "Mean displacement under a load over the temperature")
+
+
+def _shipped(bench: Bench) -> list[Check]:
+    """⟨d⟩ of pull_off.toml's bodies without neighbours, held along x, under 1 FU: all pairs, to first order in kT."""
+    model = ChainModel(WIDE_BODIES["particles"], WIDE_BODIES["bulk_stiffness"], LAW_HERE, radius=1000.0)
+    places = np.linspace(WIDE_NEAR - WIDE_WIDTH, WIDE_NEAR + WIDE_WIDTH, 27)
+    rest = float(brentq(lambda d: ChainSolver(model).equilibrium(d).force - WIDE_LOAD, *places[[0, -1]], xtol=1e-9))
+    checks = []
+    for temperature in FULL_WIDE_TEMPERATURES if bench.full else WIDE_TEMPERATURES:
+        scene = thermal_scene(temperature, 3, WIDE_TOLERANCE if bench.full else 5e-3)
+        scene |= {"bodies": WIDE_BODIES, "experiment": {"kind": "load", "force": WIDE_LOAD}}
+        found = bench.run(f"wide_{temperature:g}", scene)
+        if temperature:
+            exact, source = displacement_under(model, WIDE_LOAD, temperature, places)[0], "all pairs, first order in kT"
+        else:
+            exact, source = rest, "Newton's method on all pairs"
+        over = math.nan if isinstance(found, Refused) else over_claim(found, "displacement", exact)
+        name = f"d of pull_off.toml's bodies without neighbours under 1 FU at kT = {temperature:g}, off over its claim"
+        limit = f"statistics: {SIGMAS:g} of the run's standard errors" if temperature else "what the run claims"
+        checks.append(at_most(THERMAL, name, over, SIGMAS if temperature else 1.0, source, said(limit, found)))
+    return checks
 
 
 def _swing_row(found: Run, temperature: float, swing: float) -> Check:

@@ -80,7 +80,7 @@ def damping_under(settings: Settings, load: float) -> float:
     if settings.damped_stiffness == 0.0:
         return settings.damping
     stiffer = stiffness_under(settings, load) / settings.damped_stiffness
-    return settings.damping * math.sqrt(min(stiffer, 1.0 / SOFTENING))
+    return settings.damping * math.sqrt(min(max(stiffer, 0.0), 1.0 / SOFTENING))
 
 
 def overshoot(settings: Settings, mass: float, load: float, next_load: float) -> float:
