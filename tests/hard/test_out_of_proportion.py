@@ -43,6 +43,21 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
         chains(100.0, bodies={"particles": 20}, experiment={"kind": "path", "displacements": [0.0, 1e6]}),
         r"the path would take .* rows",
     ),
+    "springs of nothing": (
+        chains(100.0, bodies={"particles": 20, "bulk_stiffness": 1e-300}, experiment=LOAD),
+        r"would go as far as .* another unit",
+    ),
+    "a repulsion beside which an attraction is nothing": (
+        chains(
+            100.0,
+            law=(1e300, 0.13, 0.09, 0.26),
+            bodies={"particles": 20},
+            damping={"coefficient": "auto"},
+            plate={},
+            experiment={"kind": "pull_off", "method": "dynamic", "preload": 1.0},
+        ),
+        r"one row would take .* timesteps",
+    ),
     "a plate that never moves": (
         chains(100.0, damping={"coefficient": "auto"}, plate={"mass": 1e30}, experiment=LOAD | {"method": "dynamic"}),
         r"one row would take .* timesteps.* Bring masses",

@@ -25,7 +25,7 @@ from contact1d.workflow.settings.estimate import (
     plane_estimate,
     tabulated,
 )
-from contact1d.workflow.settings.size import require_apex, require_memory, require_reach, require_rows
+from contact1d.workflow.settings.size import require_apex, require_memory, require_reach, require_rows, require_travel
 
 TABLE_MARGIN = 0.8
 """Distance from which on a table is to follow the law, over the expected smallest one. Measured: the smallest distance
@@ -202,6 +202,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     require_body(bodies, largest, particles)
     require_apex(scene, particles, cutoff)
     require_memory(scene, particles, cutoff)
+    require_travel(scene, largest, cutoff)
     force_scale = _force_scale(scene, law, largest)
     table_from, table = 0.0, None
     if law is not None:

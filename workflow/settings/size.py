@@ -27,6 +27,8 @@ LARGE, USUALLY_FELT = 20_000, 10.0
 """Particles per body, each within reach of so many opposite ones, from which on a run takes minutes."""
 SHARPEST_RATIO = 1e3
 """Height of the particles beside an apex over cutoff and spacing: so far even neighbour springs bring none."""
+FARTHEST_RATIO = 1e9
+"""Way of a body over cutoff and spacing: LAMMPS divides the box into no more bins, and coordinates lose the digits."""
 MIX_UP = "All lengths (spacing, radius, ranges) are in LU: are some of them in another unit?"
 
 
@@ -59,6 +61,20 @@ def require_apex(scene: Scene, particles: int, cutoff: float) -> None:
             f"the body is too sharp for its chain: it rises by {height:.4g} LU from its apex to the nearest particles, "
             f"{beside:.4g} LU beside it. Take a finer bodies.spacing, a blunter bodies.profile, or an odd number of "
             f"bodies.particles, of which one is the apex. {MIX_UP}"
+        )
+
+
+def require_travel(scene: Scene, largest: float, cutoff: float) -> None:
+    """Refuse a body that goes as far as `largest` [LU], beyond all proportion to the reach of its forces.
+
+    Raises:
+        SettingsError: with the way.
+    """
+    most = FARTHEST_RATIO * max(cutoff, scene.bodies.spacing)
+    if abs(largest) > most:
+        raise SettingsError(
+            f"the upper body would go as far as {largest:.3g} LU, at most {most:.3g} LU are possible at this reach of "
+            f"forces: take a larger bodies.bulk_stiffness, or a smaller load or displacement. {MIX_UP}"
         )
 
 
