@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d.analysis.curve import Curve
+from contact1d.analysis.curve import TANGENTIAL_COLUMNS, Curve
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.reference.line_adhesion import barquins_reduced_force
-from contact1d.workflow.reproduce import adhesive, eq3, fig4, fig5, fig6, fig7, fig8, pressure, table1
+from contact1d.workflow.reproduce import adhesive, eq3, fig4, fig5, fig6, fig7, fig8, pressure, table1, tangential
 from contact1d.workflow.reproduce.studies import STUDIES
 from contact1d.workflow.reproduce.study import Study
 from contact1d.workflow.runs.finished import Run
@@ -64,13 +64,16 @@ class WrongRuns(dict[str, Run]):
         force = wrong(1.47) * barquins_reduced_force(a / 28.53)
         d = np.linspace(wrong(0.5), -0.5, ROWS)
         curve = Curve(d, force, a, np.full(ROWS, 0.3), ["unloading"] * ROWS, np.full(ROWS, 1e-3))
-        self[name] = Run(Path(name), document, self._paper, curve, {"zero_load": profile, "deepest": profile}, {})
+        rows = len(tangential.OUT) + len(tangential.LOOP) - 1
+        friction = {name: wrong(2.0) + rng.uniform(0.0, 1.0, rows).cumsum() for name in TANGENTIAL_COLUMNS}
+        profiles = {"zero_load": profile, "deepest": profile}
+        self[name] = Run(Path(name), document, self._paper, curve, profiles, friction)
         return self[name]
 
 
 @pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.name)
 def test_no_row_passes_where_every_run_is_wrong(study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in (adhesive, eq3, fig4, fig5, fig6, fig7, fig8, pressure, table1):
+    for module in (adhesive, eq3, fig4, fig5, fig6, fig7, fig8, pressure, table1, tangential):
         monkeypatch.setattr(module, "save", lambda *_: None, raising=False)
     paper = read_scene(SCENES / "paper.toml")
     found = study.judge(paper, WrongRuns(paper), tmp_path)

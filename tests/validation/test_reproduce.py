@@ -8,7 +8,7 @@ import pytest
 
 from contact1d.workflow.reproduce.studies import NAMES, reproduce
 
-QUICK = ("eq3", "fig4", "exponents", "table1", "mean_pressure")
+QUICK = ("eq3", "fig4", "exponents", "table1", "mean_pressure", "tangential")
 
 
 def failed(folder: Path, names: tuple[str, ...]) -> list[str]:

@@ -54,6 +54,23 @@ def reductions_figure(panels: Sequence[ReductionPanel]) -> Figure:
     return figure
 
 
+def slip_figure(forces: Sequence[Series], sticking: Sequence[Series], theory: tuple[Series, Series]) -> Figure:
+    """F_x over the way out and around a loop, and the stick radius on the way out, each beside its theory."""
+    figure = new_figure(WIDE)
+    axes = figure.subplots(1, 2)
+    for axis, series, line in zip(axes, (forces, sticking), theory, strict=True):
+        axis.plot(line.x, line.y, "-", color=THEORY, linewidth=1.2, label=line.name)
+        for i, (one, colour, marker) in enumerate(zip(series, COLOURS, MARKERS, strict=False)):
+            every = slice(i, None, len(series))  # all lie on one line: each shows its own part of it
+            axis.plot(one.x[every], one.y[every], marker, color=colour, label=one.name, markersize=5, fillstyle="none")
+        axis.set_xlabel("displacement over $u^*$")
+    axes[0].axhline(0.0, color="black", linewidth=0.8)
+    axes[0].set_ylabel(r"$F_x/\mu N$")
+    axes[1].set_ylabel("stick radius over contact radius")
+    axes[1].legend(frameon=False, loc="lower left", fontsize=9)
+    return figure
+
+
 def history_figure(force: Sequence[Series], radius: Sequence[Series], limit: float) -> Figure:
     """F_A and a_cr over the preload, each over its mean (Fig. 6); `limit`: preload at which chains slip past."""
     figure = new_figure(WIDE)
