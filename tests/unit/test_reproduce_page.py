@@ -15,8 +15,9 @@ import pytest
 from contact1d.workflow.judging.check import Check, Comparison, Verdict
 from contact1d.workflow.judging.markdown import cell
 from contact1d.workflow.judging.words import duration, measured, number, printed, ratio, share, tolerance
+from contact1d.workflow.pages.parts import paragraphs, symbols
 from contact1d.workflow.reproduce.markdown import readme_table, validation_markdown
-from contact1d.workflow.reproduce.page import html_page, paragraphs, symbols
+from contact1d.workflow.reproduce.page import html_page
 from contact1d.workflow.reproduce.record import RECORD, Record, StudyRecord, read_record
 
 VOID = {"meta", "link", "img", "br", "hr", "input"}

@@ -12,6 +12,7 @@ from contact1d.workflow.cli.arguments import SceneFile, Set, Without
 from contact1d.workflow.cli.cost import cost
 from contact1d.workflow.cli.ending import FAILS, Commands, command, read
 from contact1d.workflow.cli.identify import identify
+from contact1d.workflow.cli.report import report
 from contact1d.workflow.cli.reproduce import reproduce
 from contact1d.workflow.cli.scenes import new, schema
 from contact1d.workflow.cli.stability import stability
@@ -122,7 +123,7 @@ def doctor() -> None:
         raise typer.Exit(FAILS)
 
 
-for one in (new, run, sweep, deck, cost, identify, reproduce, stability, schema, doctor):
+for one in (new, run, sweep, report, deck, cost, identify, reproduce, stability, schema, doctor):
     app.command()(one)
 
 

@@ -9,7 +9,8 @@ from collections.abc import Sequence
 from contact1d.workflow.judging.check import WIDE, Check
 from contact1d.workflow.judging.markdown import prose, table
 from contact1d.workflow.judging.words import judged, limits, ours, outcome, passed, reference, share, tolerance
-from contact1d.workflow.reproduce.page import EVIDENCE, failures, paragraphs
+from contact1d.workflow.pages.parts import paragraphs
+from contact1d.workflow.reproduce.page import EVIDENCE, failures
 from contact1d.workflow.reproduce.record import Record, StudyRecord
 
 HEAD = """# Validation

@@ -6,18 +6,12 @@ plain text; on the page `F_A` and `R^0.5` become index and exponent.
 
 from __future__ import annotations
 
-import base64
-import html
-import re
-from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
-
-from jinja2 import Environment, StrictUndefined
 
 from contact1d.workflow.judging.check import Check, Evidence
 from contact1d.workflow.judging.words import duration, limits, ours, outcome, printed, ratio, reference, tolerance
+from contact1d.workflow.pages.parts import embedded, environment, text_of
 from contact1d.workflow.reproduce.record import Record, StudyRecord
 
 EVIDENCE: dict[Evidence, str] = {
@@ -30,17 +24,6 @@ EVIDENCE: dict[Evidence, str] = {
     "together",
 }
 """What a row is held against, the strongest evidence first, and what that is."""
-
-INDEX = re.compile(r"(?<!\w)([^\W\d_][\u0303\u0304]?)_(\w{1,3})(?!\w)")
-TOGETHER = re.compile(r" ?= ?(?=[\d−-])|(?<=\d) (?=(?:LU|FU|nm|[µm]N|[MG]Pa)\b|%)")
-EXPONENT = re.compile(r"\^(?:\{([^{}]+)\}|([−-]?\d+(?:[./]\d+)?|[a-z](?!\w)))")
-
-
-def symbols(text: str) -> str:
-    """Return `text` as HTML, escaped: `F_A` has an index, `R^{2/3}` an exponent, no line ends inside `R = 1000 LU`."""
-    whole = TOGETHER.sub(lambda found: found[0].replace(" ", "\u00a0"), html.escape(text))
-    indexed = INDEX.sub(r"<i>\1</i><sub>\2</sub>", whole)
-    return EXPONENT.sub(lambda found: f"<sup>{found[1] or found[2]}</sup>", indexed)
 
 
 @dataclass(frozen=True)
@@ -74,25 +57,12 @@ def html_page(record: Record, folder: Path) -> str:
         record: what was found.
         folder: where the figures are; one that is not there is named as missing on the page.
     """
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    environment.filters |= {
-        "anchor": anchor, "duration": duration, "limits": limits, "ours": ours, "outcome": outcome,
-        "paragraphs": paragraphs, "printed": printed, "ratio": ratio, "reference": reference, "symbols": symbols,
-        "tolerance": tolerance,
+    made = environment()
+    made.filters |= {
+        "anchor": anchor, "duration": duration, "limits": limits, "ours": ours, "outcome": outcome, "printed": printed,
+        "ratio": ratio, "reference": reference, "tolerance": tolerance,
     }  # fmt: skip
-    text = files("contact1d.workflow.reproduce").joinpath("page.html").read_text(encoding="utf-8")
-    figures = {name: _figure(folder / name) for study in record.studies for name in study.figures}
-    return environment.from_string(text).render(record=record, failures=failures(record), figures=figures)
-
-
-def paragraphs(text: str) -> Sequence[str]:
-    """Return the parts of a text that empty lines separate."""
-    return [part.strip() for part in re.split(r"\n\s*\n", text) if part.strip()]
-
-
-def _figure(path: Path) -> str | None:
-    """Return a PNG as a `data:` address, or None where it can't be read."""
-    try:
-        return "data:image/png;base64," + base64.b64encode(path.read_bytes()).decode("ascii")
-    except OSError:
-        return None
+    figures = {name: embedded(folder / name) for study in record.studies for name in study.figures}
+    return made.from_string(text_of("contact1d.workflow.reproduce", "page.html")).render(
+        record=record, failures=failures(record), figures=figures
+    )

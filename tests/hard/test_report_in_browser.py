@@ -1,0 +1,82 @@
+"""The page of a run in a real browser: figures drawn, the slider moves profile, force and bodies together."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from contact1d import run
+from contact1d.workflow.report.report import report
+from tests.scenes import chains
+
+PHONE = {"width": 390, "height": 844}
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> str:
+    folder = tmp_path_factory.mktemp("report")
+    run(chains(400.0, experiment={"kind": "pull_off", "preload": 0.5}), folder / "run", figures=False)
+    return report([folder / "run"], folder / "report.html").as_uri()
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as play:
+        chromium = play.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+        yield chromium
+        chromium.close()
+
+
+@pytest.mark.browser
+def test_the_slider_moves_force_profile_and_words_by_mouse_and_keyboard(browser: Any, address: str) -> None:
+    page = browser.new_page()
+    errors: list[str] = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.on(
+        "request", lambda asked: None if asked.url.startswith(("file:", "data:", "blob:")) else errors.append(asked.url)
+    )
+    page.goto(address)
+    assert page.locator(".js-plotly-plot").count() >= 5
+
+    def state() -> tuple[Any, ...]:
+        return (
+            page.evaluate("document.getElementById('way-0').data[1].y[0]"),
+            page.evaluate("document.getElementById('way-1').data[0].y.join()"),
+            page.evaluate("document.getElementById('way-2').data[0].y.join()"),
+            page.locator("#told").inner_text(),
+        )
+
+    slider = page.locator("#state")
+    slider.focus()
+    page.keyboard.press("Home")
+    first = state()
+    page.keyboard.press("ArrowRight")
+    second = state()
+    page.keyboard.press("End")
+    last = state()
+    assert all(a != b for a, b in zip(first, second, strict=True))
+    assert all(a != b for a, b in zip(second, last, strict=True))
+    assert first[3].startswith("1 of ")
+    assert slider.get_attribute("aria-valuetext") in last[3]
+    assert errors == []
+
+
+@pytest.mark.browser
+def test_a_phone_shows_the_page_without_scrolling_sideways(browser: Any, address: str) -> None:
+    page = browser.new_page(viewport=PHONE)
+    page.goto(address)
+    assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
+
+
+@pytest.mark.browser
+def test_on_paper_the_numbers_are_there_and_the_slider_is_not(browser: Any, address: str) -> None:
+    page = browser.new_page()
+    page.goto(address)
+    page.emulate_media(media="print")
+    assert not page.locator("#state").is_visible()
+    assert page.get_by_text("adhesion force").first.is_visible()

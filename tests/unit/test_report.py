@@ -1,0 +1,142 @@
+"""The page of runs or of a sweep: what stands on it, and that it needs nothing beside it."""
+
+from __future__ import annotations
+
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact1d import FolderError, Run, run, sweep
+from contact1d.analysis.pressure import Profile
+from contact1d.analysis.states import MOST_NUMBERS, read_states, states_of, write_states
+from contact1d.workflow.report.report import report
+from contact1d.workflow.report.words import scene_in_words
+from contact1d.workflow.scene import read_scene
+from tests.scenes import chains
+
+VOID = {"meta", "link", "img", "br", "hr", "input"}
+PULL_OFF = chains(400.0, experiment={"kind": "pull_off", "preload": 0.5}, title="<a> pull-off & more")
+SEVEN_DIGITS = 1e-6  # relative: what single precision and the page's rounding keep
+
+
+class Balance(HTMLParser):
+    """Checks that each element is closed, and keeps what the page asks for from elsewhere."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.outside: list[str] = []
+        self.ids: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = dict(attrs)
+        self.ids += [str(given["id"])] if "id" in given else []
+        self.outside += [str(given[key]) for key in ("src", "href") if key in given]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    return run(PULL_OFF, tmp_path_factory.mktemp("runs") / "pull_off", figures=False)
+
+
+def data_on(page: str) -> dict[str, Any]:
+    found = re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)
+    assert found
+    read: dict[str, Any] = json.loads(found[1])
+    return read
+
+
+def test_the_page_of_a_run_says_results_scene_cost_deck_and_versions(finished: Run, tmp_path: Path) -> None:
+    page = report([finished.folder], tmp_path / "r.html").read_text()
+    for quantity in finished.results.values():
+        assert str(quantity) in page
+    assert "&lt;a&gt; pull-off &amp; more" in page
+    assert "<h1><a>" not in page
+    for words in ("Compression by a preload", "tolerance asked for", "lmp -in in.lammps", "units           lj"):
+        assert words in page
+    for name in finished.document["versions"]:
+        assert f"<dt>{name}</dt>" in page
+
+
+def test_the_page_needs_nothing_beside_it_and_is_well_formed(finished: Run, tmp_path: Path) -> None:
+    page = report([finished.folder], tmp_path / "r.html").read_text()
+    checked = Balance(page)
+    assert checked.open == []
+    assert checked.outside == []
+    assert len(set(checked.ids)) == len(checked.ids)
+
+
+def test_the_slider_moves_through_every_state_with_its_own_numbers(finished: Run, tmp_path: Path) -> None:
+    way = data_on(report([finished.folder], tmp_path / "r.html").read_text())["way"]
+    count = len(finished.curve.force)
+    assert len(way["words"]) == len(way["pressure"]) == count
+    np.testing.assert_allclose(way["force"], finished.curve.force, rtol=SEVEN_DIGITS, atol=SEVEN_DIGITS)
+    spacing = finished.scene.bodies.spacing
+    shown = [spacing * sum(row) for row in way["pressure"]]
+    strong = np.argmax(np.abs(finished.curve.force))
+    assert shown[strong] == pytest.approx(
+        finished.curve.force[strong], rel=0.05
+    )  # the window cuts the attraction's tail
+
+
+def test_several_runs_are_overlaid_and_a_failed_one_says_why(finished: Run, tmp_path: Path) -> None:
+    other = run(chains(600.0, experiment={"kind": "pull_off", "preload": 0.5}, title="other"), tmp_path / "o", False)
+    with pytest.raises(Exception, match="end of the chain"):
+        run(chains(400.0, experiment={"kind": "load", "force": 0.5}, bodies={"particles": 7}), tmp_path / "f", False)
+    page = report([finished.folder, other.folder, tmp_path / "f"], tmp_path / "r.html").read_text()
+    names = [trace["name"] for trace in data_on(page)["charts"][0]["data"]]
+    assert {name.partition(",")[0] for name in names} == {finished.scene.title, "other"}
+    assert "end of the chain" in page
+    assert str(other.results.adhesion_force) in page
+
+
+def test_the_page_of_a_sweep_has_its_table_and_a_figure_for_each_result(tmp_path: Path) -> None:
+    base = chains(400.0, experiment={"kind": "load", "force": 0.5})
+    axes = [{"key": "experiment.force", "values": [0.25, 0.5]}, {"key": "bodies.profile.radius", "values": [400.0]}]
+    done = sweep({"title": "forces", "base": base, "axes": axes}, tmp_path / "s", workers=1, figures=False)
+    page = report([tmp_path / "s"], tmp_path / "r.html").read_text()
+    assert Balance(page).open == []
+    assert [chart["layout"]["title"]["text"] for chart in data_on(page)["charts"]] == [
+        name.replace("_", " ") for name in done.quantities
+    ]
+    assert page.count("<td>done</td>") == 2
+
+
+@pytest.mark.parametrize("place", ["nowhere", "other"])
+def test_a_folder_without_a_run_is_told(place: str, tmp_path: Path) -> None:
+    (tmp_path / "other").mkdir()
+    with pytest.raises(FolderError, match="give the folder of a finished run"):
+        report([tmp_path / place], tmp_path / "r.html")
+    assert not (tmp_path / "r.html").exists()
+
+
+def test_a_scene_in_words_has_every_table_and_value_with_its_unit() -> None:
+    told = {said.name: said for said in scene_in_words(read_scene(PULL_OFF))}
+    assert list(told) == ["bodies", "interaction", "accuracy", "experiment"]
+    assert ("preload", "0.5 FU") in told["experiment"].values
+    assert ("repulsion: amplitude", "0.18 FU·LU") in told["interaction"].values
+    assert ("cutoff", "auto") in told["interaction"].values
+    assert told["interaction"].meaning.startswith("V(r) = A exp")
+
+
+def test_states_are_thinned_evenly_and_read_back(tmp_path: Path) -> None:
+    n, m = 1000, 500
+    x = np.linspace(-5.0, 5.0, n)
+    kept = states_of([Profile(x, x * 0.0, x * x, x + row, x) for row in range(m)])
+    assert kept.pressure.size <= MOST_NUMBERS
+    assert (kept.rows[0], kept.rows[-1]) == (0, m - 1)
+    assert kept.x[0, 0] == -5.0
+    assert kept.x[0, -1] == 5.0
+    write_states(tmp_path / "states.npz", kept)
+    np.testing.assert_array_equal(read_states(tmp_path / "states.npz").pressure, kept.pressure)

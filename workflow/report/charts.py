@@ -1,0 +1,175 @@
+"""Figures for a page, as plain data that plotly's script draws: traces and a layout."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from contact1d.analysis.states import States
+from contact1d.workflow.runs.finished import Run
+from contact1d.workflow.sweep.axes import SweepPlan
+from contact1d.workflow.sweep.figures import Line, lines_of, mean_of, roles_of, short
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999933")
+"""Okabe and Ito's, which the colour-blind can tell apart."""
+DASHES = ("solid", "dash", "dot", "dashdot")
+Chart = dict[str, Any]
+DRAWN: dict[str, Any] = {"x": [], "y": [], "mode": "lines+markers", "marker": {"size": 4}}
+"""A line that the slider fills."""
+
+
+def chart(title: str, x: str, y: str, traces: Iterable[Mapping[str, Any]], **layout: Any) -> Chart:
+    """A figure with its axes' names."""
+    frame = {
+        "title": {"text": title, "x": 0, "xanchor": "left", "font": {"size": 15}},
+        "xaxis": {"title": {"text": x}, "zeroline": False, "showline": True, "ticks": "outside"},
+        "yaxis": {"title": {"text": y}, "zerolinecolor": "#888", "showline": True, "ticks": "outside"},
+        "template": "none", "margin": {"l": 70, "r": 15, "t": 45, "b": 50}, "hovermode": "closest",
+        "legend": {"orientation": "h", "y": -0.22},
+    }  # fmt: skip
+    return {"data": list(traces), "layout": frame | layout}
+
+
+def curves(runs: Mapping[str, Run]) -> list[Chart]:
+    """Force over displacement and over contact radius of the runs, overlaid; of a slide friction over time."""
+    found = []
+    moved = {name: run for name, run in runs.items() if len(run.curve.displacement) > 1}
+    if moved:
+        found.append(
+            chart("Force over displacement", "displacement (LU), compression positive", "force (FU)",
+                  _traces(moved, "displacement", "force"))
+        )  # fmt: skip
+    touching = {name: run for name, run in moved.items() if np.isfinite(run.curve.contact_radius).sum() > 1}
+    if touching:
+        found.append(
+            chart("Force over contact radius", "contact radius (LU)", "force (FU)",
+                  _traces(touching, "contact_radius", "force"))
+        )  # fmt: skip
+    sliding = {name: run for name, run in runs.items() if run.friction}
+    if sliding:
+        traces = [
+            {"x": _listed(run.friction["time"]), "y": _listed(run.friction["friction"]), "name": name, "mode": "lines",
+             "line": {"color": colour}}
+            for (name, run), colour in zip(sliding.items(), _colours(len(sliding)), strict=True)
+        ]  # fmt: skip
+        found.append(chart("Friction over time", "time (TU)", "friction (FU)", traces))
+    return found
+
+
+def _traces(runs: Mapping[str, Run], x: str, y: str) -> list[dict[str, Any]]:
+    """A line for each branch of each run; hovering tells all columns of the state."""
+    traces = []
+    for (name, run), colour in zip(runs.items(), _colours(len(runs)), strict=True):
+        branches = list(dict.fromkeys(run.curve.branch.tolist()))
+        for branch, dash in zip(branches, DASHES * len(branches), strict=False):
+            rows = np.flatnonzero(run.curve.branch == branch)
+            rows = rows[np.argsort(run.curve.displacement[rows], kind="stable")]  # a search goes to and fro
+            label = branch if len(runs) == 1 else f"{name}, {branch}"
+            traces.append(
+                {"x": _listed(getattr(run.curve, x)[rows]), "y": _listed(getattr(run.curve, y)[rows]),
+                 "customdata": rows.tolist(), "name": label, "mode": "lines+markers",
+                 "marker": {"size": 4}, "line": {"color": colour, "dash": dash},
+                 "hovertemplate": f"{x.replace('_', ' ')} %{{x:.5g}}<br>{y} %{{y:.5g}}<br>state %{{customdata}}"}
+            )  # fmt: skip
+    return traces
+
+
+def pressures(runs: Mapping[str, Run]) -> Chart | None:
+    """Pressure over x of the reported states that touch."""
+    traces = []
+    for (name, run), colour in zip(runs.items(), _colours(len(runs)), strict=True):
+        for (state, profile), dash in zip(run.profiles.items(), DASHES * len(run.profiles), strict=False):
+            if np.any(profile.pressure):
+                label = state.replace("_", " ") if len(runs) == 1 else f"{name}, {state.replace('_', ' ')}"
+                traces.append(
+                    {"x": _listed(profile.x), "y": _listed(profile.pressure), "name": label, "mode": "lines+markers",
+                     "marker": {"size": 4}, "line": {"color": colour, "dash": dash, "shape": "hvh"}}
+                )  # fmt: skip
+    if not traces:
+        return None
+    half = 1.1 * max(_half_width(np.asarray(trace["x"]), np.asarray(trace["y"])) for trace in traces)
+    made = chart("Pressure, line load of the chain", "x (LU)", "pressure (FU/LU), compression positive", traces)
+    made["layout"]["xaxis"]["range"] = [-half, half]
+    return made
+
+
+def way(run: Run, states: States) -> dict[str, Any]:
+    """What the slider moves through: for each kept state its place on the curve, profile, bodies and words."""
+    curve, rows = run.curve, states.rows
+    half = 1.15 * max(_half_width(x, p) for x, p in zip(states.x, states.pressure, strict=True))
+    view = np.abs(states.x).min(axis=0) <= half
+    kept = {name: getattr(states, name)[:, view] for name in ("x", "z_lower", "z_upper", "pressure")}
+    words = [
+        f"displacement {curve.displacement[row]:.5g} LU, force {curve.force[row]:.5g} FU, {curve.branch[row]}"
+        + ("" if math.isnan(curve.contact_radius[row]) else f", contact radius {curve.contact_radius[row]:.4g} LU")
+        for row in rows
+    ]
+    order = np.lexsort((curve.displacement, curve.branch == curve.branch[-1]))  # branch after branch
+    force = chart("Force over displacement", "displacement (LU)", "force (FU)", [
+        {"x": _listed(curve.displacement[order]), "y": _listed(curve.force[order]), "mode": "lines",
+         "line": {"color": "#999999"}},
+        {"x": [], "y": [], "mode": "markers", "marker": {"size": 12, "color": COLOURS[1]}},
+    ], showlegend=False)  # fmt: skip
+    load = chart("Pressure", "x (LU)", "pressure (FU/LU)", [
+        DRAWN | {"line": {"color": COLOURS[0], "shape": "hvh"}}
+    ], showlegend=False)  # fmt: skip
+    bodies = chart("Bodies, heights drawn larger", "x (LU)", "z (LU)", [
+        DRAWN | {"name": "upper", "line": {"color": COLOURS[0]}},
+        DRAWN | {"name": "lower", "line": {"color": COLOURS[2]}},
+    ])  # fmt: skip
+    for made, columns in ((load, ("pressure",)), (bodies, ("z_lower", "z_upper"))):
+        made["layout"]["xaxis"]["range"] = [-half, half]
+        made["layout"]["yaxis"]["range"] = _range(*(kept[name] for name in columns))
+    return {
+        "displacement": _listed(curve.displacement[rows]), "force": _listed(curve.force[rows]), "words": words,
+        "start": int(np.argmax(np.abs(curve.force[rows]))),
+        "charts": [force, load, bodies], **{name: [_listed(row) for row in array] for name, array in kept.items()},
+    }  # fmt: skip
+
+
+def over_axes(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> list[Chart]:
+    """Each result of a sweep over its axes."""
+    along, others = roles_of(plan)
+    found = []
+    for name, unit in units.items():
+        lines = lines_of(folder, plan, name)
+        traces = [_line(labels, line, [short(other.key) for other in others], colour)
+                  for (labels, line), colour in zip(lines.items(), _colours(len(lines)), strict=True)]  # fmt: skip
+        found.append(
+            chart(name.replace("_", " "), along.key, f"{name.replace('_', ' ')} ({unit})", traces,
+                  showlegend=bool(others))
+        )  # fmt: skip
+    return found
+
+
+def _line(labels: Sequence[str], line: Line, names: Sequence[str], colour: str) -> dict[str, Any]:
+    places = sorted(line)
+    means, errors = np.transpose([mean_of(line[place]) for place in places])
+    label = ", ".join(f"{name} = {value}" for name, value in zip(names, labels, strict=True))
+    return {"x": places, "y": _listed(means), "error_y": {"type": "data", "array": _listed(errors), "thickness": 1},
+            "name": label, "mode": "lines+markers", "line": {"color": colour}}  # fmt: skip
+
+
+def _half_width(x: np.ndarray[Any, Any], pressure: np.ndarray[Any, Any]) -> float:
+    """Largest |x| at which there is pressure to be seen; a tenth of the body where there is none."""
+    carrying = np.abs(pressure) > 0.01 * np.max(np.abs(pressure), initial=0.0)
+    return float(np.max(np.abs(x[carrying]))) if carrying.any() else 0.1 * float(np.max(np.abs(x)))
+
+
+def _range(*columns: np.ndarray[Any, Any]) -> list[float]:
+    low, high = min(float(c.min()) for c in columns), max(float(c.max()) for c in columns)
+    margin = 0.06 * (high - low) or 1e-12
+    return [low - margin, high + margin]
+
+
+def _colours(count: int) -> list[str]:
+    return [COLOURS[place % len(COLOURS)] for place in range(count)]
+
+
+def _listed(values: Iterable[Any]) -> list[Any]:
+    """Numbers for JSON, in seven digits; None where there is none."""
+    return [float(f"{float(v):.7g}") if math.isfinite(float(v)) else None for v in values]
