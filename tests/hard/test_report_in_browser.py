@@ -12,6 +12,8 @@ from contact1d import run
 from contact1d.workflow.report.report import report
 from tests.scenes import chains
 
+HERE = ("file:", "data:", "blob:")
+"""Addresses that need no network."""
 PHONE = {"width": 390, "height": 844}
 
 

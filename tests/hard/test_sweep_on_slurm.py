@@ -25,7 +25,7 @@ SWEEP: dict[str, Any] = {
         },
         "experiment": {"kind": "load", "force": 1.0},
     },
-    "axes": [{"key": "experiment.force", "from": 0.1, "to": 90.0, "steps": POINTS - 1}],
+    "axes": [{"key": "experiment.force", "from": 0.1, "to": 900.0, "steps": POINTS - 1}],
 }  # fmt: skip
 
 

@@ -21,6 +21,7 @@ from tests.scenes import chains
 
 VOID = {"meta", "link", "img", "br", "hr", "input"}
 PULL_OFF = chains(400.0, experiment={"kind": "pull_off", "preload": 0.5}, title="<a> pull-off & more")
+TAIL = 0.05  # relative: the part of the force beyond the window that is drawn
 SEVEN_DIGITS = 1e-6  # relative: what single precision and the page's rounding keep
 
 
@@ -85,9 +86,7 @@ def test_the_slider_moves_through_every_state_with_its_own_numbers(finished: Run
     spacing = finished.scene.bodies.spacing
     shown = [spacing * sum(row) for row in way["pressure"]]
     strong = np.argmax(np.abs(finished.curve.force))
-    assert shown[strong] == pytest.approx(
-        finished.curve.force[strong], rel=0.05
-    )  # the window cuts the attraction's tail
+    assert shown[strong] == pytest.approx(finished.curve.force[strong], rel=TAIL)
 
 
 def test_several_runs_are_overlaid_and_a_failed_one_says_why(finished: Run, tmp_path: Path) -> None:

@@ -146,7 +146,7 @@ def test_an_axis_that_is_no_key_of_the_scene_is_refused_before_anything_is_writt
 def test_each_point_has_a_row_whatever_became_of_it(tmp_path: Path) -> None:
     """Done, failed (too narrow for its load), refused (a radius below 0); duplicates run once."""
     executor = Here()
-    done = sweep(plane(axis(FORCE, 1.0, 90.0, -2.0, 1.0), axis(RADIUS, 100.0)), tmp_path / "s", executor)
+    done = sweep(plane(axis(FORCE, 1.0, 900.0, -2.0, 1.0), axis(RADIUS, 100.0)), tmp_path / "s", executor)
     table = rows(tmp_path / "s")
     assert [row["status"] for row in table] == ["done", "failed", "refused", "done"]
     assert done.counts == {"done": 2, "failed": 1, "refused": 1}
@@ -261,7 +261,7 @@ def test_progress_counts_points_and_tells_of_those_that_failed(tmp_path: Path) -
             self.notes.append(text)
 
     heard = Heard()
-    sweep(plane(axis(FORCE, 0.5, 90.0, -1.0, 0.5)), tmp_path, Here(), figures=False, progress=heard)
+    sweep(plane(axis(FORCE, 0.5, 900.0, -1.0, 0.5)), tmp_path, Here(), figures=False, progress=heard)
     assert heard.points == 4
     assert [note.partition(": ")[2].partition(":")[0] for note in heard.notes] == ["refused", "failed"]
 
@@ -289,7 +289,7 @@ def test_the_command_prints_counts_and_ends_with_3_where_a_point_failed(tmp_path
         'title = "p"\n[bodies]\nparticles = 41\nspacing = 1.0\nprofile = { kind = "parabola", radius = 100.0 }\n'
         'bulk_stiffness = 1.0\nlower = "rigid_plane"\n[experiment]\nkind = "load"\nforce = 1.0\n'
     )
-    (tmp_path / "s.toml").write_text('scene = "plane.toml"\n[[axes]]\nkey = "experiment.force"\nvalues = [0.5, 90.0]\n')
+    (tmp_path / "s.toml").write_text('scene = "plane.toml"\n[[axes]]\nkey = "experiment.force"\nvalues = [0.5, 900.0]\n')
     asked = ["sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / "o"), "--workers", "1", "-q", "--parquet"]
     result = CliRunner().invoke(app, asked)
     assert result.exit_code == 3

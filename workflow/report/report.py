@@ -151,7 +151,8 @@ def _page(template: str, charts: Sequence[Chart], moving: Mapping[str, Any] | No
     made = environment()
     made.loader = FunctionLoader(lambda name: text_of(PACKAGE, name))
     data = json.dumps({"charts": list(charts), "way": moving}, ensure_ascii=False, allow_nan=False)
-    return made.get_template(template).render(
-        plotly=get_plotlyjs(), script=text_of(PACKAGE, "page.js"), data=data.replace("</", "<\\/"),
-        charts=charts, moving=moving is not None, last=len(moving["words"]) - 1 if moving else 0, start=moving["start"] if moving else 0, **values,
-    )  # fmt: skip
+    values |= {"charts": charts, "moving": moving is not None}
+    if moving is not None:
+        values |= {"last": len(moving["words"]) - 1, "start": moving["start"]}
+    page = {"plotly": get_plotlyjs(), "script": text_of(PACKAGE, "page.js"), "data": data.replace("</", "<\\/")}
+    return made.get_template(template).render(page | values)
