@@ -289,7 +289,8 @@ def test_the_command_prints_counts_and_ends_with_3_where_a_point_failed(tmp_path
         'title = "p"\n[bodies]\nparticles = 41\nspacing = 1.0\nprofile = { kind = "parabola", radius = 100.0 }\n'
         'bulk_stiffness = 1.0\nlower = "rigid_plane"\n[experiment]\nkind = "load"\nforce = 1.0\n'
     )
-    (tmp_path / "s.toml").write_text('scene = "plane.toml"\n[[axes]]\nkey = "experiment.force"\nvalues = [0.5, 900.0]\n')
+    axis_text = '[[axes]]\nkey = "experiment.force"\nvalues = [0.5, 900.0]\n'
+    (tmp_path / "s.toml").write_text(f'scene = "plane.toml"\n{axis_text}')
     asked = ["sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / "o"), "--workers", "1", "-q", "--parquet"]
     result = CliRunner().invoke(app, asked)
     assert result.exit_code == 3
