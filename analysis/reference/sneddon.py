@@ -14,8 +14,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import quad
-from scipy.optimize import brentq
 
 from contact1d.analysis.reference.interaction import Floats
 
@@ -191,6 +189,8 @@ class Sphere:
 
     def _energy_at(self, contact_radius: float) -> float:
         """Return U of one contact radius a [force length]."""
+        from scipy.integrate import quad  # here, since a small run would wait for its import
+
         r = self.radius
 
         def rate(a: float) -> float:
@@ -201,6 +201,8 @@ class Sphere:
 
 def _root_of_t_tanh_t(value: float) -> float:
     """Return t >= 0 with t tanh t = `value` >= 0."""
+    from scipy.optimize import brentq
+
     low = math.sqrt(value)
     return float(brentq(lambda t: t * math.tanh(t) - value, low, low + value, xtol=1e-300, rtol=ROOT)) if low else 0.0
 

@@ -367,7 +367,7 @@ PLANE = tables(
 STICKY = tables(JKR) | {"accuracy": {"tolerance": 1e-2}}
 BARE = tables(None, PATH, lower="rigid_plane", reduction="mdr")
 FRAME = {
-    "scene", "experiment", "method", "reduction", "effects", "status", "warnings", "timing", "versions",
+    "theory", "scene", "experiment", "method", "reduction", "effects", "status", "warnings", "timing", "versions",
     "accuracy",
 }  # fmt: skip
 

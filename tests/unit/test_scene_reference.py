@@ -29,6 +29,25 @@ in K or °C, and is kept as k_BT.
 | in model units | what | as text, for example |
 | --- | --- | --- |
 """
+RESULTS = """
+# What results.json holds
+
+Every quantity is `{"value", "uncertainty", "unit"}`; where LU and FU are known it has `si`, the same in SI. Beside:
+
+| key | what |
+| --- | --- |
+"""
+BESIDE = {
+    "`theory`": 'every closed form that applies, a list of `{"name", "source", "applies", "values"}`: its name (Hertz, '
+    "Sneddon, JKR …), where it is written down, why it holds here, and for each result that it speaks of "
+    '`{"value", "unit", "si", "deviation"}`, the deviation being the run\'s value over it minus 1',
+    "`units`": "one LU and one FU in SI, where they are known",
+    "`reduction`": "which one the numbers are of; `image_…` is a length of the plane image that is not the body's",
+    "`scene`, `experiment`, `method`, `effects`": "what ran",
+    "`status`, `warnings`": '`done` or `failed`; what limits the trust in the numbers, each `{"name", "message"}`',
+    "`accuracy`": "the tolerance of the settings in the end, and how often it was lowered",
+    "`timing`, `versions`": "seconds and steps; of what the numbers depend on",
+}
 TABLES = {
     "bodies": scenes.Bodies,
     "bodies.profile, kind parabola": scenes.Parabola,
@@ -82,6 +101,7 @@ def section(name: str, table: type[Table]) -> str:
 
 def test_the_page_of_all_keys_is_what_the_tables_say() -> None:
     page = head() + "".join(section(name, table) for name, table in TABLES.items())
+    page += RESULTS + "".join(f"| {key} | {what} |\n" for key, what in BESIDE.items())
     if os.environ.get("WRITE_DOCS"):
         PAGE.write_text(page, encoding="utf-8")
     assert PAGE.read_text(encoding="utf-8") == page

@@ -21,6 +21,7 @@ from contact1d.workflow.experiments.running.kind import FINER_SPACING
 from contact1d.workflow.experiments.running.outcome import Outcome, in_words, left_open_by_spacing, unmet
 from contact1d.workflow.runs.body import doubt_of_the_image, of_the_body
 from contact1d.workflow.runs.scales import scales_of, unfound
+from contact1d.workflow.runs.theory import theory
 from contact1d.workflow.scene import Scene, Tangential
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, SI, Scales
 
@@ -37,7 +38,8 @@ FILES = (
 def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict[str, Any]:
     """What results.json holds after a run that was done."""
     scales = scales_of(scene, outcome.quantities)
-    quantities = {name: quantity.entry() for name, quantity in of_the_body(scene, outcome.quantities).items()}
+    found = of_the_body(scene, outcome.quantities)
+    quantities = {name: quantity.entry() for name, quantity in found.items()}
     if scales is not None:
         for entry in quantities.values():
             entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
@@ -60,7 +62,8 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
         "tolerance": scene.accuracy.tolerance if refinement is None else float(f"{refinement.tolerance:.6g}"),
         "refinements": 0 if refinement is None else refinement.count,
     }
-    return quantities | {"accuracy": accuracy} | _frame(scene, "done", warnings, timing)
+    beside = {"theory": theory(scene, found, scales)}
+    return quantities | beside | {"accuracy": accuracy} | _frame(scene, "done", warnings, timing)
 
 
 def _what_helps(scene: Scene, outcome: Outcome, coarse: Iterable[str]) -> str:

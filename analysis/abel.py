@@ -1,0 +1,143 @@
+"""The pressure under an axisymmetric body from the line load of its plane image: the inverse Abel transform, p(r).
+
+The method of dimensionality reduction (MDR) keeps force, displacement and radius; its line load q(x) [force/length] is
+the body's pressure p(r) seen from the side, and so (Popov and Heß 2015, chapter 2; W. C. Hayes' form of Sneddon's)
+
+    q(x) = 2 ∫_x^∞ r p(r)/√(r² − x²) dr,     p(r) = −(1/π) ∫_r^∞ q′(x)/√(x² − r²) dx
+
+With q a polynomial between neighbouring places, q′ = c₀ + c₁ x + c₂ x², each piece has a closed form,
+
+    ∫ q′/√(x² − r²) dx = (c₀ + c₂ r²/2) arcosh(x/r) + (c₁ + c₂ x/2) √(x² − r²)
+
+and where q ends at the edge a by a jump q(a), as under a flat punch or in JKR, that adds q(a)/π√(a² − r²). So the root
+at Hertz's edge, the pole at a punch's and the logarithm at a cone's tip are exact, not resolved by a grid.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+NEAR = 0.3
+"""Of a spacing: a place nearer to the edge than that is left out, since a slope over so short a way is mostly noise."""
+KINK = 0.5
+"""Slope at the axis over that AWAY places off from which on the line load has an apex (a cone's) and no round top."""
+AWAY = 4
+FEWEST = 3
+"""Places on one side from which a shape can be told."""
+
+
+@dataclass(frozen=True)
+class LineLoad:
+    """An even line load as cubics between places: q(x) for 0 ≤ x ≤ edge, nothing beyond.
+
+    Attributes:
+        breaks: 0 = x₀ < x₁ < … < x_n = edge, shape (n + 1,) [length].
+        coefficients: of q = Σ_k coefficients[k] x^k between them, shape (4, n).
+    """
+
+    breaks: Array
+    coefficients: Array
+
+    @property
+    def edge(self) -> float:
+        """Where it ends [length]."""
+        return float(self.breaks[-1])
+
+    @property
+    def at_edge(self) -> float:
+        """q just inside the edge [force/length]: the jump there."""
+        return float(np.polynomial.polynomial.polyval(self.edge, self.coefficients[:, -1]))
+
+    @property
+    def has_apex(self) -> bool:
+        """Whether its slope does not vanish on the axis: the pressure then grows without bound there."""
+        return bool(self.coefficients[1, 0] != 0.0)
+
+    def pressure(self, r: ArrayLike) -> Array:
+        """Return p(r) [force/length²], exactly; infinite at r = 0 under an apex, 0 from the edge on.
+
+        Args:
+            r: distances from the axis ≥ 0, any shape [length].
+        """
+        at = np.atleast_1d(np.asarray(r, dtype=np.float64))
+        inside = at < self.edge
+        p = np.zeros_like(at)
+        p[inside] = [self._pressure(float(one)) for one in at[inside]]
+        return p.reshape(np.shape(r))
+
+    def _pressure(self, r: float) -> float:
+        ends = np.maximum(self.breaks, r)
+        root = np.sqrt((ends - r) * (ends + r))
+        c_0, c_1, c_2 = (k * self.coefficients[k] for k in (1, 2, 3))
+        total = float(np.sum(c_1 * np.diff(root) + 0.5 * c_2 * np.diff(ends * root)))
+        if r > 0.0:
+            total += float(np.sum((c_0 + 0.5 * c_2 * r**2) * np.diff(np.arccosh(ends / r))))
+        else:
+            total += float(np.sum(c_0[1:] * np.diff(np.log(self.breaks[1:]))))
+            if self.has_apex:
+                return float(np.copysign(np.inf, -c_0[0]))
+        return (self.at_edge / float(root[-1]) - total) / np.pi
+
+
+def line_load(x: ArrayLike, load: ArrayLike, edge: float | None = None, ends_at_zero: bool = True) -> LineLoad:
+    """Return the even line load through values at places, by cubic splines; of both sides the mean.
+
+    Polynomials up to x³ on each side (Hertz, cone, flat punch) are met exactly, others with the fourth order of the
+    spacing. Whether the top is round or has an apex is told by the values (KINK).
+
+    Args:
+        x: places, rising and the same on both sides of 0, shape (n,) [length].
+        load: q there, shape (n,) [force/length].
+        edge: a, where it ends [length]; None: it fades out, and ends at 0 at the last place.
+        ends_at_zero: whether q(a) = 0; else the last piece goes on to the edge, where q jumps to 0.
+
+    Raises:
+        ValueError: fewer than FEWEST places on a side within the edge, or places that are not the same on both sides.
+    """
+    from scipy.interpolate import CubicSpline
+
+    places, values = np.asarray(x, dtype=np.float64), np.asarray(load, dtype=np.float64)
+    if places.shape != values.shape or places.ndim != 1:
+        raise ValueError(f"places and loads must be 1-D and equally long, got {places.shape} and {values.shape}")
+    half = places.size // 2
+    right, mean = places[half:], 0.5 * (values[half:] + values[::-1][half:])
+    spacing = float(places[-1] - places[0]) / max(places.size - 1, 1)
+    if places.size < 2 or np.abs(places + places[::-1]).max() > 1e-6 * spacing:
+        raise ValueError("the places must be the same on both sides of 0")
+    end = float(right[-1]) if edge is None else edge
+    inside = right <= end - NEAR * spacing if ends_at_zero else right < end
+    right, mean = right[inside], mean[inside]
+    if right.size < FEWEST:
+        raise ValueError(f"a pressure needs {FEWEST} places on each side of the axis, got {right.size}")
+    if ends_at_zero:
+        right, mean = np.append(right, end), np.append(mean, 0.0)
+    spline = CubicSpline(right, mean)
+    top, flank = spline([0.0, right[min(AWAY, right.size - 1)]], 1)
+    if abs(top) <= KINK * abs(flank):
+        mirror = slice(None) if right[0] > 0.0 else slice(1, None)
+        both, whole = np.append(-right[mirror][::-1], right), np.append(mean[mirror][::-1], mean)
+        spline = CubicSpline(both, whole)
+        return _from_axis(spline, end, even=True)
+    return _from_axis(spline, end, even=False)
+
+
+def _from_axis(spline: object, end: float, even: bool) -> LineLoad:
+    """The pieces of a spline from the axis to the edge, in powers of x; an `even` one has no odd powers at the axis."""
+    knots, local = spline.x, spline.c[::-1]  # type: ignore[attr-defined]
+    first = int(np.searchsorted(knots, 0.0, side="right")) - 1
+    first = max(first, 0)
+    starts, pieces = knots[first:-1], local[:, first:]
+    shift = -starts
+    c = np.empty_like(pieces)
+    c[3] = pieces[3]
+    c[2] = pieces[2] + 3.0 * pieces[3] * shift
+    c[1] = pieces[1] + 2.0 * pieces[2] * shift + 3.0 * pieces[3] * shift**2
+    c[0] = pieces[0] + pieces[1] * shift + pieces[2] * shift**2 + pieces[3] * shift**3
+    breaks = np.concatenate([[0.0], starts[1:], [end]])
+    if even:
+        c[1, 0] = 0.0
+    return LineLoad(breaks, c)

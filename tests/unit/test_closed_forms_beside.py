@@ -1,0 +1,143 @@
+"""Claim: beside a result stands every closed form that applies to it, and none that does not.
+
+References: written down here, K. L. Johnson's and Sneddon's, in the variable that the scene gives.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact1d.workflow.runs.closed_form import Case
+from contact1d.workflow.runs.theory import applying, theory
+from contact1d.workflow.scene import scene_from_dict
+from contact1d.workflow.units import Quantity, Scales
+from tests.scenes import chains
+
+ROUND_OFF = 1e-12
+"""Relative: a bisection to the last digit, and a few operations."""
+E, R, F, D = 0.4, 300.0, 7.0, 1.3
+SLOPE, PUNCH = 0.05, 20.0
+LOAD, PATH = {"kind": "load", "force": F}, {"kind": "path", "displacements": [0.0, D, 0.5]}
+NAMES = {
+    "load": ("displacement", "force", "contact_radius", "mean_pressure", "peak_pressure", "central_pressure",
+             "contact_stiffness"),
+    "path": ("largest_force", "largest_radius", "mean_pressure", "central_pressure"),
+}  # fmt: skip
+PROFILES: dict[str, dict[str, Any]] = {
+    "parabola": {"kind": "parabola", "radius": R},
+    "circle": {"kind": "circle", "radius": R},
+    "cone": {"kind": "cone", "slope": SLOPE},
+    "flat_punch": {"kind": "flat_punch", "radius": PUNCH},
+    "power": {"kind": "power", "exponent": 4.0, "radius": 40.0, "height": 2.0},
+}
+
+
+def case(profile: str, experiment: dict[str, Any], **more: Any) -> Case:
+    """On a plane, spacing 2, unless it has an interaction; every result is 1, the given force itself."""
+    plane = {} if "interaction" in more else {"lower": "rigid_plane"}
+    bodies = {"profile": PROFILES[profile], "spacing": 2.0} | plane | more.pop("bodies", {})
+    tables = chains(R, 2.0 * E, experiment=experiment, **{"interaction": None} | more, bodies=bodies)
+    found = {name: Quantity(F if name == "force" else 1.0, 0.0, "1") for name in NAMES[experiment["kind"]]}
+    return Case(scene_from_dict(tables), found)
+
+
+def values(of: Case) -> dict[str, float]:
+    (form,) = applying(of)
+    return dict(form.values(of))
+
+
+def test_hertz_under_a_force() -> None:
+    said = values(case("parabola", LOAD))
+    a = (0.75 * F * R / E) ** (1.0 / 3.0)
+    assert said["contact_radius"] == pytest.approx(a, rel=ROUND_OFF)
+    assert said["displacement"] == pytest.approx(a**2 / R, rel=ROUND_OFF)
+    assert said["mean_pressure"] == pytest.approx(F / (math.pi * a**2), rel=ROUND_OFF)
+    assert said["peak_pressure"] == pytest.approx(1.5 * F / (math.pi * a**2), rel=ROUND_OFF)
+    assert said["contact_stiffness"] == pytest.approx(1.5 * F / (a**2 / R), rel=ROUND_OFF)
+    assert "force" not in said
+
+
+def test_hertz_at_a_displacement() -> None:
+    said = values(case("parabola", PATH))
+    assert said["largest_force"] == pytest.approx(4.0 / 3.0 * E * math.sqrt(R) * D**1.5, rel=ROUND_OFF)
+    assert said["largest_radius"] == pytest.approx(math.sqrt(R * D), rel=ROUND_OFF)
+
+
+def test_the_paper_s_reduction_stands_beside_hertz_of_its_two_spheres() -> None:
+    """c = E*/2 with the stiffness 2E of spacing 2: E* is twice the layer; effective radius R/2."""
+    said = values(case("parabola", PATH, bodies={"reduction": "geike_popov"}))
+    assert said["largest_force"] == pytest.approx(4.0 / 3.0 * 2.0 * E * math.sqrt(0.5 * R) * D**1.5, rel=ROUND_OFF)
+    assert said["largest_radius"] == pytest.approx(math.sqrt(0.5 * R * D), rel=ROUND_OFF)
+
+
+def test_cone_and_punch() -> None:
+    cone = values(case("cone", LOAD))
+    a = math.sqrt(2.0 * F / (math.pi * E * SLOPE))
+    assert cone["contact_radius"] == pytest.approx(a, rel=ROUND_OFF)
+    assert cone["displacement"] == pytest.approx(0.5 * math.pi * SLOPE * a, rel=ROUND_OFF)
+    assert "central_pressure" not in cone
+    assert "peak_pressure" not in cone
+    punch = values(case("flat_punch", LOAD))
+    assert punch["displacement"] == pytest.approx(F / (2.0 * E * PUNCH), rel=ROUND_OFF)
+    assert punch["central_pressure"] == pytest.approx(F / (2.0 * math.pi * PUNCH**2), rel=ROUND_OFF)
+    assert "contact_radius" not in punch
+
+
+def test_power_and_whole_sphere_satisfy_their_own_equations() -> None:
+    """F and d of one contact radius: 2n/(n + 1) E a d; and a ≪ R is Hertz."""
+    power = values(case("power", LOAD))
+    assert F == pytest.approx(1.6 * E * power["contact_radius"] * power["displacement"], rel=ROUND_OFF)
+    sphere = values(case("circle", PATH))
+    a = sphere["largest_radius"]
+    assert D == pytest.approx(a * math.atanh(a / R), rel=ROUND_OFF)
+    hertz = values(case("parabola", PATH))
+    assert sphere["largest_force"] == pytest.approx(hertz["largest_force"], rel=2.0 * D / R)
+    assert sphere["central_pressure"] == pytest.approx(2.0 * E * a / (math.pi * R), rel=(a / R) ** 2)
+
+
+@pytest.mark.parametrize("profile", ["parabola", "cone", "flat_punch"])
+@pytest.mark.parametrize("experiment", [LOAD, PATH])
+def test_pressure_of_a_form_adds_up_to_its_force(profile: str, experiment: dict[str, Any]) -> None:
+    """2π ∫ r p dr by substitution r = a sin φ, which takes the pole of a punch away."""
+    asked = case(profile, experiment)
+    (form,) = applying(asked)
+    said = dict(form.values(asked))
+    a = said.get("largest_radius", PUNCH)
+    nodes, weights = np.polynomial.legendre.leggauss(400)
+    angle = 0.25 * math.pi * (nodes + 1.0)
+    assert form.pressure is not None
+    p = form.pressure(asked, a * np.sin(angle))
+    force = 2.0 * math.pi * a**2 * 0.25 * math.pi * float(weights @ (p * np.sin(angle) * np.cos(angle)))
+    assert force == pytest.approx(F if experiment is LOAD else said["largest_force"], rel=1e-4)
+
+
+ADHESIVE = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        case("parabola", LOAD, interaction=ADHESIVE, bodies={"reduction": "mdr"}),
+        case("parabola", LOAD, interaction=ADHESIVE),
+        case("parabola", LOAD, neighbours={"stiffness": 0.3}),
+        case("cone", PATH, bodies={"reduction": "geike_popov"}),
+    ],
+)
+def test_where_a_closed_form_does_not_hold_there_is_none(asked: Case) -> None:
+    assert not [form for form in applying(asked) if form.name.startswith(("Hertz", "Sneddon", "Galin"))]
+
+
+def test_the_entry_has_value_deviation_and_si() -> None:
+    asked = case("parabola", LOAD)
+    found = {"displacement": Quantity(2.0, 0.1, "LU"), "force": Quantity(F, 0.0, "FU")}
+    (entry,) = theory(asked.scene, found, Scales(1e-6, 1e-3))
+    assert set(entry) == {"name", "source", "applies", "values"}
+    assert entry["name"] == "Hertz"
+    said = entry["values"]["displacement"]
+    assert said["deviation"] == pytest.approx(2.0 / said["value"] - 1.0, rel=ROUND_OFF)
+    assert said["si"] == {"value": pytest.approx(1e-6 * said["value"], rel=ROUND_OFF), "unit": "m"}
+    assert set(entry["values"]) == {"displacement"}
