@@ -24,8 +24,10 @@ from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import UntrustedError
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.runs.implied import formulas, with_implied
+from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.refinement import Refined, refined
 from contact1d.workflow.runs.report import FILES, curve_of, failure, results, write_results, write_tables
+from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import AnyScene, Scene, read_scene, scene_to_toml
 from contact1d.workflow.settings.settings import Settings, settings_for
 from contact1d.workflow.settings.size import MIX_UP, in_words, require_steps
@@ -75,6 +77,8 @@ def _run(context: RunContext, started: float, figures: bool, refine: bool) -> Ru
     scene, settings, folder = context.deck.scene, context.deck.settings, context.folder
     if large := in_words(scene, settings.particles, settings.cutoff):
         context.progress.note(large)
+    for doubt in implausible(scene, scales_of(scene, {}), {}).values():
+        context.progress.note(doubt)
 
     def timing() -> dict[str, float]:
         total = time.perf_counter() - started

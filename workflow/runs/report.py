@@ -20,6 +20,7 @@ from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.experiments.running.kind import FINER_SPACING
 from contact1d.workflow.experiments.running.outcome import Outcome, in_words, left_open_by_spacing, unmet
 from contact1d.workflow.runs.body import doubt_of_the_image, of_the_body
+from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.scales import scales_of, unfound
 from contact1d.workflow.runs.theory import theory
 from contact1d.workflow.scene import Scene, Tangential
@@ -44,7 +45,7 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
         for entry in quantities.values():
             entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
         quantities["units"] = {unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE)}
-    doubts = dict(outcome.warnings) | doubt_of_the_image(scene)
+    doubts = dict(outcome.warnings) | doubt_of_the_image(scene) | implausible(scene, scales, outcome.quantities)
     if coarse := unmet(scene, outcome):
         ended = "" if outcome.refinement is None else f" ({outcome.refinement.ended})"
         doubts["tolerance"] = (
@@ -56,14 +57,13 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
             f"the run found no {' and no '.join(missing)} above 0, from which surface_energy would fix both units, so "
             'nothing is in SI: use kind = "pull_off", and a radius that makes the contact many spacings wide'
         )
-    warnings = [{"name": name, "message": message} for name, message in doubts.items()]
     refinement = outcome.refinement
     accuracy = {
         "tolerance": scene.accuracy.tolerance if refinement is None else float(f"{refinement.tolerance:.6g}"),
         "refinements": 0 if refinement is None else refinement.count,
     }
     beside = {"theory": theory(scene, found, scales)}
-    return quantities | beside | {"accuracy": accuracy} | _frame(scene, "done", warnings, timing)
+    return quantities | beside | {"accuracy": accuracy} | _frame(scene, "done", _warnings(doubts), timing)
 
 
 def _what_helps(scene: Scene, outcome: Outcome, coarse: Iterable[str]) -> str:
@@ -75,7 +75,12 @@ def _what_helps(scene: Scene, outcome: Outcome, coarse: Iterable[str]) -> str:
 
 def failure(scene: Scene, error: Mapping[str, object], timing: Mapping[str, float]) -> dict[str, Any]:
     """What results.json holds after a run that failed: no numbers."""
-    return {"error": dict(error)} | _frame(scene, "failed", [], timing)
+    doubts = implausible(scene, scales_of(scene, {}), {})
+    return {"error": dict(error)} | _frame(scene, "failed", _warnings(doubts), timing)
+
+
+def _warnings(doubts: Mapping[str, str]) -> list[dict[str, str]]:
+    return [{"name": name, "message": message} for name, message in doubts.items()]
 
 
 def _frame(scene: Scene, status: str, warnings: list[dict[str, str]], timing: Mapping[str, float]) -> dict[str, Any]:

@@ -1,0 +1,81 @@
+"""Sizes that no contact in a laboratory has are told by name; ordinary ones are not."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from contact1d.workflow.runs.plausibility import implausible
+from contact1d.workflow.scene import Scene, scene_from_dict
+from contact1d.workflow.units import Quantity, Scales
+
+STEEL = {"youngs_modulus": "210 GPa", "poisson_ratio": 0.3}
+RUBBER = {"youngs_modulus": "2 MPa", "poisson_ratio": 0.5}
+SI = Scales(1.0, 1.0)
+
+
+def scene(material: dict[str, Any], **bodies: Any) -> Scene:
+    profile = {"kind": "parabola", "radius": "10 mm"}
+    own = {"particles": "auto", "spacing": "4 µm", "bulk_stiffness": "auto", "lower": "rigid_plane", "reduction": "mdr"}
+    experiment = {"kind": "load", "force": "10 N"}
+    return scene_from_dict(
+        {"title": "t", "bodies": own | {"profile": profile} | bodies, "material": material, "experiment": experiment}
+    )
+
+
+@pytest.mark.parametrize("other", [STEEL, RUBBER, {"youngs_modulus": 1e30, "poisson_ratio": 0.0}])
+def test_ordinary_materials_and_a_rigid_one_are_not_told(other: dict[str, Any]) -> None:
+    assert implausible(scene({"upper": STEEL, "lower": other}), SI, {}) == {}
+
+
+@pytest.mark.parametrize(
+    ("given", "name", "words"),
+    [
+        (scene({"upper": STEEL | {"youngs_modulus": 210}, "lower": STEEL}), "implausible_modulus",
+         "material.upper.youngs_modulus is 210 Pa, softer than any gel: was 210 GPa meant?"),
+        (scene({"contact_modulus": "1 mPa"}), "implausible_modulus",
+         "0.001 Pa, softer than any gel: is its unit right?"),
+        (scene({"contact_modulus": "210e6 GPa"}), "implausible_modulus", "2.1e+17 Pa is stiffer than diamond"),
+        (scene({"upper": STEEL, "lower": STEEL | {"poisson_ratio": -0.3}}), "implausible_poisson_ratio",
+         "material.lower.poisson_ratio is -0.3, and few materials have one below 0: is its sign right?"),
+        (scene({"contact_modulus": "1 GPa"}, profile={"kind": "parabola", "radius": "50 m"}), "implausible_size",
+         "bodies.profile.radius is 50 m, and no ball of such a radius touches without roughness: is its unit right?"),
+        (scene({"contact_modulus": "1 GPa"}, profile={"kind": "circle", "radius": "0.1 nm"}, spacing="0.1 pm"),
+         "implausible_size", "bodies.spacing is 1e-13 m, a hundredth of an atom"),
+    ],
+)  # fmt: skip
+def test_what_looks_wrong_is_said(given: Scene, name: str, words: str) -> None:
+    told = implausible(given, SI, {})
+    assert list(told) == [name]
+    assert words in told[name]
+
+
+def test_a_surface_energy_is_judged_with_the_units_of_the_run() -> None:
+    interaction = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
+    bodies = {
+        "particles": 200, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 1000.0}, "bulk_stiffness": 0.83,
+    }  # fmt: skip
+    data = {
+        "title": "t",
+        "bodies": bodies,
+        "interaction": interaction,
+        "experiment": {"kind": "pull_off", "preload": 1},
+    }
+    glass = scene_from_dict(data | {"material": {"contact_modulus": 50e9, "surface_energy": "0.05 J/m²"}})
+    assert implausible(glass, Scales(1e-9, 1e-6), {}) == {}
+    assert implausible(glass, None, {}) == {}
+    huge = implausible(glass, Scales(0.05, 1e-6), {})  # R = 1000 LU = 50 m, ranges of centimetres
+    assert list(huge) == ["implausible_size"]
+    assert "bodies.profile.radius is 50 m" in huge["implausible_size"]
+    wrong = scene_from_dict(data | {"material": {"contact_modulus": 50e9, "surface_energy": 50.0}})
+    assert "50 J/m², where 0.02 to 3 are usual" in implausible(wrong, None, {})["implausible_surface_energy"]
+
+
+def test_a_contact_below_an_atom_is_told() -> None:
+    steel = scene({"upper": STEEL, "lower": STEEL})
+    small = {"contact_radius": Quantity(3e-11, 1e-13, "LU"), "force": Quantity(1e-11, 0.0, "FU")}
+    assert implausible(steel, SI, small) == {
+        "below_an_atom": "the contact radius is 3e-11 m, less than that of an atom, 1e-10 m"
+    }
+    assert implausible(steel, SI, {"contact_radius": Quantity(3e-9, 1e-13, "LU")}) == {}

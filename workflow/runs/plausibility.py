@@ -1,0 +1,110 @@
+"""Numbers of a scene and its results that no contact in a laboratory has: most often a unit that was forgotten.
+
+They are told, and nothing is refused: the model knows no atoms, and gives its numbers for any size.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene.places import places, powers
+from contact1d.workflow.scene.si_scene import BOLTZMANN
+from contact1d.workflow.units import LENGTH, Quantity, Scales
+
+SOFTEST, STIFFEST = 1e3, 2e12
+"""Moduli [Pa]: of the softest gels that are pressed, and above those of diamond, 1.2e12."""
+ATOM = 1e-10
+"""Radius of an atom [m]."""
+
+
+@dataclass(frozen=True)
+class Usual:
+    """What a number usually is in SI, from `least` to `most`, and what one outside is told."""
+
+    key: str
+    name: str
+    least: float
+    most: float
+    unit: str
+    low: str
+    high: str
+
+
+USUAL = (
+    Usual(r"bodies\.profile\.radius", "size", 3e-10, 10.0, "m", "which is less than two atoms are wide",
+          "and no ball of such a radius touches without roughness"),
+    Usual(r"bodies\.spacing", "size", 1e-12, 1.0, "m", "a hundredth of an atom",
+          "and particles stand for less of a body"),
+    Usual(r"interaction\.\w+\.range", "size", 1e-11, 1e-3, "m", "a tenth of an atom's radius",
+          "and forces between surfaces end within micrometres"),
+    Usual(r"material\.surface_energy|adhesion\.surface_energy", "surface_energy", 1e-6, 10.0, "J/m²",
+          "which is less than anything that sticks has", "where 0.02 to 3 are usual"),
+    Usual(r"adhesion\.work_of_adhesion", "surface_energy", 2e-6, 20.0, "J/m²",
+          "which is less than anything that sticks has", "where 0.04 to 6 are usual"),
+    Usual(r"noise\.temperature", "temperature", 0.01, 1e4, "K", "which is colder than any such contact was",
+          "at which nothing is solid"),
+)  # fmt: skip
+"""Numbers of a scene that have a usual size, by their keys."""
+
+
+def implausible(scene: Scene, scales: Scales | None, quantities: Mapping[str, Quantity]) -> dict[str, str]:
+    """What looks wrong about the sizes of a scene and its results, by names of warnings.
+
+    Args:
+        scene: with or without a material.
+        scales: what LU and FU stand for; None where that is not known.
+        quantities: results.
+    """
+    told = [*_moduli(scene), *_numbers(scene, scales), *_radii(scales, quantities)]
+    names = dict.fromkeys(name for name, _ in told)
+    return {name: "; ".join(message for other, message in told if other == name) for name in names}
+
+
+def _moduli(scene: Scene) -> Iterator[tuple[str, str]]:
+    material = scene.material
+    if material is None:
+        return
+    bodies = {"material.upper": material.upper, "material.lower": material.lower}
+    moduli = {f"{name}.youngs_modulus": body.youngs_modulus for name, body in bodies.items() if body is not None}
+    if material.contact_modulus is not None:
+        moduli["material.contact_modulus"] = material.contact_modulus
+    for key, modulus in moduli.items():
+        if modulus < SOFTEST:
+            meant = f": was {modulus:g} GPa meant?" if modulus >= 0.01 else ": is its unit right?"
+            yield "implausible_modulus", f"{key} is {modulus:g} Pa, softer than any gel{meant}"
+    if moduli and min(moduli.values()) > STIFFEST:  # one rigid body beside another one is usual
+        least = f"{min(moduli.values()):g} Pa"
+        yield "implausible_modulus", f"{' and '.join(moduli)}: {least} is stiffer than diamond: is its unit right?"
+    for name, body in bodies.items():
+        if body is not None and body.poisson_ratio < 0.0:
+            ratio = f"{name}.poisson_ratio is {body.poisson_ratio:g}"
+            yield "implausible_poisson_ratio", f"{ratio}, and few materials have one below 0: is its sign right?"
+
+
+def _numbers(scene: Scene, scales: Scales | None) -> Iterator[tuple[str, str]]:
+    for place in places(Scene, scene.model_dump(by_alias=True, exclude_none=True)):
+        key = ".".join(map(str, place.keys))
+        usual = next((usual for usual in USUAL if re.fullmatch(usual.key, key)), None)
+        if usual is None or not place.is_number or (scales is None and place.bases):
+            continue
+        sizes = {} if scales is None else {"LU": scales.length, "FU": scales.force}
+        value = place.value
+        for base, power in powers(place.unit.name).items():
+            value *= sizes[base] ** power
+        value /= float(BOLTZMANN) if usual.unit == "K" else 1.0
+        if not usual.least <= value <= usual.most:
+            what = usual.low if value < usual.least else usual.high
+            yield f"implausible_{usual.name}", f"{key} is {value:.4g} {usual.unit}, {what}: is its unit right?"
+
+
+def _radii(scales: Scales | None, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
+    """Contacts smaller than an atom, where no continuum is."""
+    if scales is None:
+        return
+    for name, quantity in quantities.items():
+        size = quantity.value * scales.length
+        if name.endswith("radius") and quantity.unit == LENGTH and 0.0 < size < ATOM:
+            yield "below_an_atom", f"the {name.replace('_', ' ')} is {size:.3g} m, less than that of an atom, 1e-10 m"
