@@ -19,16 +19,6 @@ FAILS: dict[str, set[str]] = {
     "stiffness": {
         "share refused of 29 cases that have a stable way below 0.9 of the core's force",
     },
-    "loads": {
-        "d off over its claim under (1 − 0.001) F_A, dynamic; within the tolerance of F_A a named warning does as well",
-    },
-    "extremes": {
-        "d under a load off over its claim, plate of 0.001 particle masses",
-        "d under a load off over its claim, plate of 1000 particle masses",
-    },
-    "core": {
-        "d off over its claim at 0.85 of the core's force, dynamic",
-    },
 }
 """Rows that fail since the program is wrong there, by class."""
 QUICK = ("loads", "loops", "forces", "motion", "modes", "buckling")

@@ -86,11 +86,12 @@ def test_a_search_takes_smaller_steps_before_it_gives_up(make_scene: MakeScene, 
     if carried:
         in_smaller_steps(search)(context)
         assert tried[-1] == pytest.approx(carried * tried[0])
+        assert context.deck.settings.part == carried  # what in.lammps is written from
     else:
         with pytest.raises(ThroughError, match="16 times smaller did not help"):
             in_smaller_steps(search)(context)
         assert len(tried) == 1 + len(RETRY_SHARES)
-    assert context.deck is deck
+        assert context.deck is deck
 
 
 @pytest.mark.parametrize(

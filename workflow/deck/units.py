@@ -37,9 +37,11 @@ POWERS = {"LU": (1.0, 0.0), "FU": (0.0, 1.0), "TU": (0.5, -0.5), "MU": (0.0, 0.0
 """Powers of the two factors in each unit; TU = √(MU·LU/FU)."""
 SETTINGS = {
     "rest": "LU", "cutoff": "LU", "table_from": "LU", "closest": "LU", "far": "LU", "displacement_step": "LU",
+    "loading_step": "LU",
     "smooth_step": "LU", "longest_move": "LU", "largest_displacement": "LU", "force_scale": "FU",
     "force_tolerance": "FU", "bulk_stiffness": "FU/LU", "plane_stiffness": "FU/LU", "damped_stiffness": "FU/LU",
     "time_step": "TU", "settle_time": "TU", "damping": "FU·TU/LU", "plate_damping": "FU·TU/LU",
+    "calm_damping": "FU·TU/LU", "calm_step": "TU",
 }  # fmt: skip
 """Units of the settings; the others have none, are masses, or are the law, its table and the estimate."""
 

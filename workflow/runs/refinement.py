@@ -118,4 +118,4 @@ def _pass(context: RunContext, tolerance: float) -> tuple[Deck, Outcome]:
         context.lammps_cpu_seconds += finer.lammps_cpu_seconds
         context.steps += finer.steps
         shutil.rmtree(folder, ignore_errors=True)
-    return deck, outcome
+    return finer.deck, outcome

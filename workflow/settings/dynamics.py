@@ -19,6 +19,8 @@ NOISE_BIAS = 0.4
 """Relative error of ⟨u²⟩ over (ω Δt)² with `fix langevin` and `fix nve`, measured at ω Δt = 0.1: 0.4 %."""
 SOFTENING = 0.6
 """Stiffness of the contact under tension over that under the preload: automatic damping is critical for the former."""
+LIGHT = 0.5
+"""Drag over the mass of a plate far lighter than its particles, over the same of a particle (`_swinging_apart`)."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +33,8 @@ class Dynamics:
     plate_mass: float
     plate_damping: float
     settle_time: float
+    calm_damping: float
+    calm_step: float
 
 
 def stiffest_of(scene: Scene, law: DoubleExponential | None, closest: float, plane: float) -> float:
@@ -78,8 +82,12 @@ def dynamics_of(
     if scene.plate is not None:
         given = scene.plate.damping
         # Drag without its noise would cool the plate; with noise the particles' own heat bath is its.
-        automatic = 0.0 if scene.noise is not None else max(0.0, critical - particles * damping)
-        plate_damping = automatic if given == "auto" else given
+        automatic = max(
+            0.0,
+            critical - particles * damping,
+            _swinging_apart(plate_mass, particles * bodies.mass, damping / bodies.mass),
+        )
+        plate_damping = given if given != "auto" else 0.0 if scene.noise is not None else automatic
     slowest = contact / moving if scene.plate is not None else scene.bulk_stiffness / bodies.mass
     step = product / math.sqrt(stiffest / bodies.mass)
     if damping > 0.0:
@@ -87,4 +95,19 @@ def dynamics_of(
     if plate_mass > 0.0:
         step = min(step, product / math.sqrt(particles * scene.bulk_stiffness / plate_mass))
         step = min(step, DRAG_STEP * plate_mass / max(plate_damping, 1e-300))
-    return Dynamics(step, damping, damped_stiffness, plate_mass, plate_damping, 2.0 * math.pi / math.sqrt(slowest))
+    settle_time = 2.0 * math.pi / math.sqrt(slowest)
+    calm, calm_step = damping, step
+    if scene.damping is not None and scene.damping.coefficient == "auto":
+        calm = max(damping, 2.0 * math.sqrt(stiffest * bodies.mass))
+        calm_step = min(step, DRAG_STEP * bodies.mass / calm)
+    return Dynamics(step, damping, damped_stiffness, plate_mass, plate_damping, settle_time, calm, calm_step)
+
+
+def _swinging_apart(plate: float, particles: float, rate: float) -> float:
+    """Drag [FU·TU/LU] that a plate lighter than all its particles needs, so as not to swing against them.
+
+    Of that swing a plate of the mass M [MU] leaves the particles, N m [MU] together with the drag `rate` · N m, the
+    share M/(M + N m): next to nothing, if it is light, and drag on particles does not end it. With the drag c on the
+    plate it decays with [rate · M + c N m/M] / 2(M + N m), which is to be what it is for M = N m, c = 0.
+    """
+    return LIGHT * rate * plate * max(0.0, 1.0 - plate / particles)

@@ -13,12 +13,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.potentials import DoubleExponential
+from contact1d.workflow.settings.shape import Profile
 
 Array = NDArray[np.float64]
 GRID = 4000
@@ -35,52 +35,8 @@ SOFTEST_SHARE = 0.998
 """Tension over the largest one at which a contact counts as softest: at the largest itself it has no stiffness left."""
 TEETH_POINTS, TOOTH = 2000, 1e-4
 """Displacements at which the tension of a chain is summed, and the fall between two of its teeth over the largest."""
-PLACES, NEAR = 1000, 0.01
-"""Places at which a profile is tabulated, and the first one beyond its apex over the spacing."""
 ROUNDS, FRACTIONS = 12, np.linspace(0.0, 1.0, 33)[:, None]
 """How often a bracket is cut, and where: one step of a bisection takes as long, and 60 are needed for all digits."""
-
-
-class Profile(Protocol):
-    """The undeformed shape of the upper body."""
-
-    def height(self, x: Array) -> Array:
-        """Height [LU] at x [LU]."""
-
-    @property
-    def reach(self) -> float:
-        """Half-width [LU] of the body."""
-
-
-@dataclass(frozen=True)
-class Tabulated:
-    """A profile that was asked once for its `heights` [LU] at rising `places` [LU] from 0, with straight lines between.
-
-    For a measured one, whose transform takes long: an estimate asks thousands of times.
-    """
-
-    places: Array
-    heights: Array
-
-    def height(self, x: Array) -> Array:
-        """Height [LU] at x [LU]."""
-        return np.interp(np.abs(x), self.places, self.heights)
-
-    @property
-    def reach(self) -> float:
-        """Half-width [LU] of the body."""
-        return float(self.places[-1])
-
-
-def tabulated(profile: Profile, spacing: float) -> Tabulated:
-    """The profile, which must have an end, at places in a geometric row: those of a parabola within 1e-4 of its height.
-
-    That holds up to a reach of 1e10 spacings [LU]; nearer to the apex than NEAR spacings it is a line.
-    """
-    places = np.concatenate([[0.0], np.geomspace(min(NEAR * spacing, 0.5 * profile.reach), profile.reach, PLACES)])
-    return Tabulated(places, profile.height(places))
-
-
 MOST_AT_ONCE = 1_000_000
 """Pairs whose forces are looked up at once, to bound the memory."""
 
@@ -106,6 +62,7 @@ class ContactEstimate:
         spacing: [LU].
         stiffness: contact stiffness of one particle [FU/LU], both springs in series.
         snaps: whether pairs snap: G(r) falls somewhere, so that loading and unloading differ.
+        bend: |d²G/dr²| where a joined pair lets go [1/LU]; 0 where none snaps.
     """
 
     gap: Array
@@ -115,6 +72,7 @@ class ContactEstimate:
     spacing: float
     stiffness: float
     snaps: bool = False
+    bend: float = 0.0
 
     def contact_force(self, displacement: float) -> float:
         """F(d) [FU], compression positive."""
@@ -285,8 +243,9 @@ def particles_estimate(
     undeformed = r - 2 * force / stiffness
     gap = np.maximum.accumulate(undeformed)
     gap += np.arange(points) * 1e-12 * cutoff
-    snaps = bool((np.diff(undeformed) < 0.0).any())
-    return ContactEstimate(gap, force, rest, profile, spacing, stiffness / 2, snaps)
+    falls = np.flatnonzero(np.diff(undeformed) < 0.0)
+    bend = abs(float(np.diff(undeformed, 2)[max(falls[0] - 1, 0)])) / (r[1] - r[0]) ** 2 if falls.size else 0.0
+    return ContactEstimate(gap, force, rest, profile, spacing, stiffness / 2, falls.size > 0, bend)
 
 
 def plane_estimate(profile: Profile, spacing: float, stiffness: float) -> ContactEstimate:

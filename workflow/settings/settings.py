@@ -18,13 +18,15 @@ from contact1d.workflow.settings.calibration import CALIBRATION, Calibration
 from contact1d.workflow.settings.chain import SettingsError as SettingsError
 from contact1d.workflow.settings.chain import chain_length, require_body, require_room
 from contact1d.workflow.settings.dynamics import dynamics_of, stiffest_of
-from contact1d.workflow.settings.estimate import (
-    ContactEstimate,
-    NotCarriedError,
-    particles_estimate,
-    plane_estimate,
-    tabulated,
+from contact1d.workflow.settings.estimate import ContactEstimate, NotCarriedError, particles_estimate, plane_estimate
+from contact1d.workflow.settings.scales import (
+    cutoff_for,
+    force_scale_of,
+    innermost_distance,
+    loading_step_of,
+    thermal_motion,
 )
+from contact1d.workflow.settings.shape import tabulated
 from contact1d.workflow.settings.size import require_apex, require_memory, require_reach, require_rows, require_travel
 
 TABLE_MARGIN = 0.8
@@ -32,8 +34,6 @@ TABLE_MARGIN = 0.8
 is 0.93 to 1.004 of what the estimate of independent pairs says."""
 CLOSEST_SHARE = 0.2
 """Smallest distance that is looked after over the force-free one (with attraction) or the repulsion's range."""
-THERMAL_SIGMAS = 5.0
-"""Standard deviations by which a particle's thermal motion brings it nearer."""
 MOVE_SHARE = 0.25
 """Longest move of a body between two states at rest, over the smallest distance: particles stay in order, down to r
 near 0."""
@@ -68,6 +68,7 @@ class Settings:
         force_scale: force of one particle [FU] against which residuals are judged.
         force_tolerance: norm of the residual forces at which a minimisation stops [FU].
         displacement_step: increment of a search where pairs snap, and on a rigid plane [LU].
+        loading_step: the same where particles are so far from each other that it is no danger [LU].
         smooth_step: increment of a search elsewhere, where the force is a smooth function of the displacement [LU].
         time_step: [TU].
         damping: coefficient of a particle [FU·TU/LU].
@@ -78,7 +79,9 @@ class Settings:
             its particles' distance from the opposite ones is put behind them. A search may come nearer than `closest`,
             in moves down to NEAR_SHARE of this.
         largest_displacement: what the estimate expects [LU].
-        gentle: whether a relaxation moves no particle by more than `longest_move` at a time.
+        calm_damping, calm_step: damping with which particles snap together and don't swing [FU·TU/LU], and the time
+            step for it [TU]; the usual ones where the scene gives its damping.
+        part: of increments, moves and loads over the usual ones, of a search that begins anew in smaller steps.
     """
 
     tolerance: float
@@ -95,6 +98,7 @@ class Settings:
     force_scale: float
     force_tolerance: float
     displacement_step: float
+    loading_step: float
     smooth_step: float
     longest_move: float
     time_step: float
@@ -105,7 +109,14 @@ class Settings:
     settle_time: float
     largest_displacement: float
     estimate: ContactEstimate
-    gentle: bool = False
+    calm_damping: float
+    calm_step: float
+    part: float = 1.0
+
+    @property
+    def gentle(self) -> bool:
+        """Whether a relaxation moves no particle by more than `longest_move` at a time, and none swings in time."""
+        return self.part < 1.0
 
     @property
     def is_smooth(self) -> bool:
@@ -127,15 +138,34 @@ class Settings:
     def increment(self, smallest_distance: float = math.inf) -> float:
         """Longest increment [LU] of a search from a state with this smallest distance [LU]; unloading has no such."""
         if not self.is_smooth:
-            return self.displacement_step
+            near = MOVE_SHARE * self.part * smallest_distance if smallest_distance < math.inf else 0.0
+            return min(self.loading_step, max(self.displacement_step, near))
         return min(self.smooth_step, max(NEAR_SHARE * self.longest_move, MOVE_SHARE * smallest_distance))
 
+    def let_go_early(self, move: float) -> float:
+        """How far [LU] before its time a pair lets go of a body that is drawn away by `move` [LU] at a time.
+
+        A move h puts a joined pair h further apart before it relaxes. That is beyond the unstable place next to it,
+        which is 2 √(2 e/|G″|) away at a gap e before the fold of G(r), up to e = h² |G″|/8. A force that is left on the
+        particle moves the fold by that over the stiffness of its springs in series.
+        """
+        if not self.estimate.snaps:
+            return 0.0
+        return 0.125 * move**2 * self.estimate.bend + self.force_tolerance / self.estimate.stiffness
+
     def in_smaller_steps(self, part: float) -> Settings:
-        """The same, with increments and moves that are this part as long, also those of a relaxation."""
+        """The same, with increments and moves that are this part as long, also those of a relaxation.
+
+        In time a particle that comes to the opposite one is stopped by drag, not by its core, where the scene leaves
+        the drag open; it needs timesteps of its own.
+        """
         return replace(
             self,
-            gentle=True,
+            part=part,
+            damping=self.damping if self.plate_mass > 0.0 else self.calm_damping,
+            time_step=self.calm_step,
             displacement_step=part * self.displacement_step,
+            loading_step=part * self.loading_step,
             smooth_step=part * self.smooth_step,
             longest_move=part * self.longest_move,
         )
@@ -190,7 +220,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     if law is None:
         estimate = plane_estimate(shape, bodies.spacing, scene.bulk_stiffness)
     else:
-        cutoff = _cutoff(scene, law, calibration.cutoff * tolerance)
+        cutoff = cutoff_for(scene, law, calibration.cutoff * tolerance)
         require_reach(scene, cutoff)
         rest = law.force_free_distance() if law.attraction is not None else cutoff
         closest = CLOSEST_SHARE * (rest if law.attraction is not None else law.repulsion.range)
@@ -203,17 +233,20 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     require_apex(scene, particles, cutoff)
     require_memory(scene, particles, cutoff)
     require_travel(scene, largest, cutoff)
-    force_scale = _force_scale(scene, law, largest)
+    force_scale = force_scale_of(scene, law, largest)
     table_from, table = 0.0, None
     if law is not None:
         nearest = closest if scene.noise is not None else NEAR_SHARE * closest
-        table_from = max(nearest, TABLE_MARGIN * (_distance(estimate, cutoff, largest) - _thermal_motion(scene)))
+        table_from = max(
+            nearest, TABLE_MARGIN * (innermost_distance(estimate, cutoff, largest) - thermal_motion(scene))
+        )
         table = table_for(law, cutoff, table_from, calibration.table * tolerance * force_scale)
     stiffest = stiffest_of(scene, law, closest, plane)
     dynamics = dynamics_of(scene, tolerance, estimate, largest, particles, stiffest, calibration.still_step)
     different = scene.horizontal is not None and scene.tangential_stiffness != scene.bulk_stiffness
     longest_move = MOVE_SHARE * closest if law is not None else math.inf
     require_rows(scene, longest_move)
+    loading_step = loading_step_of(law, bodies.spacing, calibration.loading_increment * largest)
     return Settings(
         tolerance=tolerance,
         particles=particles,
@@ -228,7 +261,8 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
         far=FAR_SHARE / tolerance * bodies.spacing if different else 0.0,
         force_scale=force_scale,
         force_tolerance=calibration.residual * tolerance * force_scale,
-        displacement_step=_displacement_step(law, bodies.spacing, calibration.loading_increment * largest, closest),
+        displacement_step=min(loading_step, longest_move),
+        loading_step=loading_step,
         smooth_step=calibration.smooth_increment * law.longest_range if law is not None else 0.0,
         longest_move=longest_move,
         largest_displacement=largest,
@@ -239,6 +273,8 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
         plate_mass=dynamics.plate_mass,
         plate_damping=dynamics.plate_damping,
         settle_time=dynamics.settle_time,
+        calm_damping=dynamics.calm_damping,
+        calm_step=dynamics.calm_step,
     )
 
 
@@ -260,40 +296,6 @@ def _plane_stiffness(scene: Scene, tolerance: float) -> float:
     return (stiffness + 4.0 * neighbours) / tolerance
 
 
-def _cutoff(scene: Scene, law: DoubleExponential, share: float) -> float:
-    assert scene.interaction is not None
-    if scene.interaction.cutoff != "auto":
-        return scene.interaction.cutoff
-    return law.cutoff_for(share)
-
-
-def _distance(estimate: ContactEstimate, cutoff: float, displacement: float) -> float:
-    """Distance [LU] of the estimate's innermost pair at a displacement [LU]; its grid ends at the cutoff [LU]."""
-    grid = cutoff / estimate.gap.size * np.arange(1, estimate.gap.size + 1)
-    return float(np.interp(estimate.rest - displacement, estimate.gap, grid))
-
-
-def _thermal_motion(scene: Scene) -> float:
-    """By how much noise brings two particles on their springs nearer to each other [LU]: THERMAL_SIGMAS √(2 k_BT/k)."""
-    return (
-        0.0 if scene.noise is None else THERMAL_SIGMAS * math.sqrt(2.0 * scene.noise.temperature / scene.bulk_stiffness)
-    )
-
-
 def _largest_displacement(scene: Scene, estimate: ContactEstimate) -> float:
     compression = scene.experiment.compression
     return max(scene.experiment.places()) if compression is None else estimate.displacement_at(compression)
-
-
-def _force_scale(scene: Scene, law: DoubleExponential | None, largest: float) -> float:
-    """The largest tension of one pair, or without attraction the force of the deepest particle."""
-    if law is not None and law.attraction is not None:
-        r = law.force_free_distance() + law.longest_range * np.linspace(0.0, 5.0, 2001)
-        return float(-law.force(r).min())
-    return (largest if largest > 0.0 else 1e-3 * scene.bodies.spacing) * scene.bulk_stiffness / 2
-
-
-def _displacement_step(law: DoubleExponential | None, spacing: float, step: float, closest: float) -> float:
-    """The `step` [LU] if it is > 0, never more than a quarter of the longest range or than the longest move."""
-    limit = min(0.25 * law.longest_range, MOVE_SHARE * closest) if law is not None else 0.1 * spacing
-    return min(step, limit) if step > 0 else limit

@@ -11,7 +11,7 @@ from contact1d.analysis.pressure import mean_pressure
 from contact1d.workflow.deck.steps import UnderLoad
 from contact1d.workflow.experiments.load.quasistatic import load_outcome, moved_by
 from contact1d.workflow.experiments.running.contact import Contact, State
-from contact1d.workflow.experiments.running.holding import Held, hold, overshoot, stiffness_under
+from contact1d.workflow.experiments.running.holding import Held, hold, overshoot, press, stiffness_under
 from contact1d.workflow.experiments.running.law_error import law_error
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.radii import RadiusRule
@@ -23,7 +23,7 @@ from contact1d.workflow.experiments.running.sampling import (
     mean_profile,
     standard_error,
 )
-from contact1d.workflow.experiments.running.trust import UntrustedError, doubts, require_trust
+from contact1d.workflow.experiments.running.trust import ThroughError, UntrustedError, doubts, require_trust
 from contact1d.workflow.scene import Load
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE, Quantity
 
@@ -75,6 +75,8 @@ def _by_a_hair(context: RunContext, load: float) -> dict[str, str]:
     try:
         with context.contact("whether a little more is held, too") as contact:
             _settled(context, contact, load * (1.0 + FIRST_RISE * tolerance))
+    except ThroughError:
+        raise
     except UntrustedError:
         return {
             "near_pull_off": (
@@ -91,7 +93,7 @@ def _settled(context: RunContext, contact: Contact, load: float) -> tuple[list[S
     settings = context.deck.settings
     scale, largest = max(abs(load), settings.force_scale), settings.estimate.pull_off_force()
     contact.begin("loading")
-    held = hold(contact, max(load, 0.0), scale)
+    held = press(contact, max(load, 0.0), scale)
     states = list(held.states)
     if load < 0.0 and held.held:
         contact.begin("unloading")

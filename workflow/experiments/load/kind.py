@@ -32,7 +32,7 @@ def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
 
 
 LOAD = ExperimentKind(
-    run={"quasistatic": in_smaller_steps(load_quasistatic), "dynamic": load_dynamic},
+    run={"quasistatic": in_smaller_steps(load_quasistatic), "dynamic": in_smaller_steps(load_dynamic)},
     planned=planned,
     main_results=("displacement", "force", "contact_radius"),
     advice=advice_at_rest,

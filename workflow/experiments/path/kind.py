@@ -15,7 +15,7 @@ def advice(scene: Scene) -> str:
 
 
 PATH = ExperimentKind(
-    run={"quasistatic": in_smaller_steps(path), "dynamic": path},
+    run={"quasistatic": in_smaller_steps(path), "dynamic": in_smaller_steps(path)},
     planned=schedule,
     main_results=(
         "adhesion_force", "zero_load_radius", "critical_radius", "largest_force", "largest_radius",

@@ -21,7 +21,7 @@ from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.pull_off.marked import marked_outcome
 from contact1d.workflow.experiments.running.contact import Contact, State
-from contact1d.workflow.experiments.running.holding import Held, Start, hold, overshoot
+from contact1d.workflow.experiments.running.holding import Held, Start, hold, overshoot, press
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import UntrustedError, doubts, require_no_contradiction
@@ -120,7 +120,7 @@ def pull_off_dynamic(context: RunContext) -> Outcome:
     guess = context.deck.settings.estimate.pull_off_force()
     with context.contact() as contact:
         contact.begin("loading")
-        loaded = hold(contact, preload, max(preload, guess))
+        loaded = press(contact, preload, max(preload, guess))
         contact.begin("unloading")
         zero = hold(contact, 0.0, max(preload, guess))
         if not (loaded.held and zero.held):

@@ -44,7 +44,7 @@ def advice(scene: Scene) -> str:
 
 
 PULL_OFF = ExperimentKind(
-    run={"quasistatic": in_smaller_steps(pull_off_quasistatic), "dynamic": pull_off_dynamic},
+    run={"quasistatic": in_smaller_steps(pull_off_quasistatic), "dynamic": in_smaller_steps(pull_off_dynamic)},
     planned=planned,
     main_results=("adhesion_force", "zero_load_radius", "critical_radius"),
     advice=advice,

@@ -32,6 +32,7 @@ from contact1d.workflow.experiments.running.prescribing import SAME_PLACE, appro
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import UntrustedError, doubts, require_no_contradiction, require_trust
 from contact1d.workflow.scene import PullOff
+from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.units import FORCE, LENGTH, Quantity
 
 Array = NDArray[np.float64]
@@ -50,13 +51,17 @@ SCHEDULE_SHARE = 0.3
 
 @dataclass(frozen=True)
 class Pass:
-    """One whole schedule and its measured states; `wanted` is the preload F_D [FU], `refined` all but the first."""
+    """One whole schedule and its measured states.
+
+    `wanted` is the preload F_D [FU], `refined` all but the first, `settings` those of its deck.
+    """
 
     wanted: float
     phases: tuple[Phase, ...]
     refined: bool
     loading: list[State]
     unloading: list[State]
+    settings: Settings
 
     @property
     def preload(self) -> float:
@@ -78,6 +83,22 @@ class Pass:
     def peak(self) -> Peak:
         """The largest tension while unloading."""
         return largest_tension([s.displacement for s in self.falling], [s.force for s in self.falling])
+
+    @property
+    def early(self) -> float:
+        """How far [LU] before its time the largest tension may have been lost, in the move after it."""
+        falling, i = self.falling, self.peak.index
+        after = falling[min(i + 1, len(falling) - 1)]
+        return self.settings.let_go_early(falling[i].displacement - after.displacement)
+
+    @property
+    def cut_short(self) -> float:
+        """Tension [FU] that is missed by that: it would have gone on to rise as it did."""
+        falling, i = self.falling, self.peak.index
+        if not 0 < i < len(falling) - 1:
+            return 0.0
+        rise = (falling[i - 1].force - falling[i].force) / (falling[i - 1].displacement - falling[i].displacement)
+        return max(0.0, rise) * self.early
 
     @property
     def rivals(self) -> dict[int, float]:
@@ -121,6 +142,7 @@ def pull_off_quasistatic(context: RunContext) -> Outcome:
         window *= ZOOM_FACTOR
         if _agree(before, latest, experiment.preload, tolerance):
             missed = abs(latest.peak.smooth - before.peak.smooth) + max(0.0, 0.0, *latest.rivals.values())
+            missed += latest.cut_short
             return _outcome(context, latest, experiment.preload, missed)
     raise UntrustedError(
         f"the pull-off force still changes from {before.peak.tension:.6g} to {latest.peak.tension:.6g} FU after "
@@ -136,7 +158,7 @@ def _first(context: RunContext, preload: float) -> Pass:
         contact.begin("unloading")
         unloading = separate(contact, loading[-1].displacement)
         contact.finish()
-        return Pass(preload, contact.phases, False, loading, unloading)
+        return Pass(preload, contact.phases, False, loading, unloading, contact.settings)
 
 
 def _refined(known: Pass, preload: float, window: float) -> tuple[Phase, ...]:
@@ -163,13 +185,15 @@ def _refined(known: Pass, preload: float, window: float) -> tuple[Phase, ...]:
 
 def _window(known: Pass, peak: float, window: float) -> Array:
     """Displacements around the largest tension, falling. Where the tension has several teeth of nearly that height, as
-    particles let go one by one, a coarse pass can't tell which is the highest: the window then has all of them.
+    particles let go one by one, a coarse pass can't tell which is the highest: the window then has all of them. It also
+    has what the moves of the coarse pass may have cut off.
     """
     rivals = [s.displacement for s in known.unloading if -s.force >= (1.0 - RIVAL_SHARE) * known.peak.tension]
     step = window / WINDOW_ROWS
-    first, last = max(peak + window, *rivals), min(peak - window, *rivals)
-    if known.refined:
-        first, last = peak + window, peak - window
+    half = max(window, known.early)
+    first, last = peak + half, peak - half
+    if not known.refined:
+        first, last = max(first, *rivals), min(last, *rivals)
     return np.asarray(first - step * np.arange(round((first - last) / step) + 1), dtype=np.float64)
 
 
@@ -189,7 +213,7 @@ def _replay(context: RunContext, wanted: float, phases: tuple[Phase, ...]) -> Pa
         for state in states:
             require_trust(contact.scene, contact.settings, state)
     climbed = len(phases[0].rows)
-    return Pass(wanted, phases, True, states[:climbed], states[climbed:])
+    return Pass(wanted, phases, True, states[:climbed], states[climbed:], context.deck.settings)
 
 
 def _agree(before: Pass, latest: Pass, preload: float, tolerance: float) -> bool:
@@ -197,7 +221,7 @@ def _agree(before: Pass, latest: Pass, preload: float, tolerance: float) -> bool
     tension, radius = latest.peak.smooth, latest.critical.radius_or_spot
     return (
         abs(tension - before.peak.smooth) <= tolerance * tension
-        and latest.peak.uncertainty <= tolerance * tension
+        and latest.peak.uncertainty + latest.cut_short <= tolerance * tension
         and abs(latest.preload - preload) <= tolerance * preload
         and abs(latest.zero.force) <= tolerance * tension
         and tension + latest.critical.force <= tolerance * tension

@@ -16,7 +16,7 @@ from enum import IntEnum
 
 from contact1d.workflow.deck.steps import Hold, Phase
 from contact1d.workflow.experiments.running.contact import Contact, State
-from contact1d.workflow.experiments.running.trust import UntrustedError, require_trust
+from contact1d.workflow.experiments.running.trust import ThroughError, UntrustedError, require_trust
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.dynamics import SOFTENING
 from contact1d.workflow.settings.settings import Settings
@@ -54,7 +54,7 @@ class Held:
         load: compression positive [FU].
         states: measured on the way.
         held: whether the contact carries it at rest.
-        unbalance: |carried − load| at the end [FU].
+        unbalance: |carried − load| at the end, and what drag may still carry: particles lag behind the plate [FU].
     """
 
     load: float
@@ -76,9 +76,14 @@ def stiffness_under(settings: Settings, load: float) -> float:
 
 
 def damping_under(settings: Settings, load: float) -> float:
-    """Coefficient of a particle [FU·TU/LU]; an automatic one is critical for the contact's stiffness under the load."""
+    """Coefficient of a particle [FU·TU/LU]; an automatic one is critical for the contact's stiffness under the load.
+
+    In a search that begins anew, no particle that is pressed on swings either.
+    """
     if settings.damped_stiffness == 0.0:
         return settings.damping
+    if settings.gentle and load >= 0.0:
+        return settings.calm_damping
     stiffer = stiffness_under(settings, load) / settings.damped_stiffness
     return settings.damping * math.sqrt(min(max(stiffer, 0.0), 1.0 / SOFTENING))
 
@@ -101,7 +106,7 @@ def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start:
     misses the load by (M + N m) Z″ + c Z′; LAMMPS knows M Z″ and Z′.
     """
     damping = damping_under(settings, load)
-    inertia = 1.0 + settings.particles * scene.bodies.mass / settings.plate_mass
+    inertia = _inertia(scene, settings)
     drag = settings.particles * damping + settings.plate_damping
     parted = settings.estimate.parted(PARTING_SHARE) if load < 0.0 else _apart(settings)
     steps = max(FEWEST_STEPS, math.ceil(PATIENCE * settings.settle_time / settings.time_step))
@@ -137,22 +142,44 @@ def hold(contact: Contact, load: float, scale: float, start: Start = Start.KEPT)
     for _ in range(MOST_HOLDS):
         state = contact.row(row)
         states.append(state)
-        unbalance, calm = abs(state.carried - load), row.drag * abs(state.plate_velocity) <= row.rest
+        drag = row.drag * abs(state.plate_velocity)
+        unbalance, calm = abs(state.carried - load), drag <= row.rest
         if calm and unbalance <= near:
             require_trust(contact.scene, settings, state)
-            return Held(load, tuple(states), True, unbalance)
+            return Held(load, tuple(states), True, unbalance + drag * _inertia(contact.scene, settings))
         if state.displacement < row.parted:
             if _lost(contact, state, load):
                 return Held(load, tuple(states), False, unbalance)
             row = replace(row, parted=_apart(settings))
         if state.displacement > row.through:
             require_trust(contact.scene, settings, state)
-            raise UntrustedError(f"under {load:.4g} FU the plate went on to {state.displacement:.4g} LU")
+            raise ThroughError(f"under {load:.4g} FU the plate went on to {state.displacement:.4g} LU")
         row = replace(row, start=int(Start.HERE), rest=row.rest * (CALMING_FACTOR if calm else 1.0))
     raise UntrustedError(
         f"the contact did not come to rest under {load:.4g} FU within {MOST_HOLDS * row.steps} timesteps "
         f"(phase {state.phase}): {unbalance:.2g} FU are unbalanced. More [damping] or [plate] damping settles it sooner"
     )
+
+
+def press(contact: Contact, load: float, scale: float) -> Held:
+    """Hold a load ≥ 0 at once, the paper's way; in as many steps as a search in smaller ones says. All states are kept.
+
+    Raises:
+        UntrustedError: see `hold`.
+    """
+    count = max(1, round(1.0 / contact.settings.part)) if load > 0.0 else 1
+    states: list[State] = []
+    for i in range(1, count + 1):
+        held = hold(contact, load * i / count, scale)
+        states += held.states
+        if not held.held:
+            break
+    return replace(held, states=tuple(states))
+
+
+def _inertia(scene: Scene, settings: Settings) -> float:
+    """What moves over the mass of the plate: the upper particles go with it."""
+    return 1.0 + settings.particles * scene.bodies.mass / settings.plate_mass
 
 
 def _apart(settings: Settings) -> float:

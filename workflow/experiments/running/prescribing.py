@@ -15,7 +15,7 @@ from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import ThroughError, UntrustedError, require_trust
 from contact1d.workflow.settings.settings import Settings
 
-MOST_INCREMENTS = 2_000
+MOST_INCREMENTS = 10_000
 """Rows of one branch of a search; a search that needs more has no end in sight."""
 SEPARATION_ROWS = 1_000.0
 """Rows in which an unloading comes from any displacement to where nothing is felt any more."""
@@ -40,11 +40,14 @@ RETRY_SHARES = (1 / 4, 1 / 16)
 """Parts of the increments that are tried where bodies went through each other: a body that moves by much of its
 particles' distance from the opposite ones, or by which their force changes much, lets the minimiser put one beyond.
 Where pairs snap together a minimiser moves particles by more than their distance whatever the increment: a relaxation
-then goes downhill in short moves."""
+then goes downhill in short moves. In time it is a load applied at once that drives a plate past its place, and what a
+snap sets free that drives a particle through its opposite: loads then come in such parts, and drag takes it up."""
 
 
 def in_smaller_steps(search: Callable[[RunContext], Outcome]) -> Callable[[RunContext], Outcome]:
     """The same search, which begins anew in smaller steps where the bodies went through each other.
+
+    The context's deck is then the one with these steps: it is what in.lammps must hold.
 
     Raises:
         ThroughError: they do so in the smallest steps, too, so that it is the load and not the way there.
@@ -55,6 +58,8 @@ def in_smaller_steps(search: Callable[[RunContext], Outcome]) -> Callable[[RunCo
         try:
             return search(context)
         except ThroughError as error:
+            if deck.scene.noise is not None:  # it is the noise that drives particles through
+                raise
             latest = error
         for part in RETRY_SHARES:
             context.progress.note(f"the bodies went through each other: again from the start in steps of {part:g}")
@@ -63,8 +68,7 @@ def in_smaller_steps(search: Callable[[RunContext], Outcome]) -> Callable[[RunCo
                 return search(context)
             except ThroughError as error:
                 latest = error
-            finally:
-                context.deck = deck
+        context.deck = deck
         smaller = f"Steps {1 / RETRY_SHARES[-1]:g} times smaller did not help"
         raise ThroughError(f"{latest.message}. {smaller}", latest.advice)
 

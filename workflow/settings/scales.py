@@ -1,0 +1,49 @@
+"""Lengths and forces of a contact that thresholds and increments go by."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from contact1d.potentials import DoubleExponential
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.estimate import ContactEstimate
+
+THERMAL_SIGMAS = 5.0
+"""Standard deviations by which a particle's thermal motion brings it nearer."""
+
+
+def cutoff_for(scene: Scene, law: DoubleExponential, share: float) -> float:
+    """The scene's cutoff [LU], or the one beyond which the force is below a share of the law's own."""
+    assert scene.interaction is not None
+    if scene.interaction.cutoff != "auto":
+        return scene.interaction.cutoff
+    return law.cutoff_for(share)
+
+
+def innermost_distance(estimate: ContactEstimate, cutoff: float, displacement: float) -> float:
+    """Distance [LU] of the estimate's innermost pair at a displacement [LU]; its grid ends at the cutoff [LU]."""
+    grid = cutoff / estimate.gap.size * np.arange(1, estimate.gap.size + 1)
+    return float(np.interp(estimate.rest - displacement, estimate.gap, grid))
+
+
+def thermal_motion(scene: Scene) -> float:
+    """By how much noise brings two particles on their springs nearer to each other [LU]: THERMAL_SIGMAS √(2 k_BT/k)."""
+    return (
+        0.0 if scene.noise is None else THERMAL_SIGMAS * math.sqrt(2.0 * scene.noise.temperature / scene.bulk_stiffness)
+    )
+
+
+def force_scale_of(scene: Scene, law: DoubleExponential | None, largest: float) -> float:
+    """The largest tension of one pair, or without attraction the force of the deepest particle."""
+    if law is not None and law.attraction is not None:
+        r = law.force_free_distance() + law.longest_range * np.linspace(0.0, 5.0, 2001)
+        return float(-law.force(r).min())
+    return (largest if largest > 0.0 else 1e-3 * scene.bodies.spacing) * scene.bulk_stiffness / 2
+
+
+def loading_step_of(law: DoubleExponential | None, spacing: float, step: float) -> float:
+    """The `step` [LU] if it is > 0, never more than a quarter of the longest range."""
+    limit = 0.25 * law.longest_range if law is not None else 0.1 * spacing
+    return min(step, limit) if step > 0 else limit
