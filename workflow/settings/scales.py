@@ -47,3 +47,21 @@ def loading_step_of(law: DoubleExponential | None, spacing: float, step: float) 
     """The `step` [LU] if it is > 0, never more than a quarter of the longest range."""
     limit = 0.25 * law.longest_range if law is not None else 0.1 * spacing
     return min(step, limit) if step > 0 else limit
+
+
+def plane_stiffness_of(scene: Scene, tolerance: float) -> float:
+    """One-sided stiffness of the rigid plane.
+
+    In series with a bond it is exact for a particle on its own (bond and plane 2k each give k), and without one, where
+    particles are moved with their body, it is k. Neighbour springs and thermal motion see the bond alone, so with them
+    the plane is 1/tolerance times stiffer than the chain.
+    """
+    if scene.bodies.lower != "rigid_plane":
+        return 0.0
+    stiffness = scene.bulk_stiffness
+    if scene.is_swept or scene.experiment.moves_as_a_whole:
+        return stiffness
+    if scene.neighbours is None and scene.noise is None:
+        return 2.0 * stiffness
+    neighbours = 0.0 if scene.neighbours is None else scene.neighbours.stiffness
+    return (stiffness + 4.0 * neighbours) / tolerance

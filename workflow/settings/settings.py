@@ -24,6 +24,7 @@ from contact1d.workflow.settings.scales import (
     force_scale_of,
     innermost_distance,
     loading_step_of,
+    plane_stiffness_of,
     thermal_motion,
 )
 from contact1d.workflow.settings.shape import tabulated
@@ -40,6 +41,9 @@ near 0."""
 NEAR_SHARE = 0.2
 """Least distance down to which a table follows the law and a search comes down in ever smaller moves, over `closest`: a
 table that is smoothed any earlier lets bodies through that the law still carries."""
+UNRELAXED = 20.0
+"""Force under which a pair lets go at rest over the norm at which a relaxation stops; measured: 17 and 18, at tolerances
+of 1e-2 and 1e-3."""
 FAR_SHARE = 10.0
 """Length of a long bond over the spacing, per 1/tolerance: a sideways move u bends its force by u/2L."""
 STAGGER_SHARE = 5e-4
@@ -146,12 +150,14 @@ class Settings:
         """How far [LU] before its time a pair lets go of a body that is drawn away by `move` [LU] at a time.
 
         A move h puts a joined pair h further apart before it relaxes. That is beyond the unstable place next to it,
-        which is 2 √(2 e/|G″|) away at a gap e before the fold of G(r), up to e = h² |G″|/8. A force that is left on the
-        particle moves the fold by that over the stiffness of its springs in series.
+        which is 2 √(2 e/|G″|) away at a gap e before the fold of G(r), up to e = h² |G″|/8. What a relaxation leaves of
+        the forces adds to h: it is lost at e = UNRELAXED · 2F/k itself.
         """
-        if not self.estimate.snaps:
+        bend = self.estimate.bend
+        if bend == 0.0:
             return 0.0
-        return 0.125 * move**2 * self.estimate.bend + self.force_tolerance / self.estimate.stiffness
+        left = UNRELAXED * self.force_tolerance / self.estimate.stiffness
+        return 0.125 * bend * (move + math.sqrt(8.0 * left / bend)) ** 2
 
     def in_smaller_steps(self, part: float) -> Settings:
         """The same, with increments and moves that are this part as long, also those of a relaxation.
@@ -213,7 +219,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     bodies = scene.bodies
     require_room(bodies)
     shape = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
-    plane = _plane_stiffness(scene, tolerance)
+    plane = plane_stiffness_of(scene, tolerance)
     in_series = law is None and not (scene.is_swept or scene.experiment.moves_as_a_whole)
     bond = 1.0 / (1.0 / scene.bulk_stiffness - 1.0 / plane) if in_series else scene.bulk_stiffness
     cutoff, rest, closest = 0.0, 0.0, 0.0
@@ -276,24 +282,6 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
         calm_damping=dynamics.calm_damping,
         calm_step=dynamics.calm_step,
     )
-
-
-def _plane_stiffness(scene: Scene, tolerance: float) -> float:
-    """One-sided stiffness of the rigid plane.
-
-    In series with a bond it is exact for a particle on its own (bond and plane 2k each give k), and without one, where
-    particles are moved with their body, it is k. Neighbour springs and thermal motion see the bond alone, so with them
-    the plane is 1/tolerance times stiffer than the chain.
-    """
-    if scene.bodies.lower != "rigid_plane":
-        return 0.0
-    stiffness = scene.bulk_stiffness
-    if scene.is_swept or scene.experiment.moves_as_a_whole:
-        return stiffness
-    if scene.neighbours is None and scene.noise is None:
-        return 2.0 * stiffness
-    neighbours = 0.0 if scene.neighbours is None else scene.neighbours.stiffness
-    return (stiffness + 4.0 * neighbours) / tolerance
 
 
 def _largest_displacement(scene: Scene, estimate: ContactEstimate) -> float:
