@@ -42,8 +42,8 @@ NEAR_SHARE = 0.2
 """Least distance down to which a table follows the law and a search comes down in ever smaller moves, over `closest`: a
 table that is smoothed any earlier lets bodies through that the law still carries."""
 UNRELAXED = 20.0
-"""Force under which a pair lets go at rest over the norm at which a relaxation stops; measured: 17 and 18, at tolerances
-of 1e-2 and 1e-3."""
+"""Force under which a pair lets go at rest over the norm at which a relaxation stops; measured: 17 and 18, at
+tolerances of 1e-2 and 1e-3."""
 FAR_SHARE = 10.0
 """Length of a long bond over the spacing, per 1/tolerance: a sideways move u bends its force by u/2L."""
 STAGGER_SHARE = 5e-4
