@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from contact1d import Run, run
+from contact1d import Run, Scene, read_scene, run
 from contact1d.workflow.runs.scales import jkr_scales, scales_of
 from contact1d.workflow.scene import Elastic, Material, Problem, SceneError, scene_from_dict, scene_to_toml
 from contact1d.workflow.units import Quantity, Scales
@@ -223,7 +223,7 @@ PUNCH = {"kind": "flat_punch", "radius": 10.0}
 BAD: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
     "automatic stiffness of nothing": (
         tables(None, bulk_stiffness="auto"),
-        {"bodies.bulk_stiffness": "nothing to take it from; add [material] with both"},
+        {"bodies.bulk_stiffness": "nothing to take it from; give the stiffness (FU/LU), or [material]"},
     ),
     "two elasticities": (
         tables(BOTH | E_STAR | {"length_unit": 1.0}),
@@ -474,3 +474,34 @@ def test_path_that_finds_no_units_runs_and_has_none(tmp_path: Path) -> None:
     assert "units" not in results
     assert results["warnings"][-1]["name"] == "no_units"
     assert not any("si" in entry for entry in results.values() if isinstance(entry, dict))
+
+
+def test_with_a_material_the_stiffness_need_not_be_named() -> None:
+    """As with bulk_stiffness = "auto"; without a material it is missing, and the message says both ways."""
+    named = read_scene(STEEL_ON_GLASS)
+    unnamed = read_scene(STEEL_ON_GLASS.replace('bulk_stiffness = "auto"\n', ""))
+    assert unnamed == named
+    with pytest.raises(SceneError, match=r"bodies.bulk_stiffness: missing; give the stiffness .* or \[material\]"):
+        read_scene(named.model_dump(by_alias=True) | {"material": None, "bodies": unnamed_bodies(named)})
+
+
+STEEL_ON_GLASS = """
+title = "steel on glass"
+[bodies]
+particles = "auto"
+spacing = "2 um"
+profile = { kind = "parabola", radius = "10 mm" }
+lower = "rigid_plane"
+bulk_stiffness = "auto"
+[material]
+upper = { youngs_modulus = "210 GPa", poisson_ratio = 0.3 }
+lower = { youngs_modulus = "70 GPa", poisson_ratio = 0.22 }
+[experiment]
+kind = "load"
+force = "10 N"
+"""
+
+
+def unnamed_bodies(scene: Scene) -> dict[str, Any]:
+    """The [bodies] of a scene without its stiffness."""
+    return {key: value for key, value in scene.bodies.model_dump().items() if key != "bulk_stiffness"}

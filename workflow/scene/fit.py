@@ -183,17 +183,18 @@ def _punch(draft: Draft) -> Iterator[Problem]:
 
 def _material(draft: Draft) -> Iterator[Problem]:
     """A material has one elasticity, and one way to the units."""
-    automatic = draft.get("bodies", "bulk_stiffness") == "auto"
+    automatic, given = _takes_stiffness(draft), draft.has("bodies", "bulk_stiffness")
+    text = shown("auto") if given else None
     if not draft.has("material"):
         if automatic:
-            hint = "add [material] with both bodies, length_unit and force_unit, or give the stiffness"
-            yield Problem("bodies.bulk_stiffness", "nothing to take it from", shown("auto"), hint)
+            hint = "give the stiffness (FU/LU), or [material] with E and ν of both bodies, from which it follows"
+            yield Problem("bodies.bulk_stiffness", "nothing to take it from" if given else "missing", text, hint)
         return
     has = {name: draft.has("material", name) for name in ("upper", "lower", "contact_modulus", *UNIT_KEYS)}
     if not (has["upper"] or has["lower"] or has["contact_modulus"]):
         if automatic:
             hint = "write material.upper and material.lower, or material.contact_modulus; or give the stiffness"
-            yield Problem("bodies.bulk_stiffness", "nothing to take it from", shown("auto"), hint)
+            yield Problem("bodies.bulk_stiffness", "nothing to take it from" if given else "missing", text, hint)
             return
         if has["length_unit"] and has["force_unit"] and not has["surface_energy"]:
             return  # numbers with units, and no more
@@ -218,15 +219,21 @@ def _material(draft: Draft) -> Iterator[Problem]:
         yield Problem("material.force_unit", message, hint="give one FU in newtons")
 
 
+def _takes_stiffness(draft: Draft) -> bool:
+    """Whether the stiffness follows from the material: as written, or as nothing is."""
+    return draft.has("bodies") and draft.get("bodies", "bulk_stiffness", default="auto") == "auto"
+
+
 def _jkr_units(draft: Draft, has: Mapping[str, bool]) -> Iterator[Problem]:
     """γ and E* fix both units by F_A and a₀ of the run, so it must have these, and nothing else may fix them."""
     for name in ("length_unit", "force_unit"):
         if has[name]:
             hint = "remove one of the two: with surface_energy both units follow from F_A and a₀ of the run"
             yield Problem(f"material.{name}", "not together with surface_energy", hint=hint)
-    if draft.get("bodies", "bulk_stiffness") == "auto":
+    if _takes_stiffness(draft):
         hint = "give the stiffness, or length_unit and force_unit in place of surface_energy"
-        yield Problem("bodies.bulk_stiffness", "no units to take it by before the run", shown("auto"), hint)
+        text = shown("auto") if draft.has("bodies", "bulk_stiffness") else None
+        yield Problem("bodies.bulk_stiffness", "no units to take it by before the run", text, hint)
     if draft.kind in ("load", "slide", "tangential"):
         hint = 'use kind = "pull_off", whose results give length_unit and force_unit'
         yield Problem("material.surface_energy", f"not in a {draft.kind}, which finds no F_A and a₀", hint=hint)

@@ -123,7 +123,7 @@ class _Conversion:
         material, bodies = self.data.get("material", {}), self.data.get("bodies", {})
         if not isinstance(material, dict) or not isinstance(bodies, dict):
             return None  # told where tables are checked
-        first, stiffness = self.texts[0], bodies.get("bulk_stiffness")
+        first, stiffness = self.texts[0], bodies.get("bulk_stiffness", "auto")
         if "surface_energy" in material:
             message = "LU and FU follow from the run (material.surface_energy), so that units have no size before it"
             self._tell(first, message, f"write a number in {first.unit.name}")
@@ -133,7 +133,7 @@ class _Conversion:
         known = {base: value for base, value in given.items() if value is not None}
         if len(known) < len(given):
             return None  # told where tables are checked
-        if "FU" in chosen and stiffness not in (None, "auto") and ELASTIC & material.keys():
+        if "FU" in chosen and stiffness != "auto" and ELASTIC & material.keys():
             place = Place(("bodies", "bulk_stiffness"), stiffness, Unit("FU/LU"))
             self._tell(place, "follows from the material where forces have units", 'write "auto"')
             return None

@@ -49,7 +49,8 @@ class Bodies(Table):
     profile: Profile = Field(description="shape of the upper body")
     reduction: Reduction = Field(default=cast("Reduction", None), description=MEANING)
     bulk_stiffness: AutoStiffness = Field(
-        description='stiffness of each particle to its bulk, normal direction, or "auto": from the material'
+        default="auto",
+        description='stiffness of each particle to its bulk, normal direction, or "auto": from the material',
     )
     bulk_stiffness_tangential: Stiffness | None = Field(
         default=None,
