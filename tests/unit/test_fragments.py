@@ -85,7 +85,7 @@ def test_fixes_and_computes_are_named_after_their_fragment(name: str) -> None:
 def test_steps_need_nothing_that_no_part_defines() -> None:
     """What a step needs is a column of its rows, a loop variable, or of the method or plate that has the step."""
     of_method = {"force_tolerance", "minimiser_iterations", "plate_force", "plate_velocity"}
-    of_method |= {"gentle_move", "gentle_tolerance", "friction_place"}
+    of_method |= {"gentle_move", "gentle_tolerance", "along_place"}
     of_bodies = {"plate_rest", "plate_displacement", "opposite_x", "opposite_z"}
     of_schedule = {"row_count"}
     of_units = header_of("units", "Needs") | header_of("units", "Defines")

@@ -84,7 +84,7 @@ def left_out(scene: Scene) -> dict[str, str]:
         reasons["chain length"] = "a flat punch is as long as it is wide"
     if scene.noise is not None or scene.experiment.motion_is_result:
         reasons["method"] = "what is asked for exists in time only"
-    if scene.experiment.moves_as_a_whole:
+    if scene.experiment.goes_along:
         reasons["method"] = "a row is one step, exact as it is"
     return reasons
 
@@ -139,7 +139,7 @@ def _increment(scene: Scene) -> Iterator[Knob]:
 
 def _method(scene: Scene) -> Iterator[Knob]:
     experiment = scene.experiment
-    if scene.noise is not None or experiment.motion_is_result or experiment.moves_as_a_whole:
+    if scene.noise is not None or experiment.motion_is_result or experiment.goes_along:
         return
     other = "dynamic" if scene.method == "quasistatic" else "quasistatic"
     change = with_method(scene, other)

@@ -14,7 +14,7 @@ from statistics import median, stdev
 from contact1d.workflow.cost.change import Change
 from contact1d.workflow.cost.record import EffectCost
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.steps import Displace
+from contact1d.workflow.deck.steps import Displace, Draw
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import Engine, Session
 from contact1d.workflow.scene import Scene, SceneError
@@ -28,7 +28,7 @@ MEDIAN_ERROR = 1.25
 
 def without_effects(scene: Scene) -> tuple[dict[str, Change], dict[str, str]]:
     """How to leave out each effect that can be, by its name; and why others cannot."""
-    has_one = scene.experiment.motion_is_result or scene.experiment.moves_as_a_whole
+    has_one = scene.experiment.motion_is_result or scene.experiment.goes_along
     method = () if has_one else (f"experiment.method={scene.method}",)
     changes, reasons = {}, {}
     for effect in scene.effects:
@@ -84,7 +84,8 @@ def opened(deck: Deck, folder: Path) -> Iterator[Session]:
 
 def _steps(deck: Deck) -> str:
     """STEPS steps: of time, or where nothing has to come to rest as many rows."""
-    return deck.sweep((Displace(0.0),) * STEPS) if deck.swept else f"run {STEPS}"
+    row = Draw(0.0, 0.0) if deck.scene.experiment.goes_along else Displace(0.0)
+    return deck.sweep((row,) * STEPS) if deck.swept else f"run {STEPS}"
 
 
 def _interleaved(sessions: Mapping[str, Session], texts: Mapping[str, str], turns: int) -> dict[str, list[float]]:

@@ -91,7 +91,7 @@ def assemble(
 
 
 def write_data(system: System, title: str, path: Path) -> None:
-    """Write a LAMMPS data file for `atom_style bond`, or `hybrid sphere bond`; whole or not at all."""
+    """Write a LAMMPS data file for `atom_style bond`, or `sphere`; whole or not at all."""
     with whole(path) as part, part.open("w") as file:
         file.write(f"# {title}\n\n{len(system.types)} atoms\n{len(system.bonds)} bonds\n")
         file.write(f"{len(system.masses)} atom types\n{len(system.bond_names)} bond types\n\n")
@@ -103,9 +103,9 @@ def write_data(system: System, title: str, path: Path) -> None:
             volume = 4.0 / 3.0 * np.pi * system.radius**3
             density = np.asarray(system.masses)[system.types - 1] / volume
             diameter = np.full(len(ids), 2.0 * system.radius)
-            file.write("\nAtoms # hybrid\n\n")
-            columns = (ids, system.types, *system.positions.T, diameter, density)
-            _write_rows(file, "%d %d %.17g %.17g %.17g %.17g %.17g 1\n", *columns)
+            file.write("\nAtoms # sphere\n\n")
+            columns = (ids, system.types, diameter, density, *system.positions.T)
+            _write_rows(file, "%d %d %.17g %.17g %.17g %.17g %.17g\n", *columns)
         else:
             file.write("\nMasses\n\n")
             file.writelines(f"{i} {mass:.17g}\n" for i, mass in enumerate(system.masses, 1))

@@ -88,10 +88,13 @@ class Deck:
 
     def sweep(self, rows: Sequence[Row]) -> str:
         """All rows, each a place of the plate, in one run."""
-        places = ",".join(row.texts(self.units.to_deck)[0] for row in rows)  # one word on one line, as LAMMPS has it
-        given = {"row_displacement": f"[{places}]", "row_count": str(len(rows))}
-        values = "".join(f"variable        {name} index {value}\n" for name, value in given.items())
-        return values + _commands(("steps/sweep",)) + "".join(f"variable        {name} delete\n" for name in given)
+        columns = zip(*(row.texts(self.units.to_deck) for row in rows), strict=True)
+        # A column is one word on one line, as LAMMPS has it.
+        given = {name: f"[{','.join(texts)}]" for name, texts in zip(rows[0].columns(), columns, strict=True)}
+        given["row_count"] = str(len(rows))
+        before = "".join(f"variable        {name} index {value}\n" for name, value in given.items())
+        after = "".join(f"variable        {name} delete\n" for name in given)
+        return before + _commands((self._step(type(rows[0])),)) + after
 
     @property
     def row_end(self) -> str:
@@ -135,6 +138,8 @@ class Deck:
         return "output_swept_in_units" if self.units.are_own else "output_swept"
 
     def _step(self, kind: type[Row]) -> str:
+        if self.swept and kind is Displace:
+            return "steps/sweep"
         return "steps/displace_gently" if kind is Displace and self.settings.gentle else f"steps/{kind.step}"
 
     @property
@@ -207,7 +212,7 @@ class Deck:
             given = dict.fromkeys(("row_phase", *kind.columns(), *(("row_count",) if self.swept else ())), "the row")
             last = (self._state,) if phase.state else ()
             kept = {"state_append": "the state"} if phase.state else {}
-            row = ("steps/sweep",) if self.swept else (
+            row = (self._step(kind),) if self.swept else (
                 self._step(kind), *self._measuring, self._line, *self._measured,
             )  # fmt: skip
             here = owners | given | kept

@@ -28,7 +28,7 @@ def standing(scene: Scene, settings: Settings) -> list[Contribution]:
     return [
         Contribution("bodies", Stage.BODIES, ("standing",)),
         _plane("standing_plane", scene, settings),
-        Contribution("quasistatic", Stage.MOTION, ("sweep",)),
+        Contribution("quasistatic", Stage.MOTION, ("sweep", "along") if scene.experiment.goes_along else ("sweep",)),
     ]
 
 
@@ -70,8 +70,6 @@ def _plane(fragment: str, scene: Scene, settings: Settings) -> Contribution:
 
 
 def _method(scene: Scene, settings: Settings) -> Contribution:
-    if scene.experiment.moves_as_a_whole:
-        return Contribution("as_a_whole", Stage.MOTION, ("as_a_whole",))
     if scene.method == "quasistatic":
         variables = {
             "force_tolerance": number(settings.force_tolerance),

@@ -49,7 +49,7 @@ class Displace(Row):
 class Draw(Row):
     """The plate is put to a displacement and a place along x [LU], in a straight line, its particles with it."""
 
-    step: ClassVar[str] = "draw"
+    step: ClassVar[str] = "sweep_along"
     displacement: float
     place: float
 

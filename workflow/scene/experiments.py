@@ -75,12 +75,12 @@ class Kind(Table):
     Attributes:
         way_is_given: the scene prescribes the whole way, so that nothing is searched for and no state is ambiguous.
         motion_is_result: the motion itself is looked at, so that the scene exists in time only and its drag is its own.
-        moves_as_a_whole: the upper body is moved with its particles, so that nothing comes to rest by itself.
+        goes_along: the scene also prescribes places along x, on a plane, and has no other method.
     """
 
     way_is_given: ClassVar[bool] = False
     motion_is_result: ClassVar[bool] = False
-    moves_as_a_whole: ClassVar[bool] = False
+    goes_along: ClassVar[bool] = False
 
     @property
     def compression(self) -> float | None:
@@ -163,7 +163,7 @@ class Tangential(Kind):
     """Normal load, then tangential displacement along x, with Coulomb's friction on a rigid plane."""
 
     way_is_given: ClassVar[bool] = True
-    moves_as_a_whole: ClassVar[bool] = True
+    goes_along: ClassVar[bool] = True
 
     kind: Literal["tangential"] = Field(description="normal load, then displacement along x with friction")
     normal_force: NormalForces | None = Field(

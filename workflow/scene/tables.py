@@ -269,7 +269,7 @@ class Scene(Table):
     def is_swept(self) -> bool:
         """Whether particles have no place to find: alone at rest on a rigid plane, they have what the plate's gives."""
         alone = self.bodies.lower == "rigid_plane" and self.neighbours is None
-        return alone and self.method == "quasistatic" and not self.experiment.moves_as_a_whole
+        return alone and self.method == "quasistatic"
 
     @property
     def method(self) -> Method:

@@ -59,7 +59,7 @@ def plane_stiffness_of(scene: Scene, tolerance: float) -> float:
     if scene.bodies.lower != "rigid_plane":
         return 0.0
     stiffness = scene.bulk_stiffness
-    if scene.is_swept or scene.experiment.moves_as_a_whole:
+    if scene.is_swept:
         return stiffness
     if scene.neighbours is None and scene.noise is None:
         return 2.0 * stiffness

@@ -220,7 +220,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     require_room(bodies)
     shape = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
     plane = plane_stiffness_of(scene, tolerance)
-    in_series = law is None and not (scene.is_swept or scene.experiment.moves_as_a_whole)
+    in_series = law is None and not scene.is_swept
     bond = 1.0 / (1.0 / scene.bulk_stiffness - 1.0 / plane) if in_series else scene.bulk_stiffness
     cutoff, rest, closest = 0.0, 0.0, 0.0
     if law is None:

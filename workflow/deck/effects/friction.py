@@ -6,11 +6,12 @@ from contact1d.workflow.settings.settings import Settings
 
 
 def friction(scene: Scene, settings: Settings) -> Contribution:
-    """Shared slots: `atom_style`, which needs spheres in system.data. It comes after the guide, which holds x."""
+    """Shared slots: `atom_style`, which needs spheres in system.data."""
     assert scene.friction is not None
     variables = {
+        "friction_normal_stiffness": number(settings.plane_stiffness),
         "friction_tangential_stiffness": number(scene.tangential_stiffness),
         "friction_coefficient": number(scene.friction.coefficient),
         "friction_level": number(-sphere_radius(scene, settings)),
     }
-    return Contribution("friction", Stage.PULL, ("friction",), variables, atom_style="hybrid sphere bond")
+    return Contribution("friction", Stage.DRAG, ("friction",), variables, atom_style="sphere")

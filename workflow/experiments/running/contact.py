@@ -14,7 +14,7 @@ from contact1d.analysis.pressure import Profile, interpenetration, pressure_prof
 from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.deck.datafile import PARTICLES
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.steps import Displace, Phase, Row
+from contact1d.workflow.deck.steps import Displace, Draw, Phase, Row
 from contact1d.workflow.engine.session import EngineError, Session
 from contact1d.workflow.experiments.running.radii import RadiusRule
 from contact1d.workflow.experiments.running.sweep import FRAMES, Sweep
@@ -148,11 +148,23 @@ class Contact:
         self._unfinished = ""
         spacing, residual, phase = self.scene.bodies.spacing, sweep.round_off, self._phases[-1].name
         states = []
-        for step, (row, profile) in enumerate(zip(rows, sweep.profiles(len(rows)), strict=True), first + 1):
-            assert isinstance(row, Displace)
+        for step, (row, profile) in enumerate(zip(rows, sweep.profiles(rows), strict=True), first + 1):
+            assert isinstance(row, Displace | Draw)
+            place = row.place if isinstance(row, Draw) else 0.0
             force, closest = spacing * float(profile.pressure.sum()), float(profile.z_upper.min())
             states.append(
-                State(phase, row.displacement, force, profile, closest, 0.0, residual, self._rule, step=float(step))
+                State(
+                    phase,
+                    row.displacement,
+                    force,
+                    profile,
+                    closest,
+                    0.0,
+                    residual,
+                    self._rule,
+                    plate_x=place,
+                    step=float(step),
+                )
             )
         return states
 
@@ -202,8 +214,6 @@ class Contact:
             names["plate_velocity"] = "LU/TU"
         if self.scene.cantilever is not None:
             names |= {"cantilever_plate": "LU", "cantilever_force": "FU"}
-        if self.scene.friction is not None:
-            names["friction_place"] = "LU"
         return names | dict.fromkeys(self._pushes, "FU")
 
     def _state(self, phase: str, numbers: dict[str, float], atoms: dict[str, Array]) -> State:
@@ -229,8 +239,6 @@ class Contact:
             x, z, z_below, atoms["v_opposite_x"][upper], atoms["v_opposite_z"][upper], self.scene.bodies.spacing
         )
         free = [0, 2] if self.scene.horizontal is not None else [2]
-        if self.scene.experiment.moves_as_a_whole:
-            free = []
         return State(
             phase=phase,
             displacement=numbers["plate_displacement"],
@@ -238,11 +246,11 @@ class Contact:
             profile=profile,
             smallest_distance=closest,
             depth=depth,
-            residual=float(np.abs(force[upper | lower][:, free]).max(initial=0.0)),
+            residual=float(np.abs(force[upper | lower][:, free]).max()),
             rule=self._rule,
             pushed=float(sum(numbers[name] for name in self._pushes)),
             plate_velocity=-numbers.get("plate_velocity", 0.0),
-            plate_x=numbers.get("cantilever_plate", 0.0) + numbers.get("friction_place", 0.0),
+            plate_x=numbers.get("cantilever_plate", 0.0),
             cantilever_force=numbers.get("cantilever_force", 0.0),
             step=numbers["step"],
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -11,14 +12,15 @@ from contact1d.analysis.pressure import Profile
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import bodies
 from contact1d.workflow.deck.parts import PLANE_DEPTH
+from contact1d.workflow.deck.steps import Draw, Row
 from contact1d.workflow.engine.failure import NOT_FINITE
 from contact1d.workflow.engine.frames import last_frames
 from contact1d.workflow.engine.session import EngineError, Session
 
 Array = NDArray[np.float64]
 FRAMES = "rows.bin"
-COLUMNS = 3
-"""Of a frame: id, z, force along z."""
+COLUMNS, ALONG = 3, 4
+"""Of a frame: id, z, force along z; and that along x, where the plate goes along it."""
 MOST_NUMBERS = 1_000_000
 """Of the frames that are read at once, to bound the memory."""
 
@@ -54,15 +56,16 @@ class Sweep:
         depth = PLANE_DEPTH * max(settings.largest_displacement, self.deck.scene.bodies.spacing)
         return float(np.finfo(np.float64).eps) * depth * settings.plane_stiffness
 
-    def profiles(self, rows: int) -> list[Profile]:
-        """Profiles of the last rows, so many, in their order. A particle that carries stands on the plane.
+    def profiles(self, rows: Sequence[Row]) -> list[Profile]:
+        """Profiles of the last rows in their order. A particle that carries stands on the plane.
 
         Raises:
             EngineError: particles were lost, or a number is not finite.
         """
         path, step = self.session.folder / FRAMES, self.session.timestep
+        columns = ALONG if self.deck.scene.experiment.goes_along else COLUMNS
         try:
-            frames, self.read = last_frames(path, rows, len(self._x), COLUMNS, self.read)
+            frames, self.read = last_frames(path, len(rows), len(self._x), columns, self.read)
         except ValueError:
             raise EngineError("atoms are missing", self.session.phase, step, self.session.folder, "") from None
         if not np.isfinite(frames).all():
@@ -72,4 +75,9 @@ class Sweep:
         pressures = units.from_deck(frames[:, :, 1], "FU") / spacing
         surfaces = np.where(pressures != 0.0, 0.0, heights)
         none = self._nothing
-        return [Profile(self._x, none, z, p, none) for z, p in zip(surfaces, pressures, strict=True)]
+        if columns == COLUMNS:
+            return [Profile(self._x, none, z, p, none) for z, p in zip(surfaces, pressures, strict=True)]
+        shears = units.from_deck(frames[:, :, 2], "FU") / spacing
+        places = [row.place if isinstance(row, Draw) else 0.0 for row in rows]
+        found = zip(places, surfaces, pressures, shears, strict=True)
+        return [Profile(self._x + place, none, z, p, q) for place, z, p, q in found]
