@@ -113,7 +113,10 @@ ONE_LINE_EACH: list[tuple[list[str], str]] = [
     ),
     ([LISTED, "experiment.displacements=[]"], "experiment.displacements = []: must have at least one item"),
     ([LISTED, "experiment.displacements=3"], f"experiment.displacements = 3: {DISPLACEMENTS}"),
-    ([LISTED, 'experiment.displacements=[0, "a"]'], 'experiment.displacements[1] = "a": must be a number (LU)'),
+    (
+        [LISTED, 'experiment.displacements=[0, "a"]'],
+        'experiment.displacements[1] = "a": must be a number (LU); a number with its unit begins with a digit: "10 mm"',
+    ),
     ([LISTED, "experiment.displacements=[0, inf]"], "experiment.displacements[1] = inf: must be a finite number (LU)"),
     (
         [SPAN, "experiment.displacements.to=0"],

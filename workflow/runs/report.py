@@ -45,7 +45,7 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
         for entry in quantities.values():
             entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
         quantities["units"] = {unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE)}
-    doubts = dict(outcome.warnings) | doubt_of_the_image(scene) | implausible(scene, scales, outcome.quantities)
+    doubts = dict(outcome.warnings) | doubt_of_the_image(scene) | implausible(scene, scales, found)
     if coarse := unmet(scene, outcome):
         ended = "" if outcome.refinement is None else f" ({outcome.refinement.ended})"
         doubts["tolerance"] = (

@@ -203,6 +203,8 @@ def _hint(spot: _Spot, given: object) -> str:
     if number and isinstance(given, str) and any(character.isdigit() for character in given):
         text = text_of(spot.annotation)
         return "a number stands without quotes" + (f", or with its unit: {as_toml(text)}" if text else " and unit")
+    if number and isinstance(given, str) and (text := text_of(spot.annotation)) and not words_of(spot.annotation):
+        return f"a number with its unit begins with a digit: {as_toml(text)}"
     if isinstance(given, float) and given.is_integer() and "whole number" in allowed:
         return f"write {int(given)}"
     if len(spot.keys) == 1 and "a table" in allowed:

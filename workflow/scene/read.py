@@ -14,7 +14,7 @@ from contact1d.workflow.scene.check import check_tables, mend_words
 from contact1d.workflow.scene.fit import check_fit
 from contact1d.workflow.scene.overrides import apply_overrides, remove_effects, set_values
 from contact1d.workflow.scene.places import Keys
-from contact1d.workflow.scene.problems import Problem, SceneError, shown
+from contact1d.workflow.scene.problems import Problem, SceneError, path_of, shown
 from contact1d.workflow.scene.profile_file import ProfileFileError, ScaleError, read_profile
 from contact1d.workflow.scene.quantities import Table, keys_of
 from contact1d.workflow.scene.si_scene import Column, convert_texts
@@ -118,13 +118,19 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
     converted = convert_texts(plain, columns)
     checked = check_tables(plain, converted.told)
     found = (*unread, *converted.problems, *checked.problems, *check_fit(plain, checked.unsound))
-    problems += [
-        replace(one, given=shown(converted.texts.get(one.path))) if one.path in converted.texts else one
-        for one in found
-    ]
+    problems += [_as_written(problem, converted.texts, columns) for problem in found]
     if problems or checked.scene is None:
         raise SceneError(sorted(problems, key=_rank))
     return checked.scene
+
+
+def _as_written(problem: Problem, texts: Mapping[str, str], columns: Mapping[Keys, Column]) -> Problem:
+    """The problem with what stands in the scene: the text with its unit, the file in place of its points."""
+    if problem.path in texts:
+        return replace(problem, given=shown(texts[problem.path]))
+    if columns and problem.path == path_of(PROFILE):
+        return replace(problem, path=f"{problem.path}.file", given=shown(next(iter(columns.values())).file))
+    return problem
 
 
 def _with_points(data: dict[str, Any], folder: FilePath) -> tuple[dict[Keys, Column], list[Problem]]:

@@ -123,25 +123,29 @@ class _Conversion:
         material, bodies = self.data.get("material", {}), self.data.get("bodies", {})
         if not isinstance(material, dict) or not isinstance(bodies, dict):
             return None  # told where tables are checked
-        first, stiffness = self.texts[0], bodies.get("bulk_stiffness", "auto")
+        first, stiffness = next(place for place in self.texts if place.bases), bodies.get("bulk_stiffness", "auto")
         if "surface_energy" in material:
             message = "LU and FU follow from the run (material.surface_energy), so that units have no size before it"
             self._tell(first, message, f"write a number in {first.unit.name}")
             return None
+        elastic = bool(ELASTIC & material.keys())
+        if stiffness == "auto" or not elastic or "MU" in needed:
+            needed |= {"LU", "FU"}
         given = {base: _positive(material.get(key)) for base, key in UNIT_KEYS.items() if key in material}
-        chosen = (needed | {"LU", "FU"} if stiffness == "auto" else needed) - given.keys()
         known = {base: value for base, value in given.items() if value is not None}
-        if len(known) < len(given):
-            return None  # told where tables are checked
-        if "FU" in chosen and stiffness != "auto" and ELASTIC & material.keys():
-            place = Place(("bodies", "bulk_stiffness"), stiffness, Unit("FU/LU"))
-            self._tell(place, "follows from the material where forces have units", 'write "auto"')
-            return None
-        if plain := [place for place in self._plain() if place.bases & chosen]:
+        chosen = needed - given.keys()
+        own = ("bodies", "bulk_stiffness")
+        fixed = "FU" in chosen and elastic and stiffness != "auto"
+        plain = [place for place in self._plain() if place.bases & chosen]
+        if fixed and own not in self.done.told:
+            self._tell(Place(own, stiffness, Unit("FU/LU")), "follows from the material here", 'write "auto"')
+        elif plain and not fixed:
             self.done.problems.append(self._mixed(plain, chosen))
-            return None
-        self.data["material"] = material | {UNIT_KEYS[base]: 1.0 for base in sorted(chosen)}
-        return known | dict.fromkeys(chosen, Fraction(1))
+        # also where a problem was told, so that the rules across tables don't tell its consequences
+        self.data["material"] = material | {
+            UNIT_KEYS[base]: 1.0 for base in sorted(chosen) if not (fixed and base == "FU")
+        }
+        return None if plain or fixed or len(known) < len(given) else known | dict.fromkeys(chosen, Fraction(1))
 
     def _plain(self) -> Iterator[Place]:
         """The places of numbers without a unit; those from one file are one."""
@@ -163,7 +167,7 @@ class _Conversion:
             text = replace(text, keys=FILE, value=self.columns[text.keys].file)
         open_ = {base for place in plain for base in place.bases} & chosen
         if not ELASTIC & self.data.get("material", {}).keys():
-            open_ |= {"LU", "FU"} - {base for base, key in UNIT_KEYS.items() if key in self.data.get("material", {})}
+            open_ |= {"LU", "FU"} & chosen
         bases = [base for base in UNIT_KEYS if base in open_]
         what = f"what {' and '.join(bases)} stand{'s' * (len(bases) == 1)} for"
         others = ", ".join(path_of(place.keys) for place in plain[1:LISTED])

@@ -1,0 +1,234 @@
+"""What a wrong or odd input is told: one sentence each, and what it says to do is tried and works.
+
+Units, materials and files of profiles, in a scene in SI and in one in units of the model.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from contact1d.workflow.runs.plausibility import implausible
+from contact1d.workflow.scene import Scene, SceneError, read_scene
+from contact1d.workflow.units import Scales
+
+SHIPPED = (Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "pull_off.toml").read_text(encoding="utf-8")
+STEEL_ON_GLASS = """
+title = "Steel on glass"
+
+[bodies]
+particles = "auto"
+spacing = "4 µm"
+profile = { kind = "parabola", radius = "10 mm" }
+bulk_stiffness = "auto"
+lower = "rigid_plane"
+
+[material]
+upper = { youngs_modulus = "210 GPa", poisson_ratio = 0.3 }
+lower = { youngs_modulus = "70 GPa", poisson_ratio = 0.22 }
+
+[experiment]
+kind = "load"
+force = "10 N"
+"""
+R, F, H = "bodies.profile.radius", "experiment.force", "bodies.spacing"
+E, NU = "material.upper.youngs_modulus", "material.upper.poisson_ratio"
+LENGTH, PRESSURE = "must be a length, such as 10 mm", "must be a pressure, such as 210 GPa"
+SLIDE = 'experiment={ kind = "slide", normal_force = "1 N", distance = "1 µm" }'
+TIMED = (SLIDE, "horizontal={}", "damping.coefficient=auto", 'plate.free=["x", "z"]', "cantilever.stiffness=1 N/m")
+PARTICLES = ("bodies.lower=particles", "interaction.repulsion={ amplitude = '1 aJ', range = '1 µm' }")
+
+
+@dataclass(frozen=True)
+class Odd:
+    """An input that is wrong, by what is `set` in a scene; its `sentence`; what is set besides to follow that."""
+
+    set: tuple[str, ...]
+    sentence: str
+    remedy: tuple[str, ...]
+    scene: str = STEEL_ON_GLASS
+
+
+def odd(key: str, value: str, sentence: str, remedy: str, *before: str) -> Odd:
+    """One value of one key is wrong."""
+    quoted = value if value.strip('-."').isdigit() else f'"{value}"'
+    return Odd((*before, f"{key}={value}"), f"{key} = {quoted}: {sentence}", (*before, f"{key}={remedy}"))
+
+
+def doubt(key: str, value: str, sentence: str, remedy: str, *before: str) -> Odd:
+    """One value of one key is allowed and looks wrong."""
+    return Odd((*before, f"{key}={value}"), sentence, (*before, f"{key}={remedy}"))
+
+
+WRONG = [
+    # A quantity of another dimension.
+    odd(F, "10 mm", "must be a force, such as 10 N; 10 mm is a length", "10 N"),
+    odd(F, "10 kg", "must be a force, such as 10 N; 10 kg is a mass", "10 N"),
+    odd(R, "10 mm²", f"{LENGTH}; 10 mm² is an area", "10 mm"),
+    odd(R, "2 s", f"{LENGTH}; 2 s is a time", "10 mm"),
+    odd(E, "210 GN", f"{PRESSURE}; 210 GN is a force", "210 GPa"),
+    odd(E, "210 N/mm", f"{PRESSURE}; 210 N/mm is a force per length or energy per area", "210 N/mm²"),
+    odd(NU, "0.3 GPa", "must be a number without a unit, such as 0.3; 0.3 GPa is a pressure", "0.3"),
+    odd("bodies.mass", "1 N", "must be a mass, such as 1 ng; 1 N is a force", "1 ng"),
+    odd("cantilever.velocity", "1 µm", "must be a velocity, such as 1 µm/s; 1 µm is a length", "1 µm/s",
+        *TIMED, *PARTICLES, "bodies.mass=1 ng"),
+    odd("interaction.repulsion.amplitude", "5 nm", "must be an energy, such as 1 aJ; 5 nm is a length", "1 aJ",
+        *PARTICLES),
+    Odd(('experiment={ kind = "path", displacements = ["1 µm", "2 N"] }',),
+        f'experiment.displacements[1] = "2 N": {LENGTH}; 2 N is a force',
+        ('experiment={ kind = "path", displacements = ["1 µm", "2 µm"] }',)),
+    Odd(('experiment={ kind = "path", displacements = { from = 0, to = "1 N", steps = 4 } }',),
+        f'experiment.displacements.to = "1 N": {LENGTH}; 1 N is a force',
+        ('experiment={ kind = "path", displacements = { from = 0, to = "1 µm", steps = 4 } }',)),
+    Odd(('bodies.profile={ kind = "cone", slope = "5 deg" }',),
+        'bodies.profile.slope = "5 deg": must be a number without a unit, such as 0.3; 5 deg is an angle: '
+        "its tangent is 0.0874887",
+        ('bodies.profile={ kind = "cone", slope = 0.0874887 }',)),
+    # A unit that is none.
+    odd(R, "10 mmm", f"{LENGTH}; 10 mmm has a unit that is not known, mmm", "10 mm"),
+    odd(E, "210 gpa", f"{PRESSURE}; 210 gpa has a unit that is not known, gpa; did you mean 210 GPa?", "210 GPa"),
+    odd(E, "210 pa", f"{PRESSURE}; 210 pa is a time; did you mean 210 Pa?", "210 GPa"),
+    odd(R, "10 MM", f"{LENGTH}; 10 MM is another quantity; did you mean 10 mm?", "10 mm"),
+    odd(R, "10 LU", f"{LENGTH}; 10 LU is in units of the model: write 10 without quotes and unit", "10",
+        "material.length_unit=1 mm"),
+    odd(R, "10 (mm", f"{LENGTH}; 10 (mm has a unit that cannot be read", "10 mm"),
+    odd(R, "10 m**99", f"{LENGTH}; 10 m**99 has a power that no unit has", "10 mm"),
+    odd(R, "10 mm # about", f"{LENGTH}; 10 mm # about has a unit that is not known, #", "10 mm"),
+    odd("noise.temperature", "300 K/m", "must be a temperature, such as 300 K; 300 K/m is another quantity", "300 K",
+        *PARTICLES, "damping.coefficient=auto", "plate={}", "noise.seed=1"),
+    odd("noise.temperature", "300 delta_degC", "must be a temperature, such as 300 K; 300 delta_degC has a temperature "
+        "that is not counted from absolute zero: write K", "27 °C",
+        *PARTICLES, "damping.coefficient=auto", "plate={}", "noise.seed=1"),
+    # A number that is none.
+    odd(R, "ten mm", 'must be a number greater than 0 (LU); a number with its unit begins with a digit: "10 mm"',
+        "10 mm"),
+    odd(R, "10,5 mm", f"{LENGTH}; 10,5 mm has a comma in its number: decimals follow a point, and thousands are not "
+        "parted", "10.5 mm"),
+    odd(R, "1.0.5 mm", f"{LENGTH}; 1.0.5 mm has something behind the number 1.0 that is no unit", "1.05 mm"),
+    odd(R, "1 000 mm", f"{LENGTH}; 1 000 mm has something behind the number 1 that is no unit", "1000 mm"),
+    odd(R, "1e mm", f"{LENGTH}; 1e mm has an exponent that is no whole number", "1e1 mm"),
+    odd(R, "1O mm", f"{LENGTH}; 1O mm has a unit that is not known, O", "10 mm"),
+    odd(R, "1e999 m", f"{LENGTH}; 1e999 m is larger than any number that a computer holds", "10 mm"),
+    odd(R, "-10 mm", "must be greater than 0 (LU)", "10 mm"),
+    odd(H, "0 nm", "must be greater than 0 (LU)", "4 µm"),
+    odd(F, '"10"', 'must be a number (FU); a number stands without quotes, or with its unit: "10 N"', "10 N"),
+    odd("bodies.particles", "30 µm", 'must be a whole number from 3 to 10000000, or "auto"; a number stands without '
+        "quotes and unit", "300"),
+    # Numbers with units beside numbers without.
+    odd(F, "10", f'is in FU, while {H} = "4 µm" has a unit, and nothing says what FU stands for; give it a unit as '
+        'well, such as "10 N"; or give material.force_unit', "10 N"),
+    Odd((f"{F}=10",), f'{F} = 10: is in FU, while {H} = "4 µm" has a unit, and nothing says what FU stands for; give '
+        'it a unit as well, such as "10 N"; or give material.force_unit', (f"{F}=10", "material.force_unit=1 N")),
+    Odd((f"{R}=10 µm",), f'{H} = 1.0: is in LU, while {R} = "10 µm" has a unit, and nothing says what LU and FU stand '
+        'for; give it a unit as well, such as "10 mm"; so too bodies.bulk_stiffness, interaction.repulsion.amplitude '
+        "and 5 more; or give material.length_unit and material.force_unit",
+        (f"{R}=10 µm", "material={ length_unit = '1 nm', force_unit = '1 nN' }"), SHIPPED),
+    Odd((*TIMED, *PARTICLES, "cantilever.velocity=1 µm/s"), f'bodies.mass = 1.0: is by default in MU, while {H} = '
+        '"4 µm" has a unit, and nothing says what MU stands for; give it a unit as well, such as "1 ng"; or give '
+        "material.mass_unit", (*TIMED, *PARTICLES, "cantilever.velocity=1 µm/s", "material.mass_unit=1 ng")),
+    # Materials.
+    odd(E, "0 GPa", "must be greater than 0 (Pa)", "210 GPa"),
+    odd(NU, "30", "must be greater than -1 and at most 0.5", "0.3"),
+    odd(NU, "60 %", "must be greater than -1 and at most 0.5", "30 %"),
+    Odd(("material.contact_modulus=50 GPa",),
+        'material.contact_modulus = "50 GPa": not together with upper or lower; give E*, or E and ν of both bodies',
+        ("material={ contact_modulus = '50 GPa' }",)),
+    Odd(("bodies.bulk_stiffness=100 N/m",), 'bodies.bulk_stiffness = "100 N/m": follows from the material here; write '
+        '"auto"', ("bodies.bulk_stiffness=auto",)),
+    Odd(("material={}",), 'bodies.bulk_stiffness = "auto": nothing to take it from; write material.upper and '
+        "material.lower, or material.contact_modulus; or give the stiffness",
+        ("material={}", "bodies.bulk_stiffness=1 MN/m")),
+    Odd(("material.length_unit=1 N",), f'material.length_unit = "1 N": {LENGTH}; 1 N is a force',
+        ("material.length_unit=1 nm",)),
+    Odd((f"{R}=10 µm", "material={ contact_modulus = '1 GPa', surface_energy = '50 mJ/m²' }"),
+        f'{R} = "10 µm": LU and FU follow from the run (material.surface_energy), so that units have no size before '
+        "it; write a number in LU",
+        (f"{R}=1000.0", "material={ contact_modulus = '1 GPa', surface_energy = '50 mJ/m²' }"), SHIPPED),
+]  # fmt: skip
+"""Values that are wrong."""
+
+DOUBTFUL = [
+    doubt(E, "210 Pa", "softer than any gel: was 210 GPa meant?", "210 GPa"),
+    doubt(E, "210", "softer than any gel: was 210 GPa meant?", "210e9"),
+    doubt(NU, "-0.3", "few materials have one below 0: is its sign right?", "0.3"),
+    doubt(R, "50 m", "no ball of such a radius touches without roughness: is its unit right?", "50 mm"),
+    doubt(R, "10 pm", "less than two atoms are wide: is its unit right?", "10 µm"),
+    doubt("interaction.repulsion.range", "1 pm", "a tenth of an atom's radius: is its unit right?", "1 nm", *PARTICLES),
+    doubt("noise.temperature", "3e5 K", "at which nothing is solid: is its unit right?", "300 K",
+        *PARTICLES, "damping.coefficient=auto", "plate={}", "noise.seed=1"),
+    Odd(("material={ contact_modulus = '1 GPa', surface_energy = 50 }",),
+        "where 0.02 to 3 are usual: is its unit right?",
+        ("material={ contact_modulus = '1 GPa', surface_energy = '50 mJ/m²' }",), SHIPPED),
+]  # fmt: skip
+"""Values that are allowed and look wrong."""
+
+FILES = {
+    "unknown names": ("width,depth\n0,0\n1,1\n2,4\n3,9\n",
+                      "the names of its 2 columns are not known; name the radius r",
+                      "r,z\n0,0\n1,1\n2,4\n3,9\n"),
+    "a name that is not known": ("r,y\n0,0\n1,1\n2,4\n3,9\n", "the names of its 2 columns are not known",
+                                 "0,0\n1,1\n2,4\n3,9\n"),
+    "two radii": ("r,radius,z\n0,0,0\n", "2 columns could be meant by r; name only one so",
+                  "r,old,z\n0,0,0\n1,1,1\n2,2,4\n3,3,9\n"),
+    "columns without names": ("0,0,7\n1,1,7\n2,4,7\n3,9,7\n", "has 3 columns without names; name the radius r",
+                              "r,z,t\n0,0,7\n1,1,7\n2,4,7\n3,9,7\n"),
+    "swapped columns": ("r,z\n9,-3\n4,-2\n0,0\n4,2\n9,3\n", "as if the columns were swapped; name them r and z",
+                        "z,x\n9,-3\n4,-2\n1,-1\n0,0\n1,1\n4,2\n9,3\n"),
+    "one unit": ("r [µm],z\n0,0\n1,1\n2,4\n3,9\n", "only one of radius and height has a unit",
+                 "r [µm],z [nm]\n0,0\n1,1\n2,4\n3,9\n"),
+    "a unit of force": ("r [µm],z [µN]\n0,0\n1,1\n2,4\n3,9\n", "the unit in the names is no length that is known",
+                        "r [µm],z [µm]\n0,0\n1,1\n2,4\n3,9\n"),
+    "sides that differ": ("-2,8\n-1,2\n0,0\n1,1\n2,4\n", "these differ by 50% of its height", "0,0\n1,1\n2,4\n3,9\n"),
+    "an apex off the middle": ("-1,4\n0,1\n1,0\n2,1\n3,4\n", "its places left and right are not the same; shift it",
+                               "-3,9\n-2,4\n-1,1\n0,0\n1,1\n2,4\n3,9\n"),
+    "upside down": ("0,0\n1,-1\n2,-4\n3,-9\n", "they count away from the plane; change their sign",
+                    "0,0\n1,1\n2,4\n3,9\n"),
+    "decimal commas": ("r;z\n0;0\n0,5;0,25\n1;1\n2;4\n", "line 3: r is no number; write it with a decimal point",
+                       "r;z\n0;0\n0.5;0.25\n1;1\n2;4\n"),
+    "an empty cell": ("0,0\n1,\n2,4\n3,9\n4,16\n", "line 2: z is empty; leave out a line that has no value",
+                      "0,0\n2,4\n3,9\n4,16\n"),
+    "no axis": ("1,0\n2,1\n3,2\n4,3\n", "must begin at the radius 0, not 1", "0,0\n2,1\n3,2\n4,3\n"),
+    "a radius twice": ("0,0\n1,1\n1,1\n2,4\n3,9\n", "must have rising radii; 1e-06 follows on 1e-06", "0,0\n1,1\n2,4\n3,9\n"),
+    "few points": ("0,0\n1,1\n", "must have at least 4 points", "0,0\n1,1\n2,4\n3,9\n"),
+}  # fmt: skip
+"""Files that are no profile: text, sentence, the text that the sentence asks for."""
+
+
+def test_there_are_more_than_forty() -> None:
+    assert len(WRONG) + len(DOUBTFUL) + len(FILES) > 40
+
+
+@pytest.mark.parametrize("case", WRONG, ids=lambda case: case.sentence[:70])
+def test_a_wrong_value_gets_its_sentence_and_the_remedy_works(case: Odd) -> None:
+    with pytest.raises(SceneError) as caught:
+        read_scene(case.scene, case.set)
+    assert str(caught.value) == case.sentence
+    assert isinstance(read_scene(case.scene, case.remedy), Scene)
+
+
+def doubts(scene: Scene) -> str:
+    """What is told of a scene when it runs."""
+    known = scene.material is not None and scene.material.length_unit is not None
+    return "; ".join(implausible(scene, Scales(1.0, 1.0) if known else None, {}).values())
+
+
+@pytest.mark.parametrize("case", DOUBTFUL, ids=lambda case: case.sentence[:70])
+def test_a_doubtful_value_is_told_and_the_remedy_is_not(case: Odd) -> None:
+    assert case.sentence in doubts(read_scene(case.scene, case.set))
+    assert doubts(read_scene(case.scene, case.remedy)) == ""
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_an_odd_file_gets_its_sentence_and_the_remedy_works(name: str, tmp_path: Path) -> None:
+    text, sentence, mended = FILES[name]
+    units = () if "µm]" in text + mended else ("bodies.profile.scale=1 µm",)
+    profile = (f"bodies.profile={{ kind = 'table', file = '{tmp_path / 'p.csv'}' }}", *units)
+    (tmp_path / "p.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(SceneError) as caught:
+        read_scene(STEEL_ON_GLASS, profile)
+    assert len(caught.value.problems) == 1
+    assert sentence in str(caught.value)
+    (tmp_path / "p.csv").write_text(mended, encoding="utf-8")
+    assert isinstance(read_scene(STEEL_ON_GLASS, profile), Scene)
