@@ -361,7 +361,9 @@ def test_a_table_needs_a_file_or_both_lists(profile: dict[str, Any]) -> None:
 
 
 def test_radii_are_not_negative_and_heights_are_finite() -> None:
-    assert "bodies.profile.r[2] = -2" in message({"kind": "table", "r": [0, 1, -2, 3], "z": [0, 1, 2, 3]})
+    assert "must have rising radii; -2 follows on 1" in message(
+        {"kind": "table", "r": [0, 1, -2, 3], "z": [0, 1, 2, 3]}
+    )
     assert "bodies.profile.z[1] = nan" in message({"kind": "table", "r": [0, 1, 2, 3], "z": [0, math.nan, 2, 3]})
     assert "bodies.profile.z[1] = true" in message({"kind": "table", "r": [0, 1, 2, 3], "z": [0, True, 2, 3]})
 

@@ -190,7 +190,8 @@ FILES = {
     "an empty cell": ("0,0\n1,\n2,4\n3,9\n4,16\n", "line 2: z is empty; leave out a line that has no value",
                       "0,0\n2,4\n3,9\n4,16\n"),
     "no axis": ("1,0\n2,1\n3,2\n4,3\n", "must begin at the radius 0, not 1", "0,0\n2,1\n3,2\n4,3\n"),
-    "a radius twice": ("0,0\n1,1\n1,1\n2,4\n3,9\n", "must have rising radii; 1e-06 follows on 1e-06", "0,0\n1,1\n2,4\n3,9\n"),
+    "a radius twice": ("0,0\n1,1\n1,1\n2,4\n3,9\n", "must have rising radii; 1e-06 follows on 1e-06",
+                       "0,0\n1,1\n2,4\n3,9\n"),
     "few points": ("0,0\n1,1\n", "must have at least 4 points", "0,0\n1,1\n2,4\n3,9\n"),
 }  # fmt: skip
 """Files that are no profile: text, sentence, the text that the sentence asks for."""
