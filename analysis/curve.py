@@ -56,8 +56,10 @@ class Curve:
 
 
 PROFILE_COLUMNS = ("x", "z_lower", "z_upper", "pressure", "shear")
-FRICTION_COLUMNS = ("time", "drive", "plate_x", "plate_z", "friction", "normal_force", "cantilever_force")
-"""Of a slide: times [TU], places [LU], forces [FU]."""
+FRICTION_COLUMNS = (
+    "time", "drive", "plate_x", "plate_z", "friction", "normal_force", "cantilever_force", "cantilever_work",
+)  # fmt: skip
+"""Of a slide: times [TU], places [LU], forces [FU], work [FU·LU]."""
 TANGENTIAL_COLUMNS = (
     "tangential_displacement", "tangential_force", "normal_force", "stick_radius", "stick_radius_uncertainty",
     "dissipated_energy",

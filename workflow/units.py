@@ -15,6 +15,7 @@ FORCE = "FU"
 MEAN_PRESSURE = "FU/LU²"
 LINE_PRESSURE = "FU/LU"
 ENERGY = "FU·LU"
+NUMBER = "1"
 
 SI = {
     LENGTH: (1, 0, "m"),
@@ -22,6 +23,7 @@ SI = {
     MEAN_PRESSURE: (-2, 1, "Pa"),
     LINE_PRESSURE: (-1, 1, "N/m"),
     ENERGY: (1, 1, "J"),
+    NUMBER: (0, 0, "1"),
 }
 """For each model unit: powers of LU and FU in it, and its name in SI."""
 PREFIXES = {-5: "f", -4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G", 4: "T"}

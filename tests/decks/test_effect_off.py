@@ -44,7 +44,10 @@ PULL_OFF = {"kind": "pull_off", "preload": 1.0}
 EMPTY = {"# Formula: -", "# Needs: -", "# Defines: -"}
 """Header lines that any fragment may have."""
 FRAGMENTS = {name: (name,) for name in EFFECTS} | {"horizontal": ("horizontal", "far")}
-STEPS = {"interaction": ("steps/measuring_opposite", "steps/measured_opposite"), "cantilever": ("steps/drive",)}
+STEPS = {
+    "interaction": ("steps/measuring_opposite", "steps/measured_opposite"),
+    "cantilever": ("steps/drive", "steps/told", "steps/measuring_energy", "steps/measured_energy"),
+}
 
 
 def lines_of(deck: str) -> list[str]:
@@ -131,6 +134,8 @@ def test_one_effect_off(make_scene: MakeScene, effect: str, noise: bool) -> None
         assert removed[line] >= count or line in EMPTY
     if effect == "horizontal":
         assert list(added) == ["variable        guide_x index 0.0"]
+    elif effect == "cantilever":
+        assert list(added) == ["thermo_style    custom step c_measuring_total"]  # the energy is not asked for
     elif effect == "friction":
         assert list(added) == ["atom_style      bond"]
     elif effect == "noise":
@@ -146,7 +151,8 @@ def test_one_effect_off(make_scene: MakeScene, effect: str, noise: bool) -> None
 def test_long_bonds_go_with_the_horizontal_effect(make_scene: MakeScene, stiffness: float) -> None:
     """With k_t ≠ k_n: its second fragment goes, and the bulk bond is that of the normal direction again."""
     plate = {"free": ["x", "z"], "damping": 4.0}
-    scene = make_scene(**ALL | {"plate": plate, "bodies": {"bulk_stiffness_tangential": stiffness}})
+    still = ALL | {"noise": None}  # with noise the drag comes with its heat, to one anchor
+    scene = make_scene(**still | {"plate": plate, "bodies": {"bulk_stiffness_tangential": stiffness}})
     first, second = decks(scene, "horizontal")
     removed, added = difference(first, second), difference(second, first)
     lines = fragment_lines("horizontal", "far")
@@ -185,7 +191,8 @@ def test_a_scene_that_never_had_the_effect_has_none_of_its_lines(make_scene: Mak
     assert effect not in scene.effects
     text = text_of(scene)
     assert effect not in text.splitlines()[1]
-    own = set(fragment_lines(*FRAGMENTS[effect], *STEPS.get(effect, ()))) - EMPTY
+    shared = set(fragment_lines("steps/measuring"))  # a cantilever measures the energy as well
+    own = set(fragment_lines(*FRAGMENTS[effect], *STEPS.get(effect, ()))) - EMPTY - shared
     assert not own & set(lines_of(text))
     of_plane = {"opposite_x", "opposite_z"} if effect == "interaction" else set()
     of_guide = {"guide_x"} if effect == "horizontal" else set()
@@ -284,13 +291,14 @@ def test_a_dynamic_deck_minimises_nothing(make_scene: MakeScene) -> None:
 
 @pytest.mark.parametrize("tables", [{}, PLANE, {"damping": {"coefficient": 0.3}}, TIMED | {"experiment": LOAD}, ALL])
 def test_each_group_has_one_integrator_at_most(make_scene: MakeScene, tables: dict[str, Any]) -> None:
-    """Particles by nve where there is time, the plate by the rigid body where there is one."""
+    """Particles by nve where there is time, the plate by the rigid body where there is one, a driver by its way."""
     scene = make_scene(**tables)
     found = re.findall(r"^fix +\w+ (\w+) (nve|nvt|npt|nph|rigid|move)\b", commands(text_of(scene)), re.MULTILINE)
     swept = [("upper", "move")] * (tables == PLANE)
     wanted = (
         swept + [("plate", "rigid")] * (scene.plate is not None) + [("particles", "nve")] * (scene.method == "dynamic")
     )
+    wanted += [("cantilever_driver", "move")] * 2 * (scene.cantilever is not None)  # at rest, and then not
     assert sorted(found) == sorted(wanted)
 
 
@@ -301,7 +309,7 @@ def test_measuring_is_on_only_while_a_state_is_measured(make_scene: MakeScene, t
     made = re.findall(r"^compute +(\w+)", text, re.MULTILINE)
     gone = re.findall(r"^uncompute +(\w+)", text, re.MULTILINE)
     assert made
-    assert Counter(made) == Counter(gone)
+    assert Counter(made) == Counter(gone) - Counter(["thermo_press", "thermo_pe"])  # LAMMPS makes these by itself
     assert not re.search(r"^dump ", text, re.MULTILINE)
     during = re.findall(r"^compute .*?^uncompute ", text, re.MULTILINE | re.DOTALL)
     assert not any(re.search(r"^(minimize |run (?! *0 post no$))", part, re.MULTILINE) for part in during)

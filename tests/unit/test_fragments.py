@@ -76,7 +76,9 @@ def test_header_agrees_with_the_text(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_fixes_and_computes_are_named_after_their_fragment(name: str) -> None:
     """`<effect>_<role>`; a step may redefine an effect's."""
-    owner = name.split("/")[-1].removesuffix("_opposite").replace("standing_plane", "rigid_plane")
+    owner = name.split("/")[-1].replace("standing_plane", "rigid_plane")
+    for end in ("_opposite", "_energy", "_alone"):  # a part, or another kind, of what has the name before
+        owner = owner.removesuffix(end)
     for kind, identity, _ in DEFINITION.findall(commands_of(name)):
         if kind in ("fix", "compute") and identity not in header_of(name, "Redefines"):
             assert identity.startswith(f"{owner}_")
@@ -85,6 +87,7 @@ def test_fixes_and_computes_are_named_after_their_fragment(name: str) -> None:
 def test_steps_need_nothing_that_no_part_defines() -> None:
     """What a step needs is a column of its rows, a loop variable, or of the method or plate that has the step."""
     of_method = {"force_tolerance", "minimiser_iterations", "plate_force", "plate_velocity"}
+    of_method |= header_of("cantilever", "Needs") | header_of("cantilever", "Defines") | header_of("noise", "Needs")
     of_method |= {"gentle_move", "gentle_tolerance", "along_place"}
     of_bodies = {"plate_rest", "plate_displacement", "opposite_x", "opposite_z"}
     of_schedule = {"row_count"}
@@ -97,14 +100,15 @@ def test_steps_need_nothing_that_no_part_defines() -> None:
 
 
 def test_no_id_is_defined_by_two_fragments_that_meet() -> None:
-    """Only the kinds of lower body, of upper body and of method share names, and a deck has one of each."""
+    """Only kinds of lower body, upper body, plate, method and measuring share names, and a deck has one of each."""
     owners: dict[str, list[str]] = {}
     for name in NAMES:
         for word in header_of(name, "Defines"):
             owners.setdefault(word, []).append(name)
     twice = {word: who for word, who in owners.items() if len(who) > 1}
     planes = ("interaction", "rigid_plane", "standing_plane")
-    assert set(map(tuple, twice.values())) <= {planes, planes[1:], ("bodies", "standing"), ("bodies", "sweep")}
+    pairs = {("plate", "plate_alone"), ("steps/measuring", "steps/measuring_energy")}
+    assert set(map(tuple, twice.values())) <= pairs | {planes, planes[1:], ("bodies", "standing"), ("bodies", "sweep")}
 
 
 def test_every_effect_is_a_table_and_a_fragment() -> None:
@@ -255,7 +259,9 @@ def test_a_step_that_redefines_without_a_word_raises(make_scene: MakeScene, fake
 def test_a_step_that_redefines_what_is_not_there_raises(make_scene: MakeScene) -> None:
     """A drive without a cantilever."""
     scene = make_scene()
-    with pytest.raises(DeckError, match="used but not defined: cantilever_start, in steps/drive"):
+    with pytest.raises(
+        DeckError, match=r"used but not defined: cantilever_bath, .*cantilever_velocity, in steps/drive"
+    ):
         Deck(scene, settings_for(scene)).text((Phase("sliding", (Displace(0.0),), begin=("steps/drive",)),))
 
 

@@ -105,6 +105,10 @@ BAD: list[tuple[list[str], dict[str, str]]] = [
     ([SLIDE, PLATE, DAMPING, CANTILEVER, HORIZONTAL], {"plate.free": 'must contain "x"'}),
     ([SLIDE, 'plate.free=["z"]', DAMPING, CANTILEVER, HORIZONTAL], {"plate.free": 'must contain "x"'}),
     ([SLIDE, PLATE_XZ, DAMPING, CANTILEVER, HORIZONTAL, QUASISTATIC], {"experiment.method": "always dynamic"}),
+    (
+        [SLIDE, PLATE_XZ, DAMPING, CANTILEVER, HORIZONTAL, REPULSION_ONLY, "experiment.normal_force=0"],
+        {"experiment.normal_force": "needs interaction.attraction"},
+    ),
     ([LOAD, REPULSION_ONLY, "experiment.force=0"], {"experiment.force": "greater than 0 (FU) without attraction"}),
     ([LOAD, REPULSION_ONLY, "experiment.force=-1"], {"experiment.force": "needs interaction.attraction"}),
     (["interaction.attraction.range=0.13"], {"interaction.attraction.range": "greater than the range of the repul"}),

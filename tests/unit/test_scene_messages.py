@@ -65,8 +65,11 @@ SCENE_TABLES = (
     "title, bodies, interaction, neighbours, horizontal, friction, damping, noise, plate, cantilever, material, "
     "accuracy, experiment"
 )
-SHAPES = '"parabola", "circle", "cone", "flat_punch", "power" or "table"'
-BODIES = "particles, spacing, profile, reduction, bulk_stiffness, bulk_stiffness_tangential, mass, lower"
+SHAPES = '"parabola", "circle", "cone", "flat", "flat_punch", "power" or "table"'
+BODIES = (
+    "particles, spacing, profile, reduction, bulk_stiffness, bulk_stiffness_tangential, mass, lower, periodic, "
+    "upper_particles, upper_spacing, upper_offset"
+)
 COUNT = 'must be a whole number from 3 to 10000000, or "auto"'
 KINDS = '"load", "path", "pull_off", "slide" or "tangential"'
 DISPLACEMENTS = "must be a list, each item a number (LU), or a table with from, to, steps, return"
@@ -97,7 +100,7 @@ ONE_LINE_EACH: list[tuple[list[str], str]] = [
     ([*SLIDE, "noise.seed=2147483648"], "noise.seed = 2147483648: must be a whole number from 1 to 2147483647"),
     ([*SLIDE, "cantilever.stiffness=0"], "cantilever.stiffness = 0: must be greater than 0 (FU/LU)"),
     ([*SLIDE, "cantilever.velocity=0"], "cantilever.velocity = 0: must be greater than 0 (LU/TU)"),
-    ([*SLIDE, "experiment.normal_force=0"], "experiment.normal_force = 0: must be greater than 0 (FU)"),
+    ([*SLIDE, "experiment.normal_force=true"], "experiment.normal_force = true: must be a number (FU)"),
     ([*SLIDE, "experiment.distance=-1"], "experiment.distance = -1: must be greater than 0 (LU)"),
     (["accuracy.tolerance=1e-8"], "accuracy.tolerance = 1e-08: must be from 1e-07 to 0.1"),
     (["accuracy.tolerance=0.2"], "accuracy.tolerance = 0.2: must be from 1e-07 to 0.1"),
@@ -145,7 +148,7 @@ ONE_LINE_EACH: list[tuple[list[str], str]] = [
     (["bodies.profile=parabola"], f'bodies.profile = "parabola": must be a table with kind = {SHAPES}'),
     (
         ["bodies.lower=particle"],
-        'bodies.lower = "particle": must be "particles" or "rigid_plane"; did you mean "particles"?',
+        'bodies.lower = "particle": must be "particles", "rigid_plane" or "rigid_chain"; did you mean "particles"?',
     ),
     (["title="], 'set "title=": no value; write table.key=value, for example experiment.method=dynamic'),
     (['title=""'], 'title = "": must be one line of text, not empty'),
@@ -180,7 +183,7 @@ ONE_LINE_EACH: list[tuple[list[str], str]] = [
     (
         [*SLIDE, "experiment.method=dynamic"],
         "experiment.method: unknown key; a slide is always dynamic: remove it; "
-        "allowed here: kind, normal_force, distance",
+        "allowed here: kind, normal_force, distance, path",
     ),
 ]
 

@@ -68,7 +68,9 @@ SCENES: dict[str, dict[str, Any]] = {
 STEEL = {"youngs_modulus": 210e9, "poisson_ratio": 0.3}
 EXAMPLES: dict[str, dict[str, Any]] = {
     "interaction": BODY["interaction"],
-    "bodies": {"bulk_stiffness_tangential": 0.83},
+    "bodies": {
+        "bulk_stiffness_tangential": 0.83, "upper_particles": 40, "upper_spacing": 1.0, "upper_offset": 0.5,
+    },
     "neighbours": {"stiffness": 0.3},
     "friction": {"coefficient": 0.3},
     "damping": {"coefficient": "auto"},
@@ -78,7 +80,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
         "upper": STEEL, "lower": STEEL, "contact_modulus": 115e9, "length_unit": 1e-9, "force_unit": 1e-6,
         "mass_unit": 1e-12, "surface_energy": 1.0,
     },
-    "experiment": {"method": "quasistatic", "normal_displacement": 1.0},
+    "experiment": {"method": "quasistatic", "normal_displacement": 1.0, "path": [[0.05, 6.0], [-0.05, 6.0]]},
 }  # fmt: skip
 """Values of keys that are not set and have no default."""
 

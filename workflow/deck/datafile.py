@@ -1,8 +1,10 @@
 """system.data: the atoms and bonds of a deck, with 17 significant digits.
 
 Atom types: 1 lower particles, 2 upper particles, 3 lower anchors, 4 upper anchors, 5 lower far anchors, 6 upper far
-anchors. Bond types: 1 bulk springs, then neighbour springs if any, then long bonds if any. ASE cannot write
-`atom_style bond`, and other writers round positions: hence this small one.
+anchors, 7 the driver, which pulls the plate by a spring.
+
+Bond types: 1 bulk springs, then neighbour springs if any, then long bonds if any. ASE cannot write `atom_style bond`,
+and other writers round positions: hence this small one.
 """
 
 from __future__ import annotations
@@ -25,6 +27,7 @@ FAR_MASS = 1e-12
 PARTICLES = {"lower": 1, "upper": 2}
 ANCHORS = {"lower": 3, "upper": 4}
 FAR_ANCHORS = {"lower": 5, "upper": 6}
+DRIVER = 7
 
 
 @dataclass(frozen=True)
@@ -56,6 +59,8 @@ def assemble(
     particle_mass: float,
     anchor_mass: float,
     margin: tuple[float, float, float],
+    driver: bool = False,
+    period: float = 0.0,
 ) -> System:
     """Number the atoms (particles first, lower body first) and bond them.
 
@@ -65,28 +70,39 @@ def assemble(
         particle_mass: [MU].
         anchor_mass: [MU]; the plate's mass over its number of anchors.
         margin: free space along x, y and z [LU] between atoms and the walls of the box.
+        driver: whether there is one, in the middle of the upper anchors.
+        period: length of the box along x [LU], after which everything repeats itself; 0 where nothing does.
     """
-    count = len(bodies[0].particles)
-    far = len(bodies[0].far_anchors) > 0
+    far = len(bodies[-1].far_anchors) > 0
     groups = [(PARTICLES[b.name], b.particles) for b in bodies] + [(ANCHORS[b.name], b.anchors) for b in bodies]
     if far:
         groups += [(FAR_ANCHORS[b.name], b.far_anchors) for b in bodies]
+    if driver:
+        groups.append((DRIVER, bodies[-1].anchors.mean(axis=0, keepdims=True)))
     positions = np.concatenate([p for _, p in groups])
     types = np.concatenate([np.full(len(p), t) for t, p in groups])
-    particle = np.arange(1, len(bodies) * count + 1)
-    standing = len(bodies[0].anchors) == 0
-    bonds = [np.empty((0, 3), dtype=np.int64)] if standing else [_bonds(1, particle, particle + len(particle))]
-    names = [] if standing else ["bulk"]
+    starts = np.cumsum([1, *(len(p) for _, p in groups)])
+    held = [i for i, b in enumerate(bodies) if len(b.anchors)]
+    chains = {i: starts[i] + np.arange(len(bodies[i].particles)) for i in held}
+    bonds = [np.empty((0, 3), dtype=np.int64)]
+    bonds += [_bonds(1, chains[i], starts[len(bodies) + i] + np.arange(len(chains[i]))) for i in held]
+    names = ["bulk"] if held else []
     if neighbours:
         names.append("neighbours")
-        inner = particle[particle % count != 0]
-        bonds.append(_bonds(len(names), inner, inner + 1))
+        for chain in chains.values():
+            nexts = np.roll(chain, -1) if period else chain[1:]
+            bonds.append(_bonds(len(names), chain[: len(nexts)], nexts))
     if far:
         names.append("far")
-        bonds.append(_bonds(len(names), particle, particle + 2 * len(particle)))
-    masses = (particle_mass, particle_mass, anchor_mass, anchor_mass, *(2 * (FAR_MASS * anchor_mass,) if far else ()))
+        ends = {i: starts[2 * len(bodies) + i] for i in held}
+        bonds += [_bonds(len(names), chains[i], ends[i] + np.arange(len(chains[i]))) for i in held]
+    masses: tuple[float, ...] = (particle_mass, particle_mass, anchor_mass, anchor_mass)
+    if far or driver:
+        masses += 2 * (FAR_MASS * anchor_mass,) + (anchor_mass,) * driver
     space = np.asarray(margin)
     box = np.stack([positions.min(axis=0) - space, positions.max(axis=0) + space])
+    if period:
+        box[:, 0] = -0.5 * period, 0.5 * period
     return System(types, positions, np.concatenate(bonds), tuple(names), masses, box)
 
 

@@ -154,7 +154,8 @@ class Deck:
     def _measuring(self) -> tuple[str, ...]:
         if self.swept:
             return ()
-        return (*(name for part in self.parts for name in part.step_begin), "steps/measuring")
+        measure = "steps/measuring" if self.scene.cantilever is None else "steps/measuring_energy"
+        return (*(name for part in self.parts for name in part.step_begin), measure)
 
     @property
     def _measured(self) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ of zero rest length too, it is a constant force −r_i on particle i, and Σ r_i
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,7 +47,10 @@ def places(count: int, spacing: float) -> Array:
 
 
 def neighbour_forces(particles: Array, stiffness: float) -> Array:
-    """Forces r_i [FU] of zero-length neighbour springs on the chain `particles` (N, 3) [LU]; their sum is 0."""
+    """Forces r_i [FU] of zero-length neighbour springs on the chain `particles` (N, 3) [LU]; their sum is 0.
+
+    A chain that closes on itself has none.
+    """
     pull = stiffness * np.diff(particles, axis=0)
     force = np.zeros_like(particles)
     force[:-1] += pull
@@ -56,14 +60,42 @@ def neighbour_forces(particles: Array, stiffness: float) -> Array:
 
 def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
     """The bodies of a scene, lower one first; on a rigid plane the upper one alone."""
-    x = places(settings.particles, scene.bodies.spacing)
+    x = places(settings.particles, scene.bodies.own_spacing)
     flat = np.zeros_like(x)
     offset = settings.table.plane_offset if settings.table is not None else 0.0
-    upper = np.column_stack([x, flat + offset, settings.rest + scene.bodies.height(x)])
+    along = x + start_offset(scene, settings)
+    if scene.bodies.periodic:
+        half = 0.5 * period(scene, settings)
+        along = (along + half) % (2.0 * half) - half
+    upper = np.column_stack([along, flat + offset, settings.rest + scene.bodies.height(x)])
     if scene.bodies.lower == "rigid_plane":
         return (_body("upper", upper, scene, settings),)
-    lower = np.column_stack([x, flat, flat])
+    below = places(settings.lower_particles, scene.bodies.spacing)
+    lower = np.column_stack([below, 0.0 * below, 0.0 * below])
+    if scene.bodies.lower == "rigid_chain":
+        return Body("lower", lower, *2 * (np.empty((0, 3)),)), _body("upper", upper, scene, settings)
     return _body("lower", lower, scene, settings), _body("upper", upper, scene, settings)
+
+
+def period(scene: Scene, settings: Settings) -> float:
+    """Length [LU] after which bodies without end repeat themselves."""
+    return settings.lower_particles * scene.bodies.spacing
+
+
+def start_offset(scene: Scene, settings: Settings) -> float:
+    """Place of the upper body's middle along x [LU]: as given, or 0.
+
+    In a slide such that particles begin between the opposite ones: on top of them they would stand at rest too, and
+    fall to either side.
+    """
+    bodies = scene.bodies
+    if bodies.upper_offset is not None:
+        return bodies.upper_offset
+    if not scene.experiment.motion_is_result or bodies.lower == "rigid_plane":
+        return 0.0
+    first = 0.5 * (settings.lower_particles - 1) * bodies.spacing - 0.5 * (settings.particles - 1) * bodies.own_spacing
+    beside = first / bodies.spacing - math.floor(first / bodies.spacing)
+    return bodies.spacing * (0.5 - beside)
 
 
 def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body:
@@ -73,12 +105,12 @@ def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body
     tangential = scene.tangential_stiffness
     softer = min(settings.bulk_stiffness, tangential) if settings.far else settings.bulk_stiffness
     shift = np.zeros_like(particles)
-    if scene.neighbours is not None:
+    if scene.neighbours is not None and not scene.bodies.periodic:
         shift = -neighbour_forces(particles, scene.neighbours.stiffness) / softer
         if scene.horizontal is None:
             shift[:, 0] = 0.0
     if scene.plate is not None and name == "upper":
-        shift[:, 1] = STAGGER_SHARE * len(particles) * scene.bodies.spacing * (-1.0) ** np.arange(len(particles))
+        shift[:, 1] = STAGGER_SHARE * len(particles) * scene.bodies.own_spacing * (-1.0) ** np.arange(len(particles))
     anchors = particles + shift
     if settings.far == 0.0:
         return Body(name, particles, anchors, none)

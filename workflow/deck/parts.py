@@ -41,7 +41,13 @@ def moving(scene: Scene, settings: Settings) -> list[Contribution]:
         Contribution("guide", Stage.GUIDE, ("guide",), {} if scene.horizontal is not None else {"guide_x": "0.0"}),
         _method(scene, settings),
     ]
-    return found if scene.bodies.lower != "rigid_plane" else [*found, _plane("rigid_plane", scene, settings)]
+    if scene.bodies.lower == "rigid_plane":
+        found.append(_plane("rigid_plane", scene, settings))
+    if scene.bodies.lower == "rigid_chain":
+        found.append(Contribution("rigid_chain", Stage.GUIDE, ("rigid_chain",)))
+    if scene.bodies.periodic:
+        found.append(Contribution("periodic", Stage.BODIES, ("periodic",)))
+    return found
 
 
 def bins(scene: Scene, settings: Settings, brought: Sequence[Contribution]) -> list[Contribution]:

@@ -86,6 +86,10 @@ class DeckUnits:
         if not self.are_own:
             return settings
         changed: dict[str, Any] = {name: self.to_deck(getattr(settings, name), unit) for name, unit in SETTINGS.items()}
+        changed["drive"] = tuple(
+            replace(leg, velocity=self.to_deck(leg.velocity, "LU/TU"), time_step=self.to_deck(leg.time_step, "TU"))
+            for leg in settings.drive
+        )
         if settings.law is not None:
             law = self._law(settings.law)
             table = None if settings.table is None else LawTable(law, changed["cutoff"], settings.table.points)

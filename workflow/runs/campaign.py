@@ -6,6 +6,7 @@ import fcntl
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
@@ -19,7 +20,7 @@ from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.engine.session import EngineError
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments import perform, planned
-from contact1d.workflow.experiments.running.outcome import anywhere_between
+from contact1d.workflow.experiments.running.outcome import Outcome, anywhere_between
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import UntrustedError
 from contact1d.workflow.runs.finished import Run
@@ -31,6 +32,7 @@ from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import AnyScene, Scene, read_scene, scene_to_toml
 from contact1d.workflow.settings.settings import Settings, settings_for
 from contact1d.workflow.settings.size import MIX_UP, in_words, require_steps
+from contact1d.workflow.settings.way import require_way
 
 AnyPath = str | PathLike[str]
 LOCK = ".running"
@@ -94,6 +96,8 @@ def _run(context: RunContext, started: float, figures: bool, refine: bool) -> Ru
             "phase": context.phase,
             "step": context.timestep,
         }
+        if context.left is not None:
+            _write_what_is_left(context.left, scene, folder, figures)
         write_results(folder, failure(scene, facts, timing()))
         where = f" [phase {context.phase}, step {context.timestep}]"
         raise RunError(f"{facts['message']}{_hint(str(facts['message']))}{where}", folder) from error
@@ -110,6 +114,17 @@ def _run(context: RunContext, started: float, figures: bool, refine: bool) -> Ru
     document = results(scene, outcome, timing()) | formulas(scene, outcome.quantities)
     write_results(folder, document)
     return Run(folder, document, scene, curve, outcome.profiles, friction, outcome)
+
+
+def _write_what_is_left(outcome: Outcome, scene: Scene, folder: Path, figures: bool) -> None:
+    """Tables and figures of a run that gives no numbers, to see why."""
+    curve = curve_of(scene, outcome)
+    write_tables(folder, scene, replace(outcome, quantities={}), curve)
+    if figures:
+        from contact1d.workflow.runs.drawing import draw
+
+        friction = {name: np.asarray(column) for name, column in outcome.friction.items()}
+        draw(folder, scene, {}, curve, outcome.profiles, friction)
 
 
 def _scene(scene: AnyScene) -> Scene:
@@ -176,7 +191,8 @@ def alone(folder: Path, busy: str = "another run is at work in") -> Iterator[Non
 
 
 def _planned_text(deck: Deck) -> str:
-    """in.lammps with the planned schedule. Raises SettingsError where a row of it has too many timesteps."""
+    """in.lammps with the planned schedule. Raises SettingsError where its way or one of its rows is too long."""
+    require_way(deck.scene, deck.settings)
     phases = planned(deck.scene, deck.settings)
     require_steps(getattr(row, "steps", 0) for phase in phases for row in phase.rows)
     return deck.text(phases)

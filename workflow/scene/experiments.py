@@ -6,7 +6,7 @@ A prescribed path from d₀ to d₁ in n steps holds d_i = (d₀ (n − i) + d�
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from annotated_types import MinLen
 from pydantic import Discriminator, Field, Tag, model_validator
@@ -16,6 +16,7 @@ from contact1d.workflow.scene.quantities import (
     Compression,
     CompressionOrNone,
     Displacement,
+    DriveVelocity,
     Force,
     Length,
     StepCount,
@@ -138,6 +139,21 @@ class PullOff(Kind):
         return self.preload
 
 
+class Leg(Table):
+    """A part of a slide's path, written [velocity, distance]."""
+
+    velocity: DriveVelocity = Field(description="velocity of the driven end; negative: back, 0: it rests")
+    distance: Length = Field(
+        description="way of the driven end; where it rests, it does so as long as cantilever.velocity takes for that"
+    )
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: Any, handler: Any) -> dict[str, Any]:
+        """A list of two numbers, or a table."""
+        pair = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
+        return {"anyOf": [pair, handler.resolve_ref_schema(handler(core))]}
+
+
 class Slide(Kind):
     """Sliding under a normal force, pulled through the cantilever; always dynamic."""
 
@@ -145,18 +161,33 @@ class Slide(Kind):
     motion_is_result: ClassVar[bool] = True
 
     kind: Literal["slide"] = Field(description="normal force and cantilever; always dynamic")
-    normal_force: Compression = Field(description="compressive force held while sliding")
-    distance: Length = Field(description="way of the driven end of the cantilever")
+    normal_force: Force = Field(
+        description="force held while sliding, compression positive; 0 or a pull where bodies attract each other"
+    )
+    distance: Length | None = Field(
+        default=None, description="way of the driven end of the cantilever at cantilever.velocity; absent with a path"
+    )
+    path: Annotated[tuple[Leg, ...], Field(strict=False), MinLen(1)] | None = Field(
+        default=None, description="legs [velocity, distance] of the driven end in place of one distance"
+    )
+
+    def legs(self, velocity: float) -> tuple[Leg, ...]:
+        """The legs; `velocity` [LU/TU] is the cantilever's."""
+        return self.path or (Leg(velocity=velocity, distance=self.distance or 0.0),)
 
     @property
     def compression(self) -> float:
-        """The normal force."""
-        return self.normal_force
+        """The normal force, if it compresses."""
+        return max(self.normal_force, 0.0)
 
     @property
     def way(self) -> float:
-        """The way of the driven end."""
-        return self.distance
+        """How far the driven end goes to one side at most."""
+        place, farthest = 0.0, self.distance or 0.0
+        for leg in self.path or ():
+            place += leg.distance * ((leg.velocity > 0.0) - (leg.velocity < 0.0))
+            farthest = max(farthest, abs(place))
+        return farthest
 
 
 class Tangential(Kind):

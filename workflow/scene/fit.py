@@ -12,6 +12,7 @@ from typing import Any
 
 from contact1d.workflow.scene.draft import ADD, Draft, missing
 from contact1d.workflow.scene.fit_friction import no_plane, tangential
+from contact1d.workflow.scene.fit_slide import SLIDING_RULES
 from contact1d.workflow.scene.problems import Problem, shown
 from contact1d.workflow.scene.reduction import derived_for_spheres
 from contact1d.workflow.scene.tables import EFFECTS, TIMED, Plate, default_method
@@ -56,7 +57,7 @@ NEEDED = {
 
 def _lower_body(draft: Draft) -> Iterator[Problem]:
     """Particles need an interaction; a rigid plane has none, neither holds anything nor pulls sideways."""
-    if draft.lower == "particles" and not draft.has("interaction"):
+    if draft.lower in ("particles", "rigid_chain") and not draft.has("interaction"):
         yield Problem("interaction", "missing", hint='add [interaction], or use bodies.lower = "rigid_plane"')
     if draft.lower != "rigid_plane":
         yield from no_plane(draft)
@@ -261,6 +262,7 @@ RULES: tuple[Callable[[Draft], Iterator[Problem]], ...] = (
     _punch,
     _material,
     derived_for_spheres,
+    *SLIDING_RULES,
 )
 
 

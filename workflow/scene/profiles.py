@@ -128,13 +128,10 @@ class Cone(Shape):
         return 0.5 * math.pi * self.slope * abs(x)
 
 
-class FlatPunch(Shape):
-    """Profile of the upper body: z = 0 out to the edge, and no body beyond it."""
+class Level(Shape):
+    """z = 0 wherever there is a body."""
 
     has_edge = True
-
-    kind: Literal["flat_punch"] = Field(description="z = 0 within the radius, no body beyond it")
-    radius: Length = Field(description="radius, a whole number of half spacings")
 
     def height(self, x: Array) -> Array:
         """z = 0."""
@@ -143,6 +140,19 @@ class FlatPunch(Shape):
     def transformed(self, x: Array) -> Array:
         """g = 0."""
         return 0.0 * abs(x)
+
+
+class Flat(Level):
+    """Profile of the upper body: z = 0 without end; its chain closes on itself (`bodies.periodic`)."""
+
+    kind: Literal["flat"] = Field(description="z = 0 without end, with bodies.periodic")
+
+
+class FlatPunch(Level):
+    """Profile of the upper body: z = 0 out to the edge, and no body beyond it."""
+
+    kind: Literal["flat_punch"] = Field(description="z = 0 within the radius, no body beyond it")
+    radius: Length = Field(description="radius, a whole number of half spacings")
 
     @property
     def reach(self) -> float:
@@ -285,4 +295,4 @@ def fault_of(r: tuple[float, ...], z: tuple[float, ...]) -> str | None:
     return None
 
 
-Profile = Annotated[Parabola | Circle | Cone | FlatPunch | Power | Measured, Discriminator("kind")]
+Profile = Annotated[Parabola | Circle | Cone | Flat | FlatPunch | Power | Measured, Discriminator("kind")]

@@ -115,6 +115,7 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
     """The scene of `plain`, which is mended on the way; `problems` are those found so far."""
     problems += mend_words(plain)
     columns, unread = _with_points(plain, folder)
+    _with_legs(plain)
     converted = convert_texts(plain, columns)
     checked = check_tables(plain, converted.told)
     found = (*unread, *converted.problems, *checked.problems, *check_fit(plain, checked.unsound))
@@ -161,6 +162,18 @@ def _with_points(data: dict[str, Any], folder: FilePath) -> tuple[dict[Keys, Col
             problem = Problem("bodies.profile.scale", str(error), shown(scale))
     profile |= {"r": [0.0, 1.0, 2.0, 3.0], "z": [0.0, 1.0, 4.0, 9.0]}  # so that the rest of the scene is still checked
     return {(*PROFILE, key): Column(file, stands_in=True) for key in ("r", "z")}, [problem]
+
+
+def _with_legs(data: dict[str, Any]) -> None:
+    """Put tables in the place of a slide's legs [velocity, distance] in `data`."""
+    experiment = data.get("experiment")
+    if not isinstance(experiment, dict):
+        return
+    path = experiment.get("path")
+    if isinstance(path, list):
+        names = ("velocity", "distance")
+        legs = [dict(zip(names, leg, strict=True)) if isinstance(leg, list) and len(leg) == 2 else leg for leg in path]
+        experiment["path"] = legs
 
 
 def _listed(words: Iterable[str]) -> list[str]:

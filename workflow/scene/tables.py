@@ -6,6 +6,7 @@ repulsion and B, b those of the attraction.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, cast, get_args
 
@@ -15,14 +16,16 @@ from pydantic_core import PydanticCustomError
 
 from contact1d.workflow.scene.experiments import Experiment, Method, Slide, Tangential
 from contact1d.workflow.scene.material import PARABOLA_SHARE, Material, Reduction
-from contact1d.workflow.scene.profiles import Parabola, Profile
+from contact1d.workflow.scene.profiles import Flat, Parabola, Profile
 from contact1d.workflow.scene.quantities import (
+    AnyParticleCount,
     AutoDamping,
     AutoDampingOrZero,
     AutoLength,
     AutoMass,
     AutoParticleCount,
     AutoStiffness,
+    Displacement,
     Energy,
     Length,
     Mass,
@@ -44,7 +47,9 @@ if TYPE_CHECKING:
 class Bodies(Table):
     """The two bodies: chains of particles, each particle held to its own bulk by a spring."""
 
-    particles: AutoParticleCount = Field(description='particles per body, or "auto": as many as the contact needs')
+    particles: AutoParticleCount = Field(
+        description='particles per body, or of the lower one, or "auto": as many as the contact needs'
+    )
     spacing: Length = Field(description="distance of neighbouring particles")
     profile: Profile = Field(description="shape of the upper body")
     reduction: Reduction = Field(default=cast("Reduction", None), description=MEANING)
@@ -58,8 +63,22 @@ class Bodies(Table):
         "of both bodies G*/E* of that",
     )
     mass: Mass = Field(default=1.0, description="mass of a particle; matters only where something moves in time")
-    lower: Literal["particles", "rigid_plane"] = Field(
-        default="particles", description='lower body: "particles" like the upper one, or a "rigid_plane"'
+    lower: Literal["particles", "rigid_plane", "rigid_chain"] = Field(
+        default="particles",
+        description='lower body: "particles" like the upper one, a "rigid_plane", or a "rigid_chain" of particles '
+        "without springs",
+    )
+    periodic: bool = Field(default=False, description="whether both bodies, which are flat, go on for ever along x")
+    upper_particles: AnyParticleCount | None = Field(
+        default=None, description="particles of the upper body; absent: as many as the lower one has"
+    )
+    upper_spacing: Length | None = Field(
+        default=None, description="distance of neighbouring particles of the upper body; absent: the spacing"
+    )
+    upper_offset: Displacement | None = Field(
+        default=None,
+        description="place of the upper body's middle along x; absent: 0, and in a slide such that its particles begin "
+        "between those of the lower one",
     )
 
     def height(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -68,8 +87,16 @@ class Bodies(Table):
 
     @property
     def reach(self) -> float:
-        """Half-width [LU] within which the profile is a body at all."""
+        """Half-width [LU] within which the profile is a body at all; of a flat body half of its chain."""
+        if isinstance(self.profile, Flat):
+            count = self.upper_particles or self.particles
+            return 0.5 * float(count) * self.own_spacing if count != "auto" else math.inf
         return self.profile.reach
+
+    @property
+    def own_spacing(self) -> float:
+        """Distance [LU] of neighbouring particles of the upper body."""
+        return self.upper_spacing or self.spacing
 
     @property
     def plane_radius(self) -> float | None:
@@ -262,8 +289,8 @@ class Scene(Table):
 
     @property
     def chains(self) -> int:
-        """How many chains share the deformation: two, or one on a rigid plane."""
-        return 1 if self.bodies.lower == "rigid_plane" else 2
+        """How many chains share the deformation: two, or one on a rigid plane or a rigid chain."""
+        return 2 if self.bodies.lower == "particles" else 1
 
     @property
     def is_swept(self) -> bool:

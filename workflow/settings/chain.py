@@ -95,6 +95,22 @@ def reflected(scene: Scene, estimate: ContactEstimate, largest: float, particles
     return math.exp(-2.0 * max(beyond, 0.0) / decay) if decay > 0.0 else 0.0
 
 
+def chains_of(scene: Scene, estimate: ContactEstimate, largest: float, share: float) -> tuple[int, int]:
+    """Particles of the upper and of the lower body, those left open chosen.
+
+    The upper one by `chain_length`; the lower one the same, and longer by the way on both sides in a slide.
+    """
+    bodies = scene.bodies
+    if bodies.particles != "auto":
+        return bodies.upper_particles or bodies.particles, bodies.particles
+    needed = chain_length(scene, estimate, largest, share)
+    aside = scene.experiment.way + abs(bodies.upper_offset or 0.0)
+    beside = 2 * math.ceil(aside / bodies.spacing) if aside > 0.0 else 0
+    half = 0.5 * needed * bodies.own_spacing
+    below = needed if bodies.upper_spacing is None else 2 * math.ceil(half / bodies.spacing)
+    return bodies.upper_particles or needed, below + beside
+
+
 def _edge(estimate: ContactEstimate, largest: float) -> float:
     """Half-width [LU] up to the largest tension, or without attraction up to where nothing is felt."""
     return estimate.half_width(max(largest, 0.0), float(estimate.gap[int(estimate.force.argmin())]))
@@ -106,7 +122,7 @@ def chain_length(scene: Scene, estimate: ContactEstimate, largest: float, share:
     A flat punch has its own length; no chain is longer than its profile is wide.
     """
     if scene.bodies.profile.has_edge:
-        return round(2.0 * scene.bodies.reach / scene.bodies.spacing)
+        return round(2.0 * scene.bodies.reach / scene.bodies.own_spacing)
     force = np.abs(estimate.force)
     strongest = float(np.max(force[estimate.gap > estimate.rest - largest], initial=0.0))
     felt = force > share * strongest
@@ -115,5 +131,5 @@ def chain_length(scene: Scene, estimate: ContactEstimate, largest: float, share:
         reach = float(estimate.gap[-1])  # the contact ends where nothing is felt at all
     half = CHAIN_MARGIN * estimate.half_width(max(largest, 0.0), reach)
     half = max(half, _edge(estimate, largest) - 0.5 * decay_length(scene) * math.log(share))
-    wanted = 2 * (math.ceil(half / scene.bodies.spacing) + 2)
+    wanted = 2 * (math.ceil(half / scene.bodies.own_spacing) + 2)
     return wanted if scene.bodies.reach == math.inf else min(wanted, _most_particles(scene.bodies))

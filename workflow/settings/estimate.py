@@ -236,16 +236,21 @@ def particles_estimate(
     cutoff: float,
     rest: float,
     points: int = GRID,
+    chains: int = 2,
+    row: float | None = None,
 ) -> ContactEstimate:
-    """The estimate for two chains whose particles are held by springs `stiffness` [FU/LU] each."""
+    """The estimate for particles held by springs `stiffness` [FU/LU] each, in two chains or in the upper one alone.
+
+    `row`: spacing [LU] of the opposite row where it differs.
+    """
     r = np.linspace(cutoff / points, cutoff, points)
-    force = row_force(law, r, spacing, cutoff)
-    undeformed = r - 2 * force / stiffness
+    force = row_force(law, r, row or spacing, cutoff)
+    undeformed = r - chains * force / stiffness
     gap = np.maximum.accumulate(undeformed)
     gap += np.arange(points) * 1e-12 * cutoff
     falls = np.flatnonzero(np.diff(undeformed) < 0.0)
     bend = abs(float(np.diff(undeformed, 2)[max(falls[0] - 1, 0)])) / (r[1] - r[0]) ** 2 if falls.size else 0.0
-    return ContactEstimate(gap, force, rest, profile, spacing, stiffness / 2, falls.size > 0, bend)
+    return ContactEstimate(gap, force, rest, profile, spacing, stiffness / chains, falls.size > 0, bend)
 
 
 def plane_estimate(profile: Profile, spacing: float, stiffness: float) -> ContactEstimate:

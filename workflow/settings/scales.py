@@ -9,16 +9,22 @@ import numpy as np
 from contact1d.potentials import DoubleExponential
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.estimate import ContactEstimate
+from contact1d.workflow.settings.registry import slide_cutoff
 
 THERMAL_SIGMAS = 5.0
 """Standard deviations by which a particle's thermal motion brings it nearer."""
 
 
-def cutoff_for(scene: Scene, law: DoubleExponential, share: float) -> float:
-    """The scene's cutoff [LU], or the one beyond which the force is below a share of the law's own."""
+def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: float) -> float:
+    """The scene's cutoff [LU], or the one beyond which the force is below a share of the law's own.
+
+    In a slide also below what the tolerance leaves of the force along x.
+    """
     assert scene.interaction is not None
     if scene.interaction.cutoff != "auto":
         return scene.interaction.cutoff
+    if scene.experiment.motion_is_result:
+        return max(law.cutoff_for(share), slide_cutoff(law, scene.bodies.spacing, 0.0, tolerance))
     return law.cutoff_for(share)
 
 

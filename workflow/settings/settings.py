@@ -16,7 +16,8 @@ from contact1d.potentials.table import Table, table_for
 from contact1d.workflow.scene import Measured, Scene
 from contact1d.workflow.settings.calibration import CALIBRATION, Calibration
 from contact1d.workflow.settings.chain import SettingsError as SettingsError
-from contact1d.workflow.settings.chain import chain_length, require_body, require_room
+from contact1d.workflow.settings.chain import chains_of, require_body, require_room
+from contact1d.workflow.settings.drive import DriveLeg, drive_steps
 from contact1d.workflow.settings.dynamics import dynamics_of, stiffest_of
 from contact1d.workflow.settings.estimate import ContactEstimate, NotCarriedError, particles_estimate, plane_estimate
 from contact1d.workflow.settings.scales import (
@@ -27,7 +28,7 @@ from contact1d.workflow.settings.scales import (
     plane_stiffness_of,
     thermal_motion,
 )
-from contact1d.workflow.settings.shape import tabulated
+from contact1d.workflow.settings.shape import Profile, tabulated
 from contact1d.workflow.settings.size import require_apex, require_memory, require_reach, require_rows, require_travel
 
 TABLE_MARGIN = 0.8
@@ -60,7 +61,9 @@ class Settings:
 
     Attributes:
         tolerance: that all of this is for; that of a refined pass is smaller than the scene's.
-        particles: per body.
+        particles: of the upper body.
+        drive: the legs of a slide; `time_step` is that of the first one.
+        beyond: how many more the lower body has, where it has any.
         rest: apex distance at displacement 0 [LU].
         law, cutoff, table, table_from: the interaction, its cutoff [LU], its table, and the distance [LU] from which on
             the table was chosen to follow the law; None or 0 on a rigid plane.
@@ -116,6 +119,13 @@ class Settings:
     calm_damping: float
     calm_step: float
     part: float = 1.0
+    beyond: int = 0
+    drive: tuple[DriveLeg, ...] = ()
+
+    @property
+    def lower_particles(self) -> int:
+        """Particles of the lower body, where it has any."""
+        return self.particles + self.beyond
 
     @property
     def gentle(self) -> bool:
@@ -218,7 +228,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     law = interaction_law(scene)
     bodies = scene.bodies
     require_room(bodies)
-    shape = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
+    shape: Profile = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
     plane = plane_stiffness_of(scene, tolerance)
     in_series = law is None and not scene.is_swept
     bond = 1.0 / (1.0 / scene.bulk_stiffness - 1.0 / plane) if in_series else scene.bulk_stiffness
@@ -226,18 +236,18 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     if law is None:
         estimate = plane_estimate(shape, bodies.spacing, scene.bulk_stiffness)
     else:
-        cutoff = cutoff_for(scene, law, calibration.cutoff * tolerance)
+        cutoff = cutoff_for(scene, law, calibration.cutoff * tolerance, tolerance)
         require_reach(scene, cutoff)
         rest = law.force_free_distance() if law.attraction is not None else cutoff
         closest = CLOSEST_SHARE * (rest if law.attraction is not None else law.repulsion.range)
-        estimate = particles_estimate(law, shape, bodies.spacing, scene.bulk_stiffness, cutoff, rest)
+        estimate = particles_estimate(
+            law, shape, bodies.own_spacing, scene.bulk_stiffness, cutoff, rest, chains=scene.chains, row=bodies.spacing
+        )
     largest = _largest_displacement(scene, estimate)
-    particles = bodies.particles
-    if particles == "auto":
-        particles = chain_length(scene, estimate, largest, calibration.chain * tolerance)
+    particles, lower = chains_of(scene, estimate, largest, calibration.chain * tolerance)
     require_body(bodies, largest, particles)
     require_apex(scene, particles, cutoff)
-    require_memory(scene, particles, cutoff)
+    require_memory(scene, max(particles, lower), cutoff)
     require_travel(scene, largest, cutoff)
     force_scale = force_scale_of(scene, law, largest)
     table_from, table = 0.0, None
@@ -249,6 +259,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
         table = table_for(law, cutoff, table_from, calibration.table * tolerance * force_scale)
     stiffest = stiffest_of(scene, law, closest, plane)
     dynamics = dynamics_of(scene, tolerance, estimate, largest, particles, stiffest, calibration.still_step)
+    drive = drive_steps(scene, dynamics.time_step)
     different = scene.horizontal is not None and scene.tangential_stiffness != scene.bulk_stiffness
     longest_move = MOVE_SHARE * closest if law is not None else math.inf
     require_rows(scene, longest_move)
@@ -256,6 +267,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     return Settings(
         tolerance=tolerance,
         particles=particles,
+        beyond=lower - particles,
         rest=rest,
         law=law,
         cutoff=cutoff,
@@ -273,7 +285,8 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
         longest_move=longest_move,
         largest_displacement=largest,
         estimate=estimate,
-        time_step=dynamics.time_step,
+        time_step=drive[0].time_step if drive else dynamics.time_step,
+        drive=drive,
         damping=dynamics.damping,
         damped_stiffness=dynamics.damped_stiffness,
         plate_mass=dynamics.plate_mass,

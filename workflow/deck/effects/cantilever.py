@@ -1,4 +1,11 @@
-"""Effect [cantilever]: F_x = c (v t − X) pulls the plate along x through a spring whose far end moves at velocity v."""
+"""Effect [cantilever]: F_x = c (v t − X) pulls the plate along x through a spring whose far end moves at velocity v.
+
+What is drawn along moves at v on the mean, and so does the bath that drags at it: drag is against v, not against rest,
+
+    F_bath = (N γ + c_plate) v  on the plate, beside −γ v_i on its particles and −c_plate V on itself,
+
+since the bulk goes with its body. Otherwise the cantilever would pull at a drag that is no friction of the contact.
+"""
 
 from contact1d.workflow.deck.effects.base import Contribution, Stage, number
 from contact1d.workflow.scene import Scene
@@ -6,10 +13,21 @@ from contact1d.workflow.settings.settings import Settings
 
 
 def cantilever(scene: Scene, settings: Settings) -> Contribution:
-    """The drive starts with the phase that slides; see `steps/drive`."""
+    """The drive starts with the phase that slides; see `steps/drive` and, for the further legs, `steps/turn`."""
     assert scene.cantilever is not None
+    legs = settings.drive
+    velocities, clocks = [leg.velocity for leg in legs], [leg.time_step for leg in legs]
     variables = {
         "cantilever_stiffness": number(scene.cantilever.stiffness),
-        "cantilever_velocity": number(scene.cantilever.velocity),
+        "cantilever_velocity": " ".join(map(number, velocities)),
+        "cantilever_time_step": " ".join(map(number, clocks)),
+        "cantilever_drag": number(settings.particles * settings.damping + settings.plate_damping),
     }
-    return Contribution("cantilever", Stage.PULL, ("cantilever",), variables)
+    return Contribution(
+        "cantilever",
+        Stage.PULL,
+        ("cantilever",),
+        variables,
+        step_end=("steps/measured_energy",),
+        integrates="cantilever_driver",
+    )

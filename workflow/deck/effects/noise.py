@@ -6,11 +6,22 @@ from contact1d.workflow.settings.settings import Settings
 
 
 def noise(scene: Scene, settings: Settings) -> Contribution:
-    """`fix langevin` takes the relaxation time m/γ."""
+    """`fix langevin` takes the relaxation time m/γ. A drag on the plate brings its heat, too, to one of its anchors."""
     assert scene.noise is not None
     variables = {
         "noise_temperature": number(scene.noise.temperature),
         "noise_damp": number(scene.bodies.mass / settings.damping),
         "noise_seed": str(scene.noise.seed),
     }
-    return Contribution("noise", Stage.DRAG, ("noise",), variables)
+    fragments: tuple[str, ...] = ("noise",)
+    if scene.plate is not None and settings.plate_damping > 0.0:
+        fragments += ("noise_plate",)
+        variables["noise_plate_damp"] = number(settings.plate_mass / settings.particles / settings.plate_damping)
+        variables["noise_plate_id"] = str(first_upper_anchor(scene, settings))
+    return Contribution("noise", Stage.DRAG, fragments, variables)
+
+
+def first_upper_anchor(scene: Scene, settings: Settings) -> int:
+    """Its number among the atoms: first come the particles of both bodies, then the lower anchors."""
+    below = {"particles": 2, "rigid_chain": 1, "rigid_plane": 0}[scene.bodies.lower]
+    return settings.particles + below * settings.lower_particles + 1

@@ -9,12 +9,13 @@ def plate(scene: Scene, settings: Settings) -> Contribution:
     """Shared slot: the mass of the anchors in system.data. The drag is shared out among them."""
     assert scene.plate is not None
     anchors = settings.particles * (1 if settings.far == 0.0 else 2)
-    variables = {
-        "plate_damping_per_anchor": number(settings.plate_damping / anchors),
-        "plate_free_x": "on" if "x" in scene.plate.free else "off",
-    }
-    fragments: tuple[str, ...] = ("plate",)
-    width = 2.0 * STAGGER_SHARE * settings.particles * scene.bodies.spacing
+    alone = anchors == 1
+    free = {True: "NULL", False: "0.0"} if alone else {True: "on", False: "off"}
+    # Drag on the plate comes with heat where there is noise, and then from there.
+    drag = 0.0 if scene.noise is not None else settings.plate_damping
+    variables = {"plate_damping_per_anchor": number(drag / anchors), "plate_free_x": free["x" in scene.plate.free]}
+    fragments: tuple[str, ...] = ("plate_alone" if alone else "plate",)
+    width = 2.0 * STAGGER_SHARE * settings.particles * scene.bodies.own_spacing
     own = max(settings.cutoff, settings.far / BINS)
     if scene.interaction is not None and width / BINS > own:
         fragments += ("wide",)

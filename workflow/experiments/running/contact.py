@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -14,6 +14,7 @@ from contact1d.analysis.pressure import Profile, interpenetration, pressure_prof
 from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.deck.datafile import PARTICLES
 from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.lattice import period
 from contact1d.workflow.deck.steps import Displace, Draw, Phase, Row
 from contact1d.workflow.engine.session import EngineError, Session
 from contact1d.workflow.experiments.running.radii import RadiusRule
@@ -25,6 +26,15 @@ ATOM_UNITS = {"x": "LU", "f": "FU", "v_opposite_x": "FU", "v_opposite_z": "FU"}
 """What is measured of every atom, and its unit."""
 BATCH = 8
 """Rows that go to LAMMPS at a time where they are known beforehand: waking two processes takes as long as a row."""
+HEAT = ("f_noise_langevin", "f_noise_plate_bath")
+"""Energy that the heat baths of particles and plate have taken since they were asked to tell [FU·LU]."""
+MOTION = {
+    "f_cantilever_means[1]": "FU", "f_cantilever_means[2]": "FU·LU", "f_cantilever_means[3]": "LU·LU/TU·TU",
+    "c_measuring_energy": "FU·LU", "cantilever_kinetic": "FU·LU", "vcm(plate,x)": "LU/TU", "vcm(plate,z)": "LU/TU",
+    "vcm(upper,x)": "LU/TU", "xcm(upper,x)": "LU",
+}  # fmt: skip
+"""Of a slide: means since the start over every fifth step of the cantilever's force, of the particles' kinetic energy
+and of the plate's squared velocity; energies; velocities and places."""
 MOST_REPEATS = 200
 """Repeats of a row after which it counts as never coming to rest: near a snap the motion is slower without end."""
 
@@ -47,6 +57,7 @@ class State:
         plate_x: place of the plate along x [LU], from where it stands in system.data.
         cantilever_force: [FU].
         step: LAMMPS timestep.
+        motion: with a cantilever, what MOTION and HEAT name.
     """
 
     phase: str
@@ -62,6 +73,7 @@ class State:
     plate_x: float = 0.0
     cantilever_force: float = 0.0
     step: float = 0.0
+    motion: Mapping[str, float] = field(default_factory=dict, compare=False)
 
     @property
     def carried(self) -> float:
@@ -79,6 +91,10 @@ class State:
         return self.radius or self.rule.or_spot(self.profile)
 
 
+TOLD = "steps/told"
+"""The fragment from which on a heat bath tells what energy it takes."""
+
+
 class Contact:
     """A deck that is being run. It keeps its schedule: `phases` is what in.lammps must hold to repeat it."""
 
@@ -92,6 +108,7 @@ class Contact:
         self._unfinished = ""
         self._states = 0
         self._latest: list[State] = []
+        self._tells = False
         self._rule = RadiusRule(deck.scene, deck.settings.tolerance)
         self._pushes = tuple(part.pushes for part in deck.parts if part.pushes)
         session.execute(deck.head, phase="setting up")
@@ -107,6 +124,7 @@ class Contact:
         end = "variable        row_phase delete\n" if self._phases else ""
         self._phases.append(Phase(name, (), begin=fragments))
         self._unfinished += end + self.deck.begin(name, fragments)
+        self._tells = self._tells or TOLD in fragments
         self.session.execute("", phase=name, expected_steps=expected_steps)
 
     def row(self, row: Row) -> State:
@@ -213,21 +231,26 @@ class Contact:
         if self.scene.plate is not None:
             names["plate_velocity"] = "LU/TU"
         if self.scene.cantilever is not None:
-            names |= {"cantilever_plate": "LU", "cantilever_force": "FU"}
+            names |= {"cantilever_plate": "LU", "cantilever_force": "FU"} | MOTION
+            if self.scene.noise is not None and self._tells:
+                names["f_noise_langevin"] = "FU·LU"
+                if self.settings.plate_damping > 0.0:
+                    names["f_noise_plate_bath"] = "FU·LU"
         return names | dict.fromkeys(self._pushes, "FU")
 
     def _state(self, phase: str, numbers: dict[str, float], atoms: dict[str, Array]) -> State:
         upper = atoms["type"] == PARTICLES["upper"]
         lower = atoms["type"] == PARTICLES["lower"]
         here = int(upper.sum() + lower.sum())
-        if here < self.settings.particles * (1 if self.scene.bodies.lower == "rigid_plane" else 2):
+        opposite = 0 if self.scene.bodies.lower == "rigid_plane" else self.settings.lower_particles
+        if here < self.settings.particles + opposite:
             # LAMMPS looks for lost atoms when it makes a new neighbour list, and a row may end before.
             message = f"atoms are missing: only {here} particles are left in the box"
             raise EngineError(message, phase, int(numbers["step"]), self.session.folder, "")
         place, force = atoms["x"], atoms["f"]
         x, z = place[upper, 0], place[upper, 2]
         if lower.any():
-            x_low, z_low = place[lower, 0], place[lower, 2]
+            x_low, z_low = self._surface(place[lower, 0], place[lower, 2])
             closest = smallest_distance(x, z, x_low, z_low)
             depth = interpenetration(x, z, x_low, z_low).depth
             z_below = np.interp(x, x_low, z_low)
@@ -236,9 +259,10 @@ class Contact:
             closest, depth = float(max(z.min(), 0.0)), 0.0
             z_below = np.minimum(z, 0.0)
         profile = pressure_profile(
-            x, z, z_below, atoms["v_opposite_x"][upper], atoms["v_opposite_z"][upper], self.scene.bodies.spacing
+            x, z, z_below, atoms["v_opposite_x"][upper], atoms["v_opposite_z"][upper], self.scene.bodies.own_spacing
         )
         free = [0, 2] if self.scene.horizontal is not None else [2]
+        moving = upper if self.scene.bodies.lower == "rigid_chain" else upper | lower
         return State(
             phase=phase,
             displacement=numbers["plate_displacement"],
@@ -246,11 +270,19 @@ class Contact:
             profile=profile,
             smallest_distance=closest,
             depth=depth,
-            residual=float(np.abs(force[upper | lower][:, free]).max()),
+            residual=float(np.abs(force[moving][:, free]).max()),
             rule=self._rule,
             pushed=float(sum(numbers[name] for name in self._pushes)),
             plate_velocity=-numbers.get("plate_velocity", 0.0),
             plate_x=numbers.get("cantilever_plate", 0.0),
             cantilever_force=numbers.get("cantilever_force", 0.0),
             step=numbers["step"],
+            motion={name: numbers[name] for name in (*MOTION, *HEAT) if name in numbers},
         )
+
+    def _surface(self, x: Array, z: Array) -> tuple[Array, Array]:
+        """Places of the lower particles, of one without an end with what follows on both sides."""
+        if not self.scene.bodies.periodic:
+            return x, z
+        length = period(self.scene, self.settings)
+        return np.concatenate([x - length, x, x + length]), np.tile(z, 3)

@@ -11,6 +11,7 @@ from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.engine.session import Engine
 from contact1d.workflow.experiments.running.contact import Contact
+from contact1d.workflow.experiments.running.outcome import Outcome
 
 
 @dataclass
@@ -24,6 +25,7 @@ class RunContext:
         time_limit: for each contact [s].
         lammps_seconds, lammps_cpu_seconds, steps: summed over all contacts so far.
         phase, timestep: where the latest contact is or ended.
+        left: what a run that failed had so far, if that is worth looking at; its quantities are no results.
     """
 
     deck: Deck
@@ -35,6 +37,7 @@ class RunContext:
     steps: int = field(default=0, init=False)
     phase: str = field(default="start", init=False)
     timestep: int = field(default=0, init=False)
+    left: Outcome | None = field(default=None, init=False)
 
     @contextmanager
     def contact(self, purpose: str = "") -> Iterator[Contact]:

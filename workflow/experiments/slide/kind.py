@@ -6,7 +6,7 @@ from contact1d.workflow.deck.steps import Phase, UnderLoad
 from contact1d.workflow.experiments.running.holding import held_phase
 from contact1d.workflow.experiments.running.kind import ExperimentKind
 from contact1d.workflow.experiments.running.sampling import SETTLING_LOOKS, sampled_phase
-from contact1d.workflow.experiments.slide.slide import slide, slide_rows
+from contact1d.workflow.experiments.slide.slide import leg_begin, leg_name, slide
 from contact1d.workflow.scene import Scene, Slide
 from contact1d.workflow.settings.settings import Settings
 
@@ -16,11 +16,17 @@ def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     experiment = scene.experiment
     assert isinstance(experiment, Slide)
     force = experiment.normal_force
-    loading = held_phase("loading", scene, settings, (force,), force)
+    loading = held_phase("loading", scene, settings, (force,), abs(force) or settings.force_scale)
     if scene.noise is not None:
         loading = sampled_phase("loading", settings, force, SETTLING_LOOKS)
-    rows, stride = slide_rows(scene, settings)
-    return loading, Phase("sliding", (UnderLoad(force, stride),) * rows, state=True, begin=("steps/drive",))
+    legs = settings.drive
+    sliding = (
+        Phase(
+            leg_name(i), (UnderLoad(force, leg.steps),) * leg.rows, state=i == len(legs) - 1, begin=leg_begin(scene, i)
+        )
+        for i, leg in enumerate(legs)
+    )
+    return loading, *sliding
 
 
 def advice(scene: Scene) -> str:

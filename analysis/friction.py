@@ -1,0 +1,136 @@
+"""Friction from the motion of a slide: means over whole periods after the run-in, their errors, slips, energies.
+
+The momentum of what moves, P, changes by the cantilever's force F_c, the friction F and the drag D of its bath, which
+goes with the drive at v:
+
+    ∫ F dt = ∫ F_c dt + D_p ∫ (v − V_p) dt + D_c ∫ (v − V) dt − ΔP
+
+over any time, with V_p, V the velocities of particles and plate. So a mean of F needs no samples of F, which falls
+within a timestep or two where the plate slips.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+STUDENT = (12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26)
+"""Half-widths of 95 % of Student's distribution with 1, 2, … degrees of freedom, over the standard error."""
+NORMAL, EXCESS = 1.96, 2.4
+"""The same of a normal distribution, and what it grows by over the degrees of freedom, beyond the list."""
+FEWEST_BLOCKS = 2
+"""Periods that a mean needs after the run-in."""
+DROPPED = 1
+"""Periods that always belong to the run-in: they hold the way from the start to the first slip."""
+MOST_PAIRED = 4
+"""Periods that may be one block, if that leaves so many blocks: slips may repeat after several periods only."""
+FASTER = 2.0
+"""Velocity of the plate over that of the drive from which on it slips."""
+
+
+@dataclass(frozen=True)
+class Mean:
+    """A mean over blocks, half of its interval of 95 %, and the first of the blocks that it is over."""
+
+    value: float
+    error: float
+    first: int
+
+
+@dataclass(frozen=True)
+class Slip:
+    """A jump of the plate into another hollow: when it ends [TU], where it begins and how far it goes [LU]."""
+
+    time: float
+    place: float
+    size: float
+
+
+def block_means(time: Array, integral: Array, period: float) -> Array:
+    """Means over whole periods, the last of which ends with the series; shape (periods,).
+
+    Args:
+        time: shape (n,), rising [TU].
+        integral: of what is averaged, up to each of the times, shape (n,).
+        period: [TU].
+    """
+    count = math.floor((time[-1] - time[0]) / period * (1.0 + 1e-9))
+    ends = time[-1] - period * np.arange(count, -1, -1)
+    return np.asarray(np.diff(np.interp(ends, time, integral)) / period)
+
+
+def mean_of(blocks: Array) -> Mean:
+    """The mean after the run-in; that ends where what is left is known best, half of the blocks before at most.
+
+    Raises:
+        ValueError: fewer than DROPPED + FEWEST_BLOCKS blocks.
+    """
+    if blocks.size < DROPPED + FEWEST_BLOCKS:
+        raise ValueError(f"a mean needs {DROPPED + FEWEST_BLOCKS} periods, got {blocks.size}")
+    last = max(DROPPED, min(blocks.size // 2, blocks.size - FEWEST_BLOCKS))
+    errors = [interval(blocks[first:]) for first in range(DROPPED, last + 1)]
+    first = DROPPED + int(np.argmin(errors))
+    return Mean(float(blocks[first:].mean()), errors[first - DROPPED], first)
+
+
+def interval(blocks: Array) -> float:
+    """Half of the interval of 95 % of the mean of blocks, the largest for blocks of one, two and four of them.
+
+    Not below half the difference of the means of both halves, which a slow drift leaves.
+    """
+    found, together = 0.0, 1
+    while together == 1 or (together <= MOST_PAIRED and blocks.size // together >= MOST_PAIRED):
+        whole = blocks[blocks.size % together :]
+        means = whole.reshape(-1, together).mean(axis=1)
+        found = max(found, student(means.size - 1) * float(means.std(ddof=1)) / math.sqrt(means.size))
+        together *= 2
+    half = blocks.size // 2
+    drift = 0.5 * abs(float(blocks[-half:].mean() - blocks[:half].mean()))
+    return max(found, drift)
+
+
+def student(freedom: int) -> float:
+    """Half-width of 95 % of Student's distribution over the standard error."""
+    return STUDENT[freedom - 1] if freedom <= len(STUDENT) else NORMAL + EXCESS / freedom
+
+
+def slips(time: Array, place: Array, spacing: float, velocity: float) -> list[Slip]:
+    """Where a plate goes on by one period of the other body or more while it is FASTER than the drive.
+
+    Args:
+        time, place: of the plate, shape (n,) [TU], [LU].
+        spacing: of the other body [LU].
+        velocity: of the drive [LU/TU].
+    """
+    hollow = np.floor(place / spacing + 0.5)
+    quick = np.abs(np.diff(place)) > FASTER * abs(velocity) * np.diff(time)
+    found, at = [], 0
+    while at < quick.size:
+        if not quick[at]:
+            at += 1
+            continue
+        end = at
+        while end < quick.size and quick[end]:
+            end += 1
+        if hollow[end] != hollow[at]:
+            found.append(Slip(float(time[end]), float(place[at]), float(place[end] - place[at])))
+        at = end
+    return found
+
+
+def largest_before(friction: Array, place: Array, spacing: float) -> tuple[float, float]:
+    """(largest friction [FU] until the plate has moved by one period, what a row may have missed of it [FU]).
+
+    The friction rises smoothly up to where the plate slips: what is missed is less than what the row before rose by.
+    """
+    before = place - place[0] < spacing
+    top = int(np.argmax(np.where(before, friction, -np.inf)))
+    missed = float(friction[top] - friction[top - 1]) if top > 0 else 0.0
+    if 0 < top < friction.size - 1:
+        missed = min(missed, max(missed - float(friction[top - 1] - friction[max(top - 2, 0)]), 0.125 * missed))
+    return float(friction[top]), abs(missed)

@@ -1,0 +1,161 @@
+"""A slide by velocity Verlet in numpy: the whole model of particles, plate and cantilever, written independently.
+
+Upper particle i, at p_i = (x_i, z_i), hangs by springs (k_t, k_n) on its place a_i + (X, Z) in the plate; a lower one
+on its own place, or is held there. Opposite particles at a distance r < r_c repel each other with
+f(r) = (A/a) exp(−r/a) − (B/b) exp(−r/b).
+
+    m p″ = F_springs + F_opposite − γ p′,    M X″ = Σ k_t (x_i − a_i − X) + k_c (v t − X) + (N γ + c) v − c X′
+
+and the same along z with the normal force. (N γ + c) v: the drag is against what moves with the drive.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SlideModel:
+    """A slide.
+
+    Attributes:
+        lower, upper: undeformed places x, z of the particles, shape (n, 2) [LU].
+        law: A [FU·LU], a [LU], B [FU·LU], b [LU].
+        cutoff: r_c [LU].
+        normal_stiffness, tangential_stiffness: k_n, k_t [FU/LU].
+        mass, plate_mass: m, M [MU].
+        drag, plate_drag: γ, c [FU·TU/LU].
+        cantilever_stiffness, velocity: k_c [FU/LU], v [LU/TU].
+        normal_force: compression positive [FU].
+        rigid: whether the lower particles are held.
+        period: after which both bodies repeat themselves along x [LU]; 0: they end.
+        neighbours: stiffness of springs between neighbours, of bodies that end [FU/LU].
+    """
+
+    lower: Array
+    upper: Array
+    law: tuple[float, float, float, float]
+    cutoff: float
+    normal_stiffness: float
+    tangential_stiffness: float
+    mass: float
+    plate_mass: float
+    drag: float
+    plate_drag: float
+    cantilever_stiffness: float
+    velocity: float
+    normal_force: float
+    rigid: bool = False
+    period: float = 0.0
+    neighbours: float = 0.0
+
+
+@dataclass(frozen=True)
+class Trace:
+    """What the slide does: times [TU], friction and force of the cantilever [FU], place of the plate [LU]."""
+
+    time: Array
+    friction: Array
+    cantilever_force: Array
+    place: Array
+    impulse: Array
+
+
+class Integrator:
+    """The state of a slide on its way: u of the lower, upper particles and the plate from their undeformed places."""
+
+    def __init__(self, model: SlideModel) -> None:
+        """At rest in the undeformed places."""
+        self.model = model
+        self.lower, self.upper = np.zeros_like(model.lower), np.zeros_like(model.upper)
+        self.plate = np.zeros(2)
+        self.speeds = [np.zeros_like(model.lower), np.zeros_like(model.upper), np.zeros(2)]
+        self.friction = 0.0
+
+    def run(self, steps: int, time_step: float, velocity: float, start: float = 0.0, every: int = 1) -> Trace:
+        """Move on for so many steps; the drive has come to `start` [LU] and goes on at `velocity` [LU/TU].
+
+        Measured every `every` steps; the impulse of the friction [FU·TU] is summed over every step.
+        """
+        rows, impulse = [], 0.0
+        accelerations = self._accelerations(start, velocity)
+        for step in range(1, steps + 1):
+            before = self.friction
+            for place, speed, acceleration in zip(self._places(), self.speeds, accelerations, strict=True):
+                speed += 0.5 * time_step * acceleration
+                place += time_step * speed
+            drive = start + velocity * step * time_step
+            accelerations = self._accelerations(drive, velocity)
+            for speed, acceleration in zip(self.speeds, accelerations, strict=True):
+                speed += 0.5 * time_step * acceleration
+            impulse += 0.5 * time_step * (before + self.friction)
+            if step % every == 0:
+                pull = self.model.cantilever_stiffness * (drive - self.plate[0])
+                rows.append((step * time_step, self.friction, pull, self.plate[0], impulse))
+        return Trace(*(np.asarray(column) for column in zip(*rows, strict=True)))
+
+    def settle(self, time_step: float, residual: float, most: int = 400_000) -> None:
+        """Move with the drive at rest until nothing moves any more: momentum and forces below `residual` [FU]."""
+        for _ in range(most // 200):
+            self.run(200, time_step, 0.0)
+            forces = self._accelerations(0.0, 0.0)
+            largest = max(
+                float(np.abs(self.model.mass * forces[1]).max()), float(np.abs(self.model.plate_mass * forces[2]).max())
+            )
+            if largest < residual and float(np.abs(self.speeds[2]).max()) * self.model.plate_mass < residual:
+                return
+        raise ArithmeticError("the bodies do not come to rest")
+
+    def _places(self) -> tuple[Array, Array, Array]:
+        return self.lower, self.upper, self.plate
+
+    def _accelerations(self, drive: float, velocity: float) -> tuple[Array, Array, Array]:
+        """Of lower particles, upper particles and plate [LU/TU²], with the drag at the velocities of now."""
+        model = self.model
+        stiffness = np.asarray([model.tangential_stiffness, model.normal_stiffness])
+        on_upper, on_lower = self._opposite()
+        self.friction = -float(on_upper[:, 0].sum())
+        held = stiffness * (self.upper - self.plate)
+        upper = on_upper - held - model.drag * self.speeds[1] + self._neighbours(self.upper)
+        lower = on_lower - stiffness * self.lower - model.drag * self.speeds[0] + self._neighbours(self.lower)
+        if model.rigid:
+            lower = np.zeros_like(lower)
+        total = len(self.upper) * model.drag + model.plate_drag
+        along = model.cantilever_stiffness * (drive - self.plate[0]) + total * velocity
+        plate = held.sum(axis=0) - model.plate_drag * self.speeds[2] + np.asarray([along, -model.normal_force])
+        return lower / model.mass, upper / model.mass, plate / model.plate_mass
+
+    def _neighbours(self, moved: Array) -> Array:
+        """Forces of the springs between neighbours, which are at rest in the undeformed chain."""
+        force = np.zeros_like(moved)
+        if self.model.neighbours:
+            pull = self.model.neighbours * np.diff(moved, axis=0)
+            force[:-1] += pull
+            force[1:] -= pull
+        return force
+
+    def _opposite(self) -> tuple[Array, Array]:
+        """Forces on the upper and on the lower particles."""
+        model = self.model
+        A, a, B, b = model.law
+        apart = (model.upper + self.upper)[:, None, :] - (model.lower + self.lower)[None, :, :]
+        images = [0.0]
+        if model.period:
+            apart[..., 0] -= model.period * np.round(apart[..., 0] / model.period)
+            most = math.ceil(model.cutoff / model.period)
+            images = [model.period * n for n in range(-most, most + 1)]
+        on_upper, on_lower = np.zeros_like(self.upper), np.zeros_like(self.lower)
+        for image in images:
+            there = apart + np.asarray([image, 0.0])
+            r = np.hypot(there[..., 0], there[..., 1])
+            force = np.where(r < model.cutoff, (A / a * np.exp(-r / a) - B / b * np.exp(-r / b)) / r, 0.0)
+            pairs = force[..., None] * there
+            on_upper += pairs.sum(axis=1)
+            on_lower -= pairs.sum(axis=0)
+        return on_upper, on_lower

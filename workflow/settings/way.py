@@ -1,0 +1,57 @@
+"""Whether a slide stays on its lower chain, and whether its drive is slower than what the particles can follow."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from contact1d.workflow.scene import Scene, Slide
+from contact1d.workflow.settings.chain import SettingsError
+from contact1d.workflow.settings.settings import Settings
+
+
+def contact_half_width(scene: Scene, settings: Settings) -> float:
+    """Half-width [LU] in which upper particles feel more than the tolerance's share of the largest force."""
+    estimate, largest = settings.estimate, settings.largest_displacement
+    force = np.abs(estimate.force)
+    strongest = float(np.max(force[estimate.gap > estimate.rest - largest], initial=0.0))
+    felt = estimate.gap[force > scene.accuracy.tolerance * strongest]
+    half = estimate.half_width(max(largest, 0.0), float(felt[-1])) if felt.size else 0.0
+    return min(half, 0.5 * (settings.particles - 1) * scene.bodies.own_spacing)
+
+
+def require_way(scene: Scene, settings: Settings) -> None:
+    """Refuse a slide whose contact would leave the lower chain; one without an end is left nowhere.
+
+    Raises:
+        SettingsError: with the particles that are needed.
+    """
+    bodies = scene.bodies
+    if not isinstance(scene.experiment, Slide) or bodies.periodic:
+        return
+    half, way = contact_half_width(scene, settings), scene.experiment.way + abs(bodies.upper_offset or 0.0)
+    end = 0.5 * settings.lower_particles * bodies.spacing
+    if end < half + way:
+        raise SettingsError(
+            f"the lower chain is too short for the way: it ends {end:.4g} LU from its middle, and a contact that "
+            f"reaches {half:.4g} LU to each side is drawn {way:.4g} LU along it. Take at least "
+            f"{2 * math.ceil((half + way) / bodies.spacing)} bodies.particles (with upper_particles = "
+            f'{settings.particles}), or "auto", or a shorter way'
+        )
+
+
+def too_fast(scene: Scene) -> str:
+    """A warning where the drive passes particles quicker than they swing, 2π v/s > √(k/m); else empty."""
+    experiment, bodies = scene.experiment, scene.bodies
+    if not isinstance(experiment, Slide) or scene.cantilever is None:
+        return ""
+    fastest = max(abs(leg.velocity) for leg in experiment.legs(scene.cantilever.velocity))
+    own = math.sqrt(min(scene.bulk_stiffness, scene.tangential_stiffness) / bodies.mass)
+    if 2.0 * math.pi * fastest / bodies.spacing <= own:
+        return ""
+    return (
+        f"the drive passes a particle in {bodies.spacing / fastest:.3g} TU, less than a particle on its springs needs "
+        f"for a swing, {2.0 * math.pi / own:.3g} TU: the bodies cannot follow, and the friction is that of a shock. "
+        f"Waves and particles follow below {own * bodies.spacing / (2.0 * math.pi):.3g} LU/TU"
+    )
