@@ -19,6 +19,8 @@ from contact1d.workflow.report.words import scene_in_words
 from contact1d.workflow.scene import read_scene
 from tests.scenes import chains
 
+SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
+SHIPPED = [SCENES / f"{name}.toml" for name in ("hertz_plane", "path_hysteresis", "mindlin", "pull_off")]
 VOID = {"meta", "link", "img", "br", "hr", "input"}
 PULL_OFF = chains(400.0, experiment={"kind": "pull_off", "preload": 0.5}, title="<a> pull-off & more")
 TAIL = 0.05  # relative: the part of the force beyond the window that is drawn
@@ -82,7 +84,7 @@ def test_the_slider_moves_through_every_state_with_its_own_numbers(finished: Run
     way = data_on(report([finished.folder], tmp_path / "r.html").read_text())["way"]
     count = len(finished.curve.force)
     assert len(way["words"]) == len(way["pressure"]) == count
-    np.testing.assert_allclose(way["force"], finished.curve.force, rtol=SEVEN_DIGITS, atol=SEVEN_DIGITS)
+    np.testing.assert_allclose(way["against"], finished.curve.force, rtol=SEVEN_DIGITS, atol=SEVEN_DIGITS)
     spacing = finished.scene.bodies.spacing
     shown = [spacing * sum(row) for row in way["pressure"]]
     strong = np.argmax(np.abs(finished.curve.force))
@@ -110,6 +112,19 @@ def test_the_page_of_a_sweep_has_its_table_and_a_figure_for_each_result(tmp_path
         name.replace("_", " ") for name in done.quantities
     ]
     assert page.count("<td>done</td>") == 2
+
+
+@pytest.mark.parametrize("name", [path.stem for path in SHIPPED])
+def test_every_kind_of_run_has_a_page(name: str, tmp_path: Path) -> None:
+    """A shipped scene for each kind of experiment: what it moves on, and a place on it for each state."""
+    scene = read_scene(SCENES / f"{name}.toml")
+    kept = run(scene, tmp_path / "run", figures=False)
+    page = report([tmp_path / "run"], tmp_path / "r.html").read_text()
+    assert Balance(page).open == []
+    data = data_on(page)
+    assert data["charts"]
+    if len(kept.curve.force) > 1:
+        assert len(data["way"]["along"]) == len(data["way"]["words"])
 
 
 @pytest.mark.parametrize("place", ["nowhere", "other"])

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contact1d.analysis.states import States
 from contact1d.workflow.runs.finished import Run
@@ -16,8 +17,17 @@ from contact1d.workflow.sweep.figures import Line, lines_of, mean_of, roles_of, 
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999933")
 """Okabe and Ito's, which the colour-blind can tell apart."""
+ROUND_OFF = 1e-9
+"""Relative distance of two places that are one."""
 DASHES = ("solid", "dash", "dot", "dashdot")
+Array = NDArray[np.float64]
 Chart = dict[str, Any]
+ALONG = (
+    ("time", "Friction over time", "time (TU)", ("friction", "friction (FU)")),
+    ("tangential_displacement", "Tangential force over displacement", "displacement along x (LU)",
+     ("tangential_force", "tangential force (FU)")),
+)  # fmt: skip
+"""Of what happens along x: the column along x of a figure, its title and name, the column along y and its name."""
 DRAWN: dict[str, Any] = {"x": [], "y": [], "mode": "lines+markers", "marker": {"size": 4}}
 """A line that the slider fills."""
 
@@ -37,7 +47,7 @@ def chart(title: str, x: str, y: str, traces: Iterable[Mapping[str, Any]], **lay
 def curves(runs: Mapping[str, Run]) -> list[Chart]:
     """Force over displacement and over contact radius of the runs, overlaid; of a slide friction over time."""
     found = []
-    moved = {name: run for name, run in runs.items() if len(run.curve.displacement) > 1}
+    moved = {name: run for name, run in runs.items() if _moves(run.curve.displacement)}
     if moved:
         found.append(
             chart("Force over displacement", "displacement (LU), compression positive", "force (FU)",
@@ -49,15 +59,21 @@ def curves(runs: Mapping[str, Run]) -> list[Chart]:
             chart("Force over contact radius", "contact radius (LU)", "force (FU)",
                   _traces(touching, "contact_radius", "force"))
         )  # fmt: skip
-    sliding = {name: run for name, run in runs.items() if run.friction}
-    if sliding:
-        traces = [
-            {"x": _listed(run.friction["time"]), "y": _listed(run.friction["friction"]), "name": name, "mode": "lines",
-             "line": {"color": colour}}
-            for (name, run), colour in zip(sliding.items(), _colours(len(sliding)), strict=True)
-        ]  # fmt: skip
-        found.append(chart("Friction over time", "time (TU)", "friction (FU)", traces))
+    for key, title, x, y in ALONG:
+        kept = {name: run for name, run in runs.items() if key in run.friction}
+        if kept:
+            traces = [
+                {"x": _listed(run.friction[key]), "y": _listed(run.friction[y[0]]), "name": name, "mode": "lines",
+                 "line": {"color": colour}}
+                for (name, run), colour in zip(kept.items(), _colours(len(kept)), strict=True)
+            ]  # fmt: skip
+            found.insert(0, chart(title, x, y[1], traces))
     return found
+
+
+def _moves(places: Array) -> bool:
+    """Whether a body came nearer or went away at all."""
+    return len(places) > 1 and float(np.ptp(places)) > ROUND_OFF * float(np.max(np.abs(places)))
 
 
 def _traces(runs: Mapping[str, Run], x: str, y: str) -> list[dict[str, Any]]:
@@ -102,33 +118,61 @@ def way(run: Run, states: States) -> dict[str, Any]:
     curve, rows = run.curve, states.rows
     half = 1.15 * max(_half_width(x, p) for x, p in zip(states.x, states.pressure, strict=True))
     view = np.abs(states.x).min(axis=0) <= half
-    kept = {name: getattr(states, name)[:, view] for name in ("x", "z_lower", "z_upper", "pressure")}
-    words = [
-        f"displacement {curve.displacement[row]:.5g} LU, force {curve.force[row]:.5g} FU, {curve.branch[row]}"
-        + ("" if math.isnan(curve.contact_radius[row]) else f", contact radius {curve.contact_radius[row]:.4g} LU")
-        for row in rows
-    ]
-    order = np.lexsort((curve.displacement, curve.branch == curve.branch[-1]))  # branch after branch
-    force = chart("Force over displacement", "displacement (LU)", "force (FU)", [
-        {"x": _listed(curve.displacement[order]), "y": _listed(curve.force[order]), "mode": "lines",
-         "line": {"color": "#999999"}},
+    kept = {name: getattr(states, name)[:, view] for name in ("x", "z_lower", "z_upper", "pressure", "shear")}
+    title, name_x, name_y, x, y = _main(run)
+    words = []
+    for row in rows:
+        radius = curve.contact_radius[row]
+        touching = "" if math.isnan(radius) else f", contact radius {radius:.4g} LU"
+        words.append(f"{_with_value(name_x, x[row])}, {_with_value(name_y, y[row])}, {curve.branch[row]}{touching}")
+    force = chart(title, name_x, name_y, [
+        {**_branches(x, y, curve.branch), "mode": "lines", "line": {"color": "#999999"}},
         {"x": [], "y": [], "mode": "markers", "marker": {"size": 12, "color": COLOURS[1]}},
     ], showlegend=False)  # fmt: skip
+    sheared = bool(np.any(kept["shear"]))
     load = chart("Pressure", "x (LU)", "pressure (FU/LU)", [
-        DRAWN | {"line": {"color": COLOURS[0], "shape": "hvh"}}
-    ], showlegend=False)  # fmt: skip
+        DRAWN | {"name": "pressure", "line": {"color": COLOURS[0], "shape": "hvh"}},
+        DRAWN | {"name": "shear", "line": {"color": COLOURS[1], "shape": "hvh"}, "visible": sheared},
+    ])  # fmt: skip
     bodies = chart("Bodies, heights drawn larger", "x (LU)", "z (LU)", [
         DRAWN | {"name": "upper", "line": {"color": COLOURS[0]}},
         DRAWN | {"name": "lower", "line": {"color": COLOURS[2]}},
     ])  # fmt: skip
-    for made, columns in ((load, ("pressure",)), (bodies, ("z_lower", "z_upper"))):
+    for made, columns in ((load, ("pressure", "shear")), (bodies, ("z_lower", "z_upper"))):
         made["layout"]["xaxis"]["range"] = [-half, half]
         made["layout"]["yaxis"]["range"] = _range(*(kept[name] for name in columns))
     return {
-        "displacement": _listed(curve.displacement[rows]), "force": _listed(curve.force[rows]), "words": words,
-        "start": int(np.argmax(np.abs(curve.force[rows]))),
+        "along": _listed(x[rows]), "against": _listed(y[rows]), "words": words,
+        "start": int(np.argmax(np.abs(y[rows]))),
         "charts": [force, load, bodies], **{name: [_listed(row) for row in array] for name, array in kept.items()},
     }  # fmt: skip
+
+
+def _with_value(name: str, value: float) -> str:
+    """`force (FU)` and a number: `force 1.2 FU`."""
+    quantity, _, unit = name.partition(" (")
+    return f"{quantity} {value:.5g} {unit.rstrip(')')}"
+
+
+def _branches(x: Array, y: Array, branch: NDArray[np.str_]) -> dict[str, list[Any]]:
+    """A line through the states, branch after branch, with a gap between them."""
+    places: list[float] = []
+    values: list[float] = []
+    for name in dict.fromkeys(branch.tolist()):
+        rows = np.flatnonzero(branch == name)
+        rows = rows[np.argsort(x[rows], kind="stable")]
+        places += [*x[rows], math.nan]
+        values += [*y[rows], math.nan]
+    return {"x": _listed(places), "y": _listed(values)}
+
+
+def _main(run: Run) -> tuple[str, str, str, Array, Array]:
+    """The curve that the slider's mark moves on: title, names of the axes, and the columns, a row for each state."""
+    count = len(run.curve.force)
+    for key, title, x, (column, y) in ALONG:
+        if key in run.friction and len(run.friction[key]) == count:
+            return title, x, y, run.friction[key], run.friction[column]
+    return "Force over displacement", "displacement (LU)", "force (FU)", run.curve.displacement, run.curve.force
 
 
 def over_axes(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> list[Chart]:

@@ -11,8 +11,8 @@ if (data.way) {
   way.charts.forEach((chart, i) => Plotly.newPlot(`way-${i}`, chart.data, chart.layout, config));
   const show = () => {
     const i = Number(slider.value);
-    Plotly.restyle("way-0", { x: [[way.displacement[i]]], y: [[way.force[i]]] }, [1]);
-    Plotly.restyle("way-1", { x: [way.x[i]], y: [way.pressure[i]] }, [0]);
+    Plotly.restyle("way-0", { x: [[way.along[i]]], y: [[way.against[i]]] }, [1]);
+    Plotly.restyle("way-1", { x: [way.x[i], way.x[i]], y: [way.pressure[i], way.shear[i]] }, [0, 1]);
     Plotly.restyle("way-2", { x: [way.x[i], way.x[i]], y: [way.z_upper[i], way.z_lower[i]] }, [0, 1]);
     told.textContent = `${i + 1} of ${way.words.length}: ${way.words[i]}`;
     slider.setAttribute("aria-valuetext", way.words[i]);
