@@ -1,8 +1,8 @@
-"""The README's table of ratios, made from benchmarks/results: what was asked, what was reached, by which command.
+"""The table of ratios of docs/performance.md, made from benchmarks/results: what was asked, what was reached, by what.
 
     python -m benchmarks.ratios
 
-writes it between the README's markers. A figure that is not reached says so.
+writes it between the page's markers. A figure that is not reached says so.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from benchmarks.scaling import MEMORY, SPREAD
 from contact1d.workflow.judging.markdown import table
 
 ROOT = Path(__file__).parents[1]
+PAGE = ROOT / "docs" / "performance.md"
 RESULTS = Path(__file__).parent / "results"
 HEAD = ("what", "asked", "reached", "by")
 NO_FIGURE = "–"
@@ -125,4 +126,4 @@ def _held(said: str, reached: bool) -> str:
 
 
 if __name__ == "__main__":
-    write_between(ROOT / "README.md", "ratios", markdown(read_results()))
+    write_between(PAGE, "ratios", markdown(read_results()))

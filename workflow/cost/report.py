@@ -69,7 +69,7 @@ EFFECT_COLUMNS = ("effect", "a step with it", "without it", "ratio", "per partic
 
 
 def effects_markdown(record: CostRecord) -> str:
-    """The README's table of what each effect costs, with the advice below it."""
+    """The table of docs/performance.md of what each effect costs, with the advice below it."""
     rows = [EFFECT_COLUMNS, ["---"] * len(EFFECT_COLUMNS)]
     cells = [(f"`{row[0]}`", *row[1:]) for row in map(effect_row, record.effect_costs)]
     table = "".join("| " + " | ".join(row) + " |\n" for row in [*rows, *cells])
