@@ -19,8 +19,6 @@ Array = NDArray[np.float64]
 STICKS, SLIPS = COMPRESSION, TENSION
 BEYOND = 1.15
 """Half-width of what is shown over that of the contact."""
-SAME_PLACE = 1e-9
-"""Way over the half-width of the contact below which it is none: round-off."""
 FEW_ROWS = 25
 """Rows of a branch up to which each of them is marked."""
 
@@ -62,7 +60,11 @@ def tangential_figure(columns: Mapping[str, Array], branches: NDArray[np.str_], 
 
 
 def stick_slip_figure(
-    profiles: Mapping[str, Profile], coefficient: float, sticking: Mapping[str, Array], radii: Mapping[str, float]
+    profiles: Mapping[str, Profile],
+    coefficient: float,
+    sticking: Mapping[str, Array],
+    radii: Mapping[str, float],
+    places: Mapping[str, float],
 ) -> Figure:
     """Shear traction over x of each state between ±μp, the particles that stick and those that slip in two colours.
 
@@ -71,14 +73,14 @@ def stick_slip_figure(
         coefficient: μ.
         sticking: what is left of μp of each particle [FU/LU], (n,); 0 where it slips.
         radii: half-width of the zone that sticks [LU].
+        places: of the body along x [LU].
     """
     figure = new_figure((SIZE[0], 1.0 + 2.3 * len(profiles)))
     axes = figure.subplots(len(profiles), 1, squeeze=False)[:, 0]
     for axis, (name, profile) in zip(axes, profiles.items(), strict=True):
         touched = profile.pressure > 0.0
         limit = coefficient * np.maximum(profile.pressure, 0.0)
-        centre = float(np.mean(profile.x))
-        x = profile.x - centre
+        x = profile.x
         for chosen, colour, label in (
             (touched & (sticking[name] > 0.0), STICKS, "sticks"),
             (touched & (sticking[name] == 0.0), SLIPS, "slips"),
@@ -94,8 +96,7 @@ def stick_slip_figure(
             marked = f", stick radius c = {radius:.2f} LU (shaded)"
         half = float(np.abs(x[touched]).max()) if touched.any() else float(np.abs(x).max())
         axis.set_xlim(-BEYOND * half, BEYOND * half)
-        place = 0.0 if abs(centre) < SAME_PLACE * half else centre
-        axis.set_title(f"{name.replace('_', ' ')} state, u = {place:.4g} LU{marked}", loc="left", fontsize=10)
+        axis.set_title(f"{name.replace('_', ' ')} state, u = {places[name]:.4g} LU{marked}", loc="left", fontsize=10)
         axis.set_ylabel("shear (FU/LU)")
         axis.legend(frameon=False, loc="upper right", fontsize=8)
     axes[-1].set_xlabel("x from the body's middle (LU)")

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -61,33 +62,50 @@ def mindlin_stick_radius(place: Floats | float, contact_radius: float, sliding: 
     return np.asarray(contact_radius * np.sqrt(left))
 
 
-def mindlin_path(places: Sequence[float], normal_force: float, friction: float, sliding: float) -> list[float]:
-    """Return F_x [force] at each of the places, reached one after the other from 0 under a constant load.
+def _turns(places: Sequence[float]) -> list[list[float]]:
+    """Return at each place the turns that are still remembered there, the last one last; none on the first way out.
 
-    Arguments as of `mindlin_force`.
+    A turn is forgotten where the way goes beyond the one before it, or of the first one beyond its mirror image.
     """
-
-    def virgin(u: float) -> float:
-        return float(mindlin_force(u, normal_force, friction, sliding))
-
-    turns: list[tuple[float, float]] = []
-    here, force, direction = 0.0, 0.0, 0.0
-    found = []
+    turns: list[float] = []
+    here, direction, found = 0.0, 0.0, []
     for place in places:
         if place != here:
             onwards = math.copysign(1.0, place - here)
             if direction and onwards != direction:
-                turns.append((here, force))
-            direction = onwards
-            while turns:
-                closes = turns[-2][0] if len(turns) > 1 else -turns[-1][0]
-                if (place - closes) * direction <= 0.0:
-                    break
+                turns.append(here)
+            direction, here = onwards, place
+            while turns and (place - (turns[-2] if len(turns) > 1 else -turns[-1])) * direction > 0.0:
                 del turns[-2:]
-            start = turns[-1] if turns else None
-            force = virgin(place) if start is None else start[1] + 2.0 * virgin(0.5 * (place - start[0]))
-            here = place
-        found.append(force)
+        found.append(list(turns))
+    return found
+
+
+def mindlin_path(places: Sequence[float], normal_force: float, friction: float, sliding: float) -> list[float]:
+    """Return F_x [force] at each of the places, reached one after the other from 0 under a constant load.
+
+    From turn to turn T(u_1) + 2 T((u_2 - u_1)/2) + ... Arguments as of `mindlin_force`.
+    """
+
+    def way(u: float) -> float:
+        return float(mindlin_force(u, normal_force, friction, sliding))
+
+    found = []
+    for place, turns in zip(places, _turns(places), strict=True):
+        stops = [*turns, place]
+        found.append(way(stops[0]) + sum(2.0 * way(0.5 * (b - a)) for a, b in pairwise(stops)))
+    return found
+
+
+def mindlin_stick_path(places: Sequence[float], contact_radius: float, sliding: float) -> list[float]:
+    """Return c [length] at each of the places, as `mindlin_path` goes: after a turn all sticks again.
+
+    Arguments as of `mindlin_stick_radius`.
+    """
+    found = []
+    for place, turns in zip(places, _turns(places), strict=True):
+        way = 0.5 * (place - turns[-1]) if turns else place
+        found.append(float(mindlin_stick_radius(way, contact_radius, sliding)))
     return found
 
 

@@ -13,6 +13,7 @@ from contact1d.analysis.reference.mindlin import (
     mindlin_loop_area,
     mindlin_path,
     mindlin_shear,
+    mindlin_stick_path,
     mindlin_stick_radius,
     raised_load_force,
     sliding_displacement,
@@ -43,6 +44,12 @@ def test_force_and_stick_radius_say_the_same(place: float) -> None:
     share = float(mindlin_stick_radius(place, 1.0, SLIDING))
     assert float(mindlin_force(place, N, MU, SLIDING)) == pytest.approx(MU * N * (1.0 - share**3), rel=1e-14)
     assert SLIDING * (1.0 - share**2) == pytest.approx(place, rel=1e-14)
+
+
+def test_the_stick_radius_on_a_way_is_that_of_half_the_way_since_the_turn() -> None:
+    found = mindlin_stick_path([0.1, 0.2, 0.15, 0.19, 0.25, 0.5, 0.4], 1.0, SLIDING)
+    ways = [0.1, 0.2, 0.025, 0.02, 0.25, 0.5, 0.05]
+    assert found == pytest.approx([math.sqrt(max(0.0, 1.0 - way / SLIDING)) for way in ways], rel=1e-14)
 
 
 @pytest.mark.parametrize("stick", [0.0, 3.0, 9.0])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import pytest
 from contact1d import load_run, run
 from contact1d.analysis import slip_plots
 from contact1d.analysis.pressure import Profile
+from contact1d.analysis.reference.mindlin import mindlin_path
 from contact1d.analysis.slip import stick_margin
 from contact1d.workflow.experiments.tangential.schedule import passed, schedule
 from contact1d.workflow.scene import Scene, read_scene, scene_from_dict
@@ -119,6 +121,30 @@ def test_a_history_that_is_not_kept_gives_no_number(tmp_path: Path, monkeypatch:
         run(scene(experiment__displacements=[0.1]), tmp_path, figures=False)
 
 
+def test_cattaneo_and_mindlin_stand_beside_the_results(tmp_path: Path) -> None:
+    """By a load or by its displacement, on a way with a turn; not of a cone, nor of a load that changes."""
+    places = [0.0, 0.2, 0.05]
+    done = run(scene(experiment__displacements=places), tmp_path / "load", figures=False)
+    (theory,) = done.document["theory"]
+    assert theory["name"] == "Cattaneo and Mindlin"
+    depth = (30.0 / math.sqrt(1000.0)) ** (2.0 / 3.0)
+    sliding = 0.3 / 0.8 * depth
+    expected = mindlin_path(places, 40.0, 0.3, sliding)[-1]
+    assert theory["values"]["tangential_force"]["value"] == pytest.approx(expected, rel=1e-12)
+    c = math.sqrt(1000.0 * depth) * math.sqrt(1.0 - 0.075 / sliding)
+    assert theory["values"]["stick_radius"]["value"] == pytest.approx(c, rel=1e-12)
+    ours = done.results["tangential_force"]
+    assert abs(ours.value - expected) <= ours.uncertainty
+    assert theory["values"]["tangential_force"]["deviation"] == pytest.approx(ours.value / expected - 1.0, rel=1e-9)
+    pressed: Any = {"kind": "tangential", "normal_displacement": depth, "displacements": places}
+    by_place = run(scene(experiment=pressed), tmp_path / "place", figures=False).document["theory"][0]["values"]
+    assert by_place["normal_force"]["value"] == pytest.approx(40.0, rel=1e-12)
+    assert by_place["tangential_force"]["value"] == pytest.approx(expected, rel=1e-12)
+    for other in ({"bodies.profile": {"kind": "cone", "slope": 0.02}}, {"experiment.normal_force": [40.0, 30.0, 30.0]}):
+        changed = scene(experiment__displacements=places).with_(other)
+        assert run(changed, tmp_path / "other", figures=False).document["theory"] == []
+
+
 def test_the_figure_of_the_way_has_all_branches_and_the_theory() -> None:
     places = np.array([0.0, 0.1, 0.2, 0.1, 0.2])
     columns = {"tangential_displacement": places, "tangential_force": 2.0 * places, "normal_force": np.full(5, 3.0)}
@@ -140,11 +166,13 @@ def test_the_figure_of_a_state_tells_what_sticks_from_what_slips() -> None:
     pressure = np.maximum(1.0 - (x / 8.0) ** 2, 0.0)
     profile = Profile(x, 0.0 * x, 0.0 * x, pressure, -np.minimum(0.1, 0.3 * pressure))
     margin = stick_margin(profile, 0.3, 1)
-    (axis,) = slip_plots.stick_slip_figure({"final": profile}, 0.3, {"final": margin}, {"final": 6.53}).axes
+    (axis,) = slip_plots.stick_slip_figure(
+        {"final": profile}, 0.3, {"final": margin}, {"final": 6.53}, {"final": 0.2}
+    ).axes
     sticking, slipping = (len(found.get_segments()) for found in axis.collections[:2])
     assert sticking == int((margin > 0.0).sum())
     assert slipping == int((pressure > 0.0).sum()) - sticking
-    assert "c = 6.53 LU" in axis.get_title(loc="left")
+    assert "u = 0.2 LU, stick radius c = 6.53 LU" in axis.get_title(loc="left")
 
 
 def test_no_theory_beside_what_it_does_not_describe(tmp_path: Path) -> None:

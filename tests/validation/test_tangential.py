@@ -60,9 +60,8 @@ def tables(
 
 
 def chain_of(run: Run, coefficient: float = MU) -> SpringSliders:
-    """The reference's chain for a run: at the places where its particles stand, moved back by their way."""
-    profile, way = run.profiles["final"], run.friction["tangential_displacement"][-1]
-    heights = (profile.x - way) ** 2 / RADIUS
+    """The reference's chain for a run: of particles at its places."""
+    heights = run.profiles["final"].x ** 2 / RADIUS
     return SpringSliders(heights.tolist(), run.scene.bulk_stiffness, run.scene.tangential_stiffness, coefficient)
 
 

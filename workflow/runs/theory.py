@@ -11,10 +11,11 @@ from typing import Any
 
 from contact1d.workflow.runs.closed_form import Case, ClosedForm
 from contact1d.workflow.runs.indenters import INDENTERS
+from contact1d.workflow.runs.sheared import SHEARED
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import Quantity, Scales
 
-FORMS: tuple[ClosedForm, ...] = (*INDENTERS,)
+FORMS: tuple[ClosedForm, ...] = (*INDENTERS, *SHEARED)
 """Every closed form that a run is laid beside; which of them applies each says itself."""
 
 

@@ -77,8 +77,7 @@ class Sliders:
             row = slip(force, self.tangential * (place - start) * touched, limit, next_limit, self.tangential)
             force, work = row.force, work + float(row.work.sum())
             direction = int(np.sign(place - start)) or direction
-        last, moved = stops[-1]
-        profile = Profile(self.x + moved, 0.0 * self.x, 0.0 * self.x, self.normal_forces(last), -force)
+        profile = Profile(self.x, 0.0 * self.x, 0.0 * self.x, self.normal_forces(stops[-1][0]), -force)
         stuck = stick_radius(profile, self.coefficient, direction)
         return {
             "tangential_force": float(force.sum()),

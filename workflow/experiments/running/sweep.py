@@ -12,7 +12,7 @@ from contact1d.analysis.pressure import Profile
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import bodies
 from contact1d.workflow.deck.parts import PLANE_DEPTH
-from contact1d.workflow.deck.steps import Draw, Row
+from contact1d.workflow.deck.steps import Row
 from contact1d.workflow.engine.failure import NOT_FINITE
 from contact1d.workflow.engine.frames import last_frames
 from contact1d.workflow.engine.session import EngineError, Session
@@ -57,7 +57,9 @@ class Sweep:
         return float(np.finfo(np.float64).eps) * depth * settings.plane_stiffness
 
     def profiles(self, rows: Sequence[Row]) -> list[Profile]:
-        """Profiles of the last rows in their order. A particle that carries stands on the plane.
+        """Profiles of the last rows in their order, over x from the body's middle, wherever it is along the plane.
+
+        A particle that carries stands on the plane.
 
         Raises:
             EngineError: particles were lost, or a number is not finite.
@@ -78,6 +80,4 @@ class Sweep:
         if columns == COLUMNS:
             return [Profile(self._x, none, z, p, none) for z, p in zip(surfaces, pressures, strict=True)]
         shears = units.from_deck(frames[:, :, 2], "FU") / spacing
-        places = [row.place if isinstance(row, Draw) else 0.0 for row in rows]
-        found = zip(places, surfaces, pressures, shears, strict=True)
-        return [Profile(self._x + place, none, z, p, q) for place, z, p, q in found]
+        return [Profile(self._x, none, z, p, q) for z, p, q in zip(surfaces, pressures, shears, strict=True)]
