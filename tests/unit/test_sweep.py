@@ -21,7 +21,7 @@ import contact1d.workflow.sweep.sweep as sweeping
 from contact1d import FolderError, SceneError, load_run, sweep
 from contact1d.workflow.cli.app import app
 from contact1d.workflow.engine.progress import Silent
-from contact1d.workflow.sweep.axes import MOST_POINTS, read_sweep
+from contact1d.workflow.sweep.axes import MOST_POINTS, Axis, read_sweep
 from contact1d.workflow.sweep.executors import ExecutorError
 from contact1d.workflow.sweep.table import PARQUET, TABLE, Answer, write_parquet
 
@@ -107,9 +107,19 @@ def test_spans_have_steps_and_one_more_value_with_exact_ends() -> None:
     assert all(isinstance(seed, int) for seed in seeds)
 
 
+def test_an_axis_may_have_a_unit() -> None:
+    span = {"key": RADIUS, "from": "1 µm", "to": "100 µm", "steps": 2, "scale": "log"}
+    (radii,) = read_sweep(plane(span)).axes
+    assert radii.values == ("1.0 µm", "10.0 µm", "100.0 µm")
+    assert radii.numbers() == ((1.0, 10.0, 100.0), "µm")
+    assert Axis(RADIUS, ("1 µm", "1 mm")).numbers() == ((), "")
+    assert Axis("bodies.lower", ("particles", "rigid_plane")).numbers() == ((), "")
+
+
 @pytest.mark.parametrize(
     ("source", "sentence"),
     [
+        (plane({"key": RADIUS, "from": "1 m", "to": "2 mm", "steps": 1}), "must have the same unit at both ends"),
         (plane(), "axes: missing; write [[axes]]"),
         (plane(axis(RADIUS)), "axes[0].values: is empty: the sweep would have no point"),
         (plane(axis(RADIUS, 1.0), axis(RADIUS, 2.0)), "another axis has the same key"),

@@ -14,6 +14,7 @@ import numpy as np
 
 from contact1d.workflow.scene import Problem, SceneError, read_tables
 from contact1d.workflow.scene.problems import nearest, shown
+from contact1d.workflow.scene.si_text import UnitTextError, split
 
 AnySweep = str | PathLike[str] | Mapping[str, Any]
 """What `read_sweep` makes a sweep of."""
@@ -31,6 +32,17 @@ class Axis:
 
     key: str
     values: tuple[Any, ...]
+
+    def numbers(self) -> tuple[tuple[float, ...], str]:
+        """The values as numbers, and the one unit that they have as texts; no numbers where some are words."""
+        if all(isinstance(value, int | float) for value in self.values):
+            return tuple(map(float, self.values)), ""
+        try:
+            parts = [split(value) for value in self.values]
+        except (UnitTextError, AttributeError):
+            return (), ""
+        units = {unit for _, unit in parts}
+        return (tuple(float(number) for number, _ in parts), units.pop()) if len(units) == 1 else ((), "")
 
 
 @dataclass(frozen=True)
@@ -152,10 +164,11 @@ def _values(table: Mapping[str, Any], where: str, problems: list[Problem]) -> tu
     if missing := [key for key in ("from", "to", "steps") if key not in table]:
         problems.append(Problem(f"{where}", f"lacks {', '.join(missing)}", hint="give values, or from, to and steps"))
         return ()
-    start, end, steps = table["from"], table["to"], table["steps"]
+    start, end, unit = _without_unit(table["from"], table["to"])
+    steps = table["steps"]
     scale = table.get("scale", "linear")
     wrong = [name for name, number in (("from", start), ("to", end)) if not _is_number(number)]
-    problems += [Problem(f"{where}.{name}", "must be a finite number", shown(table[name])) for name in wrong]
+    problems += [Problem(f"{where}.{name}", _must(start, end), shown(table[name])) for name in wrong]
     if isinstance(steps, bool) or not isinstance(steps, int) or not 1 <= steps < MOST_POINTS:
         problems.append(Problem(f"{where}.steps", f"must be a whole number from 1 to {MOST_POINTS - 1}", shown(steps)))
         return ()
@@ -164,8 +177,27 @@ def _values(table: Mapping[str, Any], where: str, problems: list[Problem]) -> tu
     elif scale == "log" and not wrong and min(start, end) <= 0.0:
         problems.append(Problem(f"{where}.scale", "log needs from and to above 0", shown(scale)))
     elif not wrong:
-        return _span(start, end, steps, scale)
+        found = _span(start, end, steps, scale)
+        return tuple(f"{value!r} {unit}" for value in found) if unit else found
     return ()
+
+
+def _must(start: Any, end: Any) -> str:
+    """What the ends of a span must be."""
+    if isinstance(start, str) and isinstance(end, str):
+        return 'must have the same unit at both ends, such as "1 mm" and "5 mm"'
+    return "must be a finite number"
+
+
+def _without_unit(start: Any, end: Any) -> tuple[Any, Any, str]:
+    """The ends of a span as numbers, where both are texts with the same unit, and that unit."""
+    if not (isinstance(start, str) and isinstance(end, str)):
+        return start, end, ""
+    try:
+        (first, unit), (last, other) = split(start), split(end)
+    except UnitTextError:
+        return start, end, ""
+    return (float(first), float(last), unit) if unit == other else (start, end, "")
 
 
 def _span(start: float, end: float, steps: int, scale: str) -> tuple[Any, ...]:

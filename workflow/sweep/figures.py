@@ -65,7 +65,8 @@ def sweep_figure(plan: SweepPlan, name: str, unit: str, lines: Mapping[tuple[str
             label=", ".join(words) or None,
         )  # fmt: skip
     _scale(axis, along)
-    axis.set_xlabel(along.key)
+    along_unit = along.numbers()[1]
+    axis.set_xlabel(f"{along.key} ({along_unit})" if along_unit else along.key)
     axis.set_ylabel(f"{name.replace('_', ' ')} ({unit})" if unit != "1" else name.replace("_", " "))
     axis.set_title(plan.title, loc="left", fontsize=10)
     if others and len(lines) <= MOST_LINES:
@@ -106,8 +107,8 @@ def _varies(lines: Mapping[tuple[str, ...], Line]) -> bool:
 
 def _places(axis: Axis) -> dict[str, float]:
     """Where each value of an axis is drawn: numbers at their place, words one after the other."""
-    numbers = all(isinstance(value, int | float) for value in axis.values)
-    return {str(cell(value)): float(value if numbers else place) for place, value in enumerate(axis.values)}
+    numbers = axis.numbers()[0] or tuple(map(float, range(len(axis.values))))
+    return {str(cell(value)): place for value, place in zip(axis.values, numbers, strict=True)}
 
 
 def mean_of(known: list[tuple[float, float]]) -> tuple[float, float]:
@@ -120,9 +121,10 @@ def mean_of(known: list[tuple[float, float]]) -> tuple[float, float]:
 
 def _scale(axis: Axes, along: Axis) -> None:
     """Logarithmic where the values span much; words under their places."""
-    if not all(isinstance(value, int | float) for value in along.values):
+    numbers, _ = along.numbers()
+    if not numbers:
         axis.set_xticks(range(len(along.values)), [str(cell(value)) for value in along.values])
-    elif min(along.values) > 0.0 and max(along.values) >= LOG_SPAN * min(along.values):
+    elif min(numbers) > 0.0 and max(numbers) >= LOG_SPAN * min(numbers):
         axis.set_xscale("log")
 
 
