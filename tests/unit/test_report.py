@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import FolderError, Run, run, sweep
+from contact1d import Contact1dError, FolderError, Run, run, sweep
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.states import MOST_NUMBERS, read_states, states_of, write_states
+from contact1d.workflow.report.animation import animate
 from contact1d.workflow.report.report import report
 from contact1d.workflow.report.words import scene_in_words
 from contact1d.workflow.scene import read_scene
@@ -154,3 +155,22 @@ def test_states_are_thinned_evenly_and_read_back(tmp_path: Path) -> None:
     assert kept.x[0, -1] == 5.0
     write_states(tmp_path / "states.npz", kept)
     np.testing.assert_array_equal(read_states(tmp_path / "states.npz").pressure, kept.pressure)
+
+
+def test_the_way_of_a_run_moves_a_picture_for_each_state(tmp_path: Path) -> None:
+    from PIL import Image
+
+    path = {"kind": "path", "displacements": [0.0, 0.05, 0.1]}
+    finished = run(chains(400.0, experiment=path), tmp_path / "run", figures=False)
+    with Image.open(animate(finished.folder)) as picture:
+        assert picture.n_frames == len(finished.curve.force)
+        shown = [np.asarray(picture.convert("RGB")) for frame in range(2) if picture.seek(frame) is None]
+    assert np.any(shown[0] != shown[1])
+    assert not list(finished.folder.glob("*.part*"))
+
+
+@pytest.mark.parametrize(("name", "words"), [("way.avi", "ends in .gif or .mp4"), ("way.gif", "holds one state only")])
+def test_what_cannot_move_is_told(name: str, words: str, tmp_path: Path) -> None:
+    run(chains(400.0, experiment={"kind": "path", "displacements": [0.1]}), tmp_path / "run", figures=False)
+    with pytest.raises(Contact1dError, match=words):
+        animate(tmp_path / "run", tmp_path / name)

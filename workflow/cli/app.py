@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from contact1d.workflow.cli.animate import animate
 from contact1d.workflow.cli.arguments import SceneFile, Set, Without
 from contact1d.workflow.cli.cost import cost
 from contact1d.workflow.cli.ending import FAILS, Commands, command, read
@@ -123,7 +124,7 @@ def doctor() -> None:
         raise typer.Exit(FAILS)
 
 
-for one in (new, run, sweep, report, deck, cost, identify, reproduce, stability, schema, doctor):
+for one in (new, run, sweep, report, animate, deck, cost, identify, reproduce, stability, schema, doctor):
     app.command()(one)
 
 

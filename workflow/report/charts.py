@@ -107,7 +107,7 @@ def pressures(runs: Mapping[str, Run]) -> Chart | None:
                 )  # fmt: skip
     if not traces:
         return None
-    half = 1.1 * max(_half_width(np.asarray(trace["x"]), np.asarray(trace["y"])) for trace in traces)
+    half = 1.1 * max(half_width(np.asarray(trace["x"]), np.asarray(trace["y"])) for trace in traces)
     made = chart("Pressure, line load of the chain", "x (LU)", "pressure (FU/LU), compression positive", traces)
     made["layout"]["xaxis"]["range"] = [-half, half]
     return made
@@ -116,10 +116,10 @@ def pressures(runs: Mapping[str, Run]) -> Chart | None:
 def way(run: Run, states: States) -> dict[str, Any]:
     """What the slider moves through: for each kept state its place on the curve, profile, bodies and words."""
     curve, rows = run.curve, states.rows
-    half = 1.15 * max(_half_width(x, p) for x, p in zip(states.x, states.pressure, strict=True))
+    half = 1.15 * max(half_width(x, p) for x, p in zip(states.x, states.pressure, strict=True))
     view = np.abs(states.x).min(axis=0) <= half
     kept = {name: getattr(states, name)[:, view] for name in ("x", "z_lower", "z_upper", "pressure", "shear")}
-    title, name_x, name_y, x, y = _main(run)
+    title, name_x, name_y, x, y = main_curve(run)
     words = []
     for row in rows:
         radius = curve.contact_radius[row]
@@ -166,7 +166,7 @@ def _branches(x: Array, y: Array, branch: NDArray[np.str_]) -> dict[str, list[An
     return {"x": _listed(places), "y": _listed(values)}
 
 
-def _main(run: Run) -> tuple[str, str, str, Array, Array]:
+def main_curve(run: Run) -> tuple[str, str, str, Array, Array]:
     """The curve that the slider's mark moves on: title, names of the axes, and the columns, a row for each state."""
     count = len(run.curve.force)
     for key, title, x, (column, y) in ALONG:
@@ -198,7 +198,7 @@ def _line(labels: Sequence[str], line: Line, names: Sequence[str], colour: str) 
             "name": label, "mode": "lines+markers", "line": {"color": colour}}  # fmt: skip
 
 
-def _half_width(x: np.ndarray[Any, Any], pressure: np.ndarray[Any, Any]) -> float:
+def half_width(x: np.ndarray[Any, Any], pressure: np.ndarray[Any, Any]) -> float:
     """Largest |x| at which there is pressure to be seen; a tenth of the body where there is none."""
     carrying = np.abs(pressure) > 0.01 * np.max(np.abs(pressure), initial=0.0)
     return float(np.max(np.abs(x[carrying]))) if carrying.any() else 0.1 * float(np.max(np.abs(x)))

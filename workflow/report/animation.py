@@ -1,0 +1,140 @@
+"""The way of a run as moving pictures: bodies and bulk springs, particles coloured by pressure, the force beneath."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.analysis.plots import COMPRESSION, DPI, TENSION, THEORY, plain_axes
+from contact1d.analysis.states import States, read_states
+from contact1d.files import whole
+from contact1d.workflow.errors import Contact1dError, FolderError
+from contact1d.workflow.report.charts import half_width, main_curve
+from contact1d.workflow.runs.campaign import AnyPath
+from contact1d.workflow.runs.finished import Run, load_run
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+SIZE = (6.4, 6.0)
+FORMATS = (".gif", ".mp4")
+SPRINGS_SHOWN = 160
+"""Particles up to which each bulk spring is drawn; of more they would be a grey field."""
+SPRING_LENGTH = 0.25
+"""Length at which a spring is drawn, over the height of the picture: a bulk has none in the model."""
+
+
+def animate(folder: AnyPath, out: AnyPath | None = None, frames_per_second: int = 10) -> Path:
+    """Write the way of a finished run as GIF or MP4.
+
+    Args:
+        folder: the run folder.
+        out: the file, by its ending; None: way.gif in the folder.
+        frames_per_second: states a second.
+
+    Returns:
+        The file's path.
+
+    Raises:
+        FolderError: the folder holds no finished run, or one of a single state.
+        Contact1dError: the ending is another one, or MP4 is asked for and there is no ffmpeg.
+    """
+    run = load_run(folder)
+    path = Path(out) if out is not None else run.folder / "way.gif"
+    if path.suffix not in FORMATS:
+        raise Contact1dError(f"{path}: a moving picture ends in {' or '.join(FORMATS)}")
+    if path.suffix == ".mp4" and shutil.which("ffmpeg") is None:
+        raise Contact1dError("MP4 needs the program ffmpeg: install it, or take a name that ends in .gif")
+    kept = run.folder / "states.npz"
+    if not kept.is_file() or len(run.curve.force) < 2:
+        raise FolderError(f"{folder} holds one state only: a path, a pull_off, a tangential or a slide has a way")
+    _draw(run, read_states(kept), path, frames_per_second)
+    return path
+
+
+def _draw(run: Run, states: States, path: Path, frames_per_second: int) -> None:
+    from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=SIZE, dpi=DPI, layout="constrained")
+    bodies, trace = figure.subplots(2, 1, height_ratios=(2.0, 1.0))
+    bodies.set_title(run.scene.title, loc="left", fontsize=10)
+    move_bodies, move_mark = _bodies(bodies, run, states), _trace(trace, run, states)
+    plain_axes(figure)
+
+    def show(frame: int) -> list[Any]:
+        return [*move_bodies(frame), *move_mark(frame)]
+
+    moving = FuncAnimation(figure, show, frames=len(states.rows), blit=False)
+    writer = (PillowWriter if path.suffix == ".gif" else FFMpegWriter)(fps=frames_per_second)
+    with whole(path) as part:
+        named = part.with_suffix(part.suffix + path.suffix)  # the writer goes by the ending
+        moving.save(str(named), writer=writer, dpi=DPI)
+        named.replace(part)
+
+
+def _bodies(axis: Axes, run: Run, states: States) -> Any:
+    """Particles, coloured by pressure, with their bulk springs; returns what moves them. A plane has no particles."""
+    from matplotlib.collections import LineCollection
+
+    half = 1.15 * max(half_width(x, p) for x, p in zip(states.x, states.pressure, strict=True))
+    view = np.abs(states.x).min(axis=0) <= half
+    x, low, high = states.x[:, view], states.z_lower[:, view], states.z_upper[:, view]
+    pressure = states.pressure[:, view]
+    bottom, top = float(low.min()), float(high.max())
+    height = (top - bottom) or 1.0
+    length = SPRING_LENGTH * height
+    scale = float(np.abs(pressure).max()) or 1.0
+    springs = LineCollection([], colors="#bbbbbb", linewidths=0.6)
+    axis.add_collection(springs)
+    look: dict[str, Any] = {"cmap": "coolwarm_r", "vmin": -scale, "vmax": scale, "s": 12, "zorder": 3}
+    upper = axis.scatter(x[0], high[0], c=pressure[0], **look)
+    lower = axis.scatter(x[0], low[0], c=pressure[0], **look)
+    chains = run.scene.bodies.lower != "rigid_plane"
+    lower.set_visible(chains)
+    if not chains:
+        axis.axhline(0.0, color=THEORY, linewidth=0.8)
+    axis.figure.colorbar(upper, ax=axis, label="pressure (FU/LU), compression positive", shrink=0.9)
+    axis.set_xlim(-half, half)
+    axis.set_ylim(bottom - 1.1 * length, top + 1.1 * length)
+    axis.set_xlabel("x (LU)")
+    axis.set_ylabel("z (LU), drawn larger than x")
+
+    def move(frame: int) -> list[Any]:
+        for dots, z in ((upper, high), (lower, low)):
+            dots.set_offsets(np.column_stack([x[frame], z[frame]]))
+            dots.set_array(pressure[frame])
+        if x.shape[1] <= SPRINGS_SHOWN:
+            below = _segments(x[frame], low[frame], -length) if chains else []
+            springs.set_segments(_segments(x[frame], high[frame], length) + below)
+        return [upper, lower, springs]
+
+    return move
+
+
+def _segments(x: NDArray[np.float32], z: NDArray[np.float32], length: float) -> list[Any]:
+    return [((a, b), (a, b + length)) for a, b in zip(x.tolist(), z.tolist(), strict=True)]
+
+
+def _trace(axis: Axes, run: Run, states: States) -> Any:
+    """The main curve with a mark; returns what moves it."""
+    _, name_x, name_y, x, y = main_curve(run)
+    for branch in dict.fromkeys(run.curve.branch.tolist()):
+        rows = np.flatnonzero(run.curve.branch == branch)
+        rows = rows[np.argsort(x[rows], kind="stable")]
+        axis.plot(x[rows], y[rows], color=COMPRESSION, linewidth=1.2)
+    axis.axhline(0.0, color=THEORY, linewidth=0.6)
+    (mark,) = axis.plot([], [], "o", color=TENSION, markersize=8)
+    axis.set_xlabel(name_x)
+    axis.set_ylabel(name_y)
+
+    def move(frame: int) -> list[Any]:
+        row = states.rows[frame]
+        mark.set_data([x[row]], [y[row]])
+        return [mark]
+
+    return move
