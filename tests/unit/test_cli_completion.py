@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from contact1d.workflow.cli.app import app
 from contact1d.workflow.cli.arguments import scene_files
 from contact1d.workflow.reproduce.studies import NAMES
 from contact1d.workflow.scene import EFFECTS
@@ -36,7 +37,7 @@ def folder(tmp_path: Path) -> Path:
 @pytest.mark.parametrize(
     ("words", "offered"),
     [
-        ("contact1d ", {"new", "run", "deck", "cost", "identify", "reproduce", "stability", "schema", "doctor"}),
+        ("contact1d ", {command.callback.__name__ for command in app.registered_commands if command.callback}),
         ("contact1d run ", {"ball.toml", "scenes/"}),
         ("contact1d deck ba", {"ball.toml"}),
         ("contact1d cost sc", {"scenes/cone.toml", "scenes/more/"}),
