@@ -68,9 +68,10 @@ def _tried(source: AnyScene, error: Contact1dError, progress: Progress) -> Tried
 
 
 def _attempt(scene: Scene) -> None:
-    """Run a scene as it is, without refinement, for at most TRIAL seconds. Raises Contact1dError."""
+    """Run a scene once, without refinement and second tries, for at most TRIAL seconds. Raises Contact1dError."""
     with TemporaryDirectory() as folder:
-        campaign.run(scene, Path(folder) / "trial", figures=False, time_limit=TRIAL, settings=settings_for(scene))
+        settings = settings_for(scene)
+        campaign.run(scene, Path(folder) / "trial", False, time_limit=TRIAL, settings=settings, retries=False)
 
 
 def _said(error: RunError, cause: UntrustedError, found: Tried) -> RunError:

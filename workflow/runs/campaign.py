@@ -47,6 +47,7 @@ def run(
     progress: Progress | None = None,
     time_limit: float = TIME_LIMIT,
     settings: Settings | None = None,
+    retries: bool = True,
 ) -> Run:
     """Run a scene in a folder and leave everything there.
 
@@ -57,6 +58,7 @@ def run(
         progress: told of phases and steps.
         time_limit: wall time for LAMMPS [s].
         settings: in place of those that `settings_for` chooses and refines; for cost studies.
+        retries: whether smaller steps are tried where the bodies went through each other; a trial does without.
 
     Raises:
         SceneError: it is no scene; nothing is written.
@@ -71,7 +73,7 @@ def run(
     folder = prepare(Path(folder))
     with alone(folder):
         _write(deck, text, folder)
-        context = RunContext(deck, folder, progress or Silent(), time_limit)
+        context = RunContext(deck, folder, progress or Silent(), time_limit, retries)
         return _run(context, started, figures, refine=settings is None)
 
 

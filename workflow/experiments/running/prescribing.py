@@ -58,7 +58,7 @@ def in_smaller_steps(search: Callable[[RunContext], Outcome]) -> Callable[[RunCo
         try:
             return search(context)
         except ThroughError as error:
-            if deck.scene.noise is not None:  # it is the noise that drives particles through
+            if deck.scene.noise is not None or not context.retries:  # it is the noise that drives particles through
                 raise
             latest = error
         for part in RETRY_SHARES:

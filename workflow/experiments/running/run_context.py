@@ -23,6 +23,7 @@ class RunContext:
         folder: the run folder; system.data and the table are in it.
         progress: told of phases and steps.
         time_limit: for each contact [s].
+        retries: whether a search in which bodies went through each other begins anew in smaller steps.
         lammps_seconds, lammps_cpu_seconds, steps: summed over all contacts so far.
         phase, timestep: where the latest contact is or ended.
         left: what a run that failed had so far, if that is worth looking at; its quantities are no results.
@@ -32,6 +33,7 @@ class RunContext:
     folder: Path
     progress: Progress
     time_limit: float
+    retries: bool = True
     lammps_seconds: float = field(default=0.0, init=False)
     lammps_cpu_seconds: float = field(default=0.0, init=False)
     steps: int = field(default=0, init=False)
