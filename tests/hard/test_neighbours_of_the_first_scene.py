@@ -1,0 +1,99 @@
+"""Claim: the README's first scene is no trap. Each of its numbers divided and multiplied by three, and each pair,
+gives a result, or a message whose first remedy gives one.
+
+The reference is the claim itself: what a message says to type is typed, and the run must end with a pull-off force.
+"""
+
+from __future__ import annotations
+
+import itertools
+import re
+import shlex
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from contact1d import Contact1dError, read_scene, run
+from contact1d.workflow.scene.overrides import set_values
+
+SCENE = Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "pull_off.toml"
+KEYS = (
+    "bodies.particles", "bodies.spacing", "bodies.profile.radius", "bodies.bulk_stiffness",
+    "interaction.repulsion.amplitude", "interaction.repulsion.range",
+    "interaction.attraction.amplitude", "interaction.attraction.range",
+    "neighbours.stiffness", "experiment.preload",
+)  # fmt: skip
+FACTOR = 3.0
+RADII = (20.0, 40.0, 80.0, 150.0, 300.0, 500.0, 1000.0, 1500.0, 2500.0, 4000.0)
+RANGES = (0.26, 0.3, 0.35, 0.42, 0.5, 0.6)
+"""Of the attraction; the repulsion has half of it, as in the scene."""
+FIRST = re.compile(r"Tried: (.*?) gives a result")
+
+
+def value(key: str) -> float:
+    table: Any = tomllib.loads(SCENE.read_text(encoding="utf-8"))
+    for part in key.split("."):
+        table = table[part]
+    return float(table)
+
+
+def changed(key: str, factor: float) -> dict[str, float]:
+    number = factor * value(key)
+    return {key: round(number) if key == "bodies.particles" else number}
+
+
+def neighbours() -> Iterator[dict[str, float]]:
+    factors = (1.0 / FACTOR, FACTOR)
+    for key in KEYS:
+        yield from (changed(key, factor) for factor in factors)
+    for one, other in itertools.combinations(KEYS, 2):
+        yield from (changed(one, f) | changed(other, g) for f in factors for g in factors)
+
+
+def grid() -> Iterator[dict[str, float]]:
+    for radius, reach in itertools.product(RADII, RANGES):
+        yield {
+            "bodies.profile.radius": radius,
+            "interaction.attraction.range": reach,
+            "interaction.repulsion.range": 0.5 * reach,
+        }
+
+
+def named(change: dict[str, float]) -> str:
+    return " ".join(f"{key.split('.', 1)[1]}={number:.4g}" for key, number in change.items())
+
+
+def scene_with(change: dict[str, float]) -> dict[str, Any]:
+    tables = tomllib.loads(SCENE.read_text(encoding="utf-8"))
+    assert set_values(tables, change) == []
+    return tables
+
+
+def require_result_or_remedy(change: dict[str, float], folder: Path) -> None:
+    tables = scene_with(change)
+    try:
+        found = run(tables, folder / "first", figures=False)
+    except Contact1dError as error:
+        first = FIRST.search(str(error))
+        assert first is not None, str(error)
+        words = shlex.split(first[1])
+        options = list(zip(words[::2], words[1::2], strict=True))
+        sets = [text for option, text in options if option == "--set"]
+        without = [text for option, text in options if option == "--without"]
+        found = run(read_scene(tables, sets, without), folder / "second", figures=False)
+    assert found.results.adhesion_force.value > 0.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("change", list(neighbours()), ids=named)
+def test_neighbour_gives_a_result_or_a_remedy_that_does(change: dict[str, float], tmp_path: Path) -> None:
+    require_result_or_remedy(change, tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("change", list(grid()), ids=named)
+def test_radius_and_range_give_a_result_or_a_remedy_that_does(change: dict[str, float], tmp_path: Path) -> None:
+    require_result_or_remedy(change, tmp_path)
