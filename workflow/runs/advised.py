@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -11,14 +12,15 @@ from contact1d.workflow.errors import Contact1dError, RunError
 from contact1d.workflow.experiments.running.trust import UntrustedError
 from contact1d.workflow.runs import campaign
 from contact1d.workflow.runs.finished import Run
-from contact1d.workflow.runs.remedies import Reader, Tried, tried
+from contact1d.workflow.runs.remedies import Attempt, Reader, Tried, tried
 from contact1d.workflow.runs.report import RESULTS, write_results
 from contact1d.workflow.scene import AnyScene, Scene, SceneError, read_scene
 from contact1d.workflow.scene.problems import Problem
 from contact1d.workflow.settings.settings import Settings, SettingsError, settings_for
 
-TRIAL = 10.0
-"""Wall time of LAMMPS in one trial [s]."""
+TRIAL, PATIENCE = 20.0, 40.0
+"""Wall time [s] of LAMMPS in one trial, and of all trials: at least, and never less than the run that failed took, or
+twice that. A trial with the numbers of a shipped scene takes a few tenths where the machine has nothing else to do."""
 
 
 def run(
@@ -29,22 +31,24 @@ def run(
     time_limit: float = campaign.TIME_LIMIT,
     settings: Settings | None = None,
 ) -> Run:
-    """As `workflow.runs.campaign.run`; where it fails, changes of the scene are tried for up to PATIENCE seconds.
+    """As `workflow.runs.campaign.run`; where it fails, changes of the scene are tried.
 
     Arguments and errors are the same; an error says with which changes the scene gives a result.
     """
-    progress = progress or Silent()
+    progress, started = progress or Silent(), time.monotonic()
     try:
         return campaign.run(scene, folder, figures, progress, time_limit, settings)
     except SceneError as error:
         raise mended(lambda change: read_scene(scene, change.overrides, change.without), error, progress) from None
     except SettingsError as error:
-        found = _tried(scene, error, progress)
+        found = _tried(scene, error, progress, 0.0)
         raise SettingsError(f"{error}. {found}" if str(found) else str(error)) from error.__cause__
     except RunError as error:
         if not isinstance(error.__cause__, UntrustedError):
             raise
-        raise _said(error, error.__cause__, _tried(scene, error, progress)) from error.__cause__
+        raise _said(
+            error, error.__cause__, _tried(scene, error, progress, time.monotonic() - started)
+        ) from error.__cause__
 
 
 def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
@@ -55,7 +59,7 @@ def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
         error: the scene's, without.
         progress: told of every trial.
     """
-    found = tried(reader, error, _attempt, progress.note)
+    found = tried(reader, error, _attempt(TRIAL), progress.note, PATIENCE)
     if not str(found):
         return error
     first, *others = error.problems
@@ -63,15 +67,27 @@ def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
     return SceneError([Problem(first.path, first.message, first.given, hint, first.ways), *others])
 
 
-def _tried(source: AnyScene, error: Contact1dError, progress: Progress) -> Tried:
-    return tried(lambda change: read_scene(source, change.overrides, change.without), error, _attempt, progress.note)
+def _tried(source: AnyScene, error: Contact1dError, progress: Progress, took: float) -> Tried:
+    """What helps a scene whose run `took` so many seconds to fail."""
+    attempt = _attempt(max(TRIAL, took))
+    return tried(
+        lambda change: read_scene(source, change.overrides, change.without),
+        error,
+        attempt,
+        progress.note,
+        max(PATIENCE, 2.0 * took),
+    )
 
 
-def _attempt(scene: Scene) -> None:
-    """Run a scene once, without refinement and second tries, for at most TRIAL seconds. Raises Contact1dError."""
-    with TemporaryDirectory() as folder:
-        settings = settings_for(scene)
-        campaign.run(scene, Path(folder) / "trial", False, time_limit=TRIAL, settings=settings, retries=False)
+def _attempt(limit: float) -> Attempt:
+    """Runs a scene once, without refinement and second tries, for at most so many seconds."""
+
+    def attempt(scene: Scene) -> None:
+        with TemporaryDirectory() as folder:
+            settings = settings_for(scene)
+            campaign.run(scene, Path(folder) / "trial", False, time_limit=limit, settings=settings, retries=False)
+
+    return attempt
 
 
 def _said(error: RunError, cause: UntrustedError, found: Tried) -> RunError:

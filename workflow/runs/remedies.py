@@ -1,7 +1,7 @@
 """What helps a scene that gives no result, found by trying it: changes as the command line has them.
 
 The changes that are known to help against such a failure are tried one by one; where none of them does, each is tried
-together with one against what it failed by itself, and so on, as long as PATIENCE lasts.
+together with one against what it failed by itself, and so on, as long as the patience lasts.
 """
 
 from __future__ import annotations
@@ -18,8 +18,6 @@ from contact1d.workflow.scene import Load, PullOff, Scene, SceneError, Slide
 from contact1d.workflow.scene.problems import as_toml
 from contact1d.workflow.settings.estimate import NotCarriedError
 
-PATIENCE = 20.0
-"""Wall time [s] after which no further change is tried; a whole run of a shipped scene takes a few tenths."""
 MOST_TRIALS = 12
 """Changes that are tried at most."""
 ENOUGH = 2
@@ -77,7 +75,9 @@ class Tried:
         return f"Tried in vain: {', '.join(map(str, self.failed))}" if self.failed else ""
 
 
-def tried(reader: Reader, error: Contact1dError, attempt: Attempt, note: Callable[[str], None]) -> Tried:
+def tried(
+    reader: Reader, error: Contact1dError, attempt: Attempt, note: Callable[[str], None], patience: float = math.inf
+) -> Tried:
     """Try what may help a scene that failed by `error`.
 
     Args:
@@ -85,8 +85,9 @@ def tried(reader: Reader, error: Contact1dError, attempt: Attempt, note: Callabl
         error: why it gives no result without.
         attempt: runs a changed scene.
         note: told of every trial.
+        patience: wall time [s] after which no further change is tried.
     """
-    until = time.monotonic() + PATIENCE
+    until = time.monotonic() + patience
     waiting = deque((change, 1) for change in _changes(reader, Change(), error))
     helped: list[Change] = []
     failed: list[Change] = []
