@@ -51,12 +51,16 @@ def found(scene: Scene, error: Contact1dError, holds: Callable[[Scene], bool], t
 def test_horizontal_is_left_out_first_where_bodies_went_through_each_other() -> None:
     done = found(scene_of(), failed(ThroughError("through")), lambda scene: scene.horizontal is None)
     assert done.helped == (Change(without=("horizontal",)),)
-    assert str(done).startswith("Tried: --without horizontal gives a result; --set experiment.preload=1.0, ")
+    assert str(done).startswith(
+        "Tried: --without horizontal gives a result; --set interaction.attraction.amplitude=0.03, "
+    )
 
 
 def test_two_changes_that_help_are_enough() -> None:
     done = found(scene_of(), failed(ThroughError("through")), lambda _: True)
-    assert str(done) == "Tried: --without horizontal gives a result, and so does --set experiment.preload=1.0"
+    assert str(done) == (
+        "Tried: --without horizontal gives a result, and so does --set interaction.attraction.amplitude=0.03"
+    )
 
 
 def test_changes_go_together_where_none_alone_helps() -> None:

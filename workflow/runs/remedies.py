@@ -22,6 +22,8 @@ MOST_TRIALS = 12
 """Changes that are tried at most."""
 ENOUGH = 2
 """Changes that help after which no other is tried."""
+NARROW = 0.8
+"""Range of the repulsion over half of the attraction's below which it counts as short."""
 STEP = 3.0
 """Factor of a change to a load, a stiffness or an amplitude."""
 
@@ -100,7 +102,8 @@ def tried(
             attempt(reader(change))
         except Contact1dError as another:
             failed.append(change)
-            waiting.extend((change.then(more), together + 1) for more in _changes(reader, change, another))
+            more = list(_changes(reader, change, another)) or list(_changes(reader, change, error))
+            waiting.extend((change.then(one), together + 1) for one in more)
         else:
             helped.append(change)
     return Tried(tuple(helped), tuple(failed))
@@ -133,13 +136,15 @@ def _kinds(error: Contact1dError) -> tuple[Callable[[Scene], Change | None], ...
     """What is known to help against such an error, what helps most often first."""
     cause = error.__cause__
     if isinstance(cause, ThroughError):
-        return (_without_horizontal, _smaller_load, _weaker_attraction, _stronger_core, _shorter_attraction)
+        return (
+            _without_horizontal, _softer_core, _weaker_attraction, _smaller_load, _stronger_core, _shorter_attraction,
+        )  # fmt: skip
     if isinstance(cause, ChainEndError):
-        return (_longer_chain, _smaller_load)
+        return (_longer_chain,)
     if isinstance(cause, NotCarriedError):
         return (_smaller_load, _stronger_core)
     if isinstance(cause, UntrustedError):
-        return (_without_horizontal, _stiffer_springs, _smaller_load, _longer_chain)
+        return (_without_horizontal, _softer_core, _stiffer_springs, _smaller_load, _longer_chain)
     return ()
 
 
@@ -151,7 +156,7 @@ def _without_horizontal(scene: Scene) -> Change | None:
 
 def _longer_chain(scene: Scene) -> Change | None:
     given = scene.bodies.particles != "auto" and not scene.bodies.profile.has_edge
-    return Change({"bodies.particles": "auto"}) if given else None
+    return Change({"bodies.particles": "auto"}) if given else _smaller_load(scene)
 
 
 def _smaller_load(scene: Scene) -> Change | None:
@@ -170,6 +175,15 @@ def _stronger_core(scene: Scene) -> Change | None:
         return None
     key = "interaction.repulsion.amplitude"
     return Change({key: _rounded(STEP * scene.interaction.repulsion.amplitude)})
+
+
+def _softer_core(scene: Scene) -> Change | None:
+    """A repulsion that is short beside the attraction makes a well so narrow that pairs snap into it."""
+    if scene.interaction is None or scene.interaction.attraction is None:
+        return None
+    half = 0.5 * scene.interaction.attraction.range
+    longer = scene.interaction.repulsion.range < NARROW * half
+    return Change({"interaction.repulsion.range": _rounded(half)}) if longer else None
 
 
 def _weaker_attraction(scene: Scene) -> Change | None:
