@@ -1,16 +1,18 @@
 """What helps a scene that gives no result, found by trying it: changes as the command line has them.
 
-The changes that are known to help against such a failure are tried one by one; where none of them does, each is tried
-together with one against what it failed by itself, and so on, as long as the patience lasts.
+The changes that are known to help against such a failure are tried, what helps most often first. One that does not help
+is tried again together with each that is known to help against what it failed by itself; what is likelier comes first:
+the cost of a change is its rank, and that of two together the sum of theirs.
 """
 
 from __future__ import annotations
 
 import math
 import time
-from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from heapq import heappop, heappush
+from itertools import count
 
 from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.experiments.running.trust import ChainEndError, ThroughError, UntrustedError
@@ -90,20 +92,22 @@ def tried(
         patience: wall time [s] after which no further change is tried.
     """
     until = time.monotonic() + patience
-    waiting = deque((change, 1) for change in _changes(reader, Change(), error))
+    number = count()  # changes have no order of their own
+    waiting = [(cost, next(number), 1, change) for cost, change in enumerate(_changes(reader, Change(), error), 1)]
     helped: list[Change] = []
     failed: list[Change] = []
     while waiting and len(helped) < ENOUGH and len(helped) + len(failed) < MOST_TRIALS and time.monotonic() < until:
-        change, together = waiting.popleft()
-        if helped and together > 1:
-            break  # one change helps: no need for two
+        cost, _, together, change = heappop(waiting)
+        if change in failed or (helped and together > 1):
+            continue  # where one change helps, there is no need for two
         note(f"trying what helps: {change}")
         try:
             attempt(reader(change))
         except Contact1dError as another:
             failed.append(change)
             more = list(_changes(reader, change, another)) or list(_changes(reader, change, error))
-            waiting.extend((change.then(one), together + 1) for one in more)
+            for further, one in enumerate(more, 1):
+                heappush(waiting, (cost + further, next(number), together + 1, change.then(one)))
         else:
             helped.append(change)
     return Tried(tuple(helped), tuple(failed))
