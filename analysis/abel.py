@@ -23,9 +23,8 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 NEAR = 0.3
 """Of a spacing: a place nearer to the edge than that is left out, since a slope over so short a way is mostly noise."""
-KINK = 0.5
-"""Slope at the axis over that AWAY places off from which on the line load has an apex (a cone's) and no round top."""
-AWAY = 4
+SAME = 1e-6
+"""Of a spacing: places so alike on both sides of the axis are the same."""
 FEWEST = 3
 """Places on one side from which a shape can be told."""
 
@@ -83,30 +82,31 @@ class LineLoad:
         return (self.at_edge / float(root[-1]) - total) / np.pi
 
 
-def line_load(x: ArrayLike, load: ArrayLike, edge: float | None = None, ends_at_zero: bool = True) -> LineLoad:
-    """Return the even line load through values at places, by cubic splines; of both sides the mean.
+def line_load(
+    x: ArrayLike, load: ArrayLike, edge: float | None = None, ends_at_zero: bool = True, apex: bool = False
+) -> LineLoad:
+    """Return the even line load through values at places, a cubic through the four nearest; of both sides the mean.
 
-    Polynomials up to x³ on each side (Hertz, cone, flat punch) are met exactly, others with the fourth order of the
-    spacing. Whether the top is round or has an apex is told by the values (KINK).
+    Polynomials up to x³ on each side (Hertz, cone, flat punch) are met exactly, others with the third order of the
+    spacing.
 
     Args:
         x: places, rising and the same on both sides of 0, shape (n,) [length].
         load: q there, shape (n,) [force/length].
         edge: a, where it ends [length]; None: it fades out, and ends at 0 at the last place.
         ends_at_zero: whether q(a) = 0; else the last piece goes on to the edge, where q jumps to 0.
+        apex: whether q has a kink on the axis, as under a cone; else it is smooth there, an even function.
 
     Raises:
         ValueError: fewer than FEWEST places on a side within the edge, or places that are not the same on both sides.
     """
-    from scipy.interpolate import CubicSpline
-
     places, values = np.asarray(x, dtype=np.float64), np.asarray(load, dtype=np.float64)
     if places.shape != values.shape or places.ndim != 1:
         raise ValueError(f"places and loads must be 1-D and equally long, got {places.shape} and {values.shape}")
     half = places.size // 2
     right, mean = places[half:], 0.5 * (values[half:] + values[::-1][half:])
     spacing = float(places[-1] - places[0]) / max(places.size - 1, 1)
-    if places.size < 2 or np.abs(places + places[::-1]).max() > 1e-6 * spacing:
+    if places.size < 2 or np.abs(places + places[::-1]).max() > SAME * spacing:
         raise ValueError("the places must be the same on both sides of 0")
     end = float(right[-1]) if edge is None else edge
     inside = right <= end - NEAR * spacing if ends_at_zero else right < end
@@ -115,29 +115,30 @@ def line_load(x: ArrayLike, load: ArrayLike, edge: float | None = None, ends_at_
         raise ValueError(f"a pressure needs {FEWEST} places on each side of the axis, got {right.size}")
     if ends_at_zero:
         right, mean = np.append(right, end), np.append(mean, 0.0)
-    spline = CubicSpline(right, mean)
-    top, flank = spline([0.0, right[min(AWAY, right.size - 1)]], 1)
-    if abs(top) <= KINK * abs(flank):
-        mirror = slice(None) if right[0] > 0.0 else slice(1, None)
-        both, whole = np.append(-right[mirror][::-1], right), np.append(mean[mirror][::-1], mean)
-        spline = CubicSpline(both, whole)
-        return _from_axis(spline, end, even=True)
-    return _from_axis(spline, end, even=False)
+    if apex:
+        return _cubics(right, mean, end)
+    own = slice(None) if right[0] > 0.0 else slice(1, None)
+    even = _cubics(np.append(-right[own][::-1], right), np.append(mean[own][::-1], mean), end)
+    even.coefficients[1, 0] = 0.0  # by symmetry, but for round-off
+    return even
 
 
-def _from_axis(spline: object, end: float, even: bool) -> LineLoad:
-    """The pieces of a spline from the axis to the edge, in powers of x; an `even` one has no odd powers at the axis."""
-    knots, local = spline.x, spline.c[::-1]  # type: ignore[attr-defined]
-    first = int(np.searchsorted(knots, 0.0, side="right")) - 1
-    first = max(first, 0)
-    starts, pieces = knots[first:-1], local[:, first:]
-    shift = -starts
-    c = np.empty_like(pieces)
-    c[3] = pieces[3]
-    c[2] = pieces[2] + 3.0 * pieces[3] * shift
-    c[1] = pieces[1] + 2.0 * pieces[2] * shift + 3.0 * pieces[3] * shift**2
-    c[0] = pieces[0] + pieces[1] * shift + pieces[2] * shift**2 + pieces[3] * shift**3
-    breaks = np.concatenate([[0.0], starts[1:], [end]])
-    if even:
-        c[1, 0] = 0.0
-    return LineLoad(breaks, c)
+def _cubics(x: Array, q: Array, end: float) -> LineLoad:
+    """From 0 to the `end` the cubic through the four nearest of the places x, of fewer a parabola or a line."""
+    count = min(4, x.size)
+    right_of_axis = x[x > 1e-12 * end]
+    inner = right_of_axis[right_of_axis < end * (1.0 - 1e-12)] if right_of_axis[-1] >= end else right_of_axis[:-1]
+    breaks = np.concatenate([[0.0], inner, [end]])
+    middle = 0.5 * (breaks[1:] + breaks[:-1])
+    first = np.clip(np.searchsorted(x, middle) - count // 2, 0, x.size - count)
+    at = x[first[:, None] + np.arange(count)]
+    # Newton's divided differences, then his polynomial in powers of x
+    table = q[first[:, None] + np.arange(count)].copy()
+    for order in range(1, count):
+        table[:, order:] = (table[:, order:] - table[:, order - 1 : -1]) / (at[:, order:] - at[:, : count - order])
+    powers = np.zeros((4, middle.size))
+    powers[0] = table[:, -1]
+    for order in range(count - 2, -1, -1):
+        powers[1:] = powers[:-1] - at[:, order] * powers[1:]
+        powers[0] = table[:, order] - at[:, order] * powers[0]
+    return LineLoad(breaks, powers)

@@ -51,7 +51,7 @@ def pressure_figure(profiles: Mapping[str, Profile], radii: Mapping[str, float])
         width = 0.8 * float(np.median(np.diff(profile.x)))
         _draw_bars(axis, x, pressure, width)
         axis.axhline(0.0, color="black", linewidth=0.8)
-        axis.set_ylabel("pressure (FU/LU)")
+        axis.set_ylabel("line load (FU/LU)")
         marked = _mark_radius(axis, radii.get(name, math.nan))
         axis.set_title(f"{name.replace('_', ' ')} state{marked}", loc="left", fontsize=10)
         axis.set_ylim(min(1.15 * float(pressure.min()), 0.0), max(1.15 * float(pressure.max()), 0.0) or 1e-12)
@@ -162,10 +162,10 @@ def plain_axes(figure: Figure) -> Figure:
 
 
 def save_figure(figure: Figure, path: Path) -> None:
-    """Save as PNG, whole or not at all."""
+    """Save in the format that the name ends on (png, svg, pdf), whole or not at all."""
     plain_axes(figure)
     with whole(path) as part:
-        figure.savefig(part, format="png")
+        figure.savefig(part, format=path.suffix[1:])
 
 
 def _draw_bars(axis: Axes, x: Array, height: Array, width: float) -> None:

@@ -26,8 +26,20 @@ SI = {
     NUMBER: (0, 0, "1"),
 }
 """For each model unit: powers of LU and FU in it, and its name in SI."""
-PREFIXES = {-5: "f", -4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G", 4: "T"}
+EXACT = 1e-12
+"""By which the logarithm of a power of ten may fall short of it."""
+PREFIXES = {-6: "a", -5: "f", -4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G", 4: "T"}
 """Of SI units, by powers of 1000."""
+
+
+def scale_of(value: float, unit: str) -> tuple[float, str]:
+    """The factor, and the unit with its prefix, by which a number of this size in an SI `unit` is written.
+
+    Of a compound unit (N/m) the first has the prefix, as in mN/m.
+    """
+    power = math.floor(math.log10(abs(value)) / 3.0 + EXACT) if value and math.isfinite(value) else 0
+    power = power if power in PREFIXES else 0
+    return 1000.0**-power, PREFIXES[power] + unit
 
 
 def prefixed(value: float, unit: str) -> str:
@@ -94,6 +106,11 @@ class Scales:
         """SI value of one `unit`. Raises KeyError for a unit that LU and FU don't make, as those of time."""
         lengths, forces, _ = SI[unit]
         return self.length**lengths * self.force**forces
+
+    def written(self, value: float, unit: str) -> tuple[float, str]:
+        """The factor from a model `unit` to the SI unit with which a number of this size is written, and that unit."""
+        factor, name = scale_of(value * self.factor(unit), SI[unit][2])
+        return factor * self.factor(unit), name
 
     def in_si(self, value: float, uncertainty: float, unit: str) -> dict[str, float | str]:
         """The quantity in SI: value, uncertainty, unit. Relative uncertainties of the scales are added to its own."""

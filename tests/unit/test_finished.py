@@ -14,7 +14,7 @@ from contact1d import FolderError, Run, RunError, Scene, load_run, run
 
 MakeScene = Callable[..., Scene]
 STEEL = {"youngs_modulus": 210e9, "poisson_ratio": 0.3}
-SHORT = 600
+SHORT = 800
 """Characters that a run shows of itself; it has hundreds of thousands of numbers."""
 
 
@@ -46,7 +46,8 @@ def test_results_are_quantities_by_name_and_as_attributes(finished: Run) -> None
     assert finished.results.adhesion_force is force
     assert "adhesion_force" in dir(finished.results)
     found = {"adhesion_force", "critical_radius", "zero_load_radius", "preload"}
-    assert set(finished.results) == found | {"separation_energy", "work_of_adhesion"}
+    body = {"central_pressure", "peak_pressure", "adhesion_energy"}
+    assert set(finished.results) == found | body | {"separation_energy", "work_of_adhesion"}
     with pytest.raises(KeyError, match="no pull_off_force, it has adhesion_force"):
         finished.results["pull_off_force"]
     with pytest.raises(AttributeError, match="no pull_off_force, it has adhesion_force"):
@@ -67,12 +68,14 @@ def test_a_run_shows_itself_in_a_few_lines(finished: Run) -> None:
 
 def test_a_run_draws_its_figures_and_gives_its_atoms(finished: Run) -> None:
     files = {path.stem for path in finished.folder.glob("*.png")}
-    assert files == {"force_displacement", "force_radius", "pressure"}
+    assert files == {"force_displacement", "force_radius", "pressure", "pressure_3d"}
     loaded = load_run(finished.folder)
     for one in (finished, loaded):
-        assert [axis.get_xlabel() for axis in one.plot().axes] == ["displacement (LU), compression positive"]
+        assert [axis.get_xlabel() for axis in one.plot().axes] == ["displacement (nm), compression positive"]
         assert len(one.plot("pressure").axes) == 2
-        with pytest.raises(ValueError, match="no figure 'friction', it has force_displacement, force_radius, pressure"):
+        assert one.plot().get_suptitle().startswith(one.scene.title)
+        there = "force_displacement, force_radius, pressure, pressure_3d"
+        with pytest.raises(ValueError, match=f"no figure 'friction', it has {there}"):
             one.plot("friction")
         np.testing.assert_array_equal(one.atoms().positions, contact1d.atoms(finished.folder).positions)
         assert len(one.atoms(0)) == 160

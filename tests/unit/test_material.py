@@ -365,6 +365,9 @@ PLANE = tables(
     lower="rigid_plane",
 )  # fmt: skip
 STICKY = tables(JKR) | {"accuracy": {"tolerance": 1e-2}}
+PRESSED = {
+    "largest_force", "largest_radius", "mean_pressure", "central_pressure", "peak_pressure", "contact_stiffness",
+}  # fmt: skip
 BARE = tables(None, PATH, lower="rigid_plane", reduction="mdr")
 FRAME = {
     "theory", "scene", "experiment", "method", "reduction", "effects", "status", "warnings", "timing", "versions",
@@ -394,7 +397,7 @@ def columns(finished: Run, name: str) -> dict[str, list[str]]:
 
 def test_each_quantity_stands_in_si_beside_its_model_units(finished: dict[str, Run]) -> None:
     results = document(finished["plane"])
-    assert set(results) == FRAME | {"largest_force", "largest_radius", "units"}
+    assert set(results) == FRAME | PRESSED | {"units"}
     force, radius = results["largest_force"], results["largest_radius"]
     for entry, factor, unit in ((force, 3e-6, "N"), (radius, 2e-9, "m")):
         assert set(entry) == {"value", "uncertainty", "unit", "si"}
@@ -447,7 +450,7 @@ def test_si_columns_stand_to_the_right_of_those_in_model_units(finished: dict[st
 
 def test_without_a_material_nothing_is_in_si(finished: dict[str, Run]) -> None:
     results = document(finished["bare"])
-    assert set(results) == FRAME | {"largest_force", "largest_radius"}
+    assert set(results) == FRAME | PRESSED
     assert set(results["largest_force"]) == {"value", "uncertainty", "unit"}
     assert results["reduction"] == "mdr"
     assert "material" not in results["scene"]

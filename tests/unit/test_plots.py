@@ -55,7 +55,7 @@ def test_every_particle_that_carries_pressure_is_a_bar_of_its_sign() -> None:
         if abs(p) > 0.01 * shown.pressure.max():
             assert sorted(corners[round(x)]) == sorted([0.0, 0.0, p, p])
             assert (colours[round(x)] == colours[0]) == (p > 0.0)
-    assert axis.get_ylabel() == "pressure (FU/LU)"
+    assert axis.get_ylabel() == "line load (FU/LU)"
     assert axis.get_xlabel() == "x (LU)"
 
 

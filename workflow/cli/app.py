@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from contact1d.workflow.cli.animate import animate
-from contact1d.workflow.cli.arguments import SceneFile, Set, Without
+from contact1d.workflow.cli.arguments import Format, SceneFile, Set, Without
 from contact1d.workflow.cli.cost import cost
 from contact1d.workflow.cli.ending import FAILS, Commands, command, read
 from contact1d.workflow.cli.identify import identify
@@ -65,6 +65,7 @@ def run(
     set_: Set = None,
     without: Without = None,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures.")] = True,
+    format_: Annotated[Format, typer.Option("--format", help="Of the figures.")] = Format.PNG,
     time_limit: Annotated[float, typer.Option(min=0.1, help="Seconds of wall time for LAMMPS, per pass.")] = 3600.0,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the numbers only.")] = False,
 ) -> None:
@@ -77,7 +78,7 @@ def run(
         start_ahead()  # LAMMPS loads while numpy and the rest of the program do
         from contact1d.workflow.runs.advised import run as run_scene
 
-        finished = run_scene(checked, folder, figures, progress, time_limit)
+        finished = run_scene(checked, folder, format_.value if figures else False, progress, time_limit)
     from contact1d.workflow.cli.summary import pressure_plot, quantities
 
     typer.echo("\n".join(quantities(finished.document)))
@@ -86,7 +87,7 @@ def run(
     if not quiet:
         assert finished.outcome is not None
         name, profile = next(iter(finished.outcome.profiles.items()))
-        typer.echo(f"\npressure, {name.replace('_', ' ')} state:")
+        typer.echo(f"\nline load, {name.replace('_', ' ')} state:")
         typer.echo("\n".join(pressure_plot(profile, finished.outcome.radii[name])))
         typer.echo(f"\n{finished.folder}")
 

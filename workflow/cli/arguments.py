@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -34,6 +35,14 @@ def study_names(incomplete: str) -> list[str]:
     from contact1d.workflow.reproduce.studies import NAMES
 
     return [name for name in NAMES if name.startswith(incomplete)]
+
+
+class Format(StrEnum):
+    """Of figures."""
+
+    PNG = "png"
+    SVG = "svg"
+    PDF = "pdf"
 
 
 SceneFile = Annotated[

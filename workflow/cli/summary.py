@@ -3,53 +3,83 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from contact1d.analysis.pressure import Profile
-from contact1d.workflow.units import PREFIXES, rounded
+from contact1d.workflow.units import rounded, scale_of
 
 NAMES = {
     "adhesion_force": "adhesion force (pull-off)",
     "critical_radius": "critical radius a_cr",
     "zero_load_radius": "zero-load radius a_0",
     "contact_radius": "contact radius a",
+    "image_contact_radius": "half-width of the image",
     "mean_pressure": "mean pressure F/(pi a^2)",
+    "central_pressure": "pressure on the axis p(0)",
+    "contact_stiffness": "stiffness dF/dd",
+    "adhesion_energy": "energy of adhesion",
     "separation_energy": "separation energy per length",
     "work_of_adhesion": "implied W = 2γ",
 }
 EXACTNESS = 1e-9
 """A relative uncertainty below it, as of a unit that was given, is left out."""
+SHOWN = 6
+"""Places of a deviation in percent: below that it is round-off."""
 COLUMNS = 64
 ROWS = 9
 BLOCK, EMPTY, AXIS = "█", " ", "─"
 
 
 def quantities(results: Mapping[str, Any]) -> list[str]:
-    """One line for each quantity: name, value ± uncertainty, unit; with a [material] also in SI, and the units."""
-    lines = []
+    """What the numbers are of, then a line for each: name, value ± uncertainty, unit, closed forms beside it.
+
+    In SI where the units are known, and then also what LU and FU are.
+    """
+    lines = [f"  {'reduction':<28} {_whose(results)}"] if "reduction" in results else []
     for name, entry in results.items():
         if isinstance(entry, dict) and {"value", "uncertainty", "unit"} <= entry.keys():
             label = NAMES.get(name, name.replace("_", " "))
-            si = f"  = {in_si(entry['si'])}" if "si" in entry else ""
-            lines.append(f"  {label:<28} {rounded(entry['value'], entry['uncertainty'])} {entry['unit']}{si}")
+            number = in_si(entry["si"]) if "si" in entry else (
+                f"{rounded(entry['value'], entry['uncertainty'])} {entry['unit']}"
+            )  # fmt: skip
+            lines.append(f"  {label:<28} {number:<32} {', '.join(_beside(results, name))}".rstrip())
     if "units" in results:
         lines += [f"  {'1 ' + unit:<28} {in_si(entry)}" for unit, entry in results["units"].items()]
     return lines
 
 
+def _whose(results: Mapping[str, Any]) -> str:
+    """The reduction, and whose the radii and pressures are."""
+    reduction = str(results["reduction"])
+    if reduction == "mdr":
+        return "mdr: radii and pressures are those of the body"
+    if any(name.startswith("image_") for name in results):
+        return f"{reduction}: two equal spheres; what is called image is the plane model's"
+    return f"{reduction}: the plane model of the paper; radii are those of its image"
+
+
+def _beside(results: Mapping[str, Any], name: str) -> Iterator[str]:
+    """What each closed form says of a result, and how far the result is from it: `Hertz 110.37 µm (+0.001 %)`."""
+    for form in results.get("theory", ()):
+        if said := form["values"].get(name):
+            number = f"{said['value']:.5g} {said['unit']}"
+            if "si" in said:
+                factor, unit = scale_of(said["si"]["value"], said["si"]["unit"])
+                number = f"{said['si']['value'] * factor:.5g} {unit}"
+            off = "" if said["deviation"] is None else f" ({round(100.0 * said['deviation'], SHOWN):+.2g} %)"
+            yield f"{form['name']} {number}{off}"
+
+
 def in_si(entry: Mapping[str, Any]) -> str:
     """Value ± uncertainty with a prefix: `39.028 ± 0.012 µN`."""
-    value, uncertainty, unit = float(entry["value"]), float(entry["uncertainty"]), entry["unit"]
-    power = math.floor(math.log10(abs(value)) / 3) if value else 0
-    if unit not in ("N", "m", "Pa") or not min(PREFIXES) <= power <= max(PREFIXES):
-        power = 0
-    scale = 1000.0**power
-    spread = uncertainty / scale
-    number = rounded(value / scale, spread) if spread > EXACTNESS * abs(value) / scale else f"{value / scale:.5g}"
-    return f"{number} {PREFIXES[power]}{unit}"
+    value, uncertainty = float(entry["value"]), float(entry["uncertainty"])
+    factor, unit = scale_of(value, entry["unit"])
+    spread = uncertainty * factor
+    exact = spread <= EXACTNESS * abs(value) * factor
+    return f"{value * factor:.5g} {unit}" if exact else f"{rounded(value * factor, spread)} {unit}"
 
 
 def pressure_plot(profile: Profile, radius: float) -> list[str]:

