@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 import tomllib
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -180,6 +181,25 @@ def test_a_scene_without_texts_does_not_load_the_units() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"
+
+
+UNIT_PARTS = [
+    "m", "µ", "k", "N", "K", "degC", "°C", "dB", "rad", "e", "nan", "in", "and", "%", "·", "/", "**", "²", "⁻¹", "(",
+    ")", " ", "1", "-", ".", "_", "\n", "\0", "中", "'", "[",
+]  # fmt: skip
+
+
+@given(
+    number=st.sampled_from(["1", "-2.5", "1e3", ".5", "1e-400", "9" * 30, "1e", "", "x"]),
+    unit=st.lists(st.sampled_from(UNIT_PARTS), max_size=5).map("".join) | st.text(max_size=5),
+    wanted=st.sampled_from(["LU", "FU", "K", "1"]),
+)
+def test_any_text_is_a_number_or_one_sentence(number: str, unit: str, wanted: str) -> None:
+    try:
+        assert isinstance(si_value(number + unit, wanted)[0], Fraction)
+    except UnitTextError as error:
+        assert "\n" not in str(error)
+        assert str(error).startswith("must be a ")
 
 
 def units_of(table: Any) -> set[str]:

@@ -98,8 +98,8 @@ WRONG = [
     odd(R, "10 mm # about", f"{LENGTH}; 10 mm # about has a unit that is not known, #", "10 mm"),
     odd("noise.temperature", "300 K/m", "must be a temperature, such as 300 K; 300 K/m is another quantity", "300 K",
         *PARTICLES, "damping.coefficient=auto", "plate={}", "noise.seed=1"),
-    odd("noise.temperature", "300 delta_degC", "must be a temperature, such as 300 K; 300 delta_degC has a temperature "
-        "that is not counted from absolute zero: write K", "27 °C",
+    odd("noise.temperature", "300 delta_degC", "must be a temperature, such as 300 K; 300 delta_degC is not "
+        "counted from zero: a temperature is in K or °C, and a level has no place here", "27 °C",
         *PARTICLES, "damping.coefficient=auto", "plate={}", "noise.seed=1"),
     # A number that is none.
     odd(R, "ten mm", 'must be a number greater than 0 (LU); a number with its unit begins with a digit: "10 mm"',

@@ -147,7 +147,7 @@ def si_value(text: str, unit: str, *also: str) -> tuple[Fraction, str]:
 
 def _quoted(text: str) -> str:
     short = text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
-    return "".join(c if c.isprintable() else "?" for c in short) or "an empty text"
+    return "".join(c if c.isprintable() else "?" for c in short).strip() or "an empty text"
 
 
 def _named(dimension: Any) -> str:
@@ -197,19 +197,30 @@ def _for_pint(unit: str) -> str:
 def _unit(unit: str) -> Unit:
     """What the text `unit` means. Raises UnitTextError."""
     names = [part for part in re.split(r"[\s·*×/()]+", POWER.sub("", unit)) if part]
-    unknown = [name for name in names if not NAME.fullmatch(name) or name not in _registry()]
+    unknown = [name for name in names if not NAME.fullmatch(name) or not _is_known(name)]
     if unknown or not names:
-        raise UnitTextError(f"has a unit that is not known, {(unknown or [unit])[0]}")
+        raise UnitTextError(f"has a unit that is not known, {_quoted((unknown or [unit])[0])}")
     if re.search(r"\d{2}", unit):
         raise UnitTextError("has a power that no unit has")
-    known = {_registry().get_name(name) for name in names}
-    relative = any(name.startswith(("degree_", "delta_")) for name in known)
-    if relative and (unit not in names or known.isdisjoint(ZEROS)):
-        raise UnitTextError("has a temperature that is not counted from absolute zero: write K")
+    registry = _registry()
     try:
-        found = _registry().parse_units(_for_pint(unit))
-        factor, _ = _registry().get_base_units(found, check_nonmult=False)
+        known = {registry.get_name(name) for name in names}
+        found = registry.parse_units(_for_pint(unit))
+        factor, _ = registry.get_base_units(found, check_nonmult=False)
+        plain = registry.get_base_units(found, check_nonmult=True)[0] is not None
     except Exception as error:  # pint's parser meets nonsense with errors of many kinds that have no class in common
         raise UnitTextError("has a unit that cannot be read") from error
+    relative = not plain or any(name.startswith(("degree_", "delta_")) for name in known - ANGLES)
+    if relative and (unit not in names or known.isdisjoint(ZEROS)):
+        raise UnitTextError("is not counted from zero: a temperature is in K or °C, and a level has no place here")
     zero = next((ZEROS[name] for name in known if name in ZEROS), Fraction(0))
     return Unit(Fraction(factor), zero, found.dimensionality, not known.isdisjoint(ANGLES))
+
+
+def _is_known(name: str) -> bool:
+    from pint import PintError
+
+    try:
+        return name.lower() not in ("nan", "inf") and name in _registry()
+    except PintError:  # a prefix before what takes none, such as a level
+        return False
