@@ -17,6 +17,7 @@ from contact1d.workflow.engine.session import Engine, Session
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 from tests.limits import LIMIT, SLOW_LIMIT, time_limit
+from tests.records import record_slow_tests
 from tests.scenes import chains
 
 settings.register_profile("repeatable", deadline=None, derandomize=True)
@@ -41,6 +42,9 @@ PLANE: dict[str, Any] = {
         "lower": "rigid_plane",
     },
 }
+
+
+pytest_configure = record_slow_tests
 
 
 @pytest.hookimpl(wrapper=True)

@@ -12,7 +12,7 @@ import pytest
 
 from contact1d.workflow.judging.check import Check
 from contact1d.workflow.stability.case import Class, Findings, at_most
-from contact1d.workflow.stability.record import Answer, Stability
+from contact1d.workflow.stability.record import Answer, Stability, stability_markdown
 from contact1d.workflow.stability.suite import NAMES, measured
 
 FAILS: dict[str, set[str]] = {}
@@ -41,8 +41,9 @@ def test_a_row_without_a_number_fails_and_stays_in_the_table() -> None:
     record = Stability((Answer(asked, Findings(rows, "", ""), 1.0),), "quick", "2007-01-01", "a machine", {}, 1.0)
     assert [check.name for check in record.failed] == ["lost"]
     assert '"margin": 2.0' in record.to_json()
-    assert "| lost | no number |" in record.to_markdown()
-    assert "**1 of 2 rows pass.**" in record.to_markdown()
+    page = stability_markdown(record.document())
+    assert "| lost | no number |" in page
+    assert "**1 of 2 rows pass.**" in page
 
 
 @pytest.mark.parametrize(

@@ -118,6 +118,12 @@ def test_the_smallest_distance_of_chains_in_any_place(seed: int) -> None:
     assert smallest_distance(x_upper, z_upper, x_lower, z_lower) == pytest.approx(every.min(), rel=ROUND_OFF)
 
 
+def test_an_upper_particle_may_stand_beyond_all_lower_ones() -> None:
+    assert smallest_distance([0.0, 9.0], [5.0, 0.3], [0.0, 4.0, 8.0], [0.0, 0.0, 0.0]) == pytest.approx(
+        math.hypot(1, 0.3)
+    )
+
+
 def test_no_distance_to_no_body() -> None:
     with pytest.raises(ValueError, match="in each"):
         smallest_distance([0.0], [0.0], [], [])

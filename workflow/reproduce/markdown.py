@@ -53,12 +53,12 @@ own.
 """
 
 
-def validation_markdown(record: Record) -> str:
-    """Return the text of VALIDATION.md: how it was made, kinds of evidence, every row, and what is not validated."""
+def validation_markdown(record: Record, *more: str) -> str:
+    """Return the text of VALIDATION.md: how it was made, every row, `more` sections, and what is not validated."""
     parts = [HEAD, _made(record), _outcome(record), _evidence(record.checks), "## Results", READING]
     for study in record.studies:
         parts += _study(study)
-    return "\n\n".join([*parts, NOT_VALIDATED])
+    return "\n\n".join([*parts, *(section.rstrip() for section in more), NOT_VALIDATED])
 
 
 def readme_table(record: Record) -> str:

@@ -7,15 +7,13 @@ from __future__ import annotations
 
 import json
 import math
-import os
-import platform
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from contact1d.workflow.judging.check import Check
 from contact1d.workflow.judging.markdown import prose, table
-from contact1d.workflow.judging.words import number, ours, reference, tolerance
+from contact1d.workflow.judging.words import duration, number, ours, reference, tolerance
 from contact1d.workflow.stability.case import Class, Findings
 
 RECORD, TABLE = "stability.json", "stability.md"
@@ -60,9 +58,9 @@ class Stability:
         """The rows that fail."""
         return tuple(check for check in self.checks if check.verdict == "FAIL")
 
-    def to_json(self) -> str:
-        """Return the text of stability.json."""
-        document: dict[str, Any] = {
+    def document(self) -> dict[str, Any]:
+        """Return what stability.json holds."""
+        return {
             "form": self.form,
             "date": self.date,
             "machine": self.machine,
@@ -83,36 +81,37 @@ class Stability:
             "versions": dict(self.versions),
             "wall_s": self.wall_s,
         }
-        return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
-    def to_markdown(self) -> str:
-        """Return the section of VALIDATION.md."""
-        count = len(self.checks)
-        command = "contact1d stability" + (" --full" if self.form == "full" else "")
-        head = (
-            f"## Hard cases\n\nWritten by `{command}` on {self.date}, on {self.machine}, in {self.wall_s:.0f} s. "
-            f"**{count - len(self.failed)} of {count} rows pass.** A row that fails stays. The margin is what "
-            "the bound allows over what was found."
-        )
-        parts = [head]
-        for answer in self.answers:
-            rows = [
-                (c.name, ours(c), bound(c), c.source, _margin(c), c.limited_by, _badge(c)) for c in answer.found.checks
-            ]
-            names = ("case", "measured", "bound", "from", "margin", "limited by", "verdict")
-            parts.append(f"### {prose(answer.asked.title)} (`{answer.asked.name}`)\n\n{prose(answer.asked.question)}")
-            parts.append(table(names, rows).rstrip())
-        return "\n\n".join(parts) + "\n"
+    def to_json(self) -> str:
+        """Return the text of stability.json."""
+        return json.dumps(self.document(), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def stability_markdown(document: Mapping[str, Any], figures: str = "") -> str:
+    """Return the section of VALIDATION.md, from what stability.json holds; `figures`: their folder, with a slash."""
+    rows = [Check.from_row(row) for row in document["rows"]]
+    command = "contact1d stability" + (" --full" if document["form"] == "full" else "")
+    parts = [
+        f"## Hard cases\n\nWritten by `{command}` on {document['date']}, on {document['machine']}, in "
+        f"{duration(document['wall_s'])}. **{document['passed']} of {len(rows)} rows pass.** A row that fails stays. "
+        "The margin is what the bound allows over what was found."
+    ]
+    for one in document["classes"]:
+        parts.append(f"### {prose(one['title'])} (`{one['name']}`)\n\n{prose(one['question'])}")
+        cells = [
+            (c.name, ours(c), bound(c), c.source, _margin(c), c.limited_by, _badge(c))
+            for c in rows
+            if c.study == one["name"]
+        ]
+        parts.append(table(("case", "measured", "bound", "from", "margin", "limited by", "verdict"), cells).rstrip())
+        if one["figure"]:
+            parts.append(f"Figure: [{prose(one['caption'])}]({figures}{one['figure']})")
+    return "\n\n".join(parts) + "\n"
 
 
 def bound(check: Check) -> str:
     """The reference with what is allowed beside it."""
     return tolerance(check) if check.comparison == "at most" else f"{reference(check)}, {tolerance(check)}"
-
-
-def machine() -> str:
-    """Kind of machine: architecture, processors, system; no names."""
-    return f"{platform.machine()} with {os.cpu_count()} processors under {platform.system()}"
 
 
 def _margin(check: Check) -> str:

@@ -13,6 +13,7 @@ from pathlib import Path
 from contact1d.files import write_whole
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import FolderError
+from contact1d.workflow.judging.machine import machine
 from contact1d.workflow.runs.cores import cores
 from contact1d.workflow.runs.report import versions
 from contact1d.workflow.stability import (
@@ -31,7 +32,7 @@ from contact1d.workflow.stability import (
     thermal,
 )
 from contact1d.workflow.stability.case import FULL_PATIENCE, PATIENCE, Bench, Class, Findings, at_most
-from contact1d.workflow.stability.record import RECORD, TABLE, Answer, Stability, machine
+from contact1d.workflow.stability.record import RECORD, TABLE, Answer, Stability, stability_markdown
 
 CLASSES: tuple[Class, ...] = (
     stiffness.STIFFNESS,
@@ -102,7 +103,7 @@ def stability(
         time.perf_counter() - started,
     )
     write_whole(folder / RECORD, record.to_json())
-    write_whole(folder / TABLE, record.to_markdown())
+    write_whole(folder / TABLE, stability_markdown(record.document()))
     return record
 
 

@@ -1,0 +1,272 @@
+"""Claims of the estimate that chooses settings: its sums are those of independent pairs, its widths the profile's.
+
+References: `FoldedPairs` with scipy's quadrature, closed forms of a parabola and of springs on a plane, chains of
+springs solved as linear equations.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import simpson
+from scipy.optimize import brentq, minimize_scalar
+
+from contact1d.analysis.reference.folded_pairs import FoldedPairs
+from contact1d.potentials import DoubleExponential, Exponential
+from contact1d.workflow.scene import Scene, scene_from_dict
+from contact1d.workflow.settings.centring import OTHERS, OWN, _Row
+from contact1d.workflow.settings.chain import chain_length, decay_length, reflected
+from contact1d.workflow.settings.estimate import (
+    ContactEstimate,
+    NotCarriedError,
+    particles_estimate,
+    plane_estimate,
+    row_force,
+)
+from contact1d.workflow.settings.settings import Settings, settings_for
+from contact1d.workflow.stability.pairs import ATTRACTION, LAW, REPULSION, STEEPEST
+from tests.scenes import chains
+
+SHORT = DoubleExponential(Exponential(*REPULSION), Exponential(*ATTRACTION))
+RADIUS, CUTOFF = 400.0, 0.4
+GRID = 2e-3
+"""Of a force: straight lines between 4000 distances, and 401 places."""
+FLAT = 2e-2
+"""Relative, of a place beside a flat top, or of a slope between two places of a grid."""
+PLACES = 0.05
+"""Relative, of a tension at one of 400 places."""
+REST = LAW.force_free_distance()
+
+
+def parabola(**more: Any) -> Scene:
+    return scene_from_dict(
+        chains(
+            RADIUS, law=(*REPULSION, *ATTRACTION), bodies={"particles": 60, "bulk_stiffness": 1.0},
+            experiment={"kind": "load", "force": 0.1},
+        )
+        | more
+    )  # fmt: skip
+
+
+def scene_of(radius: float, **tables: Any) -> Scene:
+    return scene_from_dict({"experiment": {"kind": "load", "force": 0.1}} | chains(radius, **tables))
+
+
+def estimate(ratio: float) -> ContactEstimate:
+    return particles_estimate(SHORT, parabola().bodies, 1.0, 2.0 * STEEPEST / ratio, CUTOFF, REST)
+
+
+def smeared(ratio: float, d: float) -> float:
+    """∫ f(r(x)) dx of pairs at the displacement d, each on its branch that comes from afar."""
+    pairs = FoldedPairs(LAW, 2.0 * STEEPEST / ratio, np.zeros(1))
+    end = math.sqrt(2.0 * RADIUS * max(0.0, d + CUTOFF - REST))
+    x = np.linspace(0.0, end, 2001)
+    return float(2.0 * simpson(pairs.loading(d - x**2 / (2.0 * RADIUS)), x=x))
+
+
+@pytest.mark.parametrize("d", [-0.02, 0.0, 0.01, 0.05])
+def test_the_force_is_that_of_independent_pairs_smeared_along_x(d: float) -> None:
+    largest = estimate(0.5).pull_off_force()
+    assert estimate(0.5).contact_force(d) == pytest.approx(smeared(0.5, d), abs=GRID * largest)
+
+
+def test_the_largest_tension_and_its_inverse_are_those_of_the_smeared_pairs() -> None:
+    found = estimate(0.5)
+    top = minimize_scalar(lambda d: smeared(0.5, d), bounds=(-0.1, 0.02), method="bounded")
+    assert found.pull_off_force() == pytest.approx(-top.fun, rel=GRID)
+    for force in (0.0, 0.2, 1.0):
+        place = brentq(lambda d, f=force: smeared(0.5, d) - f, top.x, 0.2)
+        assert found.displacement_at(force) == pytest.approx(place, rel=FLAT)
+    assert 0.5 * found.pull_off_force() == pytest.approx(-found.contact_force(found.parted(0.5)), rel=PLACES)
+    assert found.parted(0.5) < top.x
+
+
+@pytest.mark.parametrize("force", [-0.3, 0.0, 0.5])
+def test_the_stiffness_under_a_force_is_the_slope_of_the_smeared_pairs(force: float) -> None:
+    found = estimate(0.5)
+    top = minimize_scalar(lambda d: smeared(0.5, d), bounds=(-0.1, 0.02), method="bounded").x
+    place = brentq(lambda d: smeared(0.5, d) - force, top, 0.2)
+    slope = (smeared(0.5, place + 1e-5) - smeared(0.5, place - 1e-5)) / 2e-5
+    assert found.stiffness_under(force) == pytest.approx(slope, rel=2 * FLAT)
+
+
+@pytest.mark.parametrize(("height", "width"), [(0.5, math.sqrt(400.0)), (-0.1, 1.0), (0.0, 1.0), (2e4, 4000.0)])
+def test_the_half_width_is_the_parabolas(height: float, width: float) -> None:
+    assert estimate(0.5).half_width(height - CUTOFF + REST, CUTOFF) == pytest.approx(width, rel=1e-6)
+
+
+def test_a_body_that_ends_is_no_wider_than_itself() -> None:
+    punch = scene_of(RADIUS, bodies={"profile": {"kind": "flat_punch", "radius": 10.0}, "particles": 20})
+    found = plane_estimate(punch.bodies, 1.0, 0.5)
+    assert found.half_width(3.0, 0.0) == 10.0
+    assert found.contact_force(0.2) == pytest.approx(20 * 0.5 * 0.2)
+    pairs = particles_estimate(SHORT, punch.bodies, 1.0, 1.0, CUTOFF, REST)
+    with pytest.raises(NotCarriedError):
+        pairs.displacement_at(1e6)
+
+
+def test_springs_on_a_plane_are_as_stiff_as_their_closed_form() -> None:
+    found = plane_estimate(parabola().bodies, 1.0, 0.5)
+    for d in (0.1, 1.0):
+        force = 0.5 * 4.0 / 3.0 * math.sqrt(2.0 * RADIUS) * d**1.5
+        assert found.contact_force(d) == pytest.approx(force, rel=GRID)
+        assert found.displacement_at(force) == pytest.approx(d, rel=GRID)
+
+
+def test_pairs_snap_where_their_closed_form_folds() -> None:
+    found, fold = estimate(3.0), FoldedPairs(LAW, 2.0 * STEEPEST / 3.0, np.zeros(1)).fold
+    assert fold is not None
+    assert found.snaps
+    assert not estimate(0.9).snaps
+    gap, lost = found.snap
+    held = FoldedPairs(LAW, 2.0 * STEEPEST / 3.0, np.zeros(1))
+    before, behind = (
+        float(LAW.force(held.distance(np.array([fold.gap_off]), np.array([joined])))[0]) for joined in (True, False)
+    )
+    assert gap == pytest.approx(fold.gap_off, rel=FLAT)
+    assert lost == pytest.approx(behind - before, rel=FLAT)
+    width = math.sqrt(2.0 * RADIUS * (0.02 + gap - REST))
+    assert found.stuck_stiffness(0.02) == pytest.approx(2.0 * width * found.stiffness, rel=FLAT)
+    assert found.stuck_stiffness(-10.0) == pytest.approx(2.0 * found.stiffness)
+    assert estimate(0.9).snap[1] == 0.0
+
+
+@pytest.mark.parametrize("particles", [12, 13])
+def test_teeth_are_as_far_apart_as_the_heights_of_neighbours(particles: int) -> None:
+    """The last pairs to let go are the innermost, which are nearest to each other in height."""
+    steep = particles_estimate(
+        SHORT, scene_of(0.5, bodies={"particles": 13}).bodies, 1.0, 2.0 * STEEPEST / 30.0, CUTOFF, REST
+    )
+    nearest = 1.0 if particles % 2 else 2.0  # (1² − 0²)/2R, and (1.5² − 0.5²)/2R
+    assert steep.tooth(particles) == pytest.approx(nearest, rel=FLAT)
+    assert estimate(0.3).tooth(3) == math.inf
+
+
+def test_a_row_pulls_with_all_its_particles() -> None:
+    r = np.array([0.05, 0.3, 0.9])
+    wide = DoubleExponential(Exponential(0.18, 0.13), Exponential(0.09, 0.26))
+    expected = np.zeros(3)
+    for j in range(-9, 10):
+        distance = np.sqrt(r**2 + (0.5 * j) ** 2)
+        force = 0.18 / 0.13 * np.exp(-distance / 0.13) - 0.09 / 0.26 * np.exp(-distance / 0.26)
+        expected += np.where(distance <= 2.0, force * r / distance, 0.0)
+    assert row_force(wide, r, 0.5, 2.0) == pytest.approx(expected, rel=1e-12)
+
+
+def linear_chain(particles: int, stiffness: float, neighbours: float, pushed: int) -> Any:
+    """Moves of a chain whose particle `pushed` bears a force of 1."""
+    matrix = np.diag(np.full(particles, stiffness))
+    for i in range(particles - 1):
+        matrix[i : i + 2, i : i + 2] += neighbours * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    return np.linalg.solve(matrix, np.eye(particles)[pushed])
+
+
+@pytest.mark.parametrize("neighbours", [0.2, 5.0, 80.0])
+def test_a_push_dies_away_over_the_decay_length(neighbours: float) -> None:
+    scene = parabola(neighbours={"stiffness": neighbours})
+    moves = linear_chain(401, 1.0, neighbours, 200)
+    assert moves[203] / moves[202] == pytest.approx(math.exp(-1.0 / decay_length(scene)), rel=1e-6)
+    assert decay_length(parabola()) == 0.0
+
+
+def test_the_softest_direction_reaches_furthest() -> None:
+    bodies = {"particles": 60, "bulk_stiffness": 1.0, "bulk_stiffness_tangential": 0.2}
+    both = scene_of(RADIUS, neighbours={"stiffness": 5.0}, horizontal={}, bodies=bodies)
+    along = linear_chain(401, 0.2, 5.0, 200)
+    assert along[203] / along[202] == pytest.approx(math.exp(-1.0 / decay_length(both)), rel=1e-6)
+
+
+def test_what_comes_back_from_a_free_end_is_what_is_said() -> None:
+    neighbours, particles = 40.0, 60
+    scene = parabola(neighbours={"stiffness": neighbours})
+    found = settings_for(scene)
+    edge = found.estimate.half_width(
+        found.largest_displacement, float(found.estimate.gap[int(found.estimate.force.argmin())])
+    )
+    middle = particles // 2 + round(edge - 0.5)
+    short, endless = (linear_chain(particles, 1.0, neighbours, middle)[middle], None)
+    endless = linear_chain(801, 1.0, neighbours, 400)[400]
+    beyond = particles / 2 - (middle + 0.5 - particles / 2)
+    there = reflected(scene, found.estimate, found.largest_displacement, particles)
+    other = math.exp(-2.0 * (particles - beyond) / decay_length(scene))
+    assert short / endless - 1.0 - other == pytest.approx(there, rel=0.2)  # the edge is no particle
+    assert reflected(parabola(), found.estimate, found.largest_displacement, particles) == 0.0
+
+
+@pytest.mark.parametrize("share", [1e-2, 1e-4])
+@pytest.mark.parametrize("neighbours", [None, 30.0])
+def test_an_automatic_chain_ends_where_nothing_is_felt_and_nothing_comes_back(
+    share: float, neighbours: float | None
+) -> None:
+    scene = parabola() if neighbours is None else parabola(neighbours={"stiffness": neighbours})
+    found = estimate(0.5)
+    largest = found.displacement_at(0.1)
+    particles = chain_length(scene, found, largest, share)
+    gap = REST + (0.5 * (particles - 1)) ** 2 / (2.0 * RADIUS) - largest
+    there = abs(float(np.interp(gap, found.gap, found.force, right=0.0)))
+    assert there <= share * float(np.abs(found.force[found.gap > REST - largest]).max())
+    back = reflected(scene, found, largest, particles)
+    assert back <= share
+    nearer = (0.6 * particles / 2) ** 2 / (2.0 * RADIUS) + REST - largest
+    felt = abs(float(np.interp(nearer, found.gap, found.force, right=0.0)))
+    tight = felt > share * float(np.abs(found.force[found.gap > REST - largest]).max())
+    assert tight or back > share**2  # and it is not much longer than that
+
+
+def row(phase: float, ratio: float = 0.5, deepest: float = 0.05) -> tuple[_Row, ContactEstimate]:
+    found = estimate(ratio)
+    return _Row(found, phase, deepest), found
+
+
+@pytest.mark.parametrize("phase", [OWN, *OTHERS])
+def test_a_chain_at_a_phase_is_the_sum_over_its_particles(phase: float) -> None:
+    chain, found = row(phase)
+    for d in (-0.01, 0.0, 0.03, 0.05):
+        heights = (np.arange(-400, 400) + phase) ** 2 / (2.0 * RADIUS)
+        exact = float(np.interp(REST + heights - d, found.gap, found.force, right=0.0).sum())
+        assert chain.force(d) == pytest.approx(exact, rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("phase", [OWN, *OTHERS])
+def test_marks_of_a_chain_at_a_phase_are_those_of_independent_pairs(phase: float) -> None:
+    chain, _ = row(phase)
+    pairs = FoldedPairs(LAW, 2.0 * STEEPEST / 0.5, (np.arange(-100, 100) + phase) ** 2 / (2.0 * RADIUS))
+    top = minimize_scalar(lambda d: float(pairs.loading(d)), bounds=(-0.05, 0.01), method="bounded")
+    place, tension = chain.largest_tension()
+    assert tension == pytest.approx(-top.fun, rel=GRID)
+    assert place == pytest.approx(top.x, abs=FLAT * ATTRACTION[1])
+    for force in (0.0, 0.2):
+        exact = brentq(lambda d, f=force: float(pairs.loading(d)) - f, top.x, 0.1)
+        assert chain.crossing(force) == pytest.approx(exact, abs=1e-2 * ATTRACTION[1])
+
+
+def timed(**more: Any) -> Settings:
+    return settings_for(scene_from_dict(chains(RADIUS, **more)))
+
+
+def test_drag_that_stops_a_particle_within_a_step_shortens_the_step() -> None:
+    load = {"kind": "load", "method": "dynamic", "force": 0.5}
+    heavy = timed(damping={"coefficient": 500.0}, plate={}, experiment=load)
+    assert heavy.time_step == pytest.approx(0.2 / 500.0)
+    plate = timed(damping={"coefficient": 0.1}, plate={"mass": 2.0, "damping": 4000.0}, experiment=load)
+    assert plate.time_step == pytest.approx(0.2 * 2.0 / 4000.0)
+    assert plate.plate_damping == 4000.0
+
+
+def test_a_given_drag_is_used_as_it_is_and_an_automatic_one_follows_the_load() -> None:
+    load = {"kind": "load", "method": "dynamic", "force": 0.5}
+    given = timed(damping={"coefficient": 0.3}, plate={}, experiment=load)
+    assert (given.damping, given.damped_stiffness) == (0.3, 0.0)
+    assert given.plate_damping > 0.0  # what is missing to the critical drag
+    chosen = timed(damping={"coefficient": "auto"}, plate={}, experiment=load)
+    assert chosen.damped_stiffness > 0.0
+    total = given.particles * given.damping + given.plate_damping
+    assert total == pytest.approx(chosen.particles * chosen.damping, rel=1e-9)
+    path = timed(
+        damping={"coefficient": "auto"}, experiment={"kind": "path", "method": "dynamic", "displacements": [0.1]}
+    )
+    assert path.damping == pytest.approx(math.sqrt(path.bulk_stiffness * 1.0))
+    assert path.plate_damping == 0.0
