@@ -36,7 +36,7 @@ ASKED = 0.9
 PATIENCE, LEAST = 5.0, 60.0
 """Time of a mutant's tests over that of the unchanged ones, and at least [s], after which it counts as killed."""
 UNIT = "tests/unit/"
-COVERAGE, MOTION = UNIT + "test_coverage.py", "tests/decks/test_motion.py"
+COVERAGE, ESTIMATE, MOTION = UNIT + "test_coverage.py", UNIT + "test_estimate.py", "tests/decks/test_motion.py"
 TESTS: dict[str, tuple[str, ...]] = {
     "potentials/double_exponential.py": (UNIT + "test_potential.py", UNIT + "test_table.py"),
     "potentials/table.py": (UNIT + "test_table.py",),
@@ -44,11 +44,14 @@ TESTS: dict[str, tuple[str, ...]] = {
     "analysis/loop.py": (UNIT + "test_loop.py",),
     "analysis/polynomial.py": (UNIT + "test_polynomial.py", UNIT + "test_curve_marks.py"),
     "analysis/curve_marks.py": (UNIT + "test_curve_marks.py", COVERAGE),
-    "analysis/extremum.py": (UNIT + "test_radius.py",),
+    "analysis/extremum.py": (UNIT + "test_extremum.py", UNIT + "test_radius.py"),
     "analysis/radius.py": (UNIT + "test_radius.py",),
     "analysis/pressure.py": (UNIT + "test_pressure.py",),
-    "workflow/settings/dynamics.py": (UNIT + "test_dynamic.py", MOTION, "tests/decks/test_goldens.py"),
-    "workflow/settings/": (UNIT + "test_dynamic.py", UNIT + "test_lattice.py", MOTION, "tests/decks", COVERAGE),
+    "workflow/settings/dynamics.py": (ESTIMATE, UNIT + "test_dynamic.py", MOTION, "tests/decks/test_goldens.py"),
+    "workflow/settings/": (
+        ESTIMATE, UNIT + "test_dynamic.py", UNIT + "test_lattice.py", MOTION, "tests/decks", COVERAGE,
+        "tests/hard/test_lattice.py", "tests/hard/test_stiff_neighbours.py", "tests/hard/test_out_of_proportion.py",
+    ),
     "workflow/deck/effects/": (MOTION, "tests/decks"),
     "workflow/experiments/slide/": ("tests/decks/test_slide.py", UNIT + "test_experiment_kinds.py"),
     "workflow/experiments/": (
@@ -56,6 +59,7 @@ TESTS: dict[str, tuple[str, ...]] = {
         UNIT + "test_law_error.py", UNIT + "test_experiment_kinds.py", "tests/decks/test_run_folder.py",
         "tests/validation/test_dynamic.py", "tests/validation/test_pull_off.py", "tests/hard/test_untrusted.py",
     ),
+    "workflow/judging/": (UNIT + "test_reproduce_page.py", UNIT + "test_reproduce_rows.py"),
     "workflow/reproduce/": (
         UNIT + "test_reproduce_judges.py", UNIT + "test_reproduce_page.py", "tests/validation/test_reproduce.py",
     ),

@@ -37,10 +37,11 @@ own.
   surface.
 - **Roughness of any kind within one contact.** All checks have one smooth profile; what a chain makes of several
   summits that share an elastic half-space has not been compared with anything.
-- **Sliding friction and the tangential problem.** Slides run, but no force along x has been held against Cattaneo and
-  Mindlin yet, so neither the stiffness in that direction nor a friction force has a known scale.
+- **Friction of two bodies of particles.** The tangential contact on the rigid plane is held against Cattaneo and
+  Mindlin; what chains of particles that slide on each other make of friction is the model's own, and no friction force
+  of a real pair of bodies has been compared with it.
 - **Absolute time scales of dynamic runs.** Masses are free numbers, and the damping is chosen so that a run settles
-  soon; the states of rest that it reaches are checked, how long it takes is not.
+  soon; the states of rest that it reaches are checked, how long it takes only against the model's own motion.
 - **Thermal pull-off.** The variances around a state of rest are checked by the tests; the mean force at which
   fluctuations part a contact depends on the loading rate, and with it on the time scale that the point above leaves
   open.
