@@ -36,7 +36,8 @@ ASKED = 0.9
 PATIENCE, LEAST = 5.0, 60.0
 """Time of a mutant's tests over that of the unchanged ones, and at least [s], after which it counts as killed."""
 UNIT = "tests/unit/"
-COVERAGE, ESTIMATE, MOTION = UNIT + "test_coverage.py", UNIT + "test_estimate.py", "tests/decks/test_motion.py"
+COVERAGE, MOTION = UNIT + "test_coverage.py", "tests/decks/test_motion.py"
+ESTIMATE, SIMILAR = UNIT + "test_estimate.py", UNIT + "test_settings_similarity.py"
 TESTS: dict[str, tuple[str, ...]] = {
     "potentials/double_exponential.py": (UNIT + "test_potential.py", UNIT + "test_table.py"),
     "potentials/table.py": (UNIT + "test_table.py",),
@@ -47,9 +48,9 @@ TESTS: dict[str, tuple[str, ...]] = {
     "analysis/extremum.py": (UNIT + "test_extremum.py", UNIT + "test_radius.py"),
     "analysis/radius.py": (UNIT + "test_radius.py",),
     "analysis/pressure.py": (UNIT + "test_pressure.py",),
-    "workflow/settings/dynamics.py": (ESTIMATE, UNIT + "test_dynamic.py", MOTION, "tests/decks/test_goldens.py"),
+    "workflow/settings/dynamics.py": (ESTIMATE, SIMILAR, UNIT + "test_dynamic.py", MOTION, "tests/decks/test_goldens.py"),
     "workflow/settings/": (
-        ESTIMATE, UNIT + "test_dynamic.py", UNIT + "test_lattice.py", MOTION, "tests/decks", COVERAGE,
+        ESTIMATE, SIMILAR, UNIT + "test_dynamic.py", UNIT + "test_lattice.py", MOTION, "tests/decks", COVERAGE,
         "tests/hard/test_lattice.py", "tests/hard/test_stiff_neighbours.py", "tests/hard/test_out_of_proportion.py",
     ),
     "workflow/deck/effects/": (MOTION, "tests/decks"),
