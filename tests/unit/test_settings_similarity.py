@@ -1,6 +1,6 @@
 """Claim: settings are made of the scene's own lengths, energies and masses: scaled scenes have scaled settings.
 
-Factors are powers of two, so that products are exact: a spacing or a mass that is multiplied where it should divide, and
+Factors are powers of two, so that products are exact: a spacing or a mass that multiplies where it should divide, and
 is 1 in most scenes, shows here.
 """
 
