@@ -36,7 +36,7 @@ ASKED = 0.9
 PATIENCE, LEAST = 5.0, 60.0
 """Time of a mutant's tests over that of the unchanged ones, and at least [s], after which it counts as killed."""
 UNIT = "tests/unit/"
-COVERAGE, MOTION = UNIT + "test_coverage.py", "tests/decks/test_motion.py"
+COVERAGE, DECKS, MOTION = UNIT + "test_coverage.py", "tests/decks/", "tests/decks/test_motion.py"
 ESTIMATE, SIMILAR = UNIT + "test_estimate.py", UNIT + "test_settings_similarity.py"
 TESTS: dict[str, tuple[str, ...]] = {
     "potentials/double_exponential.py": (UNIT + "test_potential.py", UNIT + "test_table.py"),
@@ -48,7 +48,7 @@ TESTS: dict[str, tuple[str, ...]] = {
     "analysis/extremum.py": (UNIT + "test_extremum.py", UNIT + "test_radius.py"),
     "analysis/radius.py": (UNIT + "test_radius.py",),
     "analysis/pressure.py": (UNIT + "test_pressure.py",),
-    "workflow/settings/dynamics.py": (ESTIMATE, SIMILAR, UNIT + "test_dynamic.py", MOTION, "tests/decks/test_goldens.py"),
+    "workflow/settings/dynamics.py": (ESTIMATE, SIMILAR, UNIT + "test_dynamic.py", MOTION, DECKS + "test_goldens.py"),
     "workflow/settings/": (
         ESTIMATE, SIMILAR, UNIT + "test_dynamic.py", UNIT + "test_lattice.py", MOTION, "tests/decks", COVERAGE,
         "tests/hard/test_lattice.py", "tests/hard/test_stiff_neighbours.py", "tests/hard/test_out_of_proportion.py",
