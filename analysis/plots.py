@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.curve import Curve
 from contact1d.analysis.pressure import Profile
-from contact1d.analysis.reference.jkr import jkr_reduced_force
+from contact1d.analysis.reference.jkr import FIXED_GRIPS_RADIUS_RATIO, Jkr, jkr_reduced_force
 from contact1d.analysis.reference.line_adhesion import barquins_reduced_force
 from contact1d.analysis.reference.winkler import winkler_force
 from contact1d.files import whole
@@ -71,6 +71,13 @@ def jkr_curve(adhesion_force: float, zero_load_radius: float, radius: float) -> 
     """
     a = np.linspace(0.05, 1.3, 400)
     return zero_load_radius**2 / (6 * radius) * (3 * a**2 - 2 * np.sqrt(a)), adhesion_force * jkr_reduced_force(a)
+
+
+def jkr_on_plane(radius: float, contact_modulus: float, work_of_adhesion: float) -> tuple[Array, Array]:
+    """Displacement [LU] and force [FU] of JKR, R [LU], E* [FU/LU²], W [FU/LU], from fixed grips' end to 1.3 a₀."""
+    contact = Jkr(radius, contact_modulus, work_of_adhesion)
+    a = contact.zero_load_radius() * np.linspace(FIXED_GRIPS_RADIUS_RATIO, 1.3, 400)
+    return contact.displacement(a), contact.force(a)
 
 
 def hertz_curve(largest: float, radius: float, layer_stiffness: float) -> tuple[Array, Array]:

@@ -33,6 +33,7 @@ TABLES: dict[str, dict[str, Any]] = {
     },
     "neighbours": {"stiffness": 0.3},
     "horizontal": {},
+    "adhesion": {"work_of_adhesion": 5e-4},
     "friction": {"coefficient": 0.3},
     "damping": {"coefficient": "auto"},
     "noise": {"temperature": 1e-3, "seed": 1},
@@ -63,8 +64,12 @@ def fits(kind: str, method: str, lower: str, effects: frozenset[str]) -> bool:
     x. Damping, noise, plate and cantilever exist in time only. Time needs damping to come to rest; a plate moves where
     a force is prescribed, and not where its place is. Noise needs an average, which a load and a slide take. A
     cantilever slides a plate, whose particles have to follow it along x. Coulomb's friction is a rigid plane's, in a
-    tangential and alone: its history has no minimum to be found, and no time.
+    tangential and alone: its history has no minimum to be found, and no time. An energy of adhesion is a rigid
+    plane's, too, of particles that stand still in their body: alone, and at rest.
     """
+    if "adhesion" in effects:
+        alone = effects == {"adhesion"} and lower == "rigid_plane"
+        return alone and method == "quasistatic" and kind in ("load", "path", "pull_off")
     if kind == "tangential" or "friction" in effects:
         return kind == "tangential" and lower == "rigid_plane" and effects == {"friction"}
     timed = effects & {"damping", "noise", "plate", "cantilever"}
@@ -106,7 +111,8 @@ def scene_of(make_scene: MakeScene, case: Case, **bodies: Any) -> Scene:
     if kind == "slide" and "plate" in effects:
         tables["plate"] = {"free": ["x", "z"]}
     experiment = {"kind": kind} | EXPERIMENTS[kind] | ({"method": method} if len(METHODS[kind]) > 1 else {})
-    return make_scene(**tables, experiment=experiment, bodies={"lower": lower} | bodies)
+    reduction = {"reduction": "mdr"} if "adhesion" in effects else {}
+    return make_scene(**tables, experiment=experiment, bodies={"lower": lower} | reduction | bodies)
 
 
 ALL = list(cases())
@@ -227,12 +233,12 @@ def test_all_other_sets_are_refused(make_scene: MakeScene) -> None:
 def test_every_effect_and_every_pair_is_among_the_runs() -> None:
     """All pairs but those of a cantilever with a rigid plane's missing lower body are allowed somewhere.
 
-    Friction stands alone.
+    Friction and an energy of adhesion stand alone.
     """
     run = {pair for case in ALLOWED for pair in combinations(EFFECTS, 2) if set(pair) <= case[3]}
-    assert run == set(combinations([name for name in EFFECTS if name != "friction"], 2))
+    assert run == set(combinations([name for name in EFFECTS if name not in ("adhesion", "friction")], 2))
     alone = [case[3] for case in ALLOWED]
     required = {"noise": {"damping", "plate"}, "plate": {"damping"}, "horizontal": {"interaction"}}
-    for name in ("interaction", "neighbours", "horizontal", "friction", "damping", "noise", "plate"):
+    for name in ("interaction", "neighbours", "horizontal", "adhesion", "friction", "damping", "noise", "plate"):
         assert frozenset({name} | required.get(name, set())) in alone
     assert frozenset({"interaction", "horizontal", "damping", "plate", "cantilever"}) in alone

@@ -36,7 +36,14 @@ ALL: dict[str, Any] = {
 }
 PLANE: dict[str, Any] = {"interaction": None, "bodies": {"lower": "rigid_plane"}}
 TANGENTIAL = {"kind": "tangential", "normal_force": 0.1, "displacements": {"from": 0.0, "to": 0.01, "steps": 3}}
-ON_PLANES: dict[str, Any] = {"friction": PLANE | {"friction": {"coefficient": 0.3}, "experiment": TANGENTIAL}}
+ON_PLANES: dict[str, Any] = {
+    "friction": PLANE | {"friction": {"coefficient": 0.3}, "experiment": TANGENTIAL},
+    "adhesion": {
+        "interaction": None,
+        "bodies": {"lower": "rigid_plane", "reduction": "mdr"},
+        "adhesion": {"work_of_adhesion": 5e-4},
+    },
+}
 """What stands on a rigid plane only, each effect with the scene that it is taken from."""
 TIMED: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
 LOAD = {"kind": "load", "force": 0.1}
@@ -196,7 +203,8 @@ def test_a_scene_that_never_had_the_effect_has_none_of_its_lines(make_scene: Mak
     assert not own & set(lines_of(text))
     of_plane = {"opposite_x", "opposite_z"} if effect == "interaction" else set()
     of_guide = {"guide_x"} if effect == "horizontal" else set()
-    for name in {*header(effect, "Needs"), *header(effect, "Defines")} - of_plane - of_guide:
+    of_bodies = {"plate_displacement"}
+    for name in {*header(effect, "Needs"), *header(effect, "Defines")} - of_plane - of_guide - of_bodies:
         assert not re.search(rf"\b(?:\w_)?{name}\b", commands(text))
 
 

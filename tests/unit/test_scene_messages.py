@@ -62,8 +62,8 @@ def test_a_number_must_be_finite(value: str) -> None:
 
 QUOTED = "a number stands without quotes"
 SCENE_TABLES = (
-    "title, bodies, interaction, neighbours, horizontal, friction, damping, noise, plate, cantilever, material, "
-    "accuracy, experiment"
+    "title, bodies, interaction, neighbours, horizontal, adhesion, friction, damping, noise, plate, cantilever, "
+    "material, accuracy, experiment"
 )
 SHAPES = '"parabola", "circle", "cone", "flat", "flat_punch", "power" or "table"'
 BODIES = (

@@ -220,7 +220,7 @@ def test_a_misspelt_override_is_found_like_a_misspelt_key() -> None:
 
 
 def test_only_effects_that_are_there_can_be_removed() -> None:
-    effects = "effects: interaction, neighbours, horizontal, friction, damping, noise, plate, cantilever"
+    effects = "effects: interaction, neighbours, horizontal, adhesion, friction, damping, noise, plate, cantilever"
     assert refused(without=("noise", "nosie", "bodies")) == [
         "without noise: the scene has no such table; effects there: interaction",
         f'without nosie: not an effect that can be removed; did you mean "noise"? {effects}',

@@ -60,6 +60,7 @@ TABLES = {
     "interaction.repulsion, interaction.attraction": scenes.Exponential,
     "neighbours": scenes.Neighbours,
     "horizontal": scenes.Horizontal,
+    "adhesion": scenes.Adhesion,
     "friction": scenes.Friction,
     "damping": scenes.Damping,
     "noise": scenes.Noise,

@@ -96,7 +96,7 @@ def test_parabola_has_the_height_of_its_formula() -> None:
 
 def test_effects_come_in_deck_order() -> None:
     names = ["neighbours.stiffness=0.3", "noise={ temperature = 0.01, seed = 1 }"]
-    on_planes = ("friction",)
+    on_planes = ("adhesion", "friction")
     assert scene_from_dict(BASE, [*names[::-1], *SLIDE]).effects == tuple(n for n in EFFECTS if n not in on_planes)
     assert scene_from_dict(BASE).effects == ("interaction",)
     plane = scene_from_dict(BASE, ["bodies.lower=rigid_plane", 'experiment={kind="load", force=1}'], ["interaction"])

@@ -56,8 +56,7 @@ class Case:
     def is_elastic(self) -> bool:
         """Whether springs under the profile are all there is: no attraction, no neighbour springs, no noise."""
         scene = self.scene
-        attracts = scene.interaction is not None and scene.interaction.attraction is not None
-        return not (attracts or scene.neighbours or scene.noise)
+        return not (scene.adheres or scene.neighbours or scene.noise)
 
 
 @dataclass(frozen=True)

@@ -158,10 +158,12 @@ def _adheres_over_a_width(values: Mapping[str, float]) -> bool:
 
 
 def _theory(scene: Scene, values: Mapping[str, float], deepest: float) -> tuple[str, Array, Array] | None:
-    """JKR with the run's own F_A and a₀; Hertz, with nothing fitted, for a parabola on a rigid plane; else none."""
+    """JKR, with the run's own F_A and a₀ or on a rigid plane with nothing fitted; Hertz there; else none."""
     bodies, radius = scene.bodies, scene.bodies.plane_radius
     if radius is None:
         return None
+    if scene.adhesion is not None and scene.adheres:
+        return "JKR", *plots.jkr_on_plane(2.0 * radius, scene.bulk_stiffness / bodies.spacing, scene.adhesion.work)
     if _adheres_over_a_width(values):
         curve = plots.jkr_curve(values["adhesion_force"], values["zero_load_radius"], radius)
         return "JKR, same $F_A$ and $a_0$", *curve

@@ -35,8 +35,8 @@ FIGURES = (
 FORMATS = ("png", "svg", "pdf")
 FILES = (
     RESULTS, "curve.csv", "profile.csv", "pressure_3d.csv", "friction.csv", "slips.csv", "scene.toml", "system.data",
-    "interaction.table", "in.lammps", "log.lammps", "curve.txt", "rows.bin", "states.lammpstrj", "states.npz",
-    *(f"{name}.{form}" for name in FIGURES for form in FORMATS),
+    "interaction.table", "adhesion.cells", "in.lammps", "log.lammps", "curve.txt", "rows.bin", "states.lammpstrj",
+    "states.npz", *(f"{name}.{form}" for name in FIGURES for form in FORMATS),
 )  # fmt: skip
 """Every file that a run may leave; a new run in the same folder removes them first."""
 

@@ -1,15 +1,7 @@
 """The typed scene: TOML in, either a `Scene` whose tables fit together or every problem at once."""
 
-from contact1d.workflow.scene.experiments import Experiment, Load, Method, Path, PullOff, Slide, Span, Tangential
-from contact1d.workflow.scene.material import Elastic, Material, Reduction
-from contact1d.workflow.scene.problems import Problem, SceneError
-from contact1d.workflow.scene.profiles import Circle, Cone, Flat, FlatPunch, Measured, Parabola, Power, Profile
-from contact1d.workflow.scene.quantities import Table, Unit
-from contact1d.workflow.scene.read import AnyScene, read_scene, read_tables, scene_from_dict
-from contact1d.workflow.scene.tables import (
-    EFFECTS,
-    Accuracy,
-    Bodies,
+from contact1d.workflow.scene.effects import (
+    Adhesion,
     Cantilever,
     Damping,
     Exponential,
@@ -19,13 +11,20 @@ from contact1d.workflow.scene.tables import (
     Neighbours,
     Noise,
     Plate,
-    Scene,
 )
+from contact1d.workflow.scene.experiments import Experiment, Load, Method, Path, PullOff, Slide, Span, Tangential
+from contact1d.workflow.scene.material import Elastic, Material, Reduction
+from contact1d.workflow.scene.problems import Problem, SceneError
+from contact1d.workflow.scene.profiles import Circle, Cone, Flat, FlatPunch, Measured, Parabola, Power, Profile
+from contact1d.workflow.scene.quantities import Table, Unit
+from contact1d.workflow.scene.read import AnyScene, read_scene, read_tables, scene_from_dict
+from contact1d.workflow.scene.tables import EFFECTS, Accuracy, Bodies, Scene
 from contact1d.workflow.scene.write import scene_to_toml
 
 __all__ = [
     "EFFECTS",
     "Accuracy",
+    "Adhesion",
     "AnyScene",
     "Bodies",
     "Cantilever",

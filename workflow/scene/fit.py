@@ -11,11 +11,13 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from contact1d.workflow.scene.draft import ADD, Draft, missing
+from contact1d.workflow.scene.effects import Plate
+from contact1d.workflow.scene.fit_adhesion import adhesion, no_adhesion
 from contact1d.workflow.scene.fit_friction import no_plane, tangential
 from contact1d.workflow.scene.fit_slide import SLIDING_RULES
 from contact1d.workflow.scene.problems import Problem, shown
 from contact1d.workflow.scene.reduction import derived_for_spheres
-from contact1d.workflow.scene.tables import EFFECTS, TIMED, Plate, default_method
+from contact1d.workflow.scene.tables import EFFECTS, TIMED, default_method
 
 NO_TIME = "its rows follow each other without time, each at rest"
 EXCLUDED = {
@@ -34,8 +36,12 @@ EXCLUDED = {
         "cantilever": "only a slide is pulled through a spring",
         "friction": "nothing moves along x in it, so that friction does nothing",
     },
-    "slide": {"friction": "its friction is that of the particles' own forces"},
+    "slide": {
+        "adhesion": "it is that of a rigid plane, which drags nothing",
+        "friction": "its friction is that of the particles' own forces",
+    },
     "tangential": {
+        "adhesion": "a contact that adheres and slips at once is another theory than JKR's or Mindlin's",
         "neighbours": "friction remembers its way, and a minimiser, which such springs need, has no way",
         "damping": NO_TIME,
         "noise": NO_TIME,
@@ -61,10 +67,12 @@ def _lower_body(draft: Draft) -> Iterator[Problem]:
         yield Problem("interaction", "missing", hint='add [interaction], or use bodies.lower = "rigid_plane"')
     if draft.lower != "rigid_plane":
         yield from no_plane(draft)
+        yield from no_adhesion(draft)
         return
-    if draft.kind in ("pull_off", "slide"):
+    if draft.kind == "slide" or (draft.kind == "pull_off" and not draft.has("adhesion")):
         why = "hold" if draft.kind == "pull_off" else "drag"
         hint = 'use lower = "particles" and an [interaction]'
+        hint += ", or add [adhesion] with work_of_adhesion" if draft.kind == "pull_off" else ""
         yield Problem("bodies.lower", f"a rigid plane cannot {why} the upper body", shown("rigid_plane"), hint)
         return
     if draft.has("interaction"):
@@ -147,14 +155,14 @@ def _plate_can_slide(draft: Draft) -> Iterator[Problem]:
 
 def _something_holds(draft: Draft) -> Iterator[Problem]:
     """Without attraction nothing can be pulled: no pull-off, and no load that is not compressive."""
-    if draft.has("interaction", "attraction"):
+    if draft.has("interaction", "attraction") or draft.has("adhesion"):
         return
     if draft.kind == "pull_off" and draft.lower == "particles" and draft.has("interaction"):
         hint = "without it nothing holds the bodies together"
         yield Problem("interaction.attraction", "missing, needed by a pull_off", hint=hint)
     force = draft.get("experiment", "force")
     if draft.kind == "load" and force is not None and force <= 0:
-        hint = "compression is positive; a tensile force needs interaction.attraction"
+        hint = "compression is positive; a tensile force needs interaction.attraction, or on a rigid plane [adhesion]"
         yield Problem("experiment.force", "must be greater than 0 (FU) without attraction", shown(force), hint)
 
 
@@ -239,7 +247,8 @@ def _jkr_units(draft: Draft, has: Mapping[str, bool]) -> Iterator[Problem]:
         hint = 'use kind = "pull_off", whose results give length_unit and force_unit'
         yield Problem("material.surface_energy", f"not in a {draft.kind}, which finds no F_A and a₀", hint=hint)
     elif draft.kind == "path" and (
-        draft.lower == "rigid_plane" or (draft.has("interaction") and not draft.has("interaction", "attraction"))
+        (draft.lower == "rigid_plane" and not draft.has("adhesion"))
+        or (draft.has("interaction") and not draft.has("interaction", "attraction"))
     ):
         hint = 'use length_unit, or lower = "particles" with an interaction.attraction'
         yield Problem("material.surface_energy", "useless: nothing attracts, so there is no F_A and no a₀", hint=hint)
@@ -254,6 +263,7 @@ WHOLE_NUMBER_ERROR = 1e-9
 
 RULES: tuple[Callable[[Draft], Iterator[Problem]], ...] = (
     _lower_body,
+    adhesion,
     tangential,
     _law,
     _tables_of_experiment,

@@ -1,41 +1,39 @@
-"""The typed scene: one frozen model per table of a scene file.
-
-Interaction of two particles at distance r: V(r) = A exp(−r/a) − B exp(−r/b), with A, a the amplitude and range of the
-repulsion and B, b those of the attraction.
-"""
+"""The typed scene: one frozen model per table of a scene file."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, cast, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, cast, get_args
 
-from annotated_types import MinLen
 from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from contact1d.workflow.scene.effects import (
+    Adhesion,
+    Cantilever,
+    Damping,
+    Effect,
+    Friction,
+    Horizontal,
+    Interaction,
+    Neighbours,
+    Noise,
+    Plate,
+)
 from contact1d.workflow.scene.experiments import Experiment, Method, Slide, Tangential
 from contact1d.workflow.scene.material import PARABOLA_SHARE, Material, Reduction
 from contact1d.workflow.scene.profiles import Flat, Parabola, Profile
 from contact1d.workflow.scene.quantities import (
     AnyParticleCount,
-    AutoDamping,
-    AutoDampingOrZero,
-    AutoLength,
-    AutoMass,
     AutoParticleCount,
     AutoStiffness,
     Displacement,
-    Energy,
     Length,
     Mass,
-    RatioOrZero,
     RelativeTolerance,
-    Seed,
     Stiffness,
     Table,
-    Temperature,
-    Velocity,
 )
 from contact1d.workflow.scene.reduction import MEANING, with_reduction
 
@@ -104,95 +102,6 @@ class Bodies(Table):
         return PARABOLA_SHARE[self.reduction] * self.profile.radius if isinstance(self.profile, Parabola) else None
 
 
-class Exponential(Table):
-    """One term of the interaction: amplitude · exp(−r/range)."""
-
-    amplitude: Energy = Field(description="energy at distance zero")
-    range: Length = Field(description="decay length")
-
-
-class Effect(Table):
-    """A table that may be absent, and then adds nothing. `timed`: in time only, so never in a quasistatic run."""
-
-    timed: ClassVar[bool] = False
-
-
-class Interaction(Effect):
-    """Effect: V(r) = A exp(−r/a) − B exp(−r/b) between opposite bodies."""
-
-    repulsion: Exponential = Field(description="repulsive term, A and a")
-    attraction: Exponential | None = Field(default=None, description="attractive term, B and b; absent: no adhesion")
-    cutoff: AutoLength = Field(
-        default="auto", description='distance beyond which no force acts, or "auto": by the tolerance'
-    )
-
-
-class Neighbours(Effect):
-    """Effect: springs between neighbouring particles of one body, with transverse rigidity."""
-
-    stiffness: Stiffness = Field(description="stiffness of a spring between neighbours")
-
-
-class Horizontal(Effect):
-    """Effect: particles may also move along x. It has no keys."""
-
-
-class Friction(Effect):
-    """Effect: Coulomb's friction of every particle on a rigid plane."""
-
-    coefficient: RatioOrZero = Field(
-        description="largest tangential over normal force of a particle; along x it gives as "
-        "bodies.bulk_stiffness_tangential says"
-    )
-
-
-class Damping(Effect):
-    """Effect: viscous damping of particles."""
-
-    timed = True
-
-    coefficient: AutoDamping = Field(description='drag force over velocity, or "auto": near critical')
-
-
-class Noise(Effect):
-    """Effect: thermal forces on the particles; with the damping it makes one Langevin thermostat."""
-
-    timed = True
-
-    temperature: Temperature = Field(description="temperature as energy k_BT")
-    seed: Seed = Field(description="seed of the random forces")
-
-
-def _free_directions(free: tuple[str, ...]) -> tuple[str, ...]:
-    if len(set(free)) < len(free):
-        raise PydanticCustomError("scene", "must name each direction once")
-    if "z" not in free:
-        raise PydanticCustomError("scene", 'must contain "z"')
-    return tuple(sorted(free))
-
-
-Free = Annotated[tuple[Literal["x", "z"], ...], Field(strict=False), MinLen(1), AfterValidator(_free_directions)]
-
-
-class Plate(Effect):
-    """Effect: the upper plate is a rigid body with inertia, loaded by a force. Absent: its place is prescribed."""
-
-    timed = True
-
-    mass: AutoMass = Field(default="auto", description='mass of the plate, or "auto"')
-    free: Free = Field(default=("z",), description='directions in which the plate may move: ["z"] or ["x", "z"]')
-    damping: AutoDampingOrZero = Field(default="auto", description='drag force over velocity of the plate, or "auto"')
-
-
-class Cantilever(Effect):
-    """Effect: the plate is pulled along x through a spring whose far end moves steadily."""
-
-    timed = True
-
-    stiffness: Stiffness = Field(description="stiffness of the spring")
-    velocity: Velocity = Field(description="velocity of the driven end")
-
-
 class Accuracy(Table):
     """How exact the results are to be; chooses every numerical setting that the scene leaves open."""
 
@@ -213,6 +122,7 @@ class Scene(Table):
     interaction: Interaction | None = Field(default=None, description="forces between opposite bodies")
     neighbours: Neighbours | None = Field(default=None, description="springs between neighbouring particles")
     horizontal: Horizontal | None = Field(default=None, description="particles may also move along x")
+    adhesion: Adhesion | None = Field(default=None, description="adhesion to a rigid plane")
     friction: Friction | None = Field(default=None, description="friction on a rigid plane")
     damping: Damping | None = Field(default=None, description="viscous damping of particles")
     noise: Noise | None = Field(default=None, description="thermal forces")
@@ -291,6 +201,12 @@ class Scene(Table):
     def chains(self) -> int:
         """How many chains share the deformation: two, or one on a rigid plane or a rigid chain."""
         return 2 if self.bodies.lower == "particles" else 1
+
+    @property
+    def adheres(self) -> bool:
+        """Whether the bodies hold each other: by an attraction, or by an energy on a rigid plane."""
+        attracts = self.interaction is not None and self.interaction.attraction is not None
+        return attracts or (self.adhesion is not None and self.adhesion.work > 0.0)
 
     @property
     def is_swept(self) -> bool:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.polynomial import fitting, lowest_minimum
 from contact1d.workflow.scene import Load, Scene, Tangential
+from contact1d.workflow.settings.cells import left_by_cells
 from contact1d.workflow.settings.estimate import ContactEstimate
 from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.settings.sliders import sliders_of, stops
@@ -39,6 +40,8 @@ POINTS = (200, 40, 40, 40)
 
 def left_by_centring(scene: Scene, settings: Settings) -> dict[str, float]:
     """By the names of results, the largest change [its unit]."""
+    if scene.adheres and scene.adhesion is not None:
+        return left_by_cells(scene, settings)
     if scene.bodies.particles != "auto" or scene.bodies.profile.has_edge:
         return {}
     own, *others = (_marks(scene, settings, phase) for phase in (OWN, *OTHERS))
@@ -48,7 +51,6 @@ def left_by_centring(scene: Scene, settings: Settings) -> dict[str, float]:
 def _marks(scene: Scene, settings: Settings, phase: float) -> dict[str, float]:
     """The results of a chain that stands so, as far as they are the scene's."""
     estimate, experiment = settings.estimate, scene.experiment
-    adhesive = scene.interaction is not None and scene.interaction.attraction is not None
     edge = float(estimate.gap[int(estimate.force.argmin())])
     deepest = settings.largest_displacement
 
@@ -69,7 +71,7 @@ def _marks(scene: Scene, settings: Settings, phase: float) -> dict[str, float]:
     if isinstance(experiment, Load):
         place = row.crossing(experiment.force)
         return {"displacement": place, "contact_radius": radius(place)}
-    if not adhesive:
+    if not scene.adheres:
         return {"largest_force": row.force(deepest)}
     place, tension = row.largest_tension()
     zero = row.crossing(0.0)

@@ -14,12 +14,13 @@ import numpy as np
 from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.potentials.table import Table, table_for
 from contact1d.workflow.scene import Measured, Scene
+from contact1d.workflow.settings.adhesion import estimate_on_plane
 from contact1d.workflow.settings.calibration import CALIBRATION, Calibration
 from contact1d.workflow.settings.chain import SettingsError as SettingsError
 from contact1d.workflow.settings.chain import chains_of, require_body, require_room
 from contact1d.workflow.settings.drive import DriveLeg, drive_steps
 from contact1d.workflow.settings.dynamics import dynamics_of, stiffest_of
-from contact1d.workflow.settings.estimate import ContactEstimate, NotCarriedError, particles_estimate, plane_estimate
+from contact1d.workflow.settings.estimate import ContactEstimate, NotCarriedError, particles_estimate
 from contact1d.workflow.settings.scales import (
     cutoff_for,
     force_scale_of,
@@ -234,7 +235,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     bond = 1.0 / (1.0 / scene.bulk_stiffness - 1.0 / plane) if in_series else scene.bulk_stiffness
     cutoff, rest, closest = 0.0, 0.0, 0.0
     if law is None:
-        estimate = plane_estimate(shape, bodies.spacing, scene.bulk_stiffness)
+        estimate = estimate_on_plane(scene, shape)
     else:
         cutoff = cutoff_for(scene, law, calibration.cutoff * tolerance, tolerance)
         require_reach(scene, cutoff)

@@ -40,11 +40,10 @@ def path(context: RunContext) -> Outcome:
         require_trust(scene, settings, state)
     asked = [wanted for _, wanted in places(scene, settings)]
     states = [state for state, wanted in zip(passed, asked, strict=True) if wanted]
-    adhesive = scene.interaction is not None and scene.interaction.attraction is not None
     # Where pairs snap, all rows tell the jumps; else the same places there and back tell what a curve loses.
     rows = passed[asked.index(True) :] if settings.estimate.snaps else states
     branch = [s for s in rows if s.phase == phases[-1].name]
-    quantities, warnings = _adhesion(context, branch) if adhesive else (_largest(context, states), {})
+    quantities, warnings = _adhesion(context, branch) if scene.adheres else (_largest(context, states), {})
     ends = {"deepest": max(states, key=lambda s: s.displacement), "final": states[-1]}
     radii = {name: state.radius for name, state in ends.items()}
     loop = loop_of([s.displacement for s in rows], [s.force for s in rows])

@@ -7,6 +7,7 @@ import numpy as np
 from contact1d.workflow.deck.steps import Phase, displacements
 from contact1d.workflow.experiments.pull_off.dynamic import pull_off_dynamic
 from contact1d.workflow.experiments.pull_off.quasistatic import pull_off_quasistatic
+from contact1d.workflow.experiments.pull_off.swept import APART
 from contact1d.workflow.experiments.running.holding import held_phase
 from contact1d.workflow.experiments.running.kind import ExperimentKind, advice_at_rest
 from contact1d.workflow.experiments.running.prescribing import LOADING_STEPS, in_smaller_steps
@@ -25,6 +26,8 @@ def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     assert isinstance(experiment, PullOff)
     if scene.method == "quasistatic":
         deepest, apart = settings.largest_displacement, settings.rest - settings.cutoff
+        if scene.is_swept:
+            apart = APART * settings.estimate.parted(0.0)
         down = displacements(np.linspace(0.0, deepest, LOADING_STEPS + 1).tolist())
         back = displacements(np.linspace(deepest, apart, UNLOADING_STEPS).tolist())
         return (Phase("loading", down), Phase("unloading", back, state=True))

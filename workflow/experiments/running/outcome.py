@@ -86,12 +86,21 @@ def anywhere_between(scene: Scene, settings: Settings, outcome: Outcome) -> Outc
     sizes = {name: outcome.compared_with.get(name, abs(known[name].value)) for name in parts}
     shares = {name: part / sizes[name] for name, part in parts.items() if sizes[name]}
     if open_ := {name: share for name, share in shares.items() if share > scene.accuracy.tolerance}:
-        warnings["lattice"] = (
-            f"{in_words(open_)} only, more than the tolerance of {scene.accuracy.tolerance:g}, because the contact's "
-            "centre may lie on a particle or anywhere between two of this chain: take a smaller bodies.spacing at the "
-            "same stiffness and energy per length, or give bodies.particles where these very particles are meant"
+        limits = f"{in_words(open_)} only, more than the tolerance of {scene.accuracy.tolerance:g}, because "
+        warnings["lattice"] = limits + (
+            f"the edge of the contact moves through cells: take a bodies.spacing of {_finer(scene, open_):.2g} LU at "
+            "the same stiffness per length"
+            if scene.adheres and scene.adhesion is not None
+            else "the contact's centre may lie on a particle or anywhere between two of this chain: take a smaller "
+            "bodies.spacing at the same stiffness and energy per length, or give bodies.particles where these very "
+            "particles are meant"
         )
     return replace(outcome, quantities=known, centring=parts, warnings=warnings)
+
+
+def _finer(scene: Scene, shares: Mapping[str, float]) -> float:
+    """The spacing [LU] that leaves half of the tolerance: with the same layer errors go with its square."""
+    return scene.bodies.spacing * math.sqrt(0.5 * scene.accuracy.tolerance / max(shares.values()))
 
 
 def unmet(scene: Scene, outcome: Outcome) -> dict[str, float]:

@@ -86,8 +86,8 @@ def approach(contact: Contact, force: float, start: float, direction: int = 1) -
     """
     scale = max(abs(force), contact.settings.force_scale)
     near, spacing = FORCE_ACCURACY * contact.settings.tolerance * scale, contact.scene.bodies.spacing
-    states = _first(contact, start) if direction > 0 else [measured(contact, start)]
-    before, beyond = _around(states, force) if direction > 0 else (None, None)
+    states = _first(contact, start, force, direction)
+    before, beyond = _around(states, force, direction)
     while abs(states[-1].carried - force) > near:
         last = states[-1]
         if direction * (last.carried - force) > 0:
@@ -120,22 +120,37 @@ def approach(contact: Contact, force: float, start: float, direction: int = 1) -
     return states
 
 
-def _first(contact: Contact, start: float) -> list[State]:
-    """The first rows of a way down: where nothing has to come to rest, in one run past where the force is expected."""
-    end = EXPECTED * contact.settings.largest_displacement
-    if not contact.deck.swept or end <= start:
+def _first(contact: Contact, start: float, force: float, direction: int) -> list[State]:
+    """The first rows of a way: where nothing has to come to rest, in one run past where the force is expected.
+
+    Raises:
+        UntrustedError: see `require_trust`; also where no contact holds the force.
+    """
+    if not contact.deck.swept:
+        return [measured(contact, start)]
+    settings = contact.settings
+    expected, held = (
+        settings.estimate.displacement_at(force),
+        settings.estimate.parted(0.0) if force < 0.0 else -math.inf,
+    )
+    end = max(start + EXPECTED * (expected - start), 0.5 * (expected + held))
+    if direction * (end - start) <= 0.0:
         return [measured(contact, start)]
     states = contact.rows(displacements(np.linspace(start, end, LOADING_STEPS + 1).tolist()))
     for state in states:
-        require_trust(contact.scene, contact.settings, state)
+        require_trust(contact.scene, settings, state)
+    if direction < 0 and min(state.carried for state in states) > force:
+        raise UntrustedError(f"{force:.4g} FU is never reached: the largest tension is smaller")
     return states
 
 
-def _around(states: list[State], force: float) -> tuple[State | None, State | None]:
-    """Of states of rising displacement the last whose force is too small, and the one after it; None for none."""
-    below = [i for i, state in enumerate(states) if state.carried <= force]
-    last = below[-1] if below else -1
-    return states[last] if below else None, states[last + 1] if last + 1 < len(states) else None
+def _around(states: list[State], force: float, direction: int) -> tuple[State | None, State | None]:
+    """Of states on a way the last that is short of the force, and the one after it; None for none."""
+    if len(states) == 1:
+        return None, None
+    short = [i for i, state in enumerate(states) if direction * (state.carried - force) <= 0.0]
+    last = short[-1] if short else -1
+    return states[last] if short else None, states[last + 1] if last + 1 < len(states) else None
 
 
 def _next(before: State, beyond: State | None, states: list[State], force: float, step: float) -> float:

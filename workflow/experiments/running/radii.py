@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from contact1d.analysis.held import held_radius
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius, compressive_radius, tensile_radius
 from contact1d.workflow.scene import Scene
@@ -20,16 +21,16 @@ class RadiusRule:
     def of(self, profile: Profile) -> ContactRadius | None:
         """The contact radius as the contract defines it; None where the bodies do not touch."""
         scene = self.scene
-        adhesive = scene.interaction is not None and scene.interaction.attraction is not None
-        sign = -1.0 if adhesive else 1.0
-        has_edge = scene.bodies.profile.has_edge
-        if not (sign * profile.pressure > 0.0).any() and not (has_edge and profile.pressure.any()):
+        has_edge, on_plane = scene.bodies.profile.has_edge, scene.bodies.lower == "rigid_plane"
+        if not (-profile.pressure if scene.adheres else profile.pressure).max() > 0.0 and not (
+            (has_edge or on_plane) and profile.pressure.any()
+        ):
             return None
         if has_edge:
             edge = scene.bodies.reach
             return ContactRadius(edge, 0.0, -edge, edge, reaches_end=False)
-        if adhesive:
-            return tensile_radius(profile)
+        if scene.adheres:
+            return held_radius(profile) if on_plane else tensile_radius(profile)
         return compressive_radius(profile, CALIBRATION.residual * self.tolerance)
 
     def or_spot(self, profile: Profile) -> ContactRadius:

@@ -102,11 +102,11 @@ def _reaches_end(scene: Scene, profile: Profile) -> bool:
     if scene.bodies.profile.has_edge:
         return False
     pressure = profile.pressure
-    if scene.interaction is not None and scene.interaction.attraction is not None:
+    if scene.adheres and scene.adhesion is None:
         largest = float(pressure.min())
         inside = end_pressure_share(profile) > INSIDE_SHARE  # the chain is shorter than the compressed middle
         return inside or (largest < 0.0 and largest in (pressure[0], pressure[-1]))
-    return bool(max(pressure[0], pressure[-1]) > 0.0)
+    return bool(max(abs(pressure[0]), abs(pressure[-1])) > 0.0)
 
 
 def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:

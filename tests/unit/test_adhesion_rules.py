@@ -1,0 +1,117 @@
+"""[adhesion]: what it needs and excludes, each with what to do; the lengths that each particle knows."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from contact1d.workflow.scene import SceneError, scene_from_dict
+from contact1d.workflow.settings.adhesion import AdhesiveEstimate
+from contact1d.workflow.settings.settings import SettingsError, settings_for
+
+BODIES = {
+    "particles": "auto", "spacing": 0.2, "profile": {"kind": "parabola", "radius": 100.0}, "reduction": "mdr",
+    "lower": "rigid_plane", "bulk_stiffness": 0.2,
+}  # fmt: skip
+SCENE: dict[str, Any] = {
+    "title": "JKR",
+    "bodies": BODIES,
+    "adhesion": {"work_of_adhesion": 0.005},
+    "experiment": {"kind": "pull_off", "preload": 2.0},
+}
+E, W, R = 1.0, 0.005, 100.0
+GRID = 1e-6
+"""Relative, of what is looked up between 4000 places."""
+
+
+@pytest.mark.parametrize(
+    ("tables", "told"),
+    [
+        ({"adhesion": {}}, "adhesion.work_of_adhesion: missing"),
+        ({"adhesion": {"work_of_adhesion": 1.0, "surface_energy": 0.5}}, "adhesion.surface_energy: not together"),
+        ({"adhesion": {"work_of_adhesion": -1.0}}, "adhesion.work_of_adhesion = -1.0: must be at least 0"),
+        ({"bodies": BODIES | {"reduction": "geike_popov"}}, 'bodies.reduction = "geike_popov": must be "mdr"'),
+        ({"bodies": BODIES | {"lower": "particles"}}, "adhesion: not between two chains"),
+        ({"neighbours": {"stiffness": 0.1}}, r"neighbours: not with \[adhesion\]"),
+        ({"adhesion": None}, r"a rigid plane cannot hold .* add \[adhesion\]"),
+    ],
+)
+def test_what_does_not_fit_is_told(tables: dict[str, Any], told: str) -> None:
+    scene = {name: table for name, table in (SCENE | tables).items() if table is not None}
+    with pytest.raises(SceneError, match=told):
+        scene_from_dict(scene)
+
+
+def test_a_tension_needs_something_that_holds() -> None:
+    load = {"kind": "load", "force": -1.0}
+    scene_from_dict(SCENE | {"experiment": load})
+    with pytest.raises(SceneError, match=r"experiment.force = -1.0: must be greater than 0"):
+        scene_from_dict({name: table for name, table in (SCENE | {"experiment": load}).items() if name != "adhesion"})
+
+
+@pytest.mark.parametrize("work", [5.0, 500.0])
+def test_a_contact_that_spans_its_body_is_refused(work: float) -> None:
+    for kind in ("circle", "parabola"):
+        body = BODIES | {"profile": {"kind": kind, "radius": 10.0}}
+        with pytest.raises(SettingsError, match=r"spread over the whole body, which ends at 10 LU"):
+            settings_for(scene_from_dict(SCENE | {"bodies": body, "adhesion": {"work_of_adhesion": work}}))
+
+
+@dataclass(frozen=True)
+class Terrace:
+    """A paraboloid whose transform rises more slowly around 6 LU."""
+
+    reach: float = math.inf
+
+    def height(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        return x**2 / R - 0.1 * (1.0 + np.tanh((x - 6.0) / 0.7))
+
+
+def test_an_edge_that_would_jump_is_refused() -> None:
+    flat = AdhesiveEstimate(
+        np.asarray([-1.0, 0.0]), np.asarray([0.2, 0.0]), 0.0, Terrace(), 0.2, 0.2, work=W, known=20.0
+    )
+    with pytest.raises(SettingsError, match=r"would jump at x = \d"):
+        flat.require_one_edge()
+    replace(estimate()).require_one_edge()
+
+
+def estimate() -> AdhesiveEstimate:
+    found = settings_for(scene_from_dict(SCENE)).estimate
+    assert isinstance(found, AdhesiveEstimate)
+    return found
+
+
+def test_the_estimate_is_jkrs() -> None:
+    found = estimate()
+    assert found.pull_off_force() == pytest.approx(1.5 * math.pi * W * R, rel=GRID)
+    radius, displacement = found.fixed_grips
+    wanted = (math.pi * W * R**2 / (8.0 * E)) ** (1.0 / 3.0)
+    assert radius == pytest.approx(wanted, rel=1e-3)  # the least of a flat minimum between places
+    assert displacement == pytest.approx(wanted**2 / R - math.sqrt(2.0 * math.pi * W * wanted / E), rel=GRID)
+    a = 9.0
+    d = a**2 / R - math.sqrt(2.0 * math.pi * W * a / E)
+    force = 4.0 * E * a**3 / (3.0 * R) - math.sqrt(8.0 * math.pi * E * W * a**3)
+    assert found.contact_force(d) == pytest.approx(force, abs=GRID * found.pull_off_force())
+    assert found.half_width(d, 0.0) == pytest.approx(a, rel=GRID)
+
+
+def test_particles_let_go_from_the_edge_inwards_and_the_last_ones_together() -> None:
+    found = estimate()
+    x = 0.2 * (np.arange(60) + 0.5)
+    cells = found.cells(x, scene_from_dict(SCENE).bodies)
+    displacement = cells.heights - cells.hold  # at which nothing of a cell is held
+    radius, last = found.fixed_grips
+    inner = x + 0.1 < radius
+    assert displacement[inner] == pytest.approx(last, rel=GRID)
+    assert (np.diff(displacement[~inner]) > 0.0).all()
+    shares = cells.shares(np.linspace(last + 1e-6, 0.5, 200))
+    assert (np.diff(shares, axis=0) >= -1e-12).all()  # a deeper plate holds more
+    assert (np.diff(shares, axis=1) <= 1e-12).all()  # and no particle more than the one inside
+    assert ((shares >= 0.0) & (shares <= 1.0)).all()
+    assert ((shares > 0.0) & (shares < 1.0)).sum(axis=1).max() <= 1

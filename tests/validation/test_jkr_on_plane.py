@@ -1,0 +1,197 @@
+"""Claim: [adhesion] on a rigid plane is JKR's contact, and goes to it as spacing²; also a cone's and that of r⁴.
+
+References: JKR's closed form; h(a) = κ c aⁿ − √(2πWa/E*), F = 2n/(n + 1) κ c E* aⁿ⁺¹ − √(8πE*Wa³) for z = c rⁿ, by
+scipy's minimiser and root finder. What limits the tolerances: the lattice. The particles' sum takes the force at the
+middle of each cell, which misses E* s² a/6R of F, and the edge within a cell by a parabola.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.optimize import brentq, minimize_scalar
+
+from contact1d import Run
+from contact1d.analysis.reference.jkr import Jkr
+from contact1d.analysis.reference.winkler import rigid_plane_sum
+
+RunTables = Callable[[dict[str, Any]], Run]
+Array = NDArray[np.float64]
+
+R, E, W = 100.0, 1.0, 0.005
+JKR = Jkr(R, E, W)
+F_A, A_0 = JKR.pull_off_force(), JKR.zero_load_radius()
+SPACING = 0.2
+RMS, PULL_OFF, PLACE = 1e-2, 2e-3, 5e-3
+"""Asked of F over F_A, of F_A, and of the displacements at F_A and at F = 0."""
+RADIUS = 1e-3
+"""Of a over a₀: measured 3e-6; the parabola of an edge."""
+RATE = 1.8
+ROUND_OFF = 1e-9
+PATH = {"kind": "path", "displacements": {"from": -0.25, "to": 0.6, "steps": 170}}
+PULL = {"kind": "pull_off", "preload": 2.0}
+
+
+def tables(experiment: dict[str, Any], spacing: float = SPACING, work: float = W, **bodies: Any) -> dict[str, Any]:
+    profile = {"kind": "parabola", "radius": R}
+    plane = {"particles": "auto", "spacing": spacing, "profile": profile, "reduction": "mdr", "lower": "rigid_plane"}
+    return {
+        "title": "JKR",
+        "bodies": plane | {"bulk_stiffness": E * spacing} | bodies,
+        "adhesion": {"work_of_adhesion": work},
+        "experiment": experiment,
+    }
+
+
+def jkr_at(displacements: Array) -> tuple[Array, Array]:
+    """F and a of JKR's stable branch; 0 where fixed grips have let go."""
+    a = np.linspace(JKR.critical_radius_fixed_grips(), 2.0 * A_0, 400_000)
+    d = JKR.displacement(a)
+    held = displacements > d[0]
+    radius = np.where(held, np.interp(displacements, d, a), 0.0)
+    return np.where(held, JKR.force(radius), 0.0), radius
+
+
+def test_curve_is_jkrs_from_three_times_the_pull_off_force_to_fixed_grips(run_tables: RunTables) -> None:
+    curve = run_tables(tables(PATH)).curve
+    force, radius = jkr_at(curve.displacement)
+    back = (curve.branch == "unloading") & (force < 3.0 * F_A)
+    held = back & (radius > 0.0)
+    assert curve.force[held].max() > 1.8 * F_A
+    assert np.sqrt(np.mean((curve.force - force)[held] ** 2)) < RMS * F_A
+    assert np.sqrt(np.mean((curve.contact_radius - radius)[held] ** 2)) < RADIUS * A_0
+    assert (curve.force[back & ~held] == 0.0).all()
+    assert np.isnan(curve.contact_radius[back & ~held]).all()
+    assert held.sum() > 100
+    off = curve.contact_radius[held] - radius[held]
+    assert (np.abs(off) < 3.0 * curve.contact_radius_uncertainty[held] + ROUND_OFF).mean() > 0.95
+
+
+def test_bodies_jump_in_at_touch_and_then_there_is_one_curve(run_tables: RunTables) -> None:
+    """Loading and unloading are the same where the bodies are held both times."""
+    done = run_tables(tables(PATH))
+    curve = done.curve
+    down, back = (curve.branch == name for name in ("loading", "unloading"))
+    apart = down & (curve.displacement < -ROUND_OFF)
+    assert (curve.force[apart] == 0.0).all()
+    touch = down & (np.abs(curve.displacement) < ROUND_OFF)
+    assert curve.force[touch] == pytest.approx(-8.0 / 9.0 * F_A, rel=PULL_OFF)
+    again = down & (curve.displacement > ROUND_OFF) & (curve.displacement < curve.displacement.max())
+    there = np.interp(curve.displacement[again], curve.displacement[back][::-1], curve.force[back][::-1])
+    assert curve.force[again] == pytest.approx(there, abs=1e-6 * F_A)
+
+
+def test_hysteresis_is_the_area_between_jumps(run_tables: RunTables) -> None:
+    """From fixed grips' end to touch: ∫ F dd of the stable branch."""
+    a = np.linspace(JKR.critical_radius_fixed_grips(), float(jkr_at(np.asarray([0.0]))[1][0]), 100_000)
+    area = -float(np.trapezoid(JKR.force(a), JKR.displacement(a)))
+    found = run_tables(tables(PATH)).results["dissipated_energy"]
+    assert found.value == pytest.approx(area, abs=found.uncertainty)
+    assert found.uncertainty < 0.05 * area
+
+
+def test_a_contact_that_is_not_let_go_of_comes_back_the_same_way(run_tables: RunTables) -> None:
+    """Before fixed grips let go, down again is the way up; after, not before the next touch."""
+    places = [0.2, -0.1, -0.2, -0.1, 0.2, -0.25, -0.1, 0.0, 0.2]
+    states = run_tables(tables({"kind": "path", "displacements": places})).outcome.states
+    force = [state.force for state in states]
+    assert force[3] == force[1]
+    assert force[4] == force[0]
+    assert force[5] == force[6] == 0.0
+    assert force[7] == pytest.approx(-8.0 / 9.0 * F_A, rel=PULL_OFF)
+    assert force[8] == force[0]
+
+
+def test_pull_off_at_default_settings(run_tables: RunTables) -> None:
+    done = run_tables(tables(PULL))
+    known = done.results
+    wanted = {
+        "adhesion_force": F_A, "critical_radius": JKR.critical_radius(), "zero_load_radius": A_0, "preload": 2.0,
+    }  # fmt: skip
+    for name, value in wanted.items():
+        assert abs(known[name].value - value) <= known[name].uncertainty
+    assert known["adhesion_force"].value == pytest.approx(F_A, rel=PULL_OFF)
+    assert done.warnings == {}
+    states = done.outcome.states
+    critical = min(states, key=lambda state: state.force)
+    assert critical.displacement == pytest.approx(float(JKR.displacement(JKR.critical_radius())), rel=PLACE)
+    zero = min(states, key=lambda state: abs(state.force) if state.displacement > 0.05 else math.inf)
+    assert zero.displacement == pytest.approx(float(JKR.displacement(A_0)), rel=PLACE)
+
+
+@pytest.mark.parametrize("key", ["work_of_adhesion", "surface_energy"])
+def test_both_keys_say_the_same(run_tables: RunTables, key: str) -> None:
+    scene = tables(PULL) | {"adhesion": {key: W if key == "work_of_adhesion" else 0.5 * W}}
+    assert run_tables(scene).results["adhesion_force"].value == pytest.approx(2.355814, abs=1e-6)
+
+
+def test_convergence_towards_jkr(run_tables: RunTables) -> None:
+    """rms of F over 3 F_A to fixed grips, edges everywhere between two particles; exponent of the spacing."""
+    spacings = A_0 / np.asarray([10.0, 20.0, 40.0, 80.0])
+    a = np.linspace(0.32, 1.18, 97) * A_0
+    wanted = JKR.force(a)
+    off = []
+    for spacing in spacings:
+        path = {"kind": "path", "displacements": [1.1 * float(JKR.displacement(a[-1])), *JKR.displacement(a[::-1])]}
+        states = run_tables(tables(path, float(spacing))).outcome.states[1:]
+        off.append(float(np.sqrt(np.mean(([state.force for state in states][::-1] - wanted) ** 2))) / F_A)
+    assert float(np.polyfit(np.log(spacings), np.log(off), 1)[0]) >= RATE
+    assert off[0] < RMS  # with 10 particles in a₀
+
+
+@pytest.mark.parametrize("force", [7.0, 1.0, 0.0, -1.5, -2.3, -2.35])
+def test_load(run_tables: RunTables, force: float) -> None:
+    """JKR's stable state under a force, within what the run claims; a tension beyond F_A is told."""
+    known = run_tables(tables({"kind": "load", "force": force})).results
+    a = float(JKR.contact_radius(force))
+    assert abs(known["contact_radius"].value - a) <= known["contact_radius"].uncertainty
+    assert abs(known["displacement"].value - float(JKR.displacement(a))) <= known["displacement"].uncertainty
+
+
+@pytest.mark.parametrize(("exponent", "profile"), [
+    (1.0, {"kind": "cone", "slope": 0.05}), (4.0, {"kind": "power", "exponent": 4.0, "radius": 10.0, "height": 0.4}),
+])  # fmt: skip
+def test_cone_and_fourth_power(run_tables: RunTables, exponent: float, profile: dict[str, Any]) -> None:
+    n, c = exponent, profile.get("slope", 0.4 / 10.0**4)
+    kappa = 0.5 * math.sqrt(math.pi) * n * math.gamma(0.5 * n) / math.gamma(0.5 * (n + 1.0))
+
+    def force(a: float) -> float:
+        return 2.0 * n / (n + 1.0) * kappa * c * E * a ** (n + 1.0) - math.sqrt(8.0 * math.pi * E * W * a**3)
+
+    critical = minimize_scalar(force, bounds=(1e-3, 100.0), method="bounded", options={"xatol": 1e-10})
+    zero = brentq(force, critical.x, 200.0)
+    done = run_tables(tables(PULL, 0.1, profile=profile, bulk_stiffness=0.1 * E))
+    known = done.results
+    for name, value in (("adhesion_force", -critical.fun), ("critical_radius", critical.x), ("zero_load_radius", zero)):
+        assert abs(known[name].value - value) <= known[name].uncertainty, name
+        assert known[name].value == pytest.approx(value, rel=PLACE), name
+
+
+def test_flat_punch_is_kendalls(run_tables: RunTables) -> None:
+    """F_A = √(8πE*Wa³), all at once; before that F = 2E*ad."""
+    radius = 10.0
+    scene = tables(PULL, 0.5, profile={"kind": "flat_punch", "radius": radius})
+    done = run_tables(scene)
+    assert done.results["adhesion_force"].value == pytest.approx(math.sqrt(8.0 * math.pi * E * W * radius**3), rel=1e-6)
+    held = [state for state in done.outcome.states if state.force]
+    assert [state.force for state in held] == pytest.approx(
+        [2.0 * E * radius * state.displacement for state in held], rel=ROUND_OFF, abs=ROUND_OFF
+    )
+
+
+def test_no_energy_is_hertz_to_round_off(run_tables: RunTables) -> None:
+    path = {"kind": "path", "displacements": [-0.1, 0.0, 0.1, 0.37, 0.2, -0.1]}
+    scene = tables(path, work=0.0)
+    without = {name: table for name, table in scene.items() if name != "adhesion"}
+    adhesive, elastic = run_tables(scene), run_tables(without)
+    for one, other in zip(adhesive.outcome.states, elastic.outcome.states, strict=True):
+        x = one.profile.x
+        exact = rigid_plane_sum(one.displacement, x, 0.5 * R, E * SPACING) if one.displacement > 0.0 else 0.0
+        assert one.force == pytest.approx(exact, rel=ROUND_OFF)
+        assert other.force == pytest.approx(one.force, rel=ROUND_OFF)
+    assert adhesive.results.keys() == elastic.results.keys()

@@ -1,0 +1,21 @@
+"""Effect [adhesion]: d = g(a) − √(2π a W/E*) at the edge a of the contact, the rule of Heß, which makes it JKR's."""
+
+from contact1d.workflow.deck.effects.base import Contribution, Stage, number
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.adhesion import AdhesiveEstimate
+from contact1d.workflow.settings.settings import Settings
+
+TOUCH = 1e-9
+"""Distance over the spacing at which bodies touch: round-off of a displacement of 0."""
+
+
+def adhesion(scene: Scene, settings: Settings) -> Contribution:
+    """What each particle knows of its cell is in a file beside system.data. It comes after the plane."""
+    assert isinstance(settings.estimate, AdhesiveEstimate)
+    last = settings.estimate.fixed_grips[1] / settings.estimate.spacing
+    variables = {
+        "adhesion_stiffness": number(scene.bulk_stiffness),
+        "adhesion_touch": number(-TOUCH * scene.bodies.spacing),
+        "adhesion_last": number(last * scene.bodies.spacing),
+    }
+    return Contribution("adhesion", Stage.DRAG, ("adhesion",), variables)

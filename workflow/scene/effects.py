@@ -1,0 +1,135 @@
+"""The tables of a scene that are effects: each may be absent, and then adds nothing.
+
+Interaction of two particles at distance r: V(r) = A exp(−r/a) − B exp(−r/b), with A, a the amplitude and range of the
+repulsion and B, b those of the attraction.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from annotated_types import MinLen
+from pydantic import AfterValidator, Field
+from pydantic_core import PydanticCustomError
+
+from contact1d.workflow.scene.quantities import (
+    AutoDamping,
+    AutoDampingOrZero,
+    AutoLength,
+    AutoMass,
+    Energy,
+    Length,
+    LineEnergy,
+    RatioOrZero,
+    Seed,
+    Stiffness,
+    Table,
+    Temperature,
+    Velocity,
+)
+
+
+class Exponential(Table):
+    """One term of the interaction: amplitude · exp(−r/range)."""
+
+    amplitude: Energy = Field(description="energy at distance zero")
+    range: Length = Field(description="decay length")
+
+
+class Effect(Table):
+    """A table that may be absent, and then adds nothing. `timed`: in time only, so never in a quasistatic run."""
+
+    timed: ClassVar[bool] = False
+
+
+class Interaction(Effect):
+    """Effect: V(r) = A exp(−r/a) − B exp(−r/b) between opposite bodies."""
+
+    repulsion: Exponential = Field(description="repulsive term, A and a")
+    attraction: Exponential | None = Field(default=None, description="attractive term, B and b; absent: no adhesion")
+    cutoff: AutoLength = Field(
+        default="auto", description='distance beyond which no force acts, or "auto": by the tolerance'
+    )
+
+
+class Neighbours(Effect):
+    """Effect: springs between neighbouring particles of one body, with transverse rigidity."""
+
+    stiffness: Stiffness = Field(description="stiffness of a spring between neighbours")
+
+
+class Horizontal(Effect):
+    """Effect: particles may also move along x. It has no keys."""
+
+
+class Friction(Effect):
+    """Effect: Coulomb's friction of every particle on a rigid plane."""
+
+    coefficient: RatioOrZero = Field(
+        description="largest tangential over normal force of a particle; along x it gives as "
+        "bodies.bulk_stiffness_tangential says"
+    )
+
+
+class Adhesion(Effect):
+    """Effect: the bodies hold each other on a rigid plane, as JKR has it, without a range. One of its keys is given."""
+
+    work_of_adhesion: LineEnergy | None = Field(
+        default=None, description="W, to part both surfaces: F_A = 1.5 π W R of a sphere"
+    )
+    surface_energy: LineEnergy | None = Field(default=None, description="γ of one side, half the work of adhesion")
+
+    @property
+    def work(self) -> float:
+        """W [FU/LU]."""
+        if self.work_of_adhesion is not None:
+            return self.work_of_adhesion
+        assert self.surface_energy is not None
+        return 2.0 * self.surface_energy
+
+
+class Damping(Effect):
+    """Effect: viscous damping of particles."""
+
+    timed = True
+
+    coefficient: AutoDamping = Field(description='drag force over velocity, or "auto": near critical')
+
+
+class Noise(Effect):
+    """Effect: thermal forces on the particles; with the damping it makes one Langevin thermostat."""
+
+    timed = True
+
+    temperature: Temperature = Field(description="temperature as energy k_BT")
+    seed: Seed = Field(description="seed of the random forces")
+
+
+def _free_directions(free: tuple[str, ...]) -> tuple[str, ...]:
+    if len(set(free)) < len(free):
+        raise PydanticCustomError("scene", "must name each direction once")
+    if "z" not in free:
+        raise PydanticCustomError("scene", 'must contain "z"')
+    return tuple(sorted(free))
+
+
+Free = Annotated[tuple[Literal["x", "z"], ...], Field(strict=False), MinLen(1), AfterValidator(_free_directions)]
+
+
+class Plate(Effect):
+    """Effect: the upper plate is a rigid body with inertia, loaded by a force. Absent: its place is prescribed."""
+
+    timed = True
+
+    mass: AutoMass = Field(default="auto", description='mass of the plate, or "auto"')
+    free: Free = Field(default=("z",), description='directions in which the plate may move: ["z"] or ["x", "z"]')
+    damping: AutoDampingOrZero = Field(default="auto", description='drag force over velocity of the plate, or "auto"')
+
+
+class Cantilever(Effect):
+    """Effect: the plate is pulled along x through a spring whose far end moves steadily."""
+
+    timed = True
+
+    stiffness: Stiffness = Field(description="stiffness of the spring")
+    velocity: Velocity = Field(description="velocity of the driven end")

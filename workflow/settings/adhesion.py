@@ -1,0 +1,247 @@
+"""JKR's contact of any axisymmetric body on a rigid plane, before LAMMPS runs, and as a law of each particle's own.
+
+With the transformed profile g(x), independent springs E* per length, and the rule of Heß for the spring at the edge a
+
+    h(x) = g(x) − Δl(x),    Δl(x) = √(2π x W/E*),    d = h(a),    F = 2 E* ∫₀ᵃ (d − g) dx
+
+h falls to its least value, at which fixed grips let go, and rises from there on. A place x, once in contact, stays so
+for d > H(x) = min h(y) over y ≥ x: the edge comes in from outside. H is a length for each place, so that each particle
+knows by its own height whether its place is in contact; only whether there is a contact at all is one state for all.
+
+A particle stands for its cell, x ± s/2, of which the edge leaves a share φ. With q = (d − H₋)/(H₊ − H₋) over the cell
+
+    φ = q + κ q (1 − q),    f = k φ [d − g(x) + c (1 − φ)],    c = g(x) − g(x − s/2)
+
+c takes the force at the middle of that share, κ is such that φ = 1/2 where the edge is at x: of second order in s.
+Sources: V. L. Popov, M. Heß, Method of Dimensionality Reduction in Contact Mechanics and Friction (2015), chapter 4.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.chain import SettingsError
+from contact1d.workflow.settings.estimate import ContactEstimate, plane_estimate
+from contact1d.workflow.settings.shape import Profile
+
+Array = NDArray[np.float64]
+PLACES = 4000
+"""Places between which the estimate is straight."""
+FIRST = 1e-3
+"""The first of them over the last."""
+MOST_DOUBLINGS = 200
+BEYOND = 1.2
+"""Width of what is known of the contact over what the experiment needs."""
+SPANNED = 0.9
+"""Radius of a contact over where its body ends, or over the radius of its curvature, from which it spans the body."""
+RISE = 1e-9
+"""Rise of h before its least value over its depth that counts as one."""
+NARROWEST = 1e-12
+"""Heights in which a particle lets go that does so at once, over the spacing: no formula may divide by 0."""
+NEAR_AN_END = 0.1
+"""Place of the middle of a cell between its ends, as h sees it, beyond which its bend would turn the share around."""
+SOFTEST = 0.998
+"""Tension over the largest one at which a contact counts as softest."""
+
+
+def elongation(x: Array, modulus: float, work: float) -> Array:
+    """Δl(x) = √(2π x W/E*) [LU] at places x ≥ 0 [LU]; E* [FU/LU²], W [FU/LU]."""
+    return np.asarray(np.sqrt(2.0 * math.pi * work / modulus * x))
+
+
+@dataclass(frozen=True)
+class Cells:
+    """What each particle of a chain knows; arrays (n,) [LU], and `bend` without a unit.
+
+    Attributes:
+        heights: g(x) of the particle.
+        hold: height at which it has let go of all of its cell.
+        width: below that, heights in which it lets go.
+        fall: c of the module's docstring.
+        bend: κ.
+    """
+
+    heights: Array
+    hold: Array
+    width: Array
+    fall: Array
+    bend: Array
+
+    def shares(self, displacements: Array) -> Array:
+        """φ of each particle at displacements (m,) [LU] of a contact that is held, (m, n)."""
+        heights = self.heights - displacements[:, None]
+        q = np.clip((self.hold - heights) / self.width, 0.0, 1.0)
+        return np.asarray(q * (1.0 + self.bend * (1.0 - q)))
+
+    def forces(self, displacements: Array, stiffness: float) -> Array:
+        """F [FU] at displacements (m,) [LU] of a contact that is held; `stiffness` of a particle [FU/LU]."""
+        share = self.shares(displacements)
+        lengths = share * (displacements[:, None] - self.heights + self.fall * (1.0 - share))
+        return np.asarray(stiffness * lengths.sum(axis=1))
+
+
+@dataclass(frozen=True)
+class AdhesiveEstimate(ContactEstimate):
+    """JKR's own curve by quadrature, in place of independent pairs.
+
+    Attributes:
+        work: W [FU/LU].
+        known: the greatest place up to which it is known [LU].
+    """
+
+    work: float = 0.0
+    known: float = field(default=0.0)
+
+    @property
+    def modulus(self) -> float:
+        """E* [FU/LU²]."""
+        return self.stiffness / self.spacing
+
+    @cached_property
+    def _grid(self) -> tuple[Array, Array, Array, int]:
+        """Places x [LU], h(x) [LU], F of a contact up to there [FU], and the index of the least h."""
+        x = np.concatenate([[0.0], np.geomspace(FIRST * self.known, self.known, PLACES)])
+        g = self.profile.height(x)
+        h = g - elongation(x, self.modulus, self.work)
+        area = np.concatenate([[0.0], np.cumsum(0.5 * (g[1:] + g[:-1]) * np.diff(x))])
+        force, least = 2.0 * self.modulus * (x * h - area), int(np.argmin(h))
+        if self.known < self.profile.reach:
+            return x, h, force, least
+        # Beyond its end a body is as wide as it is.
+        way = 1e6 * (abs(float(h[least])) + self.spacing)
+        after = float(force[-1]) + 2.0 * self.modulus * self.known * way
+        return np.append(x, x[-1]), np.append(h, h[-1] + way), np.append(force, after), least
+
+    @property
+    def end(self) -> tuple[float, float, float]:
+        """Radius [LU], displacement [LU] and force [FU] of the widest contact that is known."""
+        x, h, force, _ = self._grid
+        return float(x[PLACES]), float(h[PLACES]), float(force[PLACES])
+
+    @property
+    def fixed_grips(self) -> tuple[float, float]:
+        """(radius, displacement) [LU] at which fixed grips let go."""
+        x, h, _, least = self._grid
+        return float(x[least]), float(h[least])
+
+    def require_one_edge(self) -> None:
+        """Refuse a profile whose h falls again beyond its least value.
+
+        Raises:
+            SettingsError: with the place.
+        """
+        x, h, _, least = self._grid
+        rising = np.diff(h[least:])
+        if (rising < -RISE * abs(float(h[least]))).any():
+            at = float(x[least + int(np.argmax(rising < 0.0))])
+            raise SettingsError(
+                f"the edge of this adhesive contact would jump at x = {at:.4g} LU, where the body is too flat for its "
+                "adhesion: smooth the profile, or lower adhesion.work_of_adhesion"
+            )
+
+    def cells(self, x: Array, body: Profile) -> Cells:
+        """The cells of particles at places x, (n,) [LU], of the very `body`. Without adhesion they let go at touch."""
+        at, half = np.abs(x), 0.5 * self.spacing
+        heights, narrowest = body.height(at), NARROWEST * self.spacing
+        if self.work == 0.0:
+            none = np.zeros_like(x)
+            return Cells(heights, none, none + narrowest, none, none)
+        least = self.fixed_grips[0]
+
+        def threshold(place: Array) -> Array:
+            outer = np.minimum(np.maximum(place, least), body.reach)
+            return np.asarray(body.height(outer) - elongation(outer, self.modulus, self.work))
+
+        inner, own, outer = (threshold(at + part * half) for part in (-1.0, 0.0, 1.0))
+        width = np.maximum(outer - inner, narrowest)
+        middle = np.clip((own - inner) / width, NEAR_AN_END, 1.0 - NEAR_AN_END)
+        bend = np.clip((0.5 - middle) / (middle * (1.0 - middle)), -1.0, 1.0)
+        bend = np.where(outer - inner > narrowest, bend, 0.0)
+        return Cells(heights, heights - inner, width, heights - body.height(np.abs(at - half)), bend)
+
+    def contact_forces(self, displacements: Array) -> Array:
+        """F(d) [FU] of a contact that is held at each of the displacements [LU]; 0 where none is."""
+        _, h, force, least = self._grid
+        return np.asarray(np.interp(displacements, h[least:], force[least:], left=0.0))
+
+    def half_widths(self, displacements: Array, gap: float) -> Array:
+        """a(d) [LU] of a contact that is held, at least a spacing; all `gap`s are the edge."""
+        x, h, _, least = self._grid
+        return np.asarray(np.maximum(self.spacing, np.interp(displacements, h[least:], x[least:])))
+
+    @cached_property
+    def _rising(self) -> tuple[Array, Array]:
+        """Displacements [LU] and forces [FU] from the largest tension on."""
+        _, h, force, least = self._grid
+        top = least + int(np.argmin(force[least:]))
+        return h[top:], force[top:]
+
+    def pull_off_force(self) -> float:
+        """F_A [FU]."""
+        return max(0.0, -float(self._rising[1][0]))
+
+    def displacement_at(self, force: float) -> float:
+        """Displacement [LU] at which a contact carries a force [FU]; that of the largest tension if none does."""
+        places, forces = self._rising
+        return float(np.interp(force, forces, places))
+
+    def stiffness_under(self, force: float) -> float:
+        """dF/dd [FU/LU] under a force [FU]; a tension above SOFTEST of the largest counts as that."""
+        places, forces = self._rising
+        return float(np.interp(max(force, -SOFTEST * self.pull_off_force()), forces, np.gradient(forces, places)))
+
+    def parted(self, share: float) -> float:
+        """Displacement [LU] at which fixed grips let go: all of the tension goes at once."""
+        return self.fixed_grips[1]
+
+    def tooth(self, particles: int) -> float:
+        """Without a range and with parts of cells there are no teeth: infinite."""
+        return math.inf
+
+
+def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
+    """The estimate of a scene on a rigid plane; that of one with [adhesion] is known as far as its experiment needs.
+
+    Raises:
+        SettingsError: the contact would be as wide as the body, or its edge would jump.
+    """
+    bodies, stiffness = scene.bodies, scene.bulk_stiffness
+    if scene.adhesion is None:
+        return plane_estimate(profile, bodies.spacing, stiffness)
+    work = scene.adhesion.work
+    deep = np.asarray([-1e6 * bodies.spacing, 0.0])
+    wanted, load = max([0.0, *scene.experiment.places()]), scene.experiment.compression or 0.0
+    known = min(bodies.spacing, profile.reach)
+    for _ in range(MOST_DOUBLINGS):
+        estimate = AdhesiveEstimate(
+            deep, -stiffness * deep, 0.0, profile, bodies.spacing, stiffness, work=work, known=known
+        )
+        radius, displacement, force = estimate.end
+        if known == profile.reach or (
+            BEYOND * estimate.fixed_grips[0] < radius and displacement > BEYOND * wanted and force > BEYOND * load
+        ):
+            break
+        known = min(2.0 * known, profile.reach)
+    if not bodies.profile.has_edge:
+        inside = estimate.fixed_grips[0] < radius and displacement > wanted and force > load
+        widest = estimate.half_width(max(wanted, estimate.displacement_at(load)), 0.0)
+        limit = min(profile.reach, bodies.profile.curvature_radius or math.inf)
+        if not inside or widest > SPANNED * limit:
+            raise SettingsError(
+                f"the adhesive contact would spread over the whole body, which ends at {limit:.6g} LU: JKR's theory is "
+                "of a contact that is small beside it. Lower adhesion.work_of_adhesion, the load or the displacement"
+            )
+    estimate.require_one_edge()
+    return estimate
+
+
+def cells_of(scene: Scene, estimate: ContactEstimate, x: Array) -> Cells:
+    """The cells of particles at places x [LU] of a scene with [adhesion]."""
+    assert isinstance(estimate, AdhesiveEstimate)
+    return estimate.cells(x, scene.bodies)

@@ -1,0 +1,80 @@
+"""What the spacing leaves open of an adhesive contact on a rigid plane: sums over cells beside JKR's own integral.
+
+The particles' sum misses the integral by what the middle of a cell misses of its mean, and of its edge. How much, and
+how that changes with the place of the contact's centre between particles, is told by the very law of the deck.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.analysis.polynomial import fitting
+from contact1d.workflow.scene import Load, Scene
+from contact1d.workflow.settings.adhesion import AdhesiveEstimate, Cells
+from contact1d.workflow.settings.settings import Settings
+
+Array = NDArray[np.float64]
+BESIDE, ASIDE, POINTS = 0.1, 0.3, 61
+"""Ways on both sides of JKR's largest tension, and of another force, over the distance from fixed grips, and places."""
+PHASES = (0.25, 0.0)
+"""Places of the apex between particles over the spacing, beside 1/2, that of an even chain."""
+MARGIN = 1.25
+"""Claim over the difference of the sums."""
+
+
+def left_by_cells(scene: Scene, settings: Settings) -> dict[str, float]:
+    """By the names of results, the largest change [its unit]; with given particles that of their own places only."""
+    estimate = settings.estimate
+    assert isinstance(estimate, AdhesiveEstimate)
+    own = 0.5 if settings.particles % 2 == 0 else 0.0
+    phases = (own, *PHASES) if scene.bodies.particles == "auto" and not scene.bodies.profile.has_edge else (own,)
+    sums = [_marks(scene, settings, estimate, _cells(scene, settings, estimate, phase)) for phase in phases]
+    whole = _marks(scene, settings, estimate, None)
+    return {name: MARGIN * max(abs(some[name] - value) for some in sums) for name, value in whole.items()}
+
+
+def _cells(scene: Scene, settings: Settings, estimate: AdhesiveEstimate, phase: float) -> Cells:
+    half = settings.particles // 2
+    x = scene.bodies.spacing * (np.arange(-half, half + 1) + phase)
+    return estimate.cells(np.asarray(x[np.abs(x) <= scene.bodies.reach], dtype=np.float64), estimate.profile)
+
+
+def _marks(scene: Scene, settings: Settings, estimate: AdhesiveEstimate, cells: Cells | None) -> dict[str, float]:
+    """The results by the sum over cells, or by JKR's integral for none."""
+
+    def forces(displacements: Array) -> Array:
+        if cells is None:
+            return estimate.contact_forces(displacements)
+        return cells.forces(displacements, estimate.stiffness)
+
+    def place_of(force: float) -> float:
+        expected = estimate.displacement_at(force)
+        places = expected + ASIDE * (expected - estimate.fixed_grips[1]) * np.linspace(-1.0, 1.0, POINTS)
+        found = forces(places)
+        top = int(np.argmin(found))
+        return float(np.interp(force, found[top:], places[top:]))
+
+    def radius(displacement: float) -> float:
+        return estimate.half_width(displacement, 0.0)
+
+    if isinstance(scene.experiment, Load):
+        place = place_of(scene.experiment.force)
+        return {"displacement": place, "contact_radius": radius(place)}
+    zero = place_of(0.0)
+    tension, place = _largest_tension(estimate, forces)
+    return {"adhesion_force": tension, "critical_radius": radius(place), "zero_load_radius": radius(zero)}
+
+
+def _largest_tension(estimate: AdhesiveEstimate, forces: Callable[[Array], Array]) -> tuple[float, float]:
+    """(tension [FU], displacement [LU]) where it is largest, by a parabola; a punch's is where it lets go."""
+    expected, last = estimate.displacement_at(-estimate.pull_off_force()), estimate.fixed_grips[1]
+    width = BESIDE * (expected - last)
+    if width <= 0.0:
+        return -float(forces(np.asarray([last]))[0]), last
+    t = np.linspace(-1.0, 1.0, POINTS)
+    c = fitting(t, 2) @ forces(expected + width * t)
+    best = float(np.clip(-0.5 * c[1] / c[2], -1.0, 1.0)) if c[2] > 0.0 else 0.0
+    return -float(c @ best ** np.arange(3)), expected + width * best
