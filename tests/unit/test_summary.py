@@ -45,5 +45,14 @@ def test_the_plot_shows_compression_above_and_tension_below_the_axis() -> None:
     assert next(line for line in lines if "^" in line).count("^") == 2
 
 
+def test_the_plot_is_in_si_where_units_are_known() -> None:
+    x = np.linspace(-10.0, 10.0, 81)
+    units = {"LU": {"value": 1e-6}, "FU": {"value": 1e-3}}  # 1 FU/LU is 1 kN/m
+    lines = pressure_plot(profile(np.where(np.abs(x) < 4.0, 2.0, 0.0)), 3.0, units)
+    assert lines[0].split()[0] == "2"
+    assert lines[-1].split()[0] == "kN/m"
+    assert "µm" in lines[-1]
+
+
 def test_bodies_that_do_not_touch_have_no_plot() -> None:
     assert pressure_plot(profile(np.zeros(5)), 1.0) == ["  no pressure"]

@@ -88,7 +88,8 @@ def run(
         assert finished.outcome is not None
         name, profile = next(iter(finished.outcome.profiles.items()))
         typer.echo(f"\nline load, {name.replace('_', ' ')} state:")
-        typer.echo("\n".join(pressure_plot(profile, finished.outcome.radii[name])))
+        units = finished.document.get("units")
+        typer.echo("\n".join(pressure_plot(profile, finished.outcome.radii[name], units)))
         typer.echo(f"\n{finished.folder}")
 
 

@@ -82,8 +82,11 @@ def in_si(entry: Mapping[str, Any]) -> str:
     return f"{value * factor:.5g} {unit}" if exact else f"{rounded(value * factor, spread)} {unit}"
 
 
-def pressure_plot(profile: Profile, radius: float) -> list[str]:
-    """The pressure over x as bars in a terminal, compression up; the marks below it are at ±a."""
+def pressure_plot(profile: Profile, radius: float, units: Mapping[str, Any] | None = None) -> list[str]:
+    """The pressure over x as bars in a terminal, compression up; the marks below it are at ±a.
+
+    In SI where `units`, those of results.json, say what LU and FU are.
+    """
     scale = float(np.max(np.abs(profile.pressure), initial=0.0))
     if scale == 0.0:
         return ["  no pressure"]
@@ -93,17 +96,29 @@ def pressure_plot(profile: Profile, radius: float) -> list[str]:
     pressure = np.interp(x, profile.x, profile.pressure, left=0.0, right=0.0)
     step = (pressure.max() - min(pressure.min(), 0.0)) / ROWS or 1.0
     top, bottom = math.ceil(max(pressure.max(), 0.0) / step), math.floor(min(pressure.min(), 0.0) / step)
+    load, load_unit, length, length_unit = _axes(float(np.max(np.abs(pressure))), half, units)
     lines = []
     for level in range(top, bottom - 1, -1):
         if level == 0:
             lines.append(f"{0.0:>12.3g} {AXIS * COLUMNS}")
             continue
         reached = pressure > (level - 0.5) * step if level > 0 else pressure < (level + 0.5) * step
-        lines.append(f"{level * step:>12.3g} " + "".join(BLOCK if r else EMPTY for r in reached))
+        lines.append(f"{level * step * load:>12.3g} " + "".join(BLOCK if r else EMPTY for r in reached))
     if math.isfinite(radius) and 0.0 < radius < half:
         marks = [EMPTY] * COLUMNS
         for place in (-radius, radius):
             marks[round((place + half) / (2 * half) * (COLUMNS - 1))] = "^"
         lines.append(" " * 13 + "".join(marks) + "  ± a")
-    lines.append(f"{'FU/LU':>12} " + f"x from {-half:.1f} to {half:.1f} LU".center(COLUMNS))
+    ends = f"x from {-half * length:.1f} to {half * length:.1f} {length_unit}"
+    lines.append(f"{load_unit:>12} {ends.center(COLUMNS)}")
     return lines
+
+
+def _axes(load: float, half: float, units: Mapping[str, Any] | None) -> tuple[float, str, float, str]:
+    """Factor and unit of the line load and of x."""
+    if units is None:
+        return 1.0, "FU/LU", 1.0, "LU"
+    length, force = units["LU"]["value"], units["FU"]["value"]
+    load_factor, load_unit = scale_of(load * force / length, "N/m")
+    length_factor, length_unit = scale_of(half * length, "m")
+    return load_factor * force / length, load_unit, length_factor * length, length_unit
