@@ -26,7 +26,9 @@ from contact1d.workflow.stability import (
     modes,
     motion,
     pressed,
+    random_scenes,
     settling,
+    sharp,
     similarity,
     stiffness,
     thermal,
@@ -36,6 +38,8 @@ from contact1d.workflow.stability.record import RECORD, TABLE, Answer, Stability
 
 CLASSES: tuple[Class, ...] = (
     stiffness.STIFFNESS,
+    sharp.SHARP,
+    random_scenes.RANDOM,
     loads.LOADS,
     settling.SETTLING,
     loops.LOOPS,

@@ -9,12 +9,14 @@ import numpy as np
 
 from contact1d.analysis.curve_marks import Peak, crossing, largest_tension
 from contact1d.analysis.loop import Loop, loop_of
+from contact1d.workflow.experiments.path.between_rows import missed_between_rows
 from contact1d.workflow.experiments.path.schedule import places, schedule
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.law_error import law_error
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import doubts, is_converged, require_trust
+from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH, Quantity
 
 PLACE_ERROR = 0.1
@@ -80,14 +82,15 @@ def _largest(context: RunContext, states: list[State]) -> dict[str, Quantity]:
 
 
 def _adhesion(context: RunContext, branch: list[State]) -> tuple[dict[str, Quantity], dict[str, str]]:
+    settings = context.deck.settings
     displacement, force = [s.displacement for s in branch], [s.force for s in branch]
     quantities: dict[str, Quantity] = {}
     warnings: dict[str, str] = {}
     peak = largest_tension(displacement, force)
     if 0 < peak.index < len(branch) - 1 and peak.tension > 0:
-        quantities["adhesion_force"] = Quantity(
-            peak.smooth, peak.uncertainty + _noise(context, branch[peak.index]), FORCE
-        )
+        missed = max(peak.uncertainty, missed_between_rows(context.deck.scene, settings, displacement) * peak.smooth)
+        missed += _cut_short(settings, branch, peak.index) + _noise(context, branch[peak.index])
+        quantities["adhesion_force"] = Quantity(peak.smooth, missed, FORCE)
         critical = _critical_radius(branch, peak)
         if critical is not None:
             quantities["critical_radius"] = critical
@@ -102,6 +105,13 @@ def _adhesion(context: RunContext, branch: list[State]) -> tuple[dict[str, Quant
     else:
         quantities["zero_load_radius"] = zero
     return quantities, warnings
+
+
+def _cut_short(settings: Settings, branch: list[State], index: int) -> float:
+    """Tension [FU] that is lost with pairs that let go before their time, in the move after the largest one."""
+    before, here, after = branch[index - 1 : index + 2]
+    rise = (before.force - here.force) / (before.displacement - here.displacement)
+    return max(0.0, rise) * settings.let_go_early(here.displacement - after.displacement)
 
 
 def _critical_radius(branch: list[State], peak: Peak) -> Quantity | None:

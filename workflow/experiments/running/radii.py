@@ -10,6 +10,9 @@ from contact1d.analysis.radius import ContactRadius, compressive_radius, tensile
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.calibration import CALIBRATION
 
+OUTSIDE = 1.5
+"""Place over the spacing of the second particle of a chain whose apex lies between two."""
+
 
 @dataclass(frozen=True)
 class RadiusRule:
@@ -34,5 +37,9 @@ class RadiusRule:
         return compressive_radius(profile, CALIBRATION.residual * self.tolerance)
 
     def or_spot(self, profile: Profile) -> ContactRadius:
-        """The contact radius; 0 where no particle is in tension, as where F = 0 and a single pair touches."""
-        return self.of(profile) or ContactRadius(0.0, 0.5 * self.scene.bodies.spacing, 0.0, 0.0, reaches_end=False)
+        """The contact radius; 0 where no particle is in tension, as where F = 0 and the pairs at the apex just touch.
+
+        The largest tension is then nearer than the next particle, OUTSIDE spacings from the apex at most.
+        """
+        outside = OUTSIDE * self.scene.bodies.spacing
+        return self.of(profile) or ContactRadius(0.0, outside, 0.0, 0.0, reaches_end=False)
