@@ -17,6 +17,7 @@ from contact1d.analysis.reference.interaction import Exponential, PairInteractio
 from contact1d.analysis.reference.pair_lattice import PairLattice
 from contact1d.workflow.scene import read_scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
+from contact1d.workflow.stability.pairs import TENSION, PairCase, reach, shaped
 
 RANGE = 0.03
 LAW = PairInteraction(Exponential(0.0024, 0.015), Exponential(0.0012, RANGE))
@@ -78,3 +79,21 @@ def test_rows_that_are_narrow_enough_stay_as_they_are() -> None:
     assert wide.experiment.kind == "path"
     down = schedule(wide, settings_for(wide))[-1]
     assert len(down.rows) > 5 * len(wide.experiment.places()) / 2
+
+
+@pytest.mark.parametrize("steps", [20, 33, 60])
+@pytest.mark.parametrize(
+    ("kind", "particles", "ratio"), [("power", 3, 0.94), ("flat_punch", 6, 0.74), ("cone", 5, 0.47)]
+)
+def test_a_sharp_maximum_between_two_rows_is_within_the_claim(
+    kind: str, particles: int, ratio: float, steps: int, tmp_path: Path
+) -> None:
+    """Polynomials through wide rows agree with each other by chance: the claim was up to 460 times too small."""
+    case = PairCase("rows", ratio, shaped(kind, particles, 1.5 * reach(ratio)), particles, TENSION, 1e-3)
+    pairs = case.exact()
+    way = {"from": -reach(ratio), "to": pairs.deepest(TENSION), "steps": steps}
+    scene = scene_from_dict({"title": "rows"} | case.scene() | {"experiment": {"kind": "path", "displacements": way}})
+    found = run(scene, tmp_path / "run", figures=False).results.adhesion_force
+    exact, _ = pairs.adhesion(TENSION)
+    assert abs(found.value - exact) <= found.uncertainty
+    assert found.uncertainty <= 0.5 * exact

@@ -19,6 +19,7 @@ from contact1d.workflow.engine.session import Session
 from contact1d.workflow.experiments import planned
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
+from contact1d.workflow.stability.pairs import TENSION, PairCase, reach, shaped
 from tests.scenes import chains
 
 MakeScene = Callable[..., Scene]
@@ -72,3 +73,29 @@ def test_a_plate_with_momentum_does_not_break_the_contact_too_early(tmp_path: Pa
     found = finished.outcome.quantities["adhesion_force"]
     assert abs(found.value - exact) <= found.uncertainty
     assert found.uncertainty <= 2e-2 * exact
+
+
+def test_a_plate_that_swings_past_a_tooth_claims_what_it_lost(tmp_path: Path) -> None:
+    """With little drag it lets go of pairs that it would have held: F_A comes out a fifth too small, and says so."""
+    case = PairCase("tooth", 1.5, shaped("parabola", 9, reach(1.5)), 9, 3.0 * TENSION, 1e-2, dynamic=True)
+    tables = {"title": "tooth"} | case.scene()
+    drag = 0.1 * settings_for(scene_from_dict(tables)).damping
+    tables |= {"damping": {"coefficient": drag}, "plate": {"damping": 0.0}}
+    finished = run(scene_from_dict(tables), tmp_path / "run", figures=False)
+    exact, _ = case.exact().adhesion(case.preload)
+    found = finished.results.adhesion_force
+    assert found.value < 0.9 * exact
+    assert exact - found.value <= found.uncertainty
+    assert "tolerance" in finished.warnings
+
+
+@pytest.mark.parametrize("mass", [1e-3, 0.1, 1e3])
+def test_a_light_plate_and_a_heavy_one_come_to_rest_where_pairs_say(mass: float, tmp_path: Path) -> None:
+    """A light one swings against its particles, whose drag does not stop it; under a heavy one particles lag behind."""
+    case = PairCase("mass", 0.3, shaped("flat_punch", 10, 0.0), 10, 0.0, 1e-3, dynamic=True)
+    load = 5.0 * TENSION
+    tables = case.scene() | {"title": "mass", "plate": {"mass": mass}, "experiment": {"kind": "load", "force": load}}
+    found = run(scene_from_dict(tables), tmp_path / "run", figures=False).results.displacement
+    exact = case.exact().deepest(load)
+    assert abs(found.value - exact) <= found.uncertainty
+    assert found.uncertainty <= 1e-2 * abs(exact)

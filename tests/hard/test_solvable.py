@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -74,16 +75,24 @@ def carried(scene: Scene) -> tuple[float, float]:
     return state.displacement, np.inf
 
 
-def refused(seeds: range, folder: Path) -> tuple[int, dict[int, str]]:
+KINDS = {
+    "load": lambda force: {"kind": "load", "force": force},
+    "pull_off": lambda force: {"kind": "pull_off", "preload": force},
+}
+IN_TIME: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
+
+
+def refused(seeds: Sequence[int], folder: Path, kind: str = "load", timed: bool = False) -> tuple[int, dict[int, str]]:
     """How many of these scenes the solver carries, and which of those the program refuses."""
     solvable, failures = 0, {}
     for seed in seeds:
-        scene = scene_from_dict(random_load(seed))
-        if carried(scene)[1] > CARRIED:
+        tables = random_load(seed)
+        if carried(scene_from_dict(tables))[1] > CARRIED:
             continue
         solvable += 1
+        tables |= {"experiment": KINDS[kind](tables["experiment"]["force"])} | (IN_TIME if timed else {})
         try:
-            run(scene, folder / str(seed), figures=False)
+            run(scene_from_dict(tables), folder / str(seed), figures=False)
         except RunError as error:
             failures[seed] = str(error)
     return solvable, failures
@@ -95,9 +104,19 @@ def test_scenes_that_the_solver_carries_run(tmp_path: Path) -> None:
     assert failures == {}
 
 
+@pytest.mark.parametrize(("kind", "seed"), [("load", 8), ("pull_off", 8), ("load", 41)])
+def test_pairs_that_snap_together_in_time_stay_in_front_of_each_other(kind: str, seed: int, tmp_path: Path) -> None:
+    """A load that comes at once drives a plate past its place, and a snap a particle through its opposite."""
+    assert refused([seed], tmp_path, kind, timed=True) == (1, {})
+    assert "hold" in (tmp_path / str(seed) / "in.lammps").read_text()
+
+
 @pytest.mark.slow
-def test_of_many_scenes_that_the_solver_carries_nearly_all_run(tmp_path: Path) -> None:
-    solvable, failures = refused(range(100, 200), tmp_path)
+@pytest.mark.parametrize("timed", [False, True], ids=["at rest", "in time"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_of_many_scenes_that_the_solver_carries_nearly_all_run(kind: str, timed: bool, tmp_path: Path) -> None:
+    """Of the first 60 seeds all ran, but for a refusal each of a load and a pull-off in time before smaller steps."""
+    solvable, failures = refused(range(100, 200), tmp_path, kind, timed)
     assert solvable >= 30
     assert len(failures) <= (1.0 - RUNS) * solvable, failures
 

@@ -111,6 +111,10 @@ BAD: list[tuple[list[str], dict[str, str]]] = [
     ),
     ([LOAD, REPULSION_ONLY, "experiment.force=0"], {"experiment.force": "greater than 0 (FU) without attraction"}),
     ([LOAD, REPULSION_ONLY, "experiment.force=-1"], {"experiment.force": "needs interaction.attraction"}),
+    (
+        [LOAD, NOISE, DAMPING, "plate.damping=0.5"],
+        {"plate.damping": "cools the plate below noise.temperature; write 0.0"},
+    ),
     (["interaction.attraction.range=0.13"], {"interaction.attraction.range": "greater than the range of the repul"}),
     (["interaction.attraction.amplitude=0.37"], {"interaction.attraction.amplitude": "less than 0.36 (FU·LU)"}),
     (["interaction.cutoff=0.36"], {"interaction.cutoff": "force-free distance, 0.360437 (LU)"}),
