@@ -16,7 +16,7 @@ $(LOCKED): FORCE
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help run test lint mutants validation clean FORCE
+.PHONY: help run test lint docs mutants validation clean FORCE
 
 help: ## show this list
 	@echo 'make [TARGET] [NAME=value ...]'
@@ -34,6 +34,10 @@ lint: $(READY) ## check style, types and the direction of imports
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+docs: $(READY) ## build the site in site/; the tutorial runs on the way
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[docs]'
+	@$(BIN)/python -m mkdocs build --strict --quiet
 
 mutants: $(READY) ## put small faults into the code and see whether the tests notice, a night: ARGS='--part 0.1'
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks.mutants $(ARGS)

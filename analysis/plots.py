@@ -6,8 +6,10 @@ run's own F_A and a₀, so that only the shapes are compared. Each drawing funct
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -155,10 +157,22 @@ def friction_figure(columns: Mapping[str, Sequence[float] | Array]) -> Figure:
 
 
 def new_figure(size: tuple[float, float]) -> Figure:
-    """Return an empty figure of that size [inch], without the state that pyplot keeps."""
+    """Return an empty figure of that size [inch], without the state that pyplot keeps; a notebook shows it."""
+    return _figure_class()(figsize=size, dpi=DPI, layout="constrained")
+
+
+@cache
+def _figure_class() -> type[Figure]:
     from matplotlib.figure import Figure
 
-    return Figure(figsize=size, dpi=DPI, layout="constrained")
+    class ShownFigure(Figure):
+        def _repr_png_(self) -> bytes:
+            """A notebook asks for it; a plain Figure is shown only where pyplot was imported."""
+            shown = io.BytesIO()
+            self.savefig(shown, format="png")
+            return shown.getvalue()
+
+    return ShownFigure
 
 
 def plain_axes(figure: Figure) -> Figure:
