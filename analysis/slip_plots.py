@@ -59,6 +59,27 @@ def tangential_figure(columns: Mapping[str, Array], branches: NDArray[np.str_], 
     return figure
 
 
+def body_shear_figure(states: Mapping[str, tuple[Array, Array, float, float]]) -> Figure:
+    """Shear traction over the distance from the axis of the body of three dimensions, mirrored at the axis.
+
+    Args:
+        states: by name r [LU], q(r) [FU/LU²], contact and stick radius [LU].
+    """
+    figure = new_figure(SIZE)
+    axis = figure.subplots()
+    for (name, (r, shear, edge, stick)), colour in zip(states.items(), (TENSION, COMPRESSION), strict=False):
+        both, values = np.concatenate([-r[::-1], r]), np.concatenate([shear[::-1], shear])
+        axis.plot(both, values, color=colour, linewidth=1.8, label=f"{name.replace('_', ' ')} state")
+        for side in (-1.0, 1.0) if 0.0 < stick < edge else ():
+            axis.axvline(side * stick, color=colour, linewidth=1.0, linestyle="--")
+    axis.axhline(0.0, color="black", linewidth=0.8)
+    axis.set_xlabel("r (LU); dashed: stick radius")
+    axis.set_ylabel("shear traction (FU/LU²)")
+    axis.margins(y=0.09)
+    axis.legend(frameon=False, loc="best")
+    return figure
+
+
 def stick_slip_figure(
     profiles: Mapping[str, Profile],
     coefficient: float,

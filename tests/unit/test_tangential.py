@@ -13,7 +13,7 @@ import pytest
 from contact1d import load_run, run
 from contact1d.analysis import slip_plots
 from contact1d.analysis.pressure import Profile
-from contact1d.analysis.reference.mindlin import mindlin_path
+from contact1d.analysis.reference.mindlin import mindlin_path, mindlin_shear
 from contact1d.analysis.slip import stick_margin
 from contact1d.workflow.experiments.tangential.schedule import passed, schedule
 from contact1d.workflow.scene import Scene, read_scene, scene_from_dict
@@ -81,10 +81,37 @@ def test_files_of_a_run_and_the_same_run_from_its_folder(tmp_path: Path) -> None
     assert list(done.results) == [
         "normal_force", "tangential_force", "contact_radius", "stick_radius", "dissipated_energy",
     ]  # fmt: skip
-    for plot in (None, "stick_slip", "pressure"):
+    with (tmp_path / "shear_3d.csv").open() as file:
+        table = list(csv.DictReader(file))
+    for state in ("farthest", "final"):
+        rows = [row for row in table if row["state"] == state]
+        assert np.array_equal([float(row["shear_stress"]) for row in rows], read.body_shears[state].shear)
+    for plot in (None, "stick_slip", "pressure", "shear_3d"):
         read.plot(plot)
     assert done.curve.branch.tolist() == ["forward", "forward", "backward"]
     assert done.results["dissipated_energy"].unit == "FU·LU"
+
+
+def test_the_shear_in_three_dimensions_is_mindlins_out_and_back(tmp_path: Path) -> None:
+    """Of the run's own a and c, exactly: springs of a parabola have no lattice in between."""
+    done = run(scene(experiment__displacements=[0.0, 0.2, 0.05]), tmp_path, figures=False)
+    a, c = done.curve.contact_radius, done.friction["stick_radius"]
+    peak = 2.0 * a[0] / (math.pi * 1000.0)  # p0 = 2E*a/πR, E* = 1
+    out, back = done.body_shears["farthest"], done.body_shears["final"]
+    there = mindlin_shear(out.r, a[1], c[1], 0.3, peak)
+    assert out.shear == pytest.approx(there, abs=1e-6 * 0.3 * peak)
+    returned = mindlin_shear(back.r, a[1], c[1], 0.3, peak) - 2.0 * mindlin_shear(back.r, a[1], c[2], 0.3, peak)
+    assert back.shear == pytest.approx(returned, abs=1e-6 * 0.3 * peak)
+    assert (out.stick, back.stick) == (c[1], c[2])
+
+
+def test_no_shear_in_three_dimensions_where_there_is_no_such_body(tmp_path: Path) -> None:
+    drawn: Any = {"bodies.reduction": "geike_popov", "experiment.displacements": [0.1]}
+    punch: Any = {"bodies.profile": {"kind": "flat_punch", "radius": 10.0}, "experiment.displacements": [0.1]}
+    for i, changes in enumerate((drawn, punch)):
+        done = run(read_scene(SHIPPED).with_(changes), tmp_path / str(i), figures=False)
+        assert done.body_shears == {}
+        assert not (done.folder / "shear_3d.csv").exists()
 
 
 def test_with_a_material_forces_and_ways_are_in_si(tmp_path: Path) -> None:

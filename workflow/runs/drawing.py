@@ -18,6 +18,7 @@ from contact1d.analysis.reference.mindlin import mindlin_path, sliding_displacem
 from contact1d.analysis.slip import stick_margin
 from contact1d.workflow.experiments.running.radii import RadiusRule
 from contact1d.workflow.runs.body_pressure import REPORTED, body_pressures
+from contact1d.workflow.runs.body_shear import body_shears, row_of
 from contact1d.workflow.runs.closed_form import Case
 from contact1d.workflow.runs.theory import applying
 from contact1d.workflow.scene import Scene, Tangential
@@ -75,7 +76,11 @@ def _drawings(
     if isinstance(scene.experiment, Tangential):
         theory = _mindlin(scene, curve, friction)
         loop = partial(slip_plots.tangential_figure, friction, curve.branch, theory)
-        return {"tangential": loop, "stick_slip": _stick_slip(scene, profiles, friction), **pressure}
+        sheared: Drawings = {"tangential": loop, "stick_slip": _stick_slip(scene, profiles, friction)}
+        if shears := body_shears(scene, profiles, friction, curve.contact_radius):
+            lines = {name: (one.r, one.shear, one.edge, one.stick) for name, one in shears.items()}
+            sheared["shear_3d"] = partial(slip_plots.body_shear_figure, lines)
+        return sheared | pressure | _body_pressure(scene, values, profiles)
     if friction:
         return {"friction": partial(plots.friction_figure, friction), **pressure}
     if scene.noise is not None:
@@ -127,7 +132,7 @@ def _stick_slip(scene: Scene, profiles: Mapping[str, Profile], columns: Mapping[
     places, coefficient = columns["tangential_displacement"], scene.friction.coefficient
     margins, radii, moved = {}, {}, {}
     for name, profile in profiles.items():
-        row = len(places) - 1 if name == "final" else int(np.argmax(np.abs(places)))
+        row = row_of(name, columns)
         moves = np.diff(places[: row + 1], prepend=0.0)
         direction = int(np.sign(moves[moves != 0.0][-1])) if moves.any() else 0
         margins[name] = stick_margin(profile, coefficient, direction)

@@ -19,6 +19,7 @@ from contact1d.analysis.pressure import Profile
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.runs.body_pressure import BodyPressure, body_pressures
+from contact1d.workflow.runs.body_shear import BodyShear, body_shears
 from contact1d.workflow.runs.report import RESULTS
 from contact1d.workflow.scene import Scene, SceneError, Slide, Tangential, scene_from_dict
 from contact1d.workflow.units import FORCE, LENGTH, Quantity, Scales, scale_of
@@ -110,12 +111,17 @@ class Run:
         """p(r) of the body of three dimensions, by state; what pressure_3d.csv holds. Empty where there is none."""
         return body_pressures(self.scene, self.profiles)
 
+    @property
+    def body_shears(self) -> dict[str, BodyShear]:
+        """q(r) of the body of three dimensions, by state; what shear_3d.csv holds. Empty where there is none."""
+        return body_shears(self.scene, self.profiles, self.friction, self.curve.contact_radius)
+
     def plot(self, name: str | None = None) -> Figure:
         """Draw a figure, by default the experiment's main one; `.savefig(path)` keeps it.
 
         Args:
-            name: "force_displacement", "force_radius", "pressure", "pressure_3d", "friction", "tangential" or
-                "stick_slip", as the files in the folder are called.
+            name: "force_displacement", "force_radius", "pressure", "pressure_3d", "friction", "tangential",
+                "stick_slip" or "shear_3d", as the files in the folder are called.
 
         Raises:
             ValueError: the run has no such figure; the message says which it has.

