@@ -155,6 +155,7 @@ REFUSED: list[tuple[dict[str, Any], str, str]] = [
     ({"damping": {"coefficient": "auto"}}, "damping", "without time"),
     ({"noise": {"temperature": 1e-3, "seed": 1}}, "noise", "without time"),
     ({"horizontal": {}}, "horizontal", "useless on a rigid plane"),
+    ({"adhesion": {"work_of_adhesion": 0.01}}, "adhesion", "Savkoor and Briggs"),
     ({"friction": None}, "friction", "add [friction] with its coefficient"),
 ]
 

@@ -41,7 +41,8 @@ EXCLUDED = {
         "friction": "its friction is that of the particles' own forces",
     },
     "tangential": {
-        "adhesion": "a contact that adheres and slips at once is another theory than JKR's or Mindlin's",
+        "adhesion": "whether shear peels an edge that adheres or makes it slip is a criterion of its own (Savkoor and "
+        "Briggs), which neither JKR nor Mindlin has",
         "neighbours": "friction remembers its way, and a minimiser, which such springs need, has no way",
         "damping": NO_TIME,
         "noise": NO_TIME,
