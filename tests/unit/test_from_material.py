@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import inspect
 import math
+import re
+import tomllib
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from contact1d.workflow.cli.identify import identify
 from contact1d.workflow.identify import IdentifyError
 from contact1d.workflow.identify.choice import chosen, theories_of
-from contact1d.workflow.identify.contact import read_contact
+from contact1d.workflow.identify.contact import KEYS, read_contact
 from contact1d.workflow.scene import SceneError
 
 ROUND_OFF = 1e-12
@@ -213,3 +217,23 @@ def test_rough_surfaces_are_refused_with_the_roughness_that_is_not() -> None:
 def test_contact_as_wide_as_its_sphere_is_refused() -> None:
     words = refused(**LOADED | {"load": "1 GN"})
     assert "of the sphere's: the theory is for contacts small beside the sphere" in words
+
+
+# What is written about it.
+
+
+def test_page_has_every_key_and_its_examples_are_contacts() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "identify.md").read_text(encoding="utf-8")
+    examples = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    assert len(examples) == 2
+    for example in examples:
+        assert read_contact(tomllib.loads(example)).contact_modulus > 0.0
+    table = page.split("## Keys")[1].split("## ")[0]
+    named = {key for row in re.findall(r"^\| (`[^|]*) \|", table, re.MULTILINE) for key in re.findall(r"`(\w+)`", row)}
+    assert named == set(KEYS)
+
+
+def test_help_of_the_command_has_an_example_that_is_a_contact() -> None:
+    text = inspect.getdoc(identify) or ""
+    lines = [line.strip() for line in text.splitlines() if " = " in line]
+    assert read_contact(tomllib.loads("\n".join(lines))).work_of_adhesion == pytest.approx(0.1)
