@@ -156,6 +156,21 @@ def test_spacing_of_other_bodies_follows_from_their_radius(profile: dict[str, An
     assert choice.scene.bodies.profile.kind == profile["kind"]
 
 
+def test_measured_profile_is_read_from_beside_its_contact_and_by_its_units(tmp_path: Path) -> None:
+    """z = r²/2R with R = 10 mm, in µm, up to 0.4 mm."""
+    rows = [f"{20 * i},{(20e-6 * i) ** 2 / 0.02 * 1e6:.12g}" for i in range(21)]
+    known = 'upper = "rigid"\nlower = { youngs_modulus = "210 GPa", poisson_ratio = 0.3 }\nload = "10 N"\n'
+    radius = math.cbrt(0.75 * 10.0 * 0.01 * (1.0 - 0.3**2) / 210e9)
+    for names, scale, good in (("r [µm],z [µm]", "", True), ("r,z", ', scale = "1 um"', True), ("r,z", "", False)):
+        (tmp_path / "tip.csv").write_text("\n".join([names, *rows]), encoding="utf-8")
+        (tmp_path / "tip.toml").write_text(f'{known}profile = {{ kind = "table", file = "tip.csv"{scale} }}\n')
+        if good:
+            assert chosen(read_contact(tmp_path / "tip.toml")).contact_radius == pytest.approx(radius, rel=GRID)
+        else:
+            with pytest.raises(SceneError, match=r"profile\.scale: missing: the file says no unit; write scale"):
+                read_contact(tmp_path / "tip.toml")
+
+
 def test_two_chains_are_chosen_where_they_are_asked_for() -> None:
     choice = chosen(read_contact(TIP | {"radius": "5 um", "model": "particles"}))
     assert choice.target is not None

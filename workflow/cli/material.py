@@ -55,7 +55,7 @@ def beside_theories(found: MaterialRun) -> Iterator[str]:
         if own is not None and values["JKR"]:
             deviation = f"{own['value'] / values['JKR'] - 1.0:+.2%}"
         said = "—" if own is None else in_si(own)
-        shown = "".join(f"{prefixed(float(value or 0.0), unit):<{WIDTH}}" for value in values.values())
+        shown = "".join(f"{prefixed(value, unit) if value else '0':<{WIDTH}}" for value in values.values())
         yield f"  {LABELS[name]:<28} {said:<26}{shown}{deviation}"
     yield "  * holds at this μ"
 

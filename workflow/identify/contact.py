@@ -12,6 +12,7 @@ from typing import Any, Literal
 from contact1d.workflow.scene import Problem, SceneError
 from contact1d.workflow.scene.material import Elastic
 from contact1d.workflow.scene.problems import nearest, shown
+from contact1d.workflow.scene.profile_file import ProfileFileError, ScaleError, read_profile
 from contact1d.workflow.scene.si_text import UnitTextError, example, in_words, si_value
 
 AnyContact = str | PathLike[str] | Mapping[str, Any]
@@ -33,8 +34,8 @@ UNITS = {
 }
 """Keys that hold a quantity, each a number in this unit or a text with any unit of its dimension."""
 KEYS = ("title", "radius", "profile", "upper", "lower", *[key for key in UNITS if key != "radius"], "model")
-LENGTHS = ("radius", "height", "scale")
-"""Keys of a profile that hold a length; `scale` is that of one unit of a file's numbers."""
+LENGTHS, OF_A_FILE = ("radius", "height"), ("file", "scale")
+"""Keys of a profile that hold a length, and those that its file is read by."""
 BODY = {"youngs_modulus": "Pa", "poisson_ratio": "1"}
 LARGEST_POISSON = 0.5
 
@@ -178,12 +179,26 @@ class _Reader:
             hint = 'write { kind = "cone", slope = 0.1 }, as in a scene'
             self.problems.append(Problem("profile", 'must be a table with a "kind"', shown(given), hint))
             return {}
-        lengths: dict[str, Any] = {
-            key: self._quantity(f"profile.{key}", given, "m", key) for key in LENGTHS if key in given
-        }
-        if isinstance(given.get("file"), str):
-            lengths["file"] = str((self.folder / given["file"]).resolve())
-        return {**given, **lengths}
+        lengths = {key: self._quantity(f"profile.{key}", given, "m", key) for key in LENGTHS if key in given}
+        points = self._points(given) if isinstance(given.get("file"), str) else {}
+        return {key: value for key, value in {**given, **lengths, **points}.items() if key not in OF_A_FILE}
+
+    def _points(self, given: Mapping[str, Any]) -> dict[str, list[float]]:
+        """The lists r and z [m] of a profile's file."""
+        try:
+            lists, units = read_profile(self.folder / given["file"]).scaled(given.get("scale"))
+        except ProfileFileError as error:
+            self.problems.append(Problem("profile.file", str(error), shown(given["file"])))
+            return {}
+        except ScaleError as error:
+            self.problems.append(Problem("profile.scale", str(error), shown(given["scale"])))
+            return {}
+        if "scale" not in given and None in units.values():
+            hint = 'write scale = "1 um", the length of one of its units, or name the columns r [µm] and z [nm]'
+            self.problems.append(Problem("profile.scale", "missing: the file says no unit", hint=hint))
+            return {}
+        meters = {key: 1.0 if unit is None else float(si_value(unit, "m")[0]) for key, unit in units.items()}
+        return {key: [meters[key] * value for value in values] for key, values in lists.items()}
 
     def _elasticity(self, modulus: float | None) -> tuple[dict[str, Elastic], float]:
         """Both bodies, as far as they are elastic and given, and E* [Pa]."""

@@ -19,8 +19,10 @@ from contact1d.workflow.identify.contact import AskedContact
 from contact1d.workflow.identify.target import IdentifyError
 from contact1d.workflow.scene import scene_from_dict
 
-LONGEST, SHORTEST, PLACES = 1e3, 1e-9, 4000
-"""Radii among which that of a contact is looked for, over a length of the profile, and how many."""
+SHORTEST, LONGEST, PLACES = 1e-12, 1e4, 8000
+"""Radii [m] among which that of a contact is looked for, in a geometric row, and how many."""
+INSIDE = 0.999999
+"""Largest of them over the half-width of a body that ends: the transform of a circle has no bound there."""
 
 
 def profile_in(contact: AskedContact, unit: float) -> dict[str, Any]:
@@ -32,8 +34,6 @@ def profile_in(contact: AskedContact, unit: float) -> dict[str, Any]:
     for key in ("r", "z"):
         if key in profile:
             profile[key] = [value / unit for value in profile[key]]
-    if "file" in profile:
-        profile["scale"] = profile.get("scale", 1.0) / unit
     return profile
 
 
@@ -44,9 +44,10 @@ def curve(contact: AskedContact) -> tuple[NDArray[np.float64], NDArray[np.float6
     if body.profile.has_edge:
         radii = np.asarray([reach])
         return radii, np.asarray([math.inf])
-    length = body.profile.curvature_radius or (reach if reach < math.inf else _length(contact))
-    radii = np.geomspace(SHORTEST * length, min(LONGEST * length, 0.999999 * reach), PLACES)
-    heights = body.profile.transformed(radii)
+    radii = np.geomspace(SHORTEST, min(LONGEST, INSIDE * reach), PLACES)
+    with np.errstate(over="ignore"):
+        heights = body.profile.transformed(radii)
+    radii, heights = radii[np.isfinite(heights)], heights[np.isfinite(heights)]
     steps = np.diff(radii, prepend=0.0)
     below = np.cumsum(0.5 * (heights + np.concatenate([[0.0], heights[:-1]])) * steps)
     stretch = np.sqrt(2.0 * math.pi * radii * contact.work_of_adhesion / contact.contact_modulus)
@@ -67,12 +68,6 @@ def _stand_in(contact: AskedContact) -> dict[str, Any]:
         },
         "experiment": {"kind": "load", "force": 1.0},
     }
-
-
-def _length(contact: AskedContact) -> float:
-    """A length that load and attraction make with the modulus [m]."""
-    by_load = math.sqrt((contact.load or 0.0) / contact.contact_modulus)
-    return max(by_load, contact.work_of_adhesion / contact.contact_modulus)
 
 
 def contact_radius(contact: AskedContact) -> float:
