@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from heapq import heappop, heappush
 from itertools import count
 
+from contact1d.workflow.engine.failure import EngineError
 from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.experiments.running.trust import ChainEndError, ThroughError, UntrustedError
 from contact1d.workflow.scene import Load, PullOff, Scene, SceneError, Slide
@@ -105,8 +106,7 @@ def tried(
             attempt(reader(change))
         except Contact1dError as another:
             failed.append(change)
-            more = list(_changes(reader, change, another)) or list(_changes(reader, change, error))
-            for further, one in enumerate(more, 1):
+            for further, one in enumerate(_changes(reader, change, another), 1):
                 heappush(waiting, (cost + further, next(number), together + 1, change.then(one)))
         else:
             helped.append(change)
@@ -139,6 +139,8 @@ def _ways(error: SceneError) -> Iterator[Change]:
 def _kinds(error: Contact1dError) -> tuple[Callable[[Scene], Change | None], ...]:
     """What is known to help against such an error, what helps most often first."""
     cause = error.__cause__
+    if isinstance(cause, EngineError):  # a trial that took too long says little
+        return (_without_horizontal, _softer_core, _weaker_attraction, _smaller_load)
     if isinstance(cause, ThroughError):
         return (
             _without_horizontal, _softer_core, _weaker_attraction, _smaller_load, _stronger_core, _shorter_attraction,
