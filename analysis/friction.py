@@ -30,7 +30,9 @@ DROPPED = 1
 MOST_PAIRED = 4
 """Periods that may be one block, if that leaves so many blocks: slips may repeat after several periods only."""
 FASTER = 2.0
-"""Velocity of the plate over that of the drive from which on it slips."""
+"""Velocity of the plate over that of the drive from which on it may slip."""
+JUMP = 10.0
+"""The same that it reaches in a slip: near below the threshold of stick-slip it passes barriers at 5 times that."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +102,7 @@ def student(freedom: int) -> float:
 
 
 def slips(time: Array, place: Array, spacing: float, velocity: float) -> list[Slip]:
-    """Where a plate goes on by one period of the other body or more while it is FASTER than the drive.
+    """Where a plate goes on by one period of the other body or more while it is FASTER than the drive, by a JUMP.
 
     Args:
         time, place: of the plate, shape (n,) [TU], [LU].
@@ -108,7 +110,8 @@ def slips(time: Array, place: Array, spacing: float, velocity: float) -> list[Sl
         velocity: of the drive [LU/TU].
     """
     hollow = np.floor(place / spacing + 0.5)
-    quick = np.abs(np.diff(place)) > FASTER * abs(velocity) * np.diff(time)
+    pace = np.abs(np.diff(place)) / np.diff(time)
+    quick = pace > FASTER * abs(velocity)
     found, at = [], 0
     while at < quick.size:
         if not quick[at]:
@@ -117,7 +120,7 @@ def slips(time: Array, place: Array, spacing: float, velocity: float) -> list[Sl
         end = at
         while end < quick.size and quick[end]:
             end += 1
-        if hollow[end] != hollow[at]:
+        if hollow[end] != hollow[at] and pace[at:end].max() > JUMP * abs(velocity):
             found.append(Slip(float(time[end]), float(place[at]), float(place[end] - place[at])))
         at = end
     return found

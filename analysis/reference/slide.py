@@ -84,19 +84,22 @@ class Integrator:
         Measured every `every` steps; the impulse of the friction [FU·TU] is summed over every step.
         """
         rows, impulse = [], 0.0
+        model = self.model
+        drags = (model.drag / model.mass, model.drag / model.mass, model.plate_drag / model.plate_mass)
         accelerations = self._accelerations(start, velocity)
         for step in range(1, steps + 1):
             before = self.friction
-            for place, speed, acceleration in zip(self._places(), self.speeds, accelerations, strict=True):
-                speed += 0.5 * time_step * acceleration
+            for place, speed, acceleration, drag in zip(self._places(), self.speeds, accelerations, drags, strict=True):
+                speed += 0.5 * time_step * (acceleration - drag * speed)
                 place += time_step * speed
             drive = start + velocity * step * time_step
             accelerations = self._accelerations(drive, velocity)
-            for speed, acceleration in zip(self.speeds, accelerations, strict=True):
+            for speed, acceleration, drag in zip(self.speeds, accelerations, drags, strict=True):
                 speed += 0.5 * time_step * acceleration
+                speed /= 1.0 + 0.5 * time_step * drag  # the drag is that of the new velocity: second order
             impulse += 0.5 * time_step * (before + self.friction)
             if step % every == 0:
-                pull = self.model.cantilever_stiffness * (drive - self.plate[0])
+                pull = model.cantilever_stiffness * (drive - self.plate[0])
                 rows.append((step * time_step, self.friction, pull, self.plate[0], impulse))
         return Trace(*(np.asarray(column) for column in zip(*rows, strict=True)))
 
@@ -116,19 +119,19 @@ class Integrator:
         return self.lower, self.upper, self.plate
 
     def _accelerations(self, drive: float, velocity: float) -> tuple[Array, Array, Array]:
-        """Of lower particles, upper particles and plate [LU/TU²], with the drag at the velocities of now."""
+        """Of lower particles, upper particles and plate, without the drag at their own velocities [LU/TU²]."""
         model = self.model
         stiffness = np.asarray([model.tangential_stiffness, model.normal_stiffness])
         on_upper, on_lower = self._opposite()
         self.friction = -float(on_upper[:, 0].sum())
         held = stiffness * (self.upper - self.plate)
-        upper = on_upper - held - model.drag * self.speeds[1] + self._neighbours(self.upper)
-        lower = on_lower - stiffness * self.lower - model.drag * self.speeds[0] + self._neighbours(self.lower)
+        upper = on_upper - held + self._neighbours(self.upper)
+        lower = on_lower - stiffness * self.lower + self._neighbours(self.lower)
         if model.rigid:
             lower = np.zeros_like(lower)
         total = len(self.upper) * model.drag + model.plate_drag
         along = model.cantilever_stiffness * (drive - self.plate[0]) + total * velocity
-        plate = held.sum(axis=0) - model.plate_drag * self.speeds[2] + np.asarray([along, -model.normal_force])
+        plate = held.sum(axis=0) + np.asarray([along, -model.normal_force])
         return lower / model.mass, upper / model.mass, plate / model.plate_mass
 
     def _neighbours(self, moved: Array) -> Array:

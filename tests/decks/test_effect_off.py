@@ -53,6 +53,7 @@ EMPTY = {"# Formula: -", "# Needs: -", "# Defines: -"}
 FRAGMENTS = {name: (name,) for name in EFFECTS} | {"horizontal": ("horizontal", "far")}
 STEPS = {
     "interaction": ("steps/measuring_opposite", "steps/measured_opposite"),
+    "noise": ("steps/heat", "steps/heating"),
     "cantilever": ("steps/drive", "steps/told", "steps/measuring_energy", "steps/measured_energy"),
 }
 

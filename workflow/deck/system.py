@@ -13,6 +13,7 @@ from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.effects.base import number, sphere_radius
 from contact1d.workflow.deck.lattice import bodies, period
 from contact1d.workflow.settings.adhesion import cells_of
+from contact1d.workflow.settings.inertia import inertia
 
 CELLS = "adhesion.cells"
 
@@ -22,11 +23,12 @@ def write_system(deck: Deck, folder: Path) -> None:
     scene, settings = deck.written
     both = bodies(scene, settings)
     anchors = settings.particles
-    mass = settings.plate_mass / anchors if scene.plate is not None else scene.bodies.mass
+    particle, plate = inertia(scene, settings)
+    mass = plate / anchors if scene.plate is not None else particle
     system = assemble(
         both,
         scene.neighbours is not None,
-        scene.bodies.mass,
+        particle,
         mass,
         margins(scene, settings),
         driver=scene.cantilever is not None,

@@ -14,11 +14,17 @@ def noise(scene: Scene, settings: Settings) -> Contribution:
         "noise_seed": str(scene.noise.seed),
     }
     fragments: tuple[str, ...] = ("noise",)
+    before: tuple[str, ...] = ("steps/heat",)
+    after: tuple[str, ...] = ("steps/heating",)
     if scene.plate is not None and settings.plate_damping > 0.0:
         fragments += ("noise_plate",)
+        before += ("steps/heat_plate",)
+        after = ("steps/heating_plate",)
         variables["noise_plate_damp"] = number(settings.plate_mass / settings.particles / settings.plate_damping)
         variables["noise_plate_id"] = str(first_upper_anchor(scene, settings))
-    return Contribution("noise", Stage.DRAG, fragments, variables)
+    if not settings.drive:  # nobody asks for the heat
+        before = after = ()
+    return Contribution("noise", Stage.DRAG, fragments, variables, step_begin=before, step_end=after)
 
 
 def first_upper_anchor(scene: Scene, settings: Settings) -> int:

@@ -26,8 +26,8 @@ ATOM_UNITS = {"x": "LU", "f": "FU", "v_opposite_x": "FU", "v_opposite_z": "FU"}
 """What is measured of every atom, and its unit."""
 BATCH = 8
 """Rows that go to LAMMPS at a time where they are known beforehand: waking two processes takes as long as a row."""
-HEAT = ("f_noise_langevin", "f_noise_plate_bath")
-"""Energy that the heat baths of particles and plate have taken since they were asked to tell [FU·LU]."""
+HEAT = ("heat_particles", "heat_plate")
+"""Energy that the heat baths of particles and plate took in a row [FU·LU]."""
 MOTION = {
     "f_cantilever_means[1]": "FU", "f_cantilever_means[2]": "FU·LU", "f_cantilever_means[3]": "LU·LU/TU·TU",
     "c_measuring_energy": "FU·LU", "cantilever_kinetic": "FU·LU", "vcm(plate,x)": "LU/TU", "vcm(plate,z)": "LU/TU",
@@ -233,9 +233,7 @@ class Contact:
         if self.scene.cantilever is not None:
             names |= {"cantilever_plate": "LU", "cantilever_force": "FU"} | MOTION
             if self.scene.noise is not None and self._tells:
-                names["f_noise_langevin"] = "FU·LU"
-                if self.settings.plate_damping > 0.0:
-                    names["f_noise_plate_bath"] = "FU·LU"
+                names |= dict.fromkeys(HEAT if self.settings.plate_damping > 0.0 else HEAT[:1], "FU·LU")
         return names | dict.fromkeys(self._pushes, "FU")
 
     def _state(self, phase: str, numbers: dict[str, float], atoms: dict[str, Array]) -> State:

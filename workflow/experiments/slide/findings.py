@@ -21,6 +21,8 @@ from contact1d.workflow.units import ENERGY, FORCE, NUMBER, Quantity
 
 STEADY = 0.1
 """Way of plate and drive after the run-in may differ by this share, or by one slip, where sliding counts as steady."""
+TEMPERATURE_BLOCKS = 20
+"""Parts of the last leg whose spread gives the error of its temperature."""
 CLOSED = 5e-3
 """Work that is neither dissipated nor stored, over the largest of the three, from which on it is told."""
 
@@ -31,6 +33,7 @@ def outcome_of(deck: Deck, loaded: State, states: list[State], phases: tuple[Pha
     motion = motion_of(scene, settings, loaded, states)
     found = slips_of(scene, motion)
     quantities = energies(motion) | {"slips": Quantity(float(len(found)), 0.0, NUMBER)} | means(scene, settings, motion)
+    quantities |= temperature(scene, settings, motion)
     last = states[-1]
     return Outcome(
         quantities,
@@ -62,22 +65,22 @@ def means(scene: Scene, settings: Settings, motion: Motion) -> dict[str, Quantit
         pull = float(pulls.mean())
         found["mean_friction"] = Quantity(mean.value, mean.error + tolerance * abs(mean.value), FORCE)
         found["mean_cantilever_force"] = Quantity(pull, friction.interval(pulls) + tolerance * abs(pull), FORCE)
-        if scene.noise is not None:
-            found["plate_temperature"] = _temperature(scene, settings, motion, rows, period, mean.first)
     if number == _first_moving(motion) and way[-1] - way[0] >= scene.bodies.spacing:
         top, missed = friction.largest_before(sign * motion.friction[rows], way, scene.bodies.spacing)
         found["static_friction"] = Quantity(top, missed + tolerance * abs(top), FORCE)
     return found
 
 
-def _temperature(scene: Scene, settings: Settings, motion: Motion, rows: slice, period: float, first: int) -> Quantity:
-    """M ⟨(V − ⟨V⟩)²⟩ over the plate's free directions, of a mean over whole periods [FU·LU]."""
-    assert scene.plate is not None
+def temperature(scene: Scene, settings: Settings, motion: Motion) -> dict[str, Quantity]:
+    """M ⟨(V − ⟨V⟩)²⟩ of the plate's free directions in the last leg [FU·LU]; slips are part of it."""
+    if scene.noise is None or scene.plate is None:
+        return {}
+    rows = motion.of_leg(int(motion.leg[-1]))
     time = motion.time[rows]
-    squares = friction.block_means(time, motion.squares[rows], period)[first:]
-    speeds = friction.block_means(time, motion.place[rows], period)[first:]
+    length = (time[-1] - time[0]) / TEMPERATURE_BLOCKS
+    squares, speeds = (friction.block_means(time, values[rows], length) for values in (motion.squares, motion.place))
     blocks = settings.plate_mass * (squares - float(speeds.mean()) ** 2) / len(scene.plate.free)
-    return Quantity(float(blocks.mean()), friction.interval(blocks), ENERGY)
+    return {"plate_temperature": Quantity(float(blocks.mean()), friction.interval(blocks), ENERGY)}
 
 
 def energies(motion: Motion) -> dict[str, Quantity]:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from contact1d.workflow.experiments.running.contact import HEAT, State
 from contact1d.workflow.scene import Scene, Slide
 from contact1d.workflow.settings.drive import DriveLeg
+from contact1d.workflow.settings.inertia import inertia
 from contact1d.workflow.settings.settings import Settings
 
 Array = NDArray[np.float64]
@@ -79,22 +80,31 @@ def motion_of(scene: Scene, settings: Settings, start: State, states: list[State
         return np.concatenate([[0.0], np.cumsum(parts)])
 
     count = np.floor(np.asarray([state.step for state in every]) / EVERY) + 1.0
-    force, kinetic, squares = (
-        np.diff(count * read(f"f_cantilever_means[{i}]")) / np.diff(count) * span for i in (1, 2, 3)
-    )
+    step = np.asarray([legs[i].time_step for i in numbers])
+
+    def summed_over_rows(mean: int, ends: Array) -> Array:
+        """Integral of each row: samples at every fifth step up to its end, made the trapezoid rule."""
+        means = np.diff(count * read(f"f_cantilever_means[{mean}]")) / np.diff(count)
+        return np.asarray(means * span - 0.5 * EVERY * step * np.diff(ends))
+
     place = np.asarray([state.plate_x for state in every])
     pull = np.asarray([state.cantilever_force for state in every])
+    speeds = read("vcm(plate,x)") ** 2 + read("vcm(plate,z)") ** 2
+    force = summed_over_rows(1, pull)
+    kinetic = summed_over_rows(2, read("cantilever_kinetic"))
+    squares = summed_over_rows(3, speeds)
     bodies, mass, c = scene.bodies, settings.plate_mass, settings.plate_damping
     drag = settings.particles * settings.damping
+    heavy, _ = inertia(scene, settings)
     momentum = settings.particles * bodies.mass * read("vcm(upper,x)") + mass * read("vcm(plate,x)")
     lag = velocity * span - np.diff(read("xcm(upper,x)")), velocity * span - np.diff(place)
-    lost = 2.0 * settings.damping / bodies.mass * kinetic + c * squares
+    lost = 2.0 * settings.damping / heavy * kinetic + c * squares
     told = [name for name in HEAT if name in states[-1].motion]
     if told:
-        lost = np.asarray(sum(np.diff(np.asarray([s.motion.get(name, 0.0) for s in every])) for name in told))
-    moving = 0.5 * mass * (read("vcm(plate,x)") ** 2 + read("vcm(plate,z)") ** 2)
+        lost = np.asarray([sum(state.motion[name] for name in told) for state in states])
+    moving = 0.5 * mass * speeds
     depth = np.asarray([state.displacement for state in every])
-    energy = read("c_measuring_energy") + read("cantilever_kinetic") + moving
+    energy = read("c_measuring_energy") + bodies.mass / heavy * read("cantilever_kinetic") + moving
     energy += 0.5 * pull**2 / scene.cantilever.stiffness - normal_force * depth
     return Motion(
         legs=legs,
