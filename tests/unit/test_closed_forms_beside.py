@@ -141,3 +141,33 @@ def test_the_entry_has_value_deviation_and_si() -> None:
     assert said["deviation"] == pytest.approx(2.0 / said["value"] - 1.0, rel=ROUND_OFF)
     assert said["si"] == {"value": pytest.approx(1e-6 * said["value"], rel=ROUND_OFF), "unit": "m"}
     assert set(entry["values"]) == {"displacement"}
+
+
+def test_jkr_beside_what_adheres() -> None:
+    work = 0.01
+    pulled = {"kind": "pull_off", "preload": 2.0}
+    scene = chains(R, 2.0 * E, experiment=pulled, interaction=None,
+                   bodies={"profile": PROFILES["parabola"], "spacing": 2.0, "lower": "rigid_plane"},
+                   adhesion={"work_of_adhesion": work})  # fmt: skip
+    of = Case(scene_from_dict(scene), {})
+    (form,) = applying(of)
+    assert form.name == "JKR"
+    said = form.values(of)
+    assert said["adhesion_force"] == pytest.approx(1.5 * math.pi * work * R, rel=ROUND_OFF)
+    assert said["zero_load_radius"] == pytest.approx((4.5 * math.pi * work * R**2 / E) ** (1.0 / 3.0), rel=ROUND_OFF)
+    a = said["zero_load_radius"]
+    central = 2.0 * E * a / (math.pi * R) - math.sqrt(2.0 * E * work / (math.pi * a))
+    assert form.pressure is not None
+    assert float(form.pressure(of, np.asarray([0.0]))[0]) == pytest.approx(central, rel=ROUND_OFF)
+
+
+@pytest.mark.parametrize(
+    ("profile", "name"), [("cone", "Maugis and Barquins, cone"), ("power", "Popov and Heß, power"),
+                          ("flat_punch", "Kendall, flat punch")],
+)  # fmt: skip
+def test_the_like_of_jkr_beside_other_profiles(profile: str, name: str) -> None:
+    of = case(profile, LOAD, adhesion={"work_of_adhesion": 0.01})
+    (form,) = applying(of)
+    assert form.name == name
+    assert form.values(of)["adhesion_force"] > 0.0
+    assert form.values(of)["displacement"] > 0.0

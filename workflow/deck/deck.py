@@ -8,17 +8,19 @@ deck that it leaves behind holds the rows of the schedule that the search ended 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import TypeVar
 
 from contact1d.workflow.deck.effects import Contribution, contributions
 from contact1d.workflow.deck.fragments import DeckError, Fragment, fragment
 from contact1d.workflow.deck.parts import bins, moving, own_units, standing
-from contact1d.workflow.deck.steps import STEPS, Displace, Phase, Row
+from contact1d.workflow.deck.steps import STEPS, UNITS, Displace, Phase, Row
 from contact1d.workflow.deck.units import DeckUnits, units_for
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 
+AnyRow = TypeVar("AnyRow", bound=Row)
 NUMBERS_PER_LINE = 6
 
 
@@ -85,6 +87,15 @@ class Deck:
     def row(self, kind: type[Row]) -> str:
         """One row up to its measurement: move or load, then measure."""
         return _commands((self._step(kind), *self._measuring, self._line))
+
+    def as_listed(self, row: AnyRow) -> AnyRow:
+        """A row of a sweep with its numbers as LAMMPS has those of a list: to 15 digits."""
+        numbers = {field.name: getattr(row, field.name) for field in fields(row)}
+        read = {
+            name: self.units.from_deck(float(f"{self.units.to_deck(value, UNITS[name]):.15g}"), UNITS[name])
+            for name, value in numbers.items()
+        }
+        return replace(row, **read)
 
     def sweep(self, rows: Sequence[Row]) -> str:
         """All rows, each a place of the plate, in one run."""

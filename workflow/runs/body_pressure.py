@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.abel import FEWEST, LineLoad, line_load
+from contact1d.analysis.held import whole_cells
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.experiments.running.outcome import Outcome
@@ -79,8 +80,9 @@ def body_pressures(scene: Scene, profiles: Mapping[str, Profile]) -> dict[str, B
 def _pressure(scene: Scene, profile: Profile, radius: ContactRadius) -> BodyPressure | None:
     """p(r) of a state; None where too few particles carry it, or they do not stand alike on both sides."""
     wider = WIDER_THAN_SPHERES if stands_for_spheres(scene) else 1.0
-    x, q = profile.x / wider, wider * profile.pressure
-    jumps = scene.bodies.profile.has_edge
+    held = scene.adhesion is not None and scene.adheres
+    x, q = profile.x / wider, wider * (whole_cells(profile, radius) if held else profile.pressure)
+    jumps = scene.bodies.profile.has_edge or held
     edge = radius.value / wider if jumps or scene.interaction is None else None
     tip, beside = scene.bodies.height(np.array([TIP, 1.0]) * scene.bodies.spacing)
     apex = bool(tip > KINK * TIP * beside)

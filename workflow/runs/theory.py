@@ -9,13 +9,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from contact1d.workflow.runs.adhesive_forms import ADHESIVE
 from contact1d.workflow.runs.closed_form import Case, ClosedForm
 from contact1d.workflow.runs.indenters import INDENTERS
 from contact1d.workflow.runs.sheared import SHEARED
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import Quantity, Scales
 
-FORMS: tuple[ClosedForm, ...] = (*INDENTERS, *SHEARED)
+FORMS: tuple[ClosedForm, ...] = (*INDENTERS, *ADHESIVE, *SHEARED)
 """Every closed form that a run is laid beside; which of them applies each says itself."""
 
 

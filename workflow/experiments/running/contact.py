@@ -139,6 +139,8 @@ class Contact:
         """Run rows of the current phase, which are known beforehand, and measure each. See `row`."""
         found: list[State] = []
         size = BATCH if self._sweep is None else self._sweep.at_once
+        if self._sweep is not None:
+            rows = [self.deck.as_listed(row) for row in rows]
         for start in range(0, len(rows), size):
             batch = rows[start : start + size]
             self._phases[-1] = replace(self._phases[-1], rows=(*self._phases[-1].rows, *batch))

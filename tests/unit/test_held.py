@@ -1,0 +1,58 @@
+"""The radius of a contact that is held up to an edge: exact for a parabola, wherever the edge lies in its cell."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contact1d.analysis.held import held_radius, whole_cells
+from contact1d.analysis.pressure import Profile
+
+ROUND_OFF = 1e-9
+X = np.arange(60.0) - 29.5
+
+
+def row(edge: float, d: float = 1.0) -> Profile:
+    """p = d − x²/200 up to the edge, that of the last cells by the middle of their share."""
+    share = np.clip(edge - np.abs(X) + 0.5, 0.0, 1.0)
+    middle = np.abs(X) - 0.5 * (1.0 - share)
+    zero = np.zeros_like(X)
+    return Profile(X, zero, zero, share * (d - middle**2 / 200.0), zero)
+
+
+@pytest.mark.parametrize("d", [-0.3, 0.1, 0.5])
+def test_the_edge_is_found_in_its_cell(d: float) -> None:
+    for edge in np.linspace(15.01, 18.99, 83):
+        found = held_radius(row(float(edge), d))
+        assert found.value == pytest.approx(float(edge), abs=ROUND_OFF)
+        assert found.right == pytest.approx(float(edge), abs=ROUND_OFF)
+        assert found.uncertainty < 0.05
+        assert not found.reaches_end
+
+
+def test_nothing_held_has_no_radius() -> None:
+    found = held_radius(row(-1.0))
+    assert (found.value, found.uncertainty) == (0.0, 0.5)
+
+
+def test_a_contact_of_few_particles_is_known_to_half_a_spacing() -> None:
+    found = held_radius(row(1.6, -0.3))
+    assert abs(found.value - 1.6) <= found.uncertainty == 0.5
+
+
+def test_an_end_is_told() -> None:
+    assert held_radius(row(40.0, -1.0)).reaches_end
+
+
+def test_pressures_at_the_edge_are_those_of_the_inside() -> None:
+    profile = row(16.2, -0.3)
+    found = whole_cells(profile, held_radius(profile))
+    inside = np.abs(X) < 16.2
+    assert found[inside] == pytest.approx((-0.3 - X**2 / 200.0)[inside], abs=ROUND_OFF)
+    assert (found[~inside] == 0.0).all()
+
+
+def test_too_few_particles() -> None:
+    two = np.zeros(2)
+    with pytest.raises(ValueError, match="at least 3 particles"):
+        held_radius(Profile(np.arange(2.0), two, two, two, two))

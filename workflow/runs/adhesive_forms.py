@@ -1,0 +1,91 @@
+"""Closed forms of bodies that adhere to a plane: JKR, and its like for other profiles.
+
+Each says F_A, the radii there and at F = 0, and of a load or the deepest place of a path d, F and a.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.analysis.reference.adhesive_power import AdhesivePower
+from contact1d.workflow.runs.closed_form import Case, ClosedForm
+from contact1d.workflow.scene import Cone, FlatPunch, Parabola, Power
+
+Array = NDArray[np.float64]
+
+
+def _work(case: Case) -> float:
+    """W [FU/LU]; 0 without."""
+    return 0.0 if case.scene.adhesion is None else case.scene.adhesion.work
+
+
+def _power(case: Case) -> AdhesivePower:
+    profile = case.scene.bodies.profile
+    if isinstance(profile, Cone):
+        coefficient, exponent = profile.slope, 1.0
+    elif isinstance(profile, Power):
+        coefficient, exponent = profile.height_there / profile.radius**profile.exponent, profile.exponent
+    else:
+        assert case.radius is not None
+        coefficient, exponent = 0.5 / case.radius, 2.0
+    return AdhesivePower(coefficient, exponent, case.contact_modulus, _work(case))
+
+
+def _values(case: Case) -> Mapping[str, float]:
+    body = _power(case)
+    said = {
+        "adhesion_force": body.pull_off_force(), "critical_radius": body.critical_radius(),
+        "zero_load_radius": body.zero_load_radius(),
+    }  # fmt: skip
+    if case.force is not None and case.force >= -body.pull_off_force():
+        a = body.contact_radius(case.force)
+        said |= {
+            "displacement": body.displacement(a), "contact_radius": a, "mean_pressure": case.force / (math.pi * a**2),
+        }  # fmt: skip
+    return said
+
+
+def _punch_values(case: Case) -> Mapping[str, float]:
+    """F_A = √(8πE*Wa³); before that F = 2E*ad."""
+    profile = case.scene.bodies.profile
+    assert isinstance(profile, FlatPunch)
+    a, e = profile.radius, case.contact_modulus
+    said = {"adhesion_force": math.sqrt(8.0 * math.pi * e * _work(case) * a**3)}
+    return said if case.force is None else said | {"displacement": case.force / (2.0 * e * a)}
+
+
+def _jkr_pressure(case: Case, r: Array) -> Array:
+    """p = (2E*a/πR) √(1 − r²/a²) − √(2E*W/πa)/√(1 − r²/a²), in the reported state: under a load, or at F = 0."""
+    body, e = _power(case), case.contact_modulus
+    assert case.radius is not None
+    a = body.contact_radius(case.force or 0.0)
+    root = np.sqrt(np.maximum(1.0 - (r / a) ** 2, 0.0))
+    with np.errstate(divide="ignore"):
+        tension = math.sqrt(2.0 * e * _work(case) / (math.pi * a)) / root
+    return np.where(root > 0.0, 2.0 * e * a / (math.pi * case.radius) * root - tension, 0.0)
+
+
+def _applies(profile: type, words: str) -> Callable[[Case], str]:
+    """Applies to a body of that profile on a plane with an energy of adhesion."""
+
+    def applies(case: Case) -> str:
+        return words if isinstance(case.scene.bodies.profile, profile) and _work(case) > 0.0 else ""
+
+    return applies
+
+
+ADHESIVE = (
+    ClosedForm("JKR", "K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301",
+               _applies(Parabola, "a paraboloid that adheres, without a range"), _values, _jkr_pressure),
+    ClosedForm("Maugis and Barquins, cone", "D. Maugis, M. Barquins, J. Phys. Lett. 42 (1981) L95",
+               _applies(Cone, "a cone that adheres, without a range"), _values),
+    ClosedForm("Popov and Heß, power", "V. L. Popov, M. Heß, Method of Dimensionality Reduction, 2015, section 4.4",
+               _applies(Power, "a power of the radius that adheres, without a range"), _values),
+    ClosedForm("Kendall, flat punch", "K. Kendall, J. Phys. D 4 (1971) 1186",
+               _applies(FlatPunch, "a flat punch that adheres, without a range"), _punch_values),
+)  # fmt: skip
+"""Of bodies with [adhesion]."""
