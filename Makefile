@@ -1,7 +1,7 @@
 # Every target sets up what it needs in .venv. Wanted beforehand: make, and Python 3.11 or newer with its venv module.
 
 PYTHON ?= python3
-SCENE ?= lammps_inputs/scenes/pull_off.toml
+SCENE ?= lammps_inputs/scenes/steel_on_glass.toml
 OUT ?=
 ARGS ?=
 
@@ -23,7 +23,7 @@ help: ## show this list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1 \2/p' Makefile | awk '{ printf "  %s %-10s", $$1, $$2; $$1 = $$2 = ""; print }'
 	@echo 'PYTHON=$(PYTHON) is the Python that .venv is made with.'
 
-run: $(READY) ## run a scene: SCENE=file.toml (default pull_off), OUT=folder (default runs/<scene>)
+run: $(READY) ## run a scene: SCENE=file.toml (default steel_on_glass), OUT=folder (default runs/<scene>)
 	@$(BIN)/contact1d run "$(SCENE)" $(if $(OUT),--out "$(OUT)")
 
 test: $(READY) ## run the tests: ARGS='-m slow' the long ones, ARGS=tests/unit one room

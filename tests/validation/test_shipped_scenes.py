@@ -31,6 +31,7 @@ PINNED = {
     "pull_off_dynamic": ("adhesion_force", 1.483414, 4e-3),  # the same; half a bracket of the tolerance 5e-3
     "path_hysteresis": ("adhesion_force", 0.481134, 4e-3),  # the reference solver; half an increment before a snap
     "jkr": ("adhesion_force", 2.356194, 5e-4),  # 1.5πWR; the middle of a cell for its mean
+    "steel_on_glass": ("contact_radius", 1.10373e-4, 1e-7),  # Hertz; the spacing, 27 particles in it
     "thermal_load": ("displacement", 0.259088, 1.3e-3),  # statistics: four standard errors of the run
 }
 
@@ -67,6 +68,9 @@ def test_the_pinned_numbers_are_those_of_the_references() -> None:
     assert independent("jkr") == pytest.approx(PINNED["jkr"][1], abs=DIGITS)
     assert independent("thermal_load") == pytest.approx(PINNED["thermal_load"][1], abs=DIGITS)
     assert PINNED["pull_off_dynamic"][1] == PINNED["pull_off"][1]
+    modulus = 1.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.22**2) / 70e9)
+    hertz = (0.75 * 10.0 * 0.01 / modulus) ** (1.0 / 3.0)
+    assert PINNED["steel_on_glass"][1] == pytest.approx(hertz, rel=1e-5)  # digits that it has
 
 
 def independent(name: str) -> float:
