@@ -7,10 +7,11 @@ hundreds of cases: that is how a claimed uncertainty is judged.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
@@ -115,7 +116,9 @@ class Pairs:
 
 
 class Nobody:
-    """A session that does nothing."""
+    """A session that does nothing and leaves nothing."""
+
+    folder = Path("nowhere")
 
     def execute(self, text: str, **_: Any) -> None:
         """Do nothing."""
@@ -130,6 +133,10 @@ class ExactContact(Contact):
         self.pairs = Pairs.of(deck.scene, deck.settings)
         self._stuck: NDArray[np.bool_] = np.zeros(deck.settings.particles, dtype=bool)
         self._top = largest_tension
+
+    def rows(self, rows: Sequence[Row]) -> list[State]:
+        """One after the other."""
+        return [self.row(row) for row in rows]
 
     def row(self, row: Row) -> State:
         """The exact state."""

@@ -26,7 +26,7 @@ SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 ABOUT = {
     "adhesion_force": (1.47, "FU"), "zero_load_radius": (28.53, "LU"), "critical_radius": (15.0, "LU"),
     "largest_force": (40.0, "FU"), "largest_radius": (30.0, "LU"), "contact_radius": (30.0, "LU"),
-    "displacement": (0.4, "LU"),
+    "image_contact_radius": (30.0, "LU"), "image_largest_radius": (30.0, "LU"), "displacement": (0.4, "LU"),
 }  # fmt: skip
 """About what the paper's scene has, so that nothing fails by its size alone."""
 WRONG = (1.4, 3.0)
