@@ -22,6 +22,7 @@ from contact1d.workflow.scene import (
     Bodies,
     Circle,
     Cone,
+    Ellipsoid,
     FlatPunch,
     Measured,
     Parabola,
@@ -50,6 +51,11 @@ SHAPES: dict[str, tuple[Profile, Callable[[Array], Array], Slope]] = {
         Circle(kind="circle", radius=50.0),
         lambda x: 50.0 - np.sqrt(2500.0 - x**2),
         lambda r: r / math.sqrt(2500.0 - r**2),
+    ),
+    "ellipsoid": (
+        Ellipsoid(kind="ellipsoid", radius=50.0, height=20.0),
+        lambda x: 20.0 - np.sqrt(400.0 - 0.16 * x**2),
+        lambda r: 0.4 * r / math.sqrt(2500.0 - r**2),
     ),
     "cone": (Cone(kind="cone", slope=0.3), lambda x: 0.3 * np.abs(x), lambda r: 0.3),
     "flat_punch": (FlatPunch(kind="flat_punch", radius=50.0), lambda x: 0.0 * x, lambda r: 0.0),
@@ -144,15 +150,18 @@ def test_square_is_the_parabola_and_the_first_power_the_cone() -> None:
 
 def test_reach_is_where_the_body_ends() -> None:
     reaches = {name: profile.reach for name, (profile, _, _) in SHAPES.items()}
-    assert {name for name, reach in reaches.items() if reach == 50.0} == {"circle", "flat_punch"}
-    assert all(reach == math.inf for name, reach in reaches.items() if name not in ("circle", "flat_punch"))
+    assert {name for name, reach in reaches.items() if reach == 50.0} == {"circle", "ellipsoid", "flat_punch"}
+    assert all(
+        reach == math.inf for name, reach in reaches.items() if name not in ("circle", "ellipsoid", "flat_punch")
+    )
     assert table(np.arange(5.0), np.arange(5.0) ** 2).reach == 4.0
     assert [name for name, (profile, _, _) in SHAPES.items() if profile.has_edge] == ["flat_punch"]
 
 
-def test_only_spheres_have_a_curvature_radius() -> None:
+def test_only_round_bodies_have_a_curvature_radius() -> None:
     curved = {name: profile.curvature_radius for name, (profile, _, _) in SHAPES.items()}
-    assert {name: radius for name, radius in curved.items() if radius is not None} == {"parabola": 50.0, "circle": 50.0}
+    known = {name: radius for name, radius in curved.items() if radius is not None}
+    assert known == {"parabola": 50.0, "circle": 50.0, "ellipsoid": 125.0}
     assert table(np.arange(5.0), np.arange(5.0) ** 2).curvature_radius is None
 
 

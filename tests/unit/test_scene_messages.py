@@ -65,7 +65,7 @@ SCENE_TABLES = (
     "title, bodies, interaction, neighbours, horizontal, adhesion, friction, damping, noise, plate, cantilever, "
     "material, accuracy, experiment"
 )
-SHAPES = '"parabola", "circle", "cone", "flat", "flat_punch", "power" or "table"'
+SHAPES = '"parabola", "circle", "ellipsoid", "cone", "flat", "flat_punch", "power" or "table"'
 BODIES = (
     "particles, spacing, profile, reduction, bulk_stiffness, bulk_stiffness_tangential, mass, lower, periodic, "
     "upper_particles, upper_spacing, upper_offset"

@@ -52,6 +52,7 @@ TABLES = {
     "bodies": scenes.Bodies,
     "bodies.profile, kind parabola": scenes.Parabola,
     "bodies.profile, kind circle": scenes.Circle,
+    "bodies.profile, kind ellipsoid": scenes.Ellipsoid,
     "bodies.profile, kind cone": scenes.Cone,
     "bodies.profile, kind flat_punch": scenes.FlatPunch,
     "bodies.profile, kind power": scenes.Power,

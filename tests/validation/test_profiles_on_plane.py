@@ -99,10 +99,23 @@ def sphere(radius: float) -> Indenter:
     )
 
 
+def ellipsoid(radius: float, height: float) -> Indenter:
+    """z = b − b √(1 − r²/c²): a sphere of radius c, b/c times as high."""
+    flat, whole = height / radius, sphere(radius)
+    return Indenter(
+        {"kind": "ellipsoid", "radius": radius, "height": height},
+        lambda x: flat * whole.transform(x),
+        lambda x: flat * whole.slope(x),
+        lambda d: whole.radius(d / flat),
+        lambda a, d: flat * whole.force(a, d / flat),
+    )
+
+
 SAMPLES = np.linspace(0.0, 100.0, 401)
 INDENTERS = {
     "parabola": power({"kind": "parabola", "radius": 400.0}, 1.0 / 800.0, 2.0),
     "circle": sphere(60.0),
+    "ellipsoid": ellipsoid(60.0, 20.0),
     "cone": power({"kind": "cone", "slope": 0.05}, 0.05, 1.0),
     "power 3": power({"kind": "power", "exponent": 3.0, "radius": 20.0, "height": 1.0}, 1.0 / 8000.0, 3.0),
     "power 1.5": power({"kind": "power", "exponent": 1.5, "radius": 20.0, "height": 1.0}, 20.0**-1.5, 1.5),

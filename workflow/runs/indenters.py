@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.reference import sneddon
 from contact1d.workflow.runs.closed_form import Case, ClosedForm
-from contact1d.workflow.scene import Circle, Cone, FlatPunch, Parabola, Power
+from contact1d.workflow.scene import Circle, Cone, Ellipsoid, FlatPunch, Parabola, Power
 
 Array = NDArray[np.float64]
 HALVINGS = 120
@@ -104,19 +105,39 @@ def _cone_pressure(case: Case, r: Array) -> Array:
     return sneddon.cone_pressure(np.maximum(r, 1e-12 * a), a, profile.slope, case.contact_modulus)
 
 
-def _sphere(case: Case) -> sneddon.Sphere:
+@dataclass(frozen=True)
+class _Round:
+    """A whole sphere of radius c, `flat` times as high: d and F of the sphere times that."""
+
+    sphere: sneddon.Sphere
+    flat: float
+
+    def displacement(self, contact_radius: Any) -> Any:
+        """(b/c) a artanh(a/c)."""
+        return self.flat * self.sphere.displacement(contact_radius)
+
+    def force(self, contact_radius: Any) -> Any:
+        """(b/c) E* [(c² + a²) artanh(a/c) − ac]."""
+        return self.flat * self.sphere.force(contact_radius)
+
+
+def _round(case: Case) -> _Round:
+    profile = case.scene.bodies.profile
+    if isinstance(profile, Ellipsoid):
+        body = sneddon.Sphere(profile.radius, case.contact_modulus)
+        return _Round(body, profile.half_axis / profile.radius)
     assert case.radius is not None
-    return sneddon.Sphere(case.radius, case.contact_modulus)
+    return _Round(sneddon.Sphere(case.radius, case.contact_modulus), 1.0)
 
 
-def _sphere_values(case: Case) -> Mapping[str, float]:
-    """p(0) = (E*/π) ∫₀^a g′/x dx, g′ = artanh(x/R) + xR/(R² − x²): by quadrature, since its first part has no form."""
-    body = _sphere(case)
-    R = body.radius
-    a = _contact_radius(case, body, INSIDE * R)
+def _round_values(case: Case) -> Mapping[str, float]:
+    """p(0) = (E*/π) (b/c) ∫₀^a g′/x dx, g′ = artanh(x/c) + xc/(c² − x²): by quadrature, its first part has no form."""
+    body = _round(case)
+    c = body.sphere.radius
+    a = _contact_radius(case, body, INSIDE * c)
     nodes, weights = np.polynomial.legendre.leggauss(POINTS)
     x = 0.5 * a * (nodes + 1.0)
-    rate = 0.5 * a * float(weights @ (np.arctanh(x / R) / x + R / (R**2 - x**2)))
+    rate = body.flat * 0.5 * a * float(weights @ (np.arctanh(x / c) / x + c / (c**2 - x**2)))
     return _said(case, a, float(body.displacement(a)), float(body.force(a)), case.contact_modulus / math.pi * rate)
 
 
@@ -157,7 +178,9 @@ INDENTERS = (
     ClosedForm("Sneddon, flat punch", "I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47",
                _elastic(FlatPunch, "a flat punch, pressed without adhesion"), _punch_values, _punch_pressure),
     ClosedForm("Sneddon, sphere", "I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47",
-               _elastic(Circle, "a whole sphere, pressed without adhesion"), _sphere_values),
+               _elastic(Circle, "a whole sphere, pressed without adhesion"), _round_values),
+    ClosedForm("Sneddon, ellipsoid", "I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47: his sphere, flattened",
+               _elastic(Ellipsoid, "a whole ellipsoid, pressed without adhesion"), _round_values),
     ClosedForm("Galin, power", "L. A. Galin 1953; I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47",
                _elastic(Power, "a power of the radius, pressed without adhesion"), _power_values),
 )  # fmt: skip

@@ -15,9 +15,10 @@ from contact1d.workflow.scene.effects import (
 from contact1d.workflow.scene.experiments import Experiment, Load, Method, Path, PullOff, Slide, Span, Tangential
 from contact1d.workflow.scene.material import Elastic, Material, Reduction
 from contact1d.workflow.scene.problems import Problem, SceneError
-from contact1d.workflow.scene.profiles import Circle, Cone, Flat, FlatPunch, Measured, Parabola, Power, Profile
+from contact1d.workflow.scene.profiles import Cone, Flat, FlatPunch, Measured, Parabola, Power, Profile
 from contact1d.workflow.scene.quantities import Table, Unit
 from contact1d.workflow.scene.read import AnyScene, read_scene, read_tables, scene_from_dict
+from contact1d.workflow.scene.round import Circle, Ellipsoid
 from contact1d.workflow.scene.tables import EFFECTS, Accuracy, Bodies, Scene
 from contact1d.workflow.scene.write import scene_to_toml
 
@@ -32,6 +33,7 @@ __all__ = [
     "Cone",
     "Damping",
     "Elastic",
+    "Ellipsoid",
     "Experiment",
     "Exponential",
     "Flat",

@@ -6,7 +6,7 @@ The MDR takes the axisymmetric body z = f(r) to the plane one
 
 which with springs E* per length has the body's force, displacement and contact radius (Popov and Heß, Method of
 Dimensionality Reduction in Contact Mechanics and Friction, 2015, chapter 3). Powers: g = κ_n f, κ_n =
-(√π/2) n Γ(n/2)/Γ((n+1)/2), κ₁ = π/2, κ₂ = 2. Circle: g = x artanh(x/R).
+(√π/2) n Γ(n/2)/Γ((n+1)/2), κ₁ = π/2, κ₂ = 2. Circle and ellipsoid: `round`.
 """
 
 from __future__ import annotations
@@ -15,14 +15,16 @@ import math
 import statistics
 from functools import lru_cache
 from itertools import pairwise
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from annotated_types import Ge, MinLen
 from pydantic import Discriminator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from contact1d.workflow.scene.quantities import Height, Length, Ratio, Table, Unit
+from contact1d.workflow.scene.quantities import Height, Length, Ratio, Unit
 from contact1d.workflow.scene.reduction import galin_factor
+from contact1d.workflow.scene.round import Circle, Ellipsoid
+from contact1d.workflow.scene.shape import Shape
 
 if TYPE_CHECKING:
     import numpy as np
@@ -31,38 +33,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 Exponent = Annotated[float, Ge(1.0), Unit("1")]
-LAST_SHARE = 1.0 - 1e-12
-"""The transform of a circle grows without end at its edge, and is taken up to this share of the radius."""
 CELLS = 1_000_000
 """Places times points of a measured profile that are transformed at once, to bound the memory."""
-
-
-class Shape(Table):
-    """What all profiles can do; a kind overrides what differs.
-
-    `has_edge`: the body ends at its `reach` by a flank, so that its chain is as long as it is wide and the contact is
-    too; others rise, and the contact ends on them.
-    """
-
-    has_edge: ClassVar[bool] = False
-
-    def height(self, x: Array) -> Array:
-        """Height z(x) = f(|x|) [LU] above the apex as drawn, at the places `x` [LU]; same shape."""
-        raise NotImplementedError
-
-    def transformed(self, x: Array) -> Array:
-        """Height g(x) [LU] above the apex after the MDR's transform, at the places `x` [LU]; same shape."""
-        raise NotImplementedError
-
-    @property
-    def reach(self) -> float:
-        """Half-width [LU] within which there is a body at all."""
-        return math.inf
-
-    @property
-    def curvature_radius(self) -> float | None:
-        """Radius of curvature R at the apex [LU], None where there is none."""
-        return None
 
 
 class Parabola(Shape):
@@ -78,34 +50,6 @@ class Parabola(Shape):
     def transformed(self, x: Array) -> Array:
         """g = x²/R."""
         return x**2 / self.radius
-
-    @property
-    def curvature_radius(self) -> float:
-        """R."""
-        return self.radius
-
-
-class Circle(Shape):
-    """Profile of the upper body: an exact circle, z = R − √(R² − x²)."""
-
-    kind: Literal["circle"] = Field(description="z = R − √(R² − x²), an exact circle")
-    radius: Length = Field(description="radius R")
-
-    def height(self, x: Array) -> Array:
-        """z = R − √(R² − x²), written without the difference of large numbers."""
-        return x**2 / (self.radius + ((self.radius - x) * (self.radius + x)) ** 0.5)
-
-    def transformed(self, x: Array) -> Array:
-        """g = x artanh(x/R)."""
-        import numpy as np
-
-        share = np.clip(x / self.radius, -LAST_SHARE, LAST_SHARE)
-        return np.asarray(x * np.arctanh(share))
-
-    @property
-    def reach(self) -> float:
-        """R."""
-        return self.radius
 
     @property
     def curvature_radius(self) -> float:
@@ -295,4 +239,4 @@ def fault_of(r: tuple[float, ...], z: tuple[float, ...]) -> str | None:
     return None
 
 
-Profile = Annotated[Parabola | Circle | Cone | Flat | FlatPunch | Power | Measured, Discriminator("kind")]
+Profile = Annotated[Parabola | Circle | Ellipsoid | Cone | Flat | FlatPunch | Power | Measured, Discriminator("kind")]

@@ -58,12 +58,12 @@ def wider_than_body(profile: Mapping[str, Any]) -> float | None:
     """Half-width of the paper's image over the contact radius of that body on a plane, under the same force.
 
     Args:
-        profile: with the keys of a scene file. Of a circle the factor is that of its parabola.
+        profile: with the keys of a scene file. Of a circle or an ellipsoid the factor is that of its parabola.
 
     Returns:
         (2κ_n)^{1/(n+1)}; None where no closed form tells.
     """
-    exponents = {"cone": 1.0, "parabola": 2.0, "circle": 2.0, "power": profile.get("exponent")}
+    exponents = {"cone": 1.0, "parabola": 2.0, "circle": 2.0, "ellipsoid": 2.0, "power": profile.get("exponent")}
     n = exponents.get(str(profile.get("kind")))
     if isinstance(n, bool) or not isinstance(n, int | float) or not n >= 1.0:
         return None
