@@ -23,6 +23,9 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 NEAR = 0.3
 """Of a spacing: a place nearer to the edge than that is left out, since a slope over so short a way is mostly noise."""
+WHOLE = 0.5 - 1e-6
+"""The same where q jumps to 0 at the edge: a particle stands for so much to either side, and has less where the edge
+cuts that off."""
 SAME = 1e-6
 """Of a spacing: places so alike on both sides of the axis are the same."""
 FEWEST = 3
@@ -109,7 +112,7 @@ def line_load(
     if places.size < 2 or np.abs(places + places[::-1]).max() > SAME * spacing:
         raise ValueError("the places must be the same on both sides of 0")
     end = float(right[-1]) if edge is None else edge
-    inside = right <= end - NEAR * spacing if ends_at_zero else right < end
+    inside = right <= end - (NEAR if ends_at_zero else WHOLE) * spacing
     right, mean = right[inside], mean[inside]
     if right.size < FEWEST:
         raise ValueError(f"a pressure needs {FEWEST} places on each side of the axis, got {right.size}")

@@ -41,8 +41,13 @@ def _values(case: Case) -> Mapping[str, float]:
         "adhesion_force": body.pull_off_force(), "critical_radius": body.critical_radius(),
         "zero_load_radius": body.zero_load_radius(),
     }  # fmt: skip
-    if case.force is not None and case.force >= -body.pull_off_force():
-        a = body.contact_radius(case.force)
+    held = case.force is None or case.force >= -body.pull_off_force()
+    reported = body.contact_radius(case.force or 0.0) if held else 0.0
+    said["adhesion_energy"] = math.pi * reported**2 * _work(case)
+    if held and isinstance(case.scene.bodies.profile, Parabola):
+        said["central_pressure"] = said["peak_pressure"] = float(_jkr_pressure(case, np.zeros(1))[0])
+    if case.force is not None and held:
+        a = reported
         said |= {
             "displacement": body.displacement(a), "contact_radius": a, "mean_pressure": case.force / (math.pi * a**2),
         }  # fmt: skip

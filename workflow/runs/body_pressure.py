@@ -101,7 +101,7 @@ def _pressure(scene: Scene, profile: Profile, radius: ContactRadius) -> BodyPres
     except ValueError:
         spread = np.abs(p)
     spread = np.where(np.isfinite(spread), spread, np.abs(p))
-    relative = 0.0 if jumps else radius.uncertainty / radius.value
+    relative = radius.uncertainty / radius.value
     return BodyPressure(r, p, spread + relative * np.abs(p), radius.value / wider)
 
 
@@ -154,7 +154,10 @@ def with_body(scene: Scene, outcome: Outcome) -> Outcome:
                 2.0 * layer * radius.value, 2.0 * layer * radius.uncertainty, LINE_PRESSURE
             )
     width = found.get("zero_load_radius") or found.get("contact_radius")
-    if width is not None and "separation_energy" in found:
+    if width is not None and scene.adhesion is not None:
+        energy = math.pi * width.value**2 * scene.adhesion.work
+        made["adhesion_energy"] = Quantity(energy, 2.0 * energy * width.uncertainty / max(width.value, 1e-300), ENERGY)
+    elif width is not None and "separation_energy" in found:
         line = found["separation_energy"]
         made["adhesion_energy"] = Quantity(
             2.0 * width.value * line.value,

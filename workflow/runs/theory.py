@@ -13,10 +13,11 @@ from contact1d.workflow.runs.adhesive_forms import ADHESIVE
 from contact1d.workflow.runs.closed_form import Case, ClosedForm
 from contact1d.workflow.runs.indenters import INDENTERS
 from contact1d.workflow.runs.sheared import SHEARED
+from contact1d.workflow.runs.tabor_forms import BY_TABOR
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import Quantity, Scales
 
-FORMS: tuple[ClosedForm, ...] = (*INDENTERS, *ADHESIVE, *SHEARED)
+FORMS: tuple[ClosedForm, ...] = (*INDENTERS, *ADHESIVE, *BY_TABOR, *SHEARED)
 """Every closed form that a run is laid beside; which of them applies each says itself."""
 
 
