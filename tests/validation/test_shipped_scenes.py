@@ -16,8 +16,11 @@ from contact1d.analysis.reference.interaction import Exponential, PairInteractio
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.analysis.reference.solver import ChainSolver, trace
+from contact1d.analysis.reference.spring_sliders import SpringSliders
+from contact1d.analysis.reference.spring_sliders import displacement_under as displacement_carrying
 from contact1d.analysis.reference.thermal_chain import displacement_under
 from contact1d.analysis.reference.winkler import rigid_plane_sum
+from contact1d.workflow.scene import Tangential
 from contact1d.workflow.settings.settings import settings_for
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
@@ -32,6 +35,7 @@ PINNED = {
     "path_hysteresis": ("adhesion_force", 0.481134, 4e-3),  # the reference solver; half an increment before a snap
     "jkr": ("adhesion_force", 2.356194, 5e-4),  # 1.5πWR; the middle of a cell for its mean
     "steel_on_glass": ("contact_radius", 1.10373e-4, 1e-7),  # Hertz; the spacing, 27 particles in it
+    "mindlin": ("tangential_force", -4.813935, 1e-5),  # the exact sum, after the way back; round-off of six digits
     "thermal_load": ("displacement", 0.259088, 1.3e-3),  # statistics: four standard errors of the run
 }
 
@@ -66,6 +70,7 @@ def test_the_pinned_numbers_are_those_of_the_references() -> None:
     assert independent("paper") == pytest.approx(PINNED["paper"][1], abs=DIGITS)
     assert independent("path_hysteresis") == pytest.approx(PINNED["path_hysteresis"][1], abs=DIGITS)
     assert independent("jkr") == pytest.approx(PINNED["jkr"][1], abs=DIGITS)
+    assert independent("mindlin") == pytest.approx(PINNED["mindlin"][1], abs=DIGITS)
     assert independent("thermal_load") == pytest.approx(PINNED["thermal_load"][1], abs=DIGITS)
     assert PINNED["pull_off_dynamic"][1] == PINNED["pull_off"][1]
     modulus = 1.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.22**2) / 70e9)
@@ -84,6 +89,8 @@ def independent(name: str) -> float:
         case "load":
             start, solver = trace(model, np.arange(-1.5, 0.31, 0.1))[-1], ChainSolver(model)
             return float(brentq(lambda d: solver.equilibrium(d, start).force - experiment.force, 0.3, 0.5, xtol=1e-10))
+        case "tangential":
+            return slid(scene, model.places())
         case "pull_off" if scene.adhesion is not None:
             return 1.5 * np.pi * scene.adhesion.work * 2.0 * float(scene.bodies.plane_radius or 0.0)
         case "pull_off":
@@ -93,6 +100,18 @@ def independent(name: str) -> float:
             return rigid_plane_sum(deepest, model.places(), scene.bodies.plane_radius, model.bulk_stiffness)
         case _:
             return pull_off(model, 0.2).adhesion_force  # a path that turns deeper unloads along the same branch
+
+
+def slid(scene: Scene, places: np.ndarray) -> float:
+    """F_x of springs with sliders at these places, after the whole way."""
+    assert isinstance(scene.experiment, Tangential)
+    assert scene.friction is not None
+    heights = (places**2 / (2.0 * float(scene.bodies.plane_radius or 0.0))).tolist()
+    chain = SpringSliders(heights, scene.bulk_stiffness, scene.tangential_stiffness, scene.friction.coefficient)
+    depth = displacement_carrying(scene.experiment.normal_forces()[0], heights, scene.bulk_stiffness)
+    for place in (0.0, *scene.experiment.along()):
+        chain.move(depth, place)
+    return chain.tangential_force
 
 
 def model_of(scene: Scene) -> ChainModel:

@@ -30,6 +30,8 @@ WIDE, DEGREE = 3.0, 4
 """Steps of the first look, on both sides of the largest tension, and degree of the polynomial that places it."""
 OVERREACH = 0.1
 """Way beyond the deepest place of the estimate that is looked at, over that place and a spacing."""
+MORE = (0.375, 0.25, 0.125, 0.0)
+"""Such places where friction makes several edges, the errors of which may cancel at two places."""
 OVER_DEEPEST = 1.5
 """Depth up to which friction's particles are counted, over the estimate's: few carry a load deeper than many."""
 MARGIN = 1.25
@@ -44,7 +46,8 @@ def left_by_centring(scene: Scene, settings: Settings) -> dict[str, float]:
         return left_by_cells(scene, settings)
     if scene.bodies.particles != "auto" or scene.bodies.profile.has_edge:
         return {}
-    own, *others = (_marks(scene, settings, phase) for phase in (OWN, *OTHERS))
+    phases = MORE if isinstance(scene.experiment, Tangential) else OTHERS
+    own, *others = (_marks(scene, settings, phase) for phase in (OWN, *phases))
     return {name: MARGIN * max(abs(other[name] - value) for other in others) for name, value in own.items()}
 
 
