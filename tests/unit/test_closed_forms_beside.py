@@ -171,3 +171,24 @@ def test_the_like_of_jkr_beside_other_profiles(profile: str, name: str) -> None:
     assert form.name == name
     assert form.values(of)["adhesion_force"] > 0.0
     assert form.values(of)["displacement"] > 0.0
+
+
+def test_maugis_and_dugdale_beside_a_range() -> None:
+    """At Tabor's number 50 they are JKR within 1 %; at 0.5 they are not, and DMT's pull-off is nearer."""
+    work = 0.01
+    for tabor, factor in ((50.0, 1.5), (0.05, 2.0)):
+        span = (R * (work / E) ** 2) ** (1.0 / 3.0) / tabor
+        scene = chains(R, 2.0 * E, experiment={"kind": "pull_off", "preload": 2.0}, interaction=None,
+                       bodies={"profile": PROFILES["parabola"], "spacing": 2.0, "lower": "rigid_plane"},
+                       adhesion={"work_of_adhesion": work, "range": span})  # fmt: skip
+        of = Case(scene_from_dict(scene), {})
+        jkr, maugis = applying(of)
+        assert maugis.name == "Maugis and Dugdale"
+        assert f"Tabor's number is {tabor:.3g}" in maugis.applies(of)
+        assert maugis.values(of)["adhesion_force"] == pytest.approx(factor * math.pi * work * R, rel=LIMIT)
+        near = abs(maugis.values(of)["zero_load_radius"] / jkr.values(of)["zero_load_radius"] - 1.0) < LIMIT
+        assert near == (tabor > 5.0)
+
+
+LIMIT = 0.03
+"""How far Maugis and Dugdale's are from their limits at these numbers."""

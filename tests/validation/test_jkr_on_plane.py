@@ -95,6 +95,12 @@ def test_hysteresis_is_the_area_between_jumps(run_tables: RunTables) -> None:
     assert found.uncertainty < 0.05 * area
 
 
+def test_fixed_grips_let_go_between_two_rows(run_tables: RunTables) -> None:
+    found = run_tables(tables(PATH)).results["fixed_grips_displacement"]
+    last = float(JKR.displacement(JKR.critical_radius_fixed_grips()))
+    assert abs(found.value - last) <= found.uncertainty == pytest.approx(0.5 * 0.85 / 170)
+
+
 def test_a_contact_that_is_not_let_go_of_comes_back_the_same_way(run_tables: RunTables) -> None:
     """Before fixed grips let go, down again is the way up; after, not before the next touch."""
     places = [0.2, -0.1, -0.2, -0.1, 0.2, -0.25, -0.1, 0.0, 0.2]

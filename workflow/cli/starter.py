@@ -72,7 +72,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
         "bulk_stiffness_tangential": 0.83, "upper_particles": 40, "upper_spacing": 1.0, "upper_offset": 0.5,
     },
     "neighbours": {"stiffness": 0.3},
-    "adhesion": {"work_of_adhesion": 0.005, "surface_energy": 0.0025},
+    "adhesion": {"work_of_adhesion": 0.005, "surface_energy": 0.0025, "range": 0.002},
     "friction": {"coefficient": 0.3},
     "damping": {"coefficient": "auto"},
     "noise": {"temperature": 1e-4, "seed": 1},

@@ -14,6 +14,7 @@ from contact1d.workflow.units import rounded, scale_of
 NAMES = {
     "adhesion_force": "adhesion force (pull-off)",
     "critical_radius": "critical radius a_cr",
+    "fixed_grips_displacement": "fixed grips let go at d",
     "zero_load_radius": "zero-load radius a_0",
     "contact_radius": "contact radius a",
     "image_contact_radius": "half-width of the image",

@@ -1,4 +1,4 @@
-"""Closed forms of bodies that adhere to a plane: JKR, and its like for other profiles.
+"""Closed forms of bodies that adhere to a plane: JKR, its like for other profiles, and a sphere's with a range.
 
 Each says F_A, the radii there and at F = 0, and of a load or the deepest place of a path d, F and a.
 """
@@ -40,6 +40,7 @@ def _values(case: Case) -> Mapping[str, float]:
     said = {
         "adhesion_force": body.pull_off_force(), "critical_radius": body.critical_radius(),
         "zero_load_radius": body.zero_load_radius(),
+        "fixed_grips_displacement": body.displacement(body.fixed_grips_radius()),
     }  # fmt: skip
     held = case.force is None or case.force >= -body.pull_off_force()
     reported = body.contact_radius(case.force or 0.0) if held else 0.0
@@ -83,6 +84,43 @@ def _applies(profile: type, words: str) -> Callable[[Case], str]:
     return applies
 
 
+def _tabor(case: Case) -> float:
+    """µ = (R W²/E*² z₀³)^{1/3} of a sphere whose range z₀ the scene knows; 0 of any other."""
+    adhesion = case.scene.adhesion
+    if adhesion is None or adhesion.range is None or case.radius is None or not _work(case) > 0.0:
+        return 0.0
+    return math.cbrt(case.radius * (_work(case) / case.contact_modulus) ** 2) / adhesion.range
+
+
+def _with_a_range(case: Case) -> str:
+    """Tabor's number and what follows from it."""
+    if (tabor := _tabor(case)) == 0.0 or not isinstance(case.scene.bodies.profile, Parabola):
+        return ""
+    from contact1d.analysis.reference.tabor import valid_theory  # scipy's solvers take longer than a small run
+
+    verdict = valid_theory(tabor, 0.0)
+    return f"a paraboloid with a range; Tabor's number is {tabor:.3g}, where {verdict.theory} holds"
+
+
+def _values_with_a_range(case: Case) -> Mapping[str, float]:
+    """Maugis and Dugdale's results in the scene's units: πWR, and (πWR²/K)^{1/3} with K = 4E*/3."""
+    from contact1d.analysis.reference.maugis_dugdale import MaugisDugdale, maugis_parameter_of_tabor
+
+    contact = MaugisDugdale(maugis_parameter_of_tabor(_tabor(case)))
+    assert case.radius is not None
+    load = math.pi * _work(case) * case.radius
+    length = math.cbrt(0.75 * load * case.radius / case.contact_modulus)
+    said = {
+        "adhesion_force": load * contact.pull_off_load(), "critical_radius": length * contact.critical_radius(),
+        "zero_load_radius": length * contact.zero_load_radius(),
+    }  # fmt: skip
+    if case.force is not None and case.force >= -said["adhesion_force"]:
+        a = contact.contact_radius(case.force / load)
+        said["contact_radius"] = length * a
+        said["displacement"] = length**2 / case.radius * float(contact.displacement(a))
+    return said
+
+
 ADHESIVE = (
     ClosedForm("JKR", "K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301",
                _applies(Parabola, "a paraboloid that adheres, without a range"), _values, _jkr_pressure),
@@ -92,5 +130,7 @@ ADHESIVE = (
                _applies(Power, "a power of the radius that adheres, without a range"), _values),
     ClosedForm("Kendall, flat punch", "K. Kendall, J. Phys. D 4 (1971) 1186",
                _applies(FlatPunch, "a flat punch that adheres, without a range"), _punch_values),
+    ClosedForm("Maugis and Dugdale", "D. Maugis, J. Colloid Interface Sci. 150 (1992) 243", _with_a_range,
+               _values_with_a_range),
 )  # fmt: skip
 """Of bodies with [adhesion]."""

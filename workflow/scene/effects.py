@@ -72,12 +72,17 @@ class Friction(Effect):
 
 
 class Adhesion(Effect):
-    """Effect: the bodies hold each other on a rigid plane, as JKR has it, without a range. One of its keys is given."""
+    """Effect: the bodies hold each other on a rigid plane, as JKR has it, without a range. W or γ is given."""
 
     work_of_adhesion: LineEnergy | None = Field(
         default=None, description="W, to part both surfaces: F_A = 1.5 π W R of a sphere"
     )
     surface_energy: LineEnergy | None = Field(default=None, description="γ of one side, half the work of adhesion")
+    range: Length | None = Field(
+        default=None,
+        description="z₀ over which the surfaces attract, if known: the run has none, and beside its results stands by "
+        "Tabor's number how far a body of that range is from it",
+    )
 
     @property
     def work(self) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
@@ -99,6 +100,8 @@ def _adhesion(context: RunContext, branch: list[State]) -> tuple[dict[str, Quant
             "the largest tension lies at an end of the last branch, so the path gives no adhesion_force: "
             'go further back, or use kind = "pull_off"'
         )
+    if context.deck.scene.adhesion is not None:
+        quantities |= _fixed_grips(branch)
     zero = _zero_load(branch, displacement, force)
     if zero is None:
         warnings["no_zero_load"] = "the force does not pass 0 on the last branch, so there is no zero_load_radius"
@@ -112,6 +115,15 @@ def _cut_short(settings: Settings, branch: list[State], index: int) -> float:
     before, here, after = branch[index - 1 : index + 2]
     rise = (before.force - here.force) / (before.displacement - here.displacement)
     return max(0.0, rise) * settings.let_go_early(here.displacement - after.displacement)
+
+
+def _fixed_grips(branch: list[State]) -> dict[str, Quantity]:
+    """The displacement at which a contact without a range lets go at once: between the last row held and the next."""
+    for held, apart in pairwise(branch):
+        if held.profile.pressure.any() and not apart.profile.pressure.any():
+            middle = 0.5 * (held.displacement + apart.displacement)
+            return {"fixed_grips_displacement": Quantity(middle, abs(held.displacement - middle), LENGTH)}
+    return {}
 
 
 def _critical_radius(branch: list[State], peak: Peak) -> Quantity | None:
