@@ -218,4 +218,4 @@ def _mark_radius(axis: Axes, radius: float) -> str:
         return ""
     for place in (-radius, radius):
         axis.axvline(place, color="black", linewidth=1.0, linestyle="--")
-    return f", contact radius a = {radius:.2f} LU (dashed)"
+    return f", contact radius a = {radius:.4g} LU (dashed)"

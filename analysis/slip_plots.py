@@ -114,7 +114,7 @@ def stick_slip_figure(
         marked = ""
         if math.isfinite(radius) and radius > 0.0:
             axis.axvspan(-radius, radius, color=STICKS, alpha=0.08, linewidth=0.0)
-            marked = f", stick radius c = {radius:.2f} LU (shaded)"
+            marked = f", stick radius c = {radius:.4g} LU (shaded)"
         half = float(np.abs(x[touched]).max()) if touched.any() else float(np.abs(x).max())
         axis.set_xlim(-BEYOND * half, BEYOND * half)
         axis.set_title(f"{name.replace('_', ' ')} state, u = {places[name]:.4g} LU{marked}", loc="left", fontsize=10)
