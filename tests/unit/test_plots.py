@@ -66,7 +66,7 @@ def test_the_contact_radius_is_marked_on_both_sides_and_named() -> None:
         places = sorted(line.get_xdata()[0] for line in axis.get_lines() if len(set(line.get_xdata())) == 1)
         assert places == [-radius, radius]
         assert name.replace("_", " ") in axis.get_title(loc="left")
-        assert f"{radius:.2f} LU" in axis.get_title(loc="left")
+        assert f"{radius:.4g} LU" in axis.get_title(loc="left")
 
 
 @pytest.mark.parametrize("radii", [{}, {"final": math.nan}])
