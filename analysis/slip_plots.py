@@ -116,6 +116,7 @@ def stick_slip_figure(
             axis.axvspan(-radius, radius, color=STICKS, alpha=0.08, linewidth=0.0)
             marked = f", stick radius c = {radius:.4g} LU (shaded)"
         half = float(np.abs(x[touched]).max()) if touched.any() else float(np.abs(x).max())
+        half = max(half, float(x[1] - x[0]))
         axis.set_xlim(-BEYOND * half, BEYOND * half)
         axis.set_title(f"{name.replace('_', ' ')} state, u = {places[name]:.4g} LU{marked}", loc="left", fontsize=10)
         axis.set_ylabel("shear (FU/LU)")

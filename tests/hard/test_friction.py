@@ -132,6 +132,17 @@ def test_a_flat_punch_sticks_and_then_slips_as_a_whole(tmp_path: Path) -> None:
     assert value(done, "dissipated_energy") == pytest.approx(12.0 * 0.01, rel=1e-9)
 
 
+@pytest.mark.parametrize(("count", "load"), [("auto", 1e-6), (3, 1e-3)])
+def test_so_small_a_load_that_one_or_two_particles_carry_it(tmp_path: Path, count: Any, load: float) -> None:
+    """Figures and all; each carries its share and gives as its spring and slider say."""
+    tables = scene([0.1 * load, 2.0 * load, 1.5 * load], bodies={"particles": count}, normal_force=load)
+    done = run(scene_from_dict(tables), tmp_path)
+    touching = int((done.profiles["final"].pressure > 0.0).sum())
+    expected = np.array([0.08 * touching, MU, max(MU - 0.4 * touching, -MU)]) * load
+    assert touching == (1 if count == 3 else 2)
+    assert done.friction["tangential_force"] == pytest.approx(expected, abs=1e-6 * load)
+
+
 def test_numbers_in_metres_and_newtons_give_the_same_reduced_ones(tmp_path: Path) -> None:
     """A deck in units of its own: lengths × 1e-6, forces × 1e-3."""
     length, force = 1e-6, 1e-3

@@ -32,6 +32,8 @@ OVERREACH = 0.1
 """Way beyond the deepest place of the estimate that is looked at, over that place and a spacing."""
 MORE = (0.375, 0.25, 0.125, 0.0)
 """Such places where friction makes several edges, the errors of which may cancel at two places."""
+FEWEST = 4.0
+"""Least half-width up to which they are, over the spacing."""
 OVER_DEEPEST = 1.5
 """Depth up to which friction's particles are counted, over the estimate's: few carry a load deeper than many."""
 MARGIN = 1.25
@@ -63,7 +65,10 @@ def _marks(scene: Scene, settings: Settings, phase: float) -> dict[str, float]:
     if experiment.motion_is_result:
         return {}
     if isinstance(experiment, Tangential):
-        reach = estimate.half_width(OVER_DEEPEST * deepest, edge)
+        # Under a small load it is the nearest particles that carry all of it.
+        reach = min(
+            max(estimate.half_width(OVER_DEEPEST * deepest, edge), FEWEST * estimate.spacing), scene.bodies.reach
+        )
         count = int(reach / estimate.spacing) + 2
         x = estimate.spacing * (np.arange(-count, count) + phase)
         chain = sliders_of(scene, x[np.abs(x) <= reach])
