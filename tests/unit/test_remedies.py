@@ -89,6 +89,13 @@ def test_load_that_is_not_carried_is_lowered() -> None:
     assert found(scene_of(), error, lambda _: True).helped[0] == Change({"experiment.preload": 1.0})
 
 
+def test_way_that_is_too_deep_is_made_shorter() -> None:
+    way = {"kind": "path", "displacements": {"from": 0.0, "to": 6.0, "steps": 40}}
+    scene = scene_from_dict(chains(1000.0, law=LAW, experiment=way))
+    done = found(scene, failed(ThroughError("through")), lambda scene: max(scene.experiment.places()) < 3.0)
+    assert str(done.helped[0]) == "--set experiment.displacements.to=2.0"
+
+
 def test_law_that_never_attracts_is_mended_by_either_range() -> None:
     bad = chains(1000.0, law=LAW, experiment=PULL)
     bad["interaction"]["repulsion"]["range"] = 0.39

@@ -17,7 +17,8 @@ from itertools import count
 from contact1d.workflow.engine.failure import EngineError
 from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.experiments.running.trust import ChainEndError, ThroughError, UntrustedError
-from contact1d.workflow.scene import Load, PullOff, Scene, SceneError, Slide
+from contact1d.workflow.scene import Load, Path, PullOff, Scene, SceneError, Slide
+from contact1d.workflow.scene.experiments import Span
 from contact1d.workflow.scene.problems import as_toml
 from contact1d.workflow.settings.estimate import NotCarriedError
 
@@ -171,6 +172,8 @@ def _smaller_load(scene: Scene) -> Change | None:
         return Change({"experiment.preload": _rounded(experiment.preload / STEP)})
     if isinstance(experiment, Load):
         return Change({"experiment.force": _rounded(experiment.force / STEP)})
+    if isinstance(experiment, Path) and isinstance(experiment.displacements, Span) and experiment.displacements.to > 0:
+        return Change({"experiment.displacements.to": _rounded(experiment.displacements.to / STEP)})
     if isinstance(experiment, Slide):
         return Change({"experiment.normal_force": _rounded(experiment.normal_force / STEP)})
     return None
