@@ -15,13 +15,16 @@ from contact1d import Scene, read_scene, run
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.pull_off import pull_off
+from contact1d.analysis.reference.slide import Integrator
 from contact1d.analysis.reference.solver import ChainSolver, trace
 from contact1d.analysis.reference.spring_sliders import SpringSliders
 from contact1d.analysis.reference.spring_sliders import displacement_under as displacement_carrying
 from contact1d.analysis.reference.thermal_chain import displacement_under
 from contact1d.analysis.reference.winkler import rigid_plane_sum
+from contact1d.workflow.deck.lattice import start_offset
 from contact1d.workflow.scene import Tangential
 from contact1d.workflow.settings.settings import settings_for
+from tests.slides import slide_model
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 
@@ -36,6 +39,8 @@ PINNED = {
     "jkr": ("adhesion_force", 2.356194, 5e-4),  # 1.5πWR; the middle of a cell for its mean
     "steel_on_glass": ("contact_radius", 1.10373e-4, 1e-7),  # Hertz; the spacing, 27 particles in it
     "mindlin": ("tangential_force", -4.813935, 1e-5),  # the exact sum, after the way back; round-off of six digits
+    "slide": ("mean_friction", 0.193011, 1.5e-4),  # the integrator; what is left of the run-in
+    "prandtl_tomlinson": ("mean_friction", 0.0083200, 1e-5),  # the integrator
     "thermal_load": ("displacement", 0.259088, 1.3e-3),  # statistics: four standard errors of the run
 }
 
@@ -76,6 +81,23 @@ def test_the_pinned_numbers_are_those_of_the_references() -> None:
     modulus = 1.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.22**2) / 70e9)
     hertz = (0.75 * 10.0 * 0.01 / modulus) ** (1.0 / 3.0)
     assert PINNED["steel_on_glass"][1] == pytest.approx(hertz, rel=1e-5)  # digits that it has
+
+
+SLIDING = 5e-4
+"""Relative, of means over periods that the run-in has not quite left."""
+
+
+@pytest.mark.parametrize("name", ["slide", "prandtl_tomlinson"])
+def test_the_pinned_slides_are_those_of_the_integrator(name: str) -> None:
+    scene = read_scene(SCENES / f"{name}.toml")
+    settings = settings_for(scene)
+    body = Integrator(slide_model(scene.with_({"bodies.upper_offset": start_offset(scene, settings)}), settings))
+    body.settle(settings.time_step, 1e-7)
+    (leg,) = settings.drive
+    trace_ = body.run(leg.rows * leg.steps // 2, leg.time_step, leg.velocity, every=leg.steps)
+    last = 2.0 * scene.bodies.spacing / leg.velocity
+    mean = (trace_.impulse[-1] - np.interp(trace_.time[-1] - last, trace_.time, trace_.impulse)) / last
+    assert mean == pytest.approx(PINNED[name][1], rel=SLIDING)
 
 
 def independent(name: str) -> float:

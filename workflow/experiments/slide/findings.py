@@ -21,6 +21,8 @@ from contact1d.workflow.units import ENERGY, FORCE, NUMBER, Quantity
 
 STEADY = 0.1
 """Way of plate and drive after the run-in may differ by this share, or by one slip, where sliding counts as steady."""
+SETTINGS_SHARE = 0.3
+"""Of the tolerance: what cutoff and timesteps leave open at most; against the integrator 0.05 was measured."""
 TEMPERATURE_BLOCKS = 20
 """Parts of the last leg whose spread gives the error of its temperature."""
 CLOSED = 5e-3
@@ -56,7 +58,7 @@ def means(scene: Scene, settings: Settings, motion: Motion) -> dict[str, Quantit
     leg, rows = motion.legs[number], motion.of_leg(number)
     sign, period = math.copysign(1.0, leg.velocity), scene.bodies.spacing / abs(leg.velocity)
     time, way = motion.time[rows], sign * motion.place[rows]
-    tolerance = settings.tolerance
+    tolerance = SETTINGS_SHARE * settings.tolerance
     found = {}
     blocks = friction.block_means(time, sign * motion.impulse[rows], period)
     if blocks.size >= friction.DROPPED + friction.FEWEST_BLOCKS:

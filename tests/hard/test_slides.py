@@ -1,0 +1,120 @@
+"""Hard slides: back and at rest, too fast, off the end, torn off, held by adhesion, chains that do not close."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact1d import RunError, SceneError, read_scene, run
+from contact1d.analysis.reference.slide import Integrator
+from contact1d.workflow.deck.lattice import start_offset
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.settings import SettingsError, settings_for
+from tests.slides import slide_model
+
+SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
+TRACE = 1e-3
+"""Of the peak: legs other than the first have timesteps of their own, and the inertia of the first one's drag."""
+
+
+def scene_of(**changes: Any) -> Scene:
+    """The shipped slide, coarser and quicker."""
+    quick = {"cantilever.velocity": 0.02, "accuracy.tolerance": 1e-2, "experiment.distance": 4.0}
+    return read_scene(SCENES / "slide.toml").with_(quick | {k.replace("__", "."): v for k, v in changes.items()})
+
+
+def test_there_and_back_with_a_rest_is_the_motion_of_the_integrator(tmp_path: Path) -> None:
+    path = [[0.02, 2.0], [0.0, 0.5], [-0.02, 3.5], [0.03, 1.0]]
+    scene = scene_of(experiment={"kind": "slide", "normal_force": 1.0, "path": path})
+    scene = scene.with_({"bodies.particles": 48, "bodies.upper_particles": 32})
+    settings = settings_for(scene)
+    scene = scene.with_({"bodies.upper_offset": start_offset(scene, settings)})
+    found = run(scene, tmp_path / "run", figures=False)
+    body, drive, friction = Integrator(slide_model(scene, settings)), 0.0, []
+    body.settle(settings.time_step, 1e-6)
+    for leg in settings.drive:
+        trace = body.run(leg.rows * leg.steps, leg.time_step, leg.velocity, start=drive, every=leg.steps)
+        drive += leg.velocity * leg.rows * leg.row_time
+        friction.append(trace.friction)
+    expected = np.concatenate(friction)
+    assert found.friction["friction"] == pytest.approx(expected, abs=TRACE * np.abs(expected).max())
+    assert found.friction["drive"][-1] == pytest.approx(2.0 - 3.5 + 1.0, abs=1e-9)
+    work, lost, stored = (found.results[n].value for n in ("cantilever_work", "dissipated_energy", "stored_energy"))
+    assert work == pytest.approx(lost + stored, abs=5e-3 * work)
+
+
+@pytest.mark.parametrize("force", [0.0, -0.3])
+def test_adhesion_holds_a_slide_without_load(force: float, tmp_path: Path) -> None:
+    found = run(scene_of(experiment__normal_force=force), tmp_path / "run", figures=False).results
+    assert found["mean_friction"].value > 0.0
+    assert found["static_friction"].value > found["mean_friction"].value
+
+
+def failure(scene: Scene, folder: Path) -> str:
+    with pytest.raises(RunError) as caught:
+        run(scene, folder / "run", figures=True)
+    return str(caught.value)
+
+
+def test_a_pull_that_nothing_holds_is_told(tmp_path: Path) -> None:
+    assert "do not hold a normal force of -50 FU" in failure(scene_of(experiment__normal_force=-50.0), tmp_path)
+
+
+def test_a_slide_that_is_none_yet_leaves_its_trace_and_figure(tmp_path: Path) -> None:
+    assert "no steady sliding yet" in failure(scene_of(cantilever__stiffness=0.02), tmp_path)
+    for name in ("friction.csv", "friction.png", "curve.csv"):
+        assert (tmp_path / "run" / name).is_file()
+    assert '"mean_friction"' not in (tmp_path / "run" / "results.json").read_text(encoding="utf-8")
+
+
+def test_a_chain_too_short_for_the_way_is_refused_before_the_run(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match="too short for the way") as caught:
+        run(scene_of(bodies__particles=36), tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+    words = str(caught.value)
+    enough = int(words.partition("Take at least ")[2].partition(" ")[0])
+    longer = scene_of(bodies__particles=enough, bodies__upper_particles=36)
+    assert run(longer, tmp_path / "run", figures=False).status == "done"
+
+
+def test_a_drive_beyond_what_particles_follow_is_warned(tmp_path: Path) -> None:
+    found = run(scene_of(cantilever__velocity=0.3, experiment__distance=12.0), tmp_path / "run", figures=False)
+    assert "the bodies cannot follow" in found.warnings["fast"]
+    assert "drag" in found.warnings
+
+
+def flat(**bodies: Any) -> dict[str, Any]:
+    scene = read_scene(SCENES / "prandtl_tomlinson.toml").model_dump(by_alias=True, exclude_none=True, mode="json")
+    return scene | {"bodies": {**scene["bodies"], **bodies}}
+
+
+@pytest.mark.parametrize(
+    ("bodies", "words"),
+    [
+        ({"upper_particles": 34, "particles": 55, "upper_spacing": 1.6}, "the nearest that do: upper_spacing = 1.6176"),
+        ({"profile": {"kind": "parabola", "radius": 30.0}}, "not with a body that is not flat"),
+        ({"periodic": False}, "needs bodies.periodic"),
+        ({"bulk_stiffness_tangential": 2.0}, "must be at most bulk_stiffness"),
+        ({"particles": "auto"}, "must be a number with bodies.periodic"),
+    ],
+)
+def test_bodies_without_end_that_cannot_be_are_refused(bodies: dict[str, Any], words: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        read_scene(flat(**bodies))
+    assert words in str(caught.value)
+
+
+def test_two_and_three_particles_slide_as_one_does(tmp_path: Path) -> None:
+    """The rigid plate of two anchors is a line, that of one no rigid body at all."""
+    alone = None
+    for count in (1, 2, 3):
+        tables = flat(upper_particles=count, particles=6, upper_spacing=6.0 / count)
+        tables["cantilever"] = {"stiffness": 0.05 * count, "velocity": 0.01}
+        tables["experiment"] = {"kind": "slide", "normal_force": 0.2 * count, "distance": 4.0}
+        tables["damping"] = {"coefficient": 1.0}
+        each = run(tables, tmp_path / str(count), figures=False).results["mean_friction"].value / count
+        alone = alone or each
+        assert each == pytest.approx(alone, rel=5e-3)

@@ -1,0 +1,75 @@
+"""Means over whole periods, their errors, slips: on series whose answers are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contact1d.analysis.friction import block_means, interval, largest_before, mean_of, slips, student
+
+PERIOD, ROWS = 2.0, 50
+
+
+def saw(periods: float, run_in: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """Times, and the integral of a saw tooth between 0 and 1 with a run-in that decays in a period."""
+    time = np.linspace(0.0, periods * PERIOD, round(periods * ROWS) + 1)
+    phase = time / PERIOD
+    integral = PERIOD * (np.floor(phase) / 2.0 + (phase % 1.0) ** 2 / 2.0)
+    return time, integral + run_in * PERIOD * (1.0 - np.exp(-phase))
+
+
+@pytest.mark.parametrize("periods", [4.0, 4.37, 6.0, 20.9])
+def test_a_mean_is_over_whole_periods_wherever_the_way_ends(periods: float) -> None:
+    """The mean of the saw's rows themselves changes by 0.2 with where it ends."""
+    time, integral = saw(periods)
+    mean = mean_of(block_means(time, integral, PERIOD))
+    assert mean.value == pytest.approx(0.5, abs=1e-12 if periods.is_integer() else 1e-2)
+    assert mean.error < 1e-2
+
+
+def test_the_run_in_is_found_and_left_out() -> None:
+    time, integral = saw(20.0, run_in=2.0)
+    mean = mean_of(block_means(time, integral, PERIOD))
+    assert mean.first > 3
+    assert abs(mean.value - 0.5) <= mean.error
+    assert mean.error < 1e-2
+
+
+def test_too_few_periods_have_no_mean() -> None:
+    with pytest.raises(ValueError, match="3 periods, got 2"):
+        mean_of(np.asarray([1.0, 1.0]))
+
+
+def test_the_interval_holds_the_true_mean_as_often_as_it_says() -> None:
+    """Independent blocks of a normal law, of few and of many; half-widths of 95 %."""
+    random = np.random.default_rng(1)
+    for count in (3, 6, 40):
+        inside = sum(abs(b.mean()) <= interval(b) for b in random.normal(size=(1000, count)))
+        assert inside >= 940, count
+    assert student(2) == 4.30
+    assert student(60) == pytest.approx(2.00, abs=1e-2)
+
+
+def test_blocks_that_alternate_are_taken_together_and_a_drift_is_told() -> None:
+    assert interval(np.asarray([0.0, 1.0] * 20)) >= 0.15
+    assert interval(np.linspace(0.0, 1.0, 40)) >= 0.25
+
+
+def test_a_slip_is_a_jump_and_smooth_sliding_none() -> None:
+    time = np.linspace(0.0, 4.0, 401)
+    steps = np.floor(time) + np.clip(20.0 * (time % 1.0) - 19.0, 0.0, 1.0)
+    found = slips(time, steps, 1.0, 1.0)
+    assert [slip.size for slip in found] == pytest.approx([1.0] * 4)
+    assert [slip.place for slip in found] == pytest.approx([0.0, 1.0, 2.0, 3.0])
+    assert [slip.time for slip in found] == pytest.approx([1.0, 2.0, 3.0, 4.0])
+    wavy = time - 0.12 * np.sin(2.0 * np.pi * time)  # η = 0.75: four times as fast at its fastest
+    assert slips(time, wavy, 1.0, 1.0) == []
+    assert [slip.size for slip in slips(time, -steps, 1.0, -1.0)] == pytest.approx([-1.0] * 4)
+
+
+def test_the_largest_friction_is_looked_for_before_the_plate_has_slid() -> None:
+    place = np.linspace(0.0, 3.0, 301)
+    friction = np.sin(2.0 * np.pi * place) * (1.0 + place)
+    top, missed = largest_before(friction, place, 1.0)
+    assert top == friction[:100].max()
+    assert missed < 0.01
