@@ -65,11 +65,12 @@ def fits(kind: str, method: str, lower: str, effects: frozenset[str]) -> bool:
     a force is prescribed, and not where its place is. Noise needs an average, which a load and a slide take. A
     cantilever slides a plate, whose particles have to follow it along x. Coulomb's friction is a rigid plane's, in a
     tangential and alone: its history has no minimum to be found, and no time. An energy of adhesion is a rigid
-    plane's, too, of particles that stand still in their body: alone, and at rest.
+    plane's, too, of particles that stand still in their body: alone, and in time with the plate that they belong to.
     """
     if "adhesion" in effects:
-        alone = effects == {"adhesion"} and lower == "rigid_plane"
-        return alone and method == "quasistatic" and kind in ("load", "path", "pull_off")
+        alone = lower == "rigid_plane" and kind in ("load", "path", "pull_off")
+        moved = effects == {"adhesion", "damping", "plate"} and kind != "path"
+        return alone and (effects == {"adhesion"} if method == "quasistatic" else moved)
     if kind == "tangential" or "friction" in effects:
         return kind == "tangential" and lower == "rigid_plane" and effects == {"friction"}
     timed = effects & {"damping", "noise", "plate", "cantilever"}
@@ -236,7 +237,9 @@ def test_every_effect_and_every_pair_is_among_the_runs() -> None:
     Friction and an energy of adhesion stand alone.
     """
     run = {pair for case in ALLOWED for pair in combinations(EFFECTS, 2) if set(pair) <= case[3]}
-    assert run == set(combinations([name for name in EFFECTS if name not in ("adhesion", "friction")], 2))
+    assert run == set(combinations([name for name in EFFECTS if name not in ("adhesion", "friction")], 2)) | {
+        ("adhesion", "damping"), ("adhesion", "plate"),
+    }  # fmt: skip
     alone = [case[3] for case in ALLOWED]
     required = {"noise": {"damping", "plate"}, "plate": {"damping"}, "horizontal": {"interaction"}}
     for name in ("interaction", "neighbours", "horizontal", "adhesion", "friction", "damping", "noise", "plate"):

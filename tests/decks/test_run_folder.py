@@ -73,6 +73,8 @@ SCENES: dict[str, dict[str, Any]] = {
     "pull_off_dynamic": STICKY | TIMED | COARSE | {"experiment": {"kind": "pull_off", "preload": 0.5}},
     "plane": PLANE | {"experiment": {"kind": "path", "displacements": {"from": 0.0, "to": 0.5, "steps": 5}}},
     "plane_adhesion": STUCK | {"experiment": {"kind": "pull_off", "preload": 0.5}},
+    "plane_adhesion_dynamic": STUCK | TIMED | COARSE | {"experiment": {"kind": "pull_off", "preload": 0.5}},
+    "plane_adhesion_load": STUCK | TIMED | COARSE | {"experiment": {"kind": "load", "force": -0.2}},
     "plane_adhesion_path": STUCK
     | {"experiment": {"kind": "path", "displacements": {"from": -0.3, "to": 0.3, "steps": 20}}},
     "plane_load": PLANE | {"neighbours": {"stiffness": 0.2}, "experiment": {"kind": "load", "force": 0.5}},

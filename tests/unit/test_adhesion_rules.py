@@ -38,6 +38,10 @@ GRID = 1e-6
         ({"bodies": BODIES | {"reduction": "geike_popov"}}, 'bodies.reduction = "geike_popov": must be "mdr"'),
         ({"bodies": BODIES | {"lower": "particles"}}, "adhesion: not between two chains"),
         ({"neighbours": {"stiffness": 0.1}}, r"neighbours: not with \[adhesion\]"),
+        (
+            {"damping": {"coefficient": "auto"}, "experiment": {"kind": "path", "displacements": [0.1]}},
+            r"damping: not with \[adhesion\] in a path",
+        ),
         ({"adhesion": None}, r"a rigid plane cannot hold .* add \[adhesion\]"),
     ],
 )

@@ -159,6 +159,29 @@ def test_load(run_tables: RunTables, force: float) -> None:
     assert abs(known["displacement"].value - float(JKR.displacement(a))) <= known["displacement"].uncertainty
 
 
+TIMED: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}, "accuracy": {"tolerance": 1e-2}}
+
+
+@pytest.mark.parametrize("force", [1.0, -1.0])
+def test_a_plate_in_time_comes_to_rest_where_jkr_has_it(run_tables: RunTables, force: float) -> None:
+    known = run_tables(tables({"kind": "load", "force": force}, 0.4) | TIMED).results
+    a = float(JKR.contact_radius(force))
+    assert abs(known["contact_radius"].value - a) <= known["contact_radius"].uncertainty
+    assert abs(known["displacement"].value - float(JKR.displacement(a))) <= known["displacement"].uncertainty
+
+
+def test_a_plate_in_time_is_pulled_off_by_f_a(run_tables: RunTables) -> None:
+    """A contact that goes back to where it was held is held again, so that loads can be tried one after the other."""
+    known = run_tables(tables(PULL, 0.4) | TIMED).results
+    for name, value in {
+        "adhesion_force": F_A,
+        "critical_radius": JKR.critical_radius(),
+        "zero_load_radius": A_0,
+    }.items():
+        assert abs(known[name].value - value) <= known[name].uncertainty, name
+        assert known[name].value == pytest.approx(value, rel=1e-2), name
+
+
 @pytest.mark.parametrize(("exponent", "profile"), [
     (1.0, {"kind": "cone", "slope": 0.05}), (4.0, {"kind": "power", "exponent": 4.0, "radius": 10.0, "height": 0.4}),
 ])  # fmt: skip

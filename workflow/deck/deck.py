@@ -15,7 +15,7 @@ from typing import TypeVar
 from contact1d.workflow.deck.effects import Contribution, contributions
 from contact1d.workflow.deck.fragments import DeckError, Fragment, fragment
 from contact1d.workflow.deck.parts import bins, moving, own_units, standing
-from contact1d.workflow.deck.steps import STEPS, UNITS, Displace, Phase, Row
+from contact1d.workflow.deck.steps import STEPS, UNITS, Displace, Hold, Phase, Row
 from contact1d.workflow.deck.units import DeckUnits, units_for
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
@@ -50,7 +50,7 @@ class Deck:
     def parts(self) -> tuple[Contribution, ...]:
         """What bodies, lower body, effects and method bring, in deck order."""
         scene, settings = self.written
-        brought = [*contributions(scene, settings), *(standing if self.swept else moving)(scene, settings)]
+        brought = [*contributions(scene, settings), *(standing if scene.stands else moving)(scene, settings)]
         if self.units.are_own:
             brought.append(own_units(self.units))
         if scene.interaction is not None:
@@ -66,7 +66,7 @@ class Deck:
         """
         atom_style = next((part.atom_style for part in self.parts if part.atom_style), "bond")
         styles = [f"pair_style      {part.pair_style}\n" for part in self.parts if part.pair_style]
-        bonds = "" if self.swept else "bond_style      harmonic\n"
+        bonds = "" if self.scene.stands else "bond_style      harmonic\n"
         styles = [f"atom_style      {atom_style}\n", *styles, bonds]
         blocks = [_block("start", {}) + "".join(styles)]
         for part in self.parts:
@@ -86,7 +86,7 @@ class Deck:
 
     def row(self, kind: type[Row]) -> str:
         """One row up to its measurement: move or load, then measure."""
-        return _commands((self._step(kind), *self._measuring, self._line))
+        return _commands((*self._before(kind), self._step(kind), *self._measuring, self._line))
 
     def as_listed(self, row: AnyRow) -> AnyRow:
         """A row of a sweep with its numbers as LAMMPS has those of a list: to 15 digits."""
@@ -147,6 +147,9 @@ class Deck:
         if not self.swept:
             return "output"
         return "output_swept_in_units" if self.units.are_own else "output_swept"
+
+    def _before(self, kind: type[Row]) -> tuple[str, ...]:
+        return ("steps/again",) if kind is Hold and self.scene.adhesion is not None else ()
 
     def _step(self, kind: type[Row]) -> str:
         if self.swept and kind is Displace:
@@ -225,7 +228,7 @@ class Deck:
             last = (self._state,) if phase.state else ()
             kept = {"state_append": "the state"} if phase.state else {}
             row = (self._step(kind),) if self.swept else (
-                self._step(kind), *self._measuring, self._line, *self._measured,
+                *self._before(kind), self._step(kind), *self._measuring, self._line, *self._measured,
             )  # fmt: skip
             here = owners | given | kept
             for name in (*phase.begin, *row, *row, *last):

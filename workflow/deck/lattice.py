@@ -100,8 +100,8 @@ def start_offset(scene: Scene, settings: Settings) -> float:
 
 def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body:
     none = np.empty((0, 3))
-    if scene.is_swept:
-        return Body(name, particles, none, none)
+    if scene.stands:
+        return Body(name, particles + _staggered(particles, scene), none, none)
     tangential = scene.tangential_stiffness
     softer = min(settings.bulk_stiffness, tangential) if settings.far else settings.bulk_stiffness
     shift = np.zeros_like(particles)
@@ -109,8 +109,8 @@ def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body
         shift = -neighbour_forces(particles, scene.neighbours.stiffness) / softer
         if scene.horizontal is None:
             shift[:, 0] = 0.0
-    if scene.plate is not None and name == "upper":
-        shift[:, 1] = STAGGER_SHARE * len(particles) * scene.bodies.own_spacing * (-1.0) ** np.arange(len(particles))
+    if name == "upper":
+        shift += _staggered(particles, scene)
     anchors = particles + shift
     if settings.far == 0.0:
         return Body(name, particles, anchors, none)
@@ -120,3 +120,11 @@ def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body
     else:
         away[2] = settings.far if name == "upper" else -settings.far
     return Body(name, particles, anchors, particles + away)
+
+
+def _staggered(particles: Array, scene: Scene) -> Array:
+    """Shift of a plate's atoms out of the plane, (N, 3) [LU]; 0 without a plate."""
+    shift = np.zeros_like(particles)
+    if scene.plate is not None:
+        shift[:, 1] = STAGGER_SHARE * len(particles) * scene.bodies.own_spacing * (-1.0) ** np.arange(len(particles))
+    return shift

@@ -24,11 +24,20 @@ CHOSEN_BINS = ("far_bin", "wide_bin")
 
 
 def standing(scene: Scene, settings: Settings) -> list[Contribution]:
-    """A body whose particles stand still in it, swept over a rigid plane that has their springs."""
+    """A body whose particles stand still in it, over a rigid plane that has their springs: swept, or moved in time."""
+    plane = _plane("standing_plane", scene, settings)
+    if not scene.is_swept:
+        clock = {"time_step": number(settings.time_step)}
+        return [
+            Contribution("bodies", Stage.BODIES, ("standing_plate",)),
+            plane,
+            Contribution("dynamic", Stage.MOTION, ("clock",), clock),
+        ]
+    steps = ("sweep", "along") if scene.experiment.goes_along else ("sweep",)
     return [
         Contribution("bodies", Stage.BODIES, ("standing",)),
-        _plane("standing_plane", scene, settings),
-        Contribution("quasistatic", Stage.MOTION, ("sweep", "along") if scene.experiment.goes_along else ("sweep",)),
+        plane,
+        Contribution("quasistatic", Stage.MOTION, steps),
     ]
 
 

@@ -25,6 +25,8 @@ def write_system(deck: Deck, folder: Path) -> None:
     anchors = settings.particles
     particle, plate = inertia(scene, settings)
     mass = plate / anchors if scene.plate is not None else particle
+    if scene.stands and scene.plate is not None:
+        particle += mass  # there are no anchors that would have it
     system = assemble(
         both,
         scene.neighbours is not None,

@@ -10,8 +10,6 @@ from contact1d.workflow.scene.tables import Bodies
 
 KEYS = ("work_of_adhesion", "surface_energy")
 NOT_WITH = {
-    "plate": "its contact is at rest in every state, and a plate moves",
-    "damping": "its contact is at rest in every state",
     "neighbours": "JKR's contact is a row of independent springs, and neighbours would tie them together",
     "noise": "particles that stand still in their body have no heat of their own",
 }
@@ -41,6 +39,11 @@ def adhesion(draft: Draft) -> Iterator[Problem]:
     if reduction == "geike_popov":
         must = 'must be "mdr" with [adhesion], whose edge is that of a contact of three dimensions'
         yield Problem("bodies.reduction", must, shown(reduction), 'write reduction = "mdr"')
+    if draft.kind == "path" and draft.has("damping"):
+        hint = 'remove it: method = "quasistatic" is the same without time'
+        yield Problem(
+            "damping", "not with [adhesion] in a path: where the plate's place is given nothing moves", hint=hint
+        )
     for name, why in NOT_WITH.items():
         if draft.has(name):
             yield Problem(name, f"not with [adhesion]: {why}", hint=f"remove it, or [adhesion] and [{name}] apart")

@@ -209,6 +209,11 @@ class Scene(Table):
         return attracts or (self.adhesion is not None and self.adhesion.work > 0.0)
 
     @property
+    def stands(self) -> bool:
+        """Whether particles stand still in the upper body, on a rigid plane that has their springs."""
+        return self.is_swept or self.adhesion is not None
+
+    @property
     def is_swept(self) -> bool:
         """Whether particles have no place to find: alone at rest on a rigid plane, they have what the plate's gives."""
         alone = self.bodies.lower == "rigid_plane" and self.neighbours is None

@@ -65,7 +65,7 @@ def plane_stiffness_of(scene: Scene, tolerance: float) -> float:
     if scene.bodies.lower != "rigid_plane":
         return 0.0
     stiffness = scene.bulk_stiffness
-    if scene.is_swept:
+    if scene.stands:
         return stiffness
     if scene.neighbours is None and scene.noise is None:
         return 2.0 * stiffness

@@ -231,7 +231,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     require_room(bodies)
     shape: Profile = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
     plane = plane_stiffness_of(scene, tolerance)
-    in_series = law is None and not scene.is_swept
+    in_series = law is None and not scene.stands
     bond = 1.0 / (1.0 / scene.bulk_stiffness - 1.0 / plane) if in_series else scene.bulk_stiffness
     cutoff, rest, closest = 0.0, 0.0, 0.0
     if law is None:

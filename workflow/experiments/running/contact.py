@@ -257,6 +257,9 @@ class Contact:
         else:
             # The plane's own softness lets a particle dip into it: the surface is where the particle is.
             closest, depth = float(max(z.min(), 0.0)), 0.0
+            if self.scene.stands:
+                z = np.where(atoms["v_opposite_z"][upper] != 0.0, 0.0, z)
+                force = np.zeros_like(force)  # of its own a particle has no motion
             z_below = np.minimum(z, 0.0)
         profile = pressure_profile(
             x, z, z_below, atoms["v_opposite_x"][upper], atoms["v_opposite_z"][upper], self.scene.bodies.own_spacing

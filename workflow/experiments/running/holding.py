@@ -178,8 +178,8 @@ def press(contact: Contact, load: float, scale: float) -> Held:
 
 
 def _inertia(scene: Scene, settings: Settings) -> float:
-    """What moves over the mass of the plate: the upper particles go with it."""
-    return 1.0 + settings.particles * scene.bodies.mass / settings.plate_mass
+    """What moves over what LAMMPS counts as plate: the upper particles go with it, or are part of it."""
+    return 1.0 if scene.stands else 1.0 + settings.particles * scene.bodies.mass / settings.plate_mass
 
 
 def _apart(settings: Settings) -> float:
