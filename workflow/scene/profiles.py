@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 Exponent = Annotated[float, Ge(1.0), Unit("1")]
+STEEPEST = 3.0
+"""Slope at a measured point over the rise to its neighbour up to which a cubic has no overshoot."""
 CELLS = 1_000_000
 """Places times points of a measured profile that are transformed at once, to bound the memory."""
 
@@ -130,7 +132,7 @@ Heights = Annotated[tuple[Height, ...], Field(strict=False), MinLen(FEWEST_POINT
 class Measured(Shape):
     """Profile of the upper body: a measured axisymmetric one, from a file or from two lists.
 
-    Between its points it is a monotone cubic (PCHIP): no overshoot, a continuous slope.
+    Between its points it is a monotone cubic: no overshoot, a continuous slope, a paraboloid met exactly.
     """
 
     kind: Literal["table"] = Field(description="measured points, monotone cubics between them")
@@ -192,11 +194,27 @@ class Measured(Shape):
 
 @lru_cache(maxsize=8)
 def _spline(r: tuple[float, ...], z: tuple[float, ...]) -> Any:
-    """Monotone cubics through the points, z(0) = 0; kept, since a chain's length is found by asking many times."""
-    import numpy as np
-    from scipy.interpolate import PchipInterpolator
+    """Monotone cubics through the points, z(0) = 0; kept, since a chain's length is found by asking many times.
 
-    return PchipInterpolator(np.asarray(r), np.asarray(z) - z[0], extrapolate=False)
+    The slope at a point is that of the parabola through it and its neighbours, so that a sphere's paraboloid is met
+    exactly, but no more than STEEPEST times the rise to either side, and 0 where that changes its sign: then no cubic
+    overshoots (F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238).
+    """
+    import numpy as np
+    from scipy.interpolate import CubicHermiteSpline
+
+    x, y = np.asarray(r), np.asarray(z) - z[0]
+    step, rise = np.diff(x), np.diff(y) / np.diff(x)
+    before, after = rise[:-1], rise[1:]
+    inner = (step[1:] * before + step[:-1] * after) / (step[1:] + step[:-1])
+    first = rise[0] + step[0] / (step[0] + step[1]) * (rise[0] - rise[1])
+    last = rise[-1] + step[-1] / (step[-1] + step[-2]) * (rise[-1] - rise[-2])
+    least = np.concatenate([rise[:1], np.where(np.abs(before) < np.abs(after), before, after), rise[-1:]])
+    turns = np.concatenate([[False], before * after <= 0.0, [False]])
+    wanted = np.concatenate([[first], inner, [last]])
+    limit = np.where(turns, 0.0, STEEPEST * np.abs(least))
+    slopes = np.sign(least) * np.clip(np.sign(least) * wanted, 0.0, limit)
+    return CubicHermiteSpline(x, y, slopes, extrapolate=False)
 
 
 @lru_cache(maxsize=8)
