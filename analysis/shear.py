@@ -7,6 +7,7 @@ vertical tangent: between kinks it is smooth, a spline for each zone, and on a p
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -121,10 +122,12 @@ def _spline(
         x, y = np.append(-x[mirrored][::-1], x), np.append(y[mirrored][::-1], y)
     spline = CubicSpline(x, y)
     begin = max(int(np.searchsorted(x, low, side="right")) - 1, 0)
-    starts, pieces = x[begin:-1].copy(), np.zeros((4, x.size - 1 - begin))
-    for i, begins in enumerate(starts):
-        shifted = np.polynomial.Polynomial(spline.c[::-1, begin + i])(np.polynomial.Polynomial([-begins, 1.0]))
-        pieces[: shifted.coef.size, i] = shifted.coef
+    starts, local = x[begin:-1].copy(), spline.c[::-1, begin:]
+    shift = -starts
+    pieces = np.zeros((4, starts.size))
+    for power, coefficients in enumerate(local):
+        for k in range(power + 1):  # (x + shift)^power
+            pieces[k] += math.comb(power, k) * coefficients * shift ** (power - k)
     starts[0] = low
     if first and not apex:
         pieces[1, 0] = 0.0

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from contact1d.analysis.reference.spring_sliders import SpringSliders, displacement_under
 from contact1d.workflow.scene import Scene, Tangential, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
-from contact1d.workflow.settings.sliders import Sliders, sliders_of, stops
+from contact1d.workflow.settings.sliders import Sliders, sliders_of, stops, without_rests
 
 ROUND_OFF = 1e-12
 """Relative to the largest force: sums over 30 particles."""
@@ -55,6 +55,26 @@ def test_any_way_ends_as_the_reference_says(way: list[tuple[float, float]]) -> N
     assert found["tangential_force"] == pytest.approx(reference.tangential_force, abs=ROUND_OFF * 10.0)
     assert found["dissipated_energy"] == pytest.approx(reference.dissipated, abs=ROUND_OFF * 100.0)
     assert found["normal_force"] == pytest.approx(reference.normal_force, abs=ROUND_OFF * 10.0)
+
+
+@given(places=st.lists(st.sampled_from([-0.3, -0.1, 0.0, 0.1, 0.1, 0.2, 0.5]), min_size=1, max_size=12))
+def test_stops_on_a_straight_way_change_nothing(places: list[float]) -> None:
+    way = [(0.4, 0.0), *((0.4, place) for place in places)]
+    fewer = without_rests(way)
+    assert (fewer[0], fewer[-1]) == (way[0], way[-1])
+    reference = SpringSliders(chain().heights.tolist(), NORMAL, TANGENTIAL, MU)
+    for stop in way:
+        reference.move(*stop)
+    found = chain().at_end(way)
+    assert found["tangential_force"] == pytest.approx(reference.tangential_force, abs=ROUND_OFF * 10.0)
+    assert found["dissipated_energy"] == pytest.approx(reference.dissipated, abs=ROUND_OFF * 100.0)
+
+
+def test_a_way_out_and_back_is_its_turns() -> None:
+    way = [(0.4, place) for place in (0.0, 0.0, 0.1, 0.2, 0.2, 0.3, 0.1, -0.1, -0.1)]
+    assert [place for _, place in without_rests(way)] == [0.0, 0.0, 0.3, -0.1]
+    lifted = [(0.4, 0.0), (0.4, 0.1), (0.5, 0.2), (0.5, 0.3), (0.5, 0.4)]
+    assert without_rests(lifted) == [(0.4, 0.0), (0.4, 0.1), (0.5, 0.2), (0.5, 0.4)]
 
 
 def scene_of(**load: object) -> Scene:

@@ -210,6 +210,17 @@ def test_no_theory_beside_what_it_does_not_describe(tmp_path: Path) -> None:
     assert "Cattaneo–Mindlin" not in labels
 
 
+def test_the_scene_of_the_how_to_runs(tmp_path: Path) -> None:
+    """In SI: 10 N on steel, drawn to and fro by less than sliding needs."""
+    page = (Path(__file__).parents[2] / "docs" / "how_to" / "shear.md").read_text(encoding="utf-8")
+    done = run(page.split("```toml\n")[1].split("```")[0], tmp_path, figures=False)
+    force, stick = done.results["tangential_force"], done.results["stick_radius"]
+    assert done.warnings == {}
+    assert force.si is not None
+    assert 0.0 < force.si.value < 3.0
+    assert 0.0 < stick.value < done.results["contact_radius"].value
+
+
 def test_a_scene_of_friction_is_written_and_read_again() -> None:
     varied: Any = {"experiment.normal_force": [1.0, 2.0], "experiment.displacements": [0.0, 0.1]}
     for one in (scene(), read_scene(SHIPPED).with_(varied)):

@@ -17,7 +17,7 @@ from contact1d.analysis.shear import kinks_of, shear_load
 from contact1d.workflow.scene import Cone, Scene, Tangential
 
 Array = NDArray[np.float64]
-RADII = 200
+RADII = 100
 """Evenly from 0 to the contact radius, at which q is given, and at its kinks besides."""
 
 

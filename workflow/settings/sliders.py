@@ -70,7 +70,7 @@ class Sliders:
         Particles that touch on a part of a straight stretch only are moved along for that part of it.
         """
         force, work, direction = np.zeros_like(self.heights), 0.0, 0
-        for (before, start), (after, place) in pairwise(stops):
+        for (before, start), (after, place) in pairwise(without_rests(stops)):
             old, new = (np.maximum(depth - self.heights, 0.0) for depth in (before, after))
             touched = np.where(old > 0.0, 1.0, 0.0) if after == before else (new - old) / (after - before)
             limit, next_limit = (self.coefficient * self.normal * overlap for overlap in (old, new))
@@ -85,6 +85,18 @@ class Sliders:
             "dissipated_energy": work,
             "normal_force": float(profile.pressure.sum()),
         }
+
+
+def without_rests(way: Sequence[Stop]) -> list[Stop]:
+    """The way without stops from which it goes straight on under the same displacement: they change nothing."""
+    kept = list(way[:2])
+    for stop in way[2:]:
+        (depth, start), (next_depth, place) = kept[-2:]
+        onwards = (place - start) * (stop[1] - place) >= 0.0 and place != start
+        if onwards and depth == next_depth == stop[0]:
+            kept.pop()
+        kept.append(stop)
+    return kept
 
 
 def sliders_of(scene: Scene, x: Array) -> Sliders:
