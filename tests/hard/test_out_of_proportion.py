@@ -47,6 +47,10 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
         chains(100.0, bodies={"particles": 20, "bulk_stiffness": 1e-300}, experiment=LOAD),
         r"would go as far as .* another unit",
     ),
+    "springs that digits do not resolve": (
+        chains(100.0, stiffness=1e12, bodies={"particles": 40}, experiment={"kind": "pull_off", "preload": 0.3}),
+        r"too stiff to compute with: .* FU/LU are possible",
+    ),
     "a repulsion beside which an attraction is nothing": (
         chains(
             100.0,

@@ -30,7 +30,14 @@ from contact1d.workflow.settings.scales import (
     thermal_motion,
 )
 from contact1d.workflow.settings.shape import Profile, tabulated
-from contact1d.workflow.settings.size import require_apex, require_memory, require_reach, require_rows, require_travel
+from contact1d.workflow.settings.size import (
+    require_apex,
+    require_digits,
+    require_memory,
+    require_reach,
+    require_rows,
+    require_travel,
+)
 
 TABLE_MARGIN = 0.8
 """Distance from which on a table is to follow the law, over the expected smallest one. Measured: the smallest distance
@@ -43,9 +50,6 @@ near 0."""
 NEAR_SHARE = 0.2
 """Least distance down to which a table follows the law and a search comes down in ever smaller moves, over `closest`: a
 table that is smoothed any earlier lets bodies through that the law still carries."""
-UNRELAXED = 20.0
-"""Force under which a pair lets go at rest over the norm at which a relaxation stops; measured: 17 and 18, at
-tolerances of 1e-2 and 1e-3."""
 FAR_SHARE = 10.0
 """Length of a long bond over the spacing, per 1/tolerance: a sideways move u bends its force by u/2L."""
 STAGGER_SHARE = 5e-4
@@ -158,17 +162,8 @@ class Settings:
         return min(self.smooth_step, max(NEAR_SHARE * self.longest_move, MOVE_SHARE * smallest_distance))
 
     def let_go_early(self, move: float) -> float:
-        """How far [LU] before its time a pair lets go of a body that is drawn away by `move` [LU] at a time.
-
-        A move h puts a joined pair h further apart before it relaxes. That is beyond the unstable place next to it,
-        which is 2 √(2 e/|G″|) away at a gap e before the fold of G(r), up to e = h² |G″|/8. What a relaxation leaves of
-        the forces adds to h: it is lost at e = UNRELAXED · 2F/k itself.
-        """
-        bend = self.estimate.bend
-        if bend == 0.0:
-            return 0.0
-        left = UNRELAXED * self.force_tolerance / self.estimate.stiffness
-        return 0.125 * bend * (move + math.sqrt(8.0 * left / bend)) ** 2
+        """How far [LU] before its time a pair lets go of a body that is drawn away by `move` [LU] at a time."""
+        return self.estimate.let_go_early(move, self.force_tolerance)
 
     def in_smaller_steps(self, part: float) -> Settings:
         """The same, with increments and moves that are this part as long, also those of a relaxation.
@@ -251,6 +246,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     require_memory(scene, max(particles, lower), cutoff)
     require_travel(scene, largest, cutoff)
     force_scale = force_scale_of(scene, law, largest)
+    require_digits(scene, particles, rest + largest, tolerance * force_scale)
     table_from, table = 0.0, None
     if law is not None:
         nearest = closest if scene.noise is not None else NEAR_SHARE * closest

@@ -29,6 +29,8 @@ SHARPEST_RATIO = 1e3
 """Height of the particles beside an apex over cutoff and spacing: so far even neighbour springs bring none."""
 FARTHEST_RATIO = 1e9
 """Way of a body over cutoff and spacing: LAMMPS divides the box into no more bins, and coordinates lose the digits."""
+DIGIT_SHARE = 0.1
+"""Force that the last digit of a place may be, over one particle's and the tolerance: that of a converged state."""
 MIX_UP = "All lengths (spacing, radius, ranges) are in LU: are some of them in another unit?"
 
 
@@ -97,6 +99,31 @@ def require_memory(scene: Scene, particles: int, cutoff: float) -> None:
             f"{particles} particles per body, each within reach of {felt:.0f} opposite ones, need about "
             f"{needed / 1e9:.2g} GB of memory, and this machine has {available / 1e9:.2g} GB: a wider bodies.spacing, "
             "a smaller radius, load or displacement needs fewer particles, a shorter cutoff fewer pairs"
+        )
+
+
+def require_digits(scene: Scene, particles: int, deepest: float, force: float) -> None:
+    """Refuse springs so stiff that the last digit of a place is more force than a particle at rest may be left with.
+
+    Args:
+        scene: whose particles are brought to rest without time.
+        particles: per body.
+        deepest: length that a place has beside the height of the last particle [LU].
+        force: of one particle, times the tolerance [FU].
+
+    Raises:
+        SettingsError: with springs that are possible.
+    """
+    if scene.method != "quasistatic" or scene.interaction is None:
+        return
+    last = float(scene.bodies.height(np.asarray([0.5 * (particles - 1) * scene.bodies.spacing]))[0])
+    digit = 0.5 * float(np.spacing(abs(last) + abs(deepest)))
+    left, allowed = scene.bulk_stiffness * digit, DIGIT_SHARE * force
+    if left > allowed:
+        raise SettingsError(
+            f"a bodies.bulk_stiffness of {scene.bulk_stiffness:.3g} FU/LU is too stiff to compute with: the last digit "
+            f"of a place, {digit:.1g} LU, is a force of {left:.1g} FU, and the tolerance allows {allowed:.1g} FU. "
+            f"{float(f'{0.3 * allowed / digit:.1g}'):g} FU/LU are possible, and as good as rigid"
         )
 
 
