@@ -23,7 +23,7 @@ from contact1d import Run
 from contact1d.analysis.reference.independent_pairs import IndependentPairs
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.workflow.units import Quantity
-from tests.scenes import chains
+from tests.scenes import LAW, chains
 
 FORCE = 2e-6
 """Relative; measured 4e-7: table, cutoff and rows, each chosen for far less than the tolerance of 1e-3."""
@@ -64,6 +64,18 @@ def test_closed_form(measured: dict[float, Mapping[str, Quantity]], radius: floa
         assert abs(found[name].value - exact[name]) < RADIUS
     for name in NAMES:
         assert abs(found[name].value - exact[name]) <= found[name].uncertainty
+
+
+@pytest.mark.parametrize("radius", [32_000.0, 128_000.0])
+def test_a_coarse_law_under_a_blunt_body_is_within_the_claim(run_tables: Callable[..., Run], radius: float) -> None:
+    """Hundreds of particles leave nothing to interpolation: what a short cutoff moves is all there is. Spacing 7."""
+    pairs = IndependentPairs(PairInteraction(*(Exponential(*LAW[i : i + 2]) for i in (0, 2))), STIFFNESS, radius, 7.0)
+    pull = {"kind": "pull_off", "preload": 0.5 * pairs.adhesion_force()}
+    tables = chains(radius, STIFFNESS, bodies={"spacing": 7.0}, accuracy={"tolerance": 1e-2}, experiment=pull)
+    found = run_tables(tables).results
+    exact = (pairs.adhesion_force(), pairs.zero_load_radius(), pairs.critical_radius())
+    for name, value in zip(NAMES, exact, strict=True):
+        assert abs(found[name].value - value) <= found[name].uncertainty
 
 
 def test_everything_grows_as_the_root_of_the_radius(measured: dict[float, Mapping[str, Quantity]]) -> None:

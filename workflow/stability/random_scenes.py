@@ -44,8 +44,10 @@ def measure(bench: Bench, folder: Path) -> Findings:
         group = f"{scene['experiment']['kind']} {'in time' if method == 'dynamic' else 'at rest'}"
         name = f"random_{number}"
         run = bench.run(name, scene)
-        exact = {} if isinstance(run, Refused) else _exact(scene, run)
-        tally.add(name, group, run, exact, SOLVER)
+        try:
+            tally.add(name, group, run, _exact(scene, run), SOLVER)
+        except RuntimeError:  # the reference's own chains buckle through each other: a scene that nothing carries
+            continue
     checks = tally.checks(NAME, "the independent solver")
     labels = ("share of the numbers", "error over the claim")
     points_figure(folder / f"{NAME}.png", tally.series(), labels, bound=1.0, log="y")
@@ -156,7 +158,7 @@ def loaded(model: ChainModel, force: float, near: float) -> State:
         slope = (second.force - first.force) / (second.displacement - first.displacement)
         place = second.displacement + (force - second.force) / slope
         first, second = second, solver.equilibrium(place, second)
-    raise AssertionError("the secant method did not end")
+    raise RuntimeError("the secant method did not end")
 
 
 def radius_of(model: ChainModel, state: State) -> float:
@@ -190,9 +192,13 @@ def exact_results(scene: dict[str, Any], model: ChainModel, near: float) -> dict
     return {"displacement": state.displacement, "contact_radius": radius, "mean_pressure": pressure}
 
 
-def _exact(scene: dict[str, Any], run: Run) -> dict[str, float]:
-    model = model_of(scene, next(iter(run.profiles.values())).x.size)
-    return exact_results(scene, model, run.results["displacement"].value if "displacement" in run.results else 0.0)
+def _exact(scene: dict[str, Any], run: Run | Refused) -> dict[str, float]:
+    """The solver's numbers. Raises RuntimeError where it does not carry the scene."""
+    if isinstance(run, Refused):
+        expected = settings_for(scene_from_dict({"title": "expected"} | scene))
+        return exact_results(scene, model_of(scene, expected.particles), expected.largest_displacement)
+    near = run.results["displacement"].value if "displacement" in run.results else 0.0
+    return exact_results(scene, model_of(scene, next(iter(run.profiles.values())).x.size), near)
 
 
 RANDOM = Class(

@@ -247,7 +247,10 @@ def _outcome(context: RunContext, found: Pass | SmoothPass, preload: float, miss
     missed = max(missed, peak.uncertainty) + residual + law_error(scene, settings, critical)
     at_zero = abs(zero.force) + law_error(scene, settings, zero)
     rate = abs(radius_rate(found.unloading, critical))
-    at_critical = abs(shift) + PLACE_FACTOR * rate * peak.misplaced + slope * law_error(scene, settings, critical)
+    # An error of the law moves the place of a flat maximum, too: by a range for one as large as the force.
+    reach = 0.0 if settings.law is None else settings.law.longest_range
+    by_law = (slope + rate * reach / peak.smooth) * law_error(scene, settings, critical)
+    at_critical = abs(shift) + PLACE_FACTOR * rate * peak.misplaced + by_law
     if isinstance(found, Pass):
         at_critical += _rival_radius(found, critical_radius.value, missed)
     quantities = {
