@@ -109,6 +109,10 @@ def test_one_mistake_is_one_sentence(change: dict[str, Any], words: str) -> None
     assert problem.startswith(words)
 
 
+def test_scene_is_no_material() -> None:
+    assert problems(bodies={}, experiment={}) == ["bodies: this is a scene and no material; run it with contact1d run"]
+
+
 def test_file_that_is_none_is_told(tmp_path: Path) -> None:
     for name, text in (("there.toml", "radius = "), ("latin.toml", None)):
         path = tmp_path / name

@@ -108,6 +108,8 @@ class _Reader:
 
     def contact(self) -> AskedContact:
         """The contact. Raises SceneError with every problem."""
+        if {"bodies", "experiment"} <= self.data.keys():
+            raise SceneError([Problem("bodies", "this is a scene and no material", hint="run it with contact1d run")])
         for key in self.data:
             if key not in KEYS:
                 meant = nearest(key, KEYS)
