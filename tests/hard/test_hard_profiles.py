@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import Run, RunError, run
+from contact1d import Run, RunError
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.pull_off import pull_off
+from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.settings.settings import SettingsError, settings_for
 

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import RunError, run
+from contact1d import RunError
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.pair_lattice import PairLattice
+from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import scene_from_dict
 
 TOLERANCE = 1e-3

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import RunError, run
+from contact1d import RunError
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.solver import ChainSolver
+from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import LAW, chains

@@ -9,10 +9,11 @@ from typing import Any
 
 import pytest
 
-from contact1d import RunError, run
+from contact1d import RunError
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.pull_off import pull_off
+from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import scene_from_dict
 from tests.scenes import LAW, chains
 

@@ -18,7 +18,8 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 from scipy.stats import binom
 
-from contact1d import RunError, run
+from contact1d import RunError
+from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.stability.random_scenes import SOLVER, exact_results, model_of, random_scene
 
