@@ -41,6 +41,15 @@ def test_run_prints_numbers_and_a_picture_and_exits_with_0(tmp_path: Path) -> No
     assert "loading" in done.stderr  # plain progress lines where there is no terminal
 
 
+def test_run_names_the_reduction_and_draws_in_the_format_that_is_asked_for(tmp_path: Path) -> None:
+    done = contact1d("run", scene_file(tmp_path), "--format", "svg", "-q", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    first, *rest = done.stdout.splitlines()
+    assert first.split()[:2] == ["reduction", "mdr:"]
+    assert any("contact radius a" in line and "Hertz" in line and "%)" in line for line in rest)
+    assert {path.suffix for path in (tmp_path / "runs" / "plane").glob("pressure*.*")} == {".svg", ".csv"}
+
+
 def test_set_and_without_change_the_scene(tmp_path: Path) -> None:
     done = contact1d(
         "run", scene_file(tmp_path, SCENE + "[neighbours]\nstiffness = 0.1\n"), "--out", "here", "--no-figures", "-q",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -28,6 +30,33 @@ def test_only_quantities_are_listed() -> None:
     (line,) = quantities(document)
     assert "adhesion force" in line
     assert line.endswith("2.00 ± 0.10 FU")
+
+
+def entry(value: float, si: float | None = None) -> dict[str, Any]:
+    found: dict[str, Any] = {"value": value, "uncertainty": 0.01 * value, "unit": "LU"}
+    return found if si is None else found | {"si": {"value": si, "uncertainty": 0.01 * si, "unit": "m"}}
+
+
+def test_a_result_stands_in_si_with_the_closed_form_beside_it() -> None:
+    said = {"value": 1.0, "unit": "LU", "si": {"value": 1.1e-4, "unit": "m"}, "deviation": 0.00123}
+    forms = [{"name": "Hertz", "source": "", "applies": "", "values": {"contact_radius": said}}]
+    document = {"reduction": "mdr", "contact_radius": entry(1.0, 1.1e-4), "theory": forms}
+    reduction, line = quantities(document)
+    assert "mdr" in reduction
+    assert "LU" not in line
+    assert "110.0 ± 1.1 µm" in line
+    assert line.endswith("Hertz 110 µm (+0.12 %)")
+
+
+def test_whose_the_radii_are_is_said() -> None:
+    def first(**document: Any) -> str:
+        return quantities(document)[0]
+
+    flat = {"bodies": {"profile": {"kind": "flat"}}}
+    assert "those of the body" in first(reduction="mdr")
+    assert "same in each" in first(reduction="mdr", scene=flat)
+    assert "of its image" in first(reduction="geike_popov", contact_radius=entry(1.0))
+    assert "two equal spheres" in first(reduction="geike_popov", image_contact_radius=entry(1.0))
 
 
 def profile(pressure: np.ndarray) -> Profile:

@@ -55,6 +55,8 @@ def quantities(results: Mapping[str, Any]) -> list[str]:
 def _whose(results: Mapping[str, Any]) -> str:
     """The reduction, and whose the radii and pressures are."""
     reduction = str(results["reduction"])
+    if results.get("scene", {}).get("bodies", {}).get("profile", {}).get("kind") == "flat":
+        return f"{reduction}: a flat body is the same in each"
     if reduction == "mdr":
         return "mdr: radii and pressures are those of the body"
     if any(name.startswith("image_") for name in results):
@@ -70,7 +72,7 @@ def _beside(results: Mapping[str, Any], name: str) -> Iterator[str]:
             if "si" in said:
                 factor, unit = scale_of(said["si"]["value"], said["si"]["unit"])
                 number = f"{said['si']['value'] * factor:.5g} {unit}"
-            off = "" if said["deviation"] is None else f" ({round(100.0 * said['deviation'], SHOWN):+.2g} %)"
+            off = "" if said["deviation"] is None else f" ({round(100.0 * said['deviation'], SHOWN) + 0.0:+.2g} %)"
             yield f"{form['name']} {number}{off}"
 
 

@@ -29,7 +29,7 @@ from contact1d.workflow.units import ENERGY, LINE_PRESSURE, MEAN_PRESSURE, Quant
 Array = NDArray[np.float64]
 MOST = 1000
 """Particles on a side that are used, and radii that p is given at; of more, every second, third …"""
-REPORTED = ("final", "deepest", "zero_load", "zero")
+REPORTED = ("deepest", "final", "zero_load")
 """States whose pressure is a result, the first that a run has."""
 ERRORS = ("displacement", "contact_radius", "largest_force", "largest_radius", "zero_load_radius")
 """Results whose relative uncertainty, that of the lattice included, is the pressure's, too."""
