@@ -16,6 +16,7 @@ import tempfile
 from pathlib import Path
 
 from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.steps import Displace
 from contact1d.workflow.engine.session import Engine, Session
 from contact1d.workflow.runs.campaign import write_deck
 from contact1d.workflow.scene import scene_from_dict
@@ -42,12 +43,33 @@ SCENES = {
     } | TIMED | LOAD,
     "plate_noise": {"bodies": BODIES, "interaction": LAW, "noise": {"temperature": 1e-4, "seed": 1}} | TIMED | LOAD,
     "plane": {"bodies": BODIES | {"lower": "rigid_plane"}} | TIMED | LOAD,
+    "sweep": {
+        "bodies": BODIES | {"lower": "rigid_plane", "bulk_stiffness": 0.5},
+        "experiment": {"kind": "path", "displacements": [2.0]},
+    },
 }  # fmt: skip
 
 
-def loop_time(session: Session, folder: Path) -> float:
+PLACES = tuple(2.0 * row / STEPS for row in range(STEPS))
+"""Displacements of a sweep, one for each step."""
+BY_HAND = (
+    "variable first equal $(step)\nvariable row equal ternary(step>v_first,step-v_first,1)\n"
+    f"variable places vector [{','.join(map(repr, PLACES))}]\n"
+)
+"""What a sweep by hand begins each run with."""
+
+
+def steps_of(deck: Deck) -> tuple[str, str]:
+    """STEPS steps of the generated deck, and of that by hand."""
+    run = f"run {STEPS}\n"
+    if not deck.swept:
+        return run, run
+    return deck.sweep([Displace(place) for place in PLACES]), f"{BY_HAND}{run}"
+
+
+def loop_time(session: Session, folder: Path, steps: str) -> float:
     """Seconds that LAMMPS reports for STEPS steps."""
-    session.execute(f"log loop.log\nrun {STEPS}\nlog none")
+    session.execute(f"log loop.log\n{steps}log none")
     return float(re.findall(r"Loop time of (\S+)", (folder / "loop.log").read_text())[-1])
 
 
@@ -60,15 +82,18 @@ def ratio(name: str, folder: Path) -> tuple[float, float, float]:
     points = settings.table.points if settings.table is not None else 0
     variables = f"variable points index {points}\nvariable dt index {settings.time_step!r}\n"
     load = "fix plate_load plate addforce 0.0 0.0 -0.005\n"
-    texts = (deck.head + load, variables + (HAND / f"{name}.lmp").read_text())
+    steps = steps_of(deck)
+    head = deck.head + (deck.begin("loading") if deck.swept else load)
+    before = "" if deck.swept else variables
+    texts = (head, before + (HAND / f"{name}.lmp").read_text())
     times: tuple[list[float], list[float]] = ([], [])
     with Engine.session(folder) as first, Engine.session(folder) as second:
         for session, text in zip((first, second), texts, strict=True):
             session.execute(text)
-            loop_time(session, folder)  # settles into the contact; not counted
+            loop_time(session, folder, steps[session is second])  # settles into the contact; not counted
         for turn in range(ROUNDS):
             for index in (0, 1) if turn % 2 == 0 else (1, 0):
-                times[index].append(loop_time((first, second)[index], folder))
+                times[index].append(loop_time((first, second)[index], folder, steps[index]))
     pairs = [a / b for a, b in zip(*times, strict=True)]
     generated, hand = (1e6 * statistics.median(series) / STEPS for series in times)
     return generated, hand, statistics.median(pairs)
