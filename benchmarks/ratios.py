@@ -27,12 +27,12 @@ PLAIN_ASKED = {("quasistatic", 1e-3): 100.0, ("dynamic", 1e-2): 10.0}
 """Asked of the plain way's processor time over ours, by method and tolerance."""
 SOLVER_ASKED = 1.0
 """Asked of the scipy solver's time over ours."""
-PEERS_ASKED = {"Hertz": 10.0, "adhesive": 100.0}
+PEERS_ASKED = {"Hertz": 10.0, "adhesive": 100.0, "JKR": 1000.0}
 """Asked of the other solvers' time over ours."""
 OVERHEAD, SCALING = "`python benchmarks/deck_overhead.py`", "`python benchmarks/scaling.py`"
 PEERS = "`python -m benchmarks.peers.compare`"
 SCIPY, PLAIN, OURS = "scipy solver", "plain", "quasistatic"
-SHOWN = ("Hertz, 1 % of the largest", "Hertz, 1 % of each force (rms)", "adhesive")
+SHOWN = ("Hertz, 1 % of the largest", "Hertz, 1 % of each force (rms)", "adhesive", "JKR")
 """Beginnings of the comparisons with other solvers that are shown; benchmarks/README.md has all of them."""
 
 Row = tuple[str, str, str, str]
