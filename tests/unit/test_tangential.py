@@ -61,9 +61,20 @@ def test_rows_on_the_way_are_where_particles_begin_to_touch_on_a_straight_line()
 
 def test_rows_on_the_way_are_no_more_than_the_tolerance_asks_for() -> None:
     loads: Any = {"experiment": {"kind": "tangential", "normal_displacement": [0.0, 0.9], "displacements": [0.0, 0.1]}}
-    changed = scene(**loads, accuracy__tolerance=1e-2)
+    changed = scene(**loads, accuracy__tolerance=0.1)
     rows = passed(changed, settings_for(changed))
     assert len(rows) == 3 + 10
+
+
+def test_what_too_few_rows_on_the_way_leave_is_claimed(tmp_path: Path) -> None:
+    """Thirty particles on a side begin to touch on a way with ten rows; with all thirty the force is exact."""
+    loads: Any = {"experiment": {"kind": "tangential", "normal_displacement": [0.0, 0.9], "displacements": [0.0, 0.3]}}
+    fine, rough = (
+        run(scene(**loads, bodies__particles=80, accuracy__tolerance=t), tmp_path / str(t), figures=False)
+        for t in (1e-2, 0.1)
+    )
+    exact, less = fine.results["tangential_force"], rough.results["tangential_force"]
+    assert exact.uncertainty < 1e-9 < abs(less.value - exact.value) < less.uncertainty
 
 
 def test_files_of_a_run_and_the_same_run_from_its_folder(tmp_path: Path) -> None:

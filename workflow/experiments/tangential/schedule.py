@@ -17,8 +17,8 @@ from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.settings.sliders import Sliders, Stop, sliders_of, stops
 
 PRESSING, FORWARD, BACKWARD = "pressing", "forward", "backward"
-MOST_TOUCHES = 0.1
-"""Rows on the way between two of the scene, per 1/tolerance; a particle between two of them touches up to one late."""
+MOST_TOUCHES = 1.0
+"""Rows on the way between two of the scene, per 1/tolerance; a particle between two of them is moved from the first."""
 
 
 def sliders(scene: Scene, settings: Settings) -> Sliders:
@@ -51,7 +51,7 @@ def passed(scene: Scene, settings: Settings) -> list[tuple[Stop, bool]]:
     assert isinstance(scene.experiment, Tangential)
     chain = sliders(scene, settings)
     first, *others = stops(scene.experiment, chain)
-    found, most = [(first, False)], max(1, round(MOST_TOUCHES / settings.tolerance))
+    found, most = [(first, False)], _most(settings)
     before = first
     for stop in others:
         touches = chain.touches(before[0], stop[0])
@@ -63,6 +63,21 @@ def passed(scene: Scene, settings: Settings) -> list[tuple[Stop, bool]]:
         found.append((stop, True))
         before = stop
     return found
+
+
+def moved_too_far(scene: Scene, settings: Settings) -> float:
+    """By how much [FU] tangential forces may be off: of particles that begin to touch between two rows on the way."""
+    assert isinstance(scene.experiment, Tangential)
+    chain, most, error = sliders(scene, settings), _most(settings), 0.0
+    for before, stop in pairwise(stops(scene.experiment, chain)):
+        touches = chain.touches(before[0], stop[0])
+        if len(touches) > most:
+            error += 2.0 * len(touches) * chain.tangential * abs(stop[1] - before[1]) / most
+    return error
+
+
+def _most(settings: Settings) -> int:
+    return max(1, round(MOST_TOUCHES / settings.tolerance))
 
 
 def _first_direction(way: list[Stop]) -> str:

@@ -16,7 +16,7 @@ from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import UntrustedError, doubts, require_trust
-from contact1d.workflow.experiments.tangential.schedule import passed, schedule
+from contact1d.workflow.experiments.tangential.schedule import moved_too_far, passed, schedule
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH, Quantity
 
@@ -68,7 +68,8 @@ def tangential(context: RunContext) -> Outcome:
     ends = {"farthest": max(drawn, key=lambda row: abs(row.place)).state, "final": states[-1]}
     radii = {name: state.radius for name, state in ends.items()}
     strongest = scene.friction.coefficient * max(state.force for state in states) if scene.friction else 0.0
-    quantities = _quantities(scene, drawn[-1], ROUND_OFF * len(rows) * strongest)
+    error = ROUND_OFF * len(rows) * strongest + moved_too_far(scene, settings)
+    quantities = _quantities(scene, drawn[-1], error)
     return Outcome(
         quantities,
         tuple(states),
