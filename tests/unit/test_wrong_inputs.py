@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from contact1d.workflow.runs.plausibility import implausible
+from contact1d.workflow.runs.remedies import Change, _in_si
 from contact1d.workflow.scene import Scene, SceneError, read_scene
 from contact1d.workflow.units import Scales
 
@@ -207,6 +208,28 @@ def test_a_wrong_value_gets_its_sentence_and_the_remedy_works(case: Odd) -> None
         read_scene(case.scene, case.set)
     assert str(caught.value) == case.sentence
     assert isinstance(read_scene(case.scene, case.remedy), Scene)
+
+
+@pytest.mark.parametrize("wrong", ["interaction.attraction.range=0.5 µm", "interaction.attraction.amplitude=9 aJ"])
+def test_ways_that_are_tried_have_units_where_the_scene_has(wrong: str) -> None:
+    attraction = "interaction.attraction={ amplitude = '0.5 aJ', range = '2 µm' }"
+    set_ = (*PARTICLES, attraction, wrong)
+    with pytest.raises(SceneError) as caught:
+        read_scene(STEEL_ON_GLASS, set_)
+    (problem,) = caught.value.problems
+    assert problem.hint.endswith("; 1 LU is 1 m, 1 FU is 1 N")
+    assert len(problem.ways) == 2
+    for way in problem.ways:
+        assert isinstance(read_scene(STEEL_ON_GLASS, [*set_, *(f"{key}={value}" for key, value in way.items())]), Scene)
+
+
+def test_changes_that_are_tried_have_units_where_the_scene_has() -> None:
+    """They are for the scene's file, in which a plain number may have no meaning."""
+    change = _in_si(read_scene(STEEL_ON_GLASS), Change({F: 10.0 / 3.0, "bodies.particles": "auto"}))
+    assert str(change) == "--set experiment.force=3.33N --set bodies.particles=auto"
+    assert read_scene(STEEL_ON_GLASS, change.overrides).experiment.compression == 3.33
+    plain = Change({"experiment.preload": 0.333})
+    assert _in_si(read_scene(SHIPPED), plain) == plain
 
 
 def doubts(scene: Scene) -> str:

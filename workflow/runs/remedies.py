@@ -17,10 +17,13 @@ from itertools import count
 from contact1d.workflow.engine.failure import EngineError
 from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.experiments.running.trust import ChainEndError, ThroughError, UntrustedError
+from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import Load, Path, PullOff, Scene, SceneError, Slide
 from contact1d.workflow.scene.experiments import Span
+from contact1d.workflow.scene.places import places
 from contact1d.workflow.scene.problems import as_toml
 from contact1d.workflow.settings.estimate import NotCarriedError
+from contact1d.workflow.units import NUMBER
 
 MOST_TRIALS = 12
 """Changes that are tried at most."""
@@ -124,7 +127,25 @@ def _changes(reader: Reader, made: Change, error: Contact1dError) -> Iterator[Ch
     for what in _kinds(error):
         change = what(scene)
         if change is not None and not change.touches(made):
-            yield change
+            yield _in_si(scene, change)
+
+
+def _in_si(scene: Scene, change: Change) -> Change:
+    """The change with units, "33.3pN", where LU and FU are known: a scene file that has them takes no plain number."""
+    material, scales = scene.material, scales_of(scene, {})
+    if scales is None or material is None or material.length_unit is None or material.force_unit is None:
+        return change
+    units = {
+        ".".join(map(str, place.keys)): place.unit.name
+        for place in places(Scene, scene.model_dump(by_alias=True, exclude_none=True))
+    }
+    values = dict(change.values)
+    for key, value in change.values.items():
+        unit = units.get(key, NUMBER)
+        if isinstance(value, float) and unit != NUMBER and scales.know(unit):
+            factor, name = scales.written(value, unit)
+            values[key] = f"{value * factor:.3g}{name}"
+    return Change(values, change.without)
 
 
 def _ways(error: SceneError) -> Iterator[Change]:

@@ -18,9 +18,14 @@ from contact1d.workflow.scene.problems import Problem, SceneError, path_of, show
 from contact1d.workflow.scene.profile_file import ProfileFileError, ScaleError, read_profile
 from contact1d.workflow.scene.quantities import Table, keys_of
 from contact1d.workflow.scene.si_scene import Column, convert_texts
+from contact1d.workflow.scene.si_text import split
 from contact1d.workflow.scene.tables import Bodies, Scene
 
 PROFILE = ("bodies", "profile")
+UNITS = (("LU", "length_unit", "m"), ("FU", "force_unit", "N"))
+"""What a message says of units of the model: their name, their key in [material], and their unit in SI."""
+IN_MODEL_UNITS = re.compile(r"[1-9][-+.\de]* \((LU|FU)")
+"""A number in them, in a message."""
 AnyScene = Scene | str | PathLike[str] | Mapping[str, Any]
 """What `read_scene` makes a scene of."""
 
@@ -119,19 +124,40 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
     converted = convert_texts(plain, columns)
     checked = check_tables(plain, converted.told)
     found = (*unread, *converted.problems, *checked.problems, *check_fit(plain, checked.unsound))
-    problems += [_as_written(problem, converted.texts, columns) for problem in found]
+    problems += [_as_written(problem, converted.texts, columns, plain) for problem in found]
     if problems or checked.scene is None:
         raise SceneError(sorted(problems, key=_rank))
     return checked.scene
 
 
-def _as_written(problem: Problem, texts: Mapping[str, str], columns: Mapping[Keys, Column]) -> Problem:
+def _as_written(
+    problem: Problem, texts: Mapping[str, str], columns: Mapping[Keys, Column], data: Mapping[str, Any]
+) -> Problem:
     """The problem with what stands in the scene: the text with its unit, the file in place of its points."""
     if problem.path in texts:
-        return replace(problem, given=shown(texts[problem.path]))
+        ways = tuple({key: _with_unit(key, value, texts, data) for key, value in way.items()} for way in problem.ways)
+        units = data.get("material", {})
+        sizes = [f"1 {base} is {units[key]:g} {si}" for base, key, si in UNITS if key in units]
+        hint = (
+            "; ".join(filter(None, (problem.hint, ", ".join(sizes))))
+            if IN_MODEL_UNITS.search(problem.message)
+            else (problem.hint)
+        )
+        return replace(problem, given=shown(texts[problem.path]), ways=ways, hint=hint)
     if columns and problem.path == path_of(PROFILE):
         return replace(problem, path=f"{problem.path}.file", given=shown(next(iter(columns.values())).file))
     return problem
+
+
+def _with_unit(key: str, value: object, texts: Mapping[str, str], data: Mapping[str, Any]) -> object:
+    """A number of the model for `key`, in the unit of the text that stands there now; else as it is."""
+    if key not in texts or not isinstance(value, float):
+        return value
+    now: Any = data
+    for part in key.split("."):
+        now = now[part]
+    number, unit = split(texts[key])
+    return f"{value / now * float(number):.6g}{unit}" if now else value
 
 
 def _with_points(data: dict[str, Any], folder: FilePath) -> tuple[dict[Keys, Column], list[Problem]]:
