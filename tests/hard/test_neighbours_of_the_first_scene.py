@@ -17,6 +17,7 @@ from typing import Any
 import pytest
 
 from contact1d import Contact1dError, read_scene, run
+from contact1d.workflow.runs import advised
 from contact1d.workflow.scene.overrides import set_values
 
 SCENE = Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "pull_off.toml"
@@ -30,6 +31,8 @@ FACTOR = 3.0
 RADII = (20.0, 40.0, 80.0, 150.0, 300.0, 500.0, 1000.0, 1500.0, 2500.0, 4000.0)
 RANGES = (0.26, 0.3, 0.35, 0.42, 0.5, 0.6)
 """Of the attraction; the repulsion has half of it, as in the scene."""
+PATIENT = 1000.0
+"""Seconds for one trial and for all."""
 FIRST = re.compile(r"Tried: (.*?) gives a result")
 
 
@@ -70,6 +73,13 @@ def scene_with(change: dict[str, float]) -> dict[str, Any]:
     tables = tomllib.loads(SCENE.read_text(encoding="utf-8"))
     assert set_values(tables, change) == []
     return tables
+
+
+@pytest.fixture(autouse=True)
+def _without_haste(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A busy machine tries as much as an idle one."""
+    monkeypatch.setattr(advised, "TRIAL", PATIENT)
+    monkeypatch.setattr(advised, "PATIENCE", PATIENT)
 
 
 def require_result_or_remedy(change: dict[str, float], folder: Path) -> None:
