@@ -173,7 +173,7 @@ ONE_LINE_EACH: list[tuple[list[str], str]] = [
     (["bodies.E=0.3"], f"bodies.E: unknown key; allowed here: {BODIES}"),
     (
         ["experiment.tolerance=1e-3"],
-        "experiment.tolerance: unknown key; it belongs in [accuracy]; allowed here: kind, preload, method",
+        "experiment.tolerance: unknown key; it belongs in [accuracy]; allowed here: kind, preload, loading_rate, repeats, method",
     ),
     (
         ["experiment={ kind = 'load', force = 1, preload = 2 }"],
@@ -213,7 +213,7 @@ def test_a_misspelt_kind_does_not_hide_the_other_mistakes() -> None:
     assert lines("experiment={ knid = 'pulloff', preload = -1, x = 2 }") == [
         'experiment.knid: unknown key; did you mean "kind"?',
         f'experiment.kind = "pulloff": must be {KINDS}; did you mean "pull_off"?',
-        "experiment.x: unknown key; allowed here: kind, preload, method",
+        "experiment.x: unknown key; allowed here: kind, preload, loading_rate, repeats, method",
         "experiment.preload = -1: must be greater than 0 (FU)",
     ]
 

@@ -36,7 +36,8 @@ FIGURES = (
 )  # fmt: skip
 FORMATS = ("png", "svg", "pdf")
 FILES = (
-    RESULTS, "curve.csv", "profile.csv", "pressure_3d.csv", "shear_3d.csv", "friction.csv", "slips.csv", "scene.toml",
+    RESULTS, "curve.csv", "profile.csv", "pressure_3d.csv", "shear_3d.csv", "friction.csv", "slips.csv",
+    "detachments.csv", "scene.toml",
     "system.data", "interaction.table", "adhesion.cells", "in.lammps", "log.lammps", "curve.txt", "rows.bin",
     "states.lammpstrj",
     "states.npz", *(f"{name}.{form}" for name in FIGURES for form in FORMATS),
@@ -159,10 +160,10 @@ def write_tables(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> 
             tables["shear_3d.csv"] = _shear_columns(shears)
     elif outcome.friction:
         tables["friction.csv"] = dict(outcome.friction)
-        tables["slips.csv"] = dict(outcome.slips)
     if pressures := body_pressures(scene, outcome.profiles):
         tables["pressure_3d.csv"] = _body_columns(pressures)
     write_states(folder / "states.npz", states_of([state.profile for state in outcome.states]))
+    tables |= {f"{name}.csv": dict(columns) for name, columns in outcome.tables.items()}
     scales = scales_of(scene, outcome.quantities)
     for name, columns in tables.items():
         units = COLUMN_UNITS | BODY_UNITS if name == "pressure_3d.csv" else COLUMN_UNITS

@@ -19,6 +19,8 @@ from contact1d.workflow.scene.quantities import (
     DriveVelocity,
     Force,
     Length,
+    LoadingRate,
+    RepeatCount,
     StepCount,
     Table,
 )
@@ -131,6 +133,12 @@ class PullOff(Kind):
 
     kind: Literal["pull_off"] = Field(description="compress by the preload, then the largest tension held")
     preload: Compression = Field(description="compressive force F_D before the pull")
+    loading_rate: LoadingRate | None = Field(
+        default=None, description="with [noise]: rate at which the load is drawn off until the bodies part"
+    )
+    repeats: RepeatCount | None = Field(
+        default=None, description="with [noise]: how often, each time with the next seed; absent: once"
+    )
     method: Method | None = Field(default=None, description=_METHOD)
 
     @property

@@ -32,7 +32,6 @@ EXCLUDED = {
         "friction": "nothing moves along x in it, so that friction does nothing",
     },
     "pull_off": {
-        "noise": "a thermal pull-off depends on the waiting time, which the scene does not state",
         "cantilever": "only a slide is pulled through a spring",
         "friction": "nothing moves along x in it, so that friction does nothing",
     },
@@ -154,16 +153,6 @@ def _plate_can_slide(draft: Draft) -> Iterator[Problem]:
         yield Problem("horizontal", 'missing, needed by plate.free with "x"', hint=hint)
 
 
-def _plate_has_its_heat(draft: Draft) -> Iterator[Problem]:
-    """Drag c on the plate has no noise of its own: with N particles' γ it would be at the temperature T·Nγ/(Nγ + c)."""
-    drag = draft.get("plate", "damping", default="auto")
-    if draft.has("noise") and draft.has("plate") and drag not in (None, "auto", 0.0):
-        hint = 'write 0.0 or "auto": the heat bath of the particles is the plate\'s, too'
-        ways = ({"plate.damping": "auto"},)
-        must = "not with [noise]: drag that gives no heat cools the plate below noise.temperature"
-        yield Problem("plate.damping", must, shown(drag), hint, ways)
-
-
 def _something_holds(draft: Draft) -> Iterator[Problem]:
     """Without attraction nothing can be pulled: no pull-off, and no load that is not compressive."""
     if draft.has("interaction", "attraction") or draft.has("adhesion"):
@@ -279,7 +268,6 @@ RULES: tuple[Callable[[Draft], Iterator[Problem]], ...] = (
     _law,
     _tables_of_experiment,
     _plate_can_slide,
-    _plate_has_its_heat,
     _something_holds,
     _punch,
     _material,

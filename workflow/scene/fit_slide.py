@@ -97,4 +97,18 @@ def rigid_chain(draft: Draft) -> Iterator[Problem]:
             yield Problem(f"bodies.{key}", 'not with bodies.lower = "rigid_plane", which has no particles', hint=hint)
 
 
-SLIDING_RULES = (way_of_slide, slide_is_held, periodic_bodies, rigid_chain)
+def thermal_pull_off(draft: Draft) -> Iterator[Problem]:
+    """Under heat a pull-off depends on how long it waits, and only then has it a rate and repeats."""
+    if draft.kind != "pull_off":
+        return
+    timeless = draft.get("experiment", "method") == "quasistatic"
+    if draft.has("noise") and not timeless and not draft.has("experiment", "loading_rate"):
+        hint = "give the force per time by which the load is drawn off, in FU/TU, or remove [noise]"
+        yield Problem("experiment.loading_rate", "missing, needed by a pull_off with [noise]", hint=hint)
+    for key in ("loading_rate", "repeats"):
+        if draft.has("experiment", key) and not draft.has("noise"):
+            hint = "remove it, or add [noise] with temperature and seed"
+            yield Problem(f"experiment.{key}", "only with [noise]: without heat each pull ends alike", hint=hint)
+
+
+SLIDING_RULES = (thermal_pull_off, way_of_slide, slide_is_held, periodic_bodies, rigid_chain)

@@ -8,9 +8,12 @@ from contact1d.workflow.deck.steps import Phase, displacements
 from contact1d.workflow.experiments.pull_off.dynamic import pull_off_dynamic
 from contact1d.workflow.experiments.pull_off.quasistatic import pull_off_quasistatic
 from contact1d.workflow.experiments.pull_off.swept import APART
+from contact1d.workflow.experiments.pull_off.thermal import planned_thermal, pull_off_thermal
 from contact1d.workflow.experiments.running.holding import held_phase
 from contact1d.workflow.experiments.running.kind import ExperimentKind, advice_at_rest
+from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.prescribing import LOADING_STEPS, in_smaller_steps
+from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.scene import PullOff, Scene
 from contact1d.workflow.settings.settings import Settings
 
@@ -24,6 +27,8 @@ def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     """The schedule by the estimate of independent pairs."""
     experiment = scene.experiment
     assert isinstance(experiment, PullOff)
+    if scene.noise is not None:
+        return planned_thermal(scene, settings)
     if scene.method == "quasistatic":
         deepest, apart = settings.largest_displacement, settings.rest - settings.cutoff
         if scene.is_swept:
@@ -40,6 +45,11 @@ def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     )
 
 
+def _in_time(context: RunContext) -> Outcome:
+    """With heat the detachment force of each pull; without, the largest tension held."""
+    return pull_off_dynamic(context) if context.deck.scene.noise is None else pull_off_thermal(context)
+
+
 def advice(scene: Scene) -> str:
     """As for every search at rest; in time there is a reason of its own."""
     since = ", since force control never sees the pull-off itself" if scene.method == "dynamic" else ""
@@ -47,7 +57,7 @@ def advice(scene: Scene) -> str:
 
 
 PULL_OFF = ExperimentKind(
-    run={"quasistatic": in_smaller_steps(pull_off_quasistatic), "dynamic": in_smaller_steps(pull_off_dynamic)},
+    run={"quasistatic": in_smaller_steps(pull_off_quasistatic), "dynamic": in_smaller_steps(_in_time)},
     planned=planned,
     main_results=("adhesion_force", "zero_load_radius", "critical_radius"),
     advice=advice,

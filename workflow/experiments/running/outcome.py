@@ -36,7 +36,7 @@ class Outcome:
         phases: the schedule.
         warnings: by name, what limits the trust in the numbers.
         friction: columns of friction.csv, for a slide.
-        slips: columns of slips.csv, the same.
+        tables: columns of further files, by the names of these: slips, detachments.
         spacing_uncertainty: by name, the part of a quantity's uncertainty that the spacing of the particles leaves,
             whatever the settings.
         centring: by name, the part of it that comes from not knowing where the contact's centre lies between particles
@@ -53,7 +53,7 @@ class Outcome:
     phases: tuple[Phase, ...]
     warnings: Mapping[str, str] = field(default_factory=dict)
     friction: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-    slips: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    tables: Mapping[str, Mapping[str, tuple[float, ...]]] = field(default_factory=dict)
     spacing_uncertainty: Mapping[str, float] = field(default_factory=dict)
     centring: Mapping[str, float] = field(default_factory=dict)
     prescribed: frozenset[str] = frozenset()

@@ -45,7 +45,7 @@ def outcome_of(deck: Deck, loaded: State, states: list[State], phases: tuple[Pha
         phases,
         _doubts(scene, settings, motion, quantities, (loaded, *states)),
         _columns(motion, states),
-        slips={name: tuple(getattr(slip, name) for slip in found) for name in ("time", "place", "size")},
+        tables={"slips": {name: tuple(getattr(slip, name) for slip in found) for name in ("time", "place", "size")}},
         compared_with=_scales(quantities, motion),
     )
 
