@@ -173,7 +173,8 @@ ONE_LINE_EACH: list[tuple[list[str], str]] = [
     (["bodies.E=0.3"], f"bodies.E: unknown key; allowed here: {BODIES}"),
     (
         ["experiment.tolerance=1e-3"],
-        "experiment.tolerance: unknown key; it belongs in [accuracy]; allowed here: kind, preload, loading_rate, repeats, method",
+        "experiment.tolerance: unknown key; it belongs in [accuracy]; "
+        "allowed here: kind, preload, loading_rate, repeats, method",
     ),
     (
         ["experiment={ kind = 'load', force = 1, preload = 2 }"],
