@@ -16,7 +16,19 @@ import pytest
 from contact1d.analysis.curve import TANGENTIAL_COLUMNS, Curve
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.reference.line_adhesion import barquins_reduced_force
-from contact1d.workflow.reproduce import adhesive, eq3, fig4, fig5, fig6, fig7, fig8, pressure, table1, tangential
+from contact1d.workflow.reproduce import (
+    adhesive,
+    eq3,
+    fig4,
+    fig5,
+    fig6,
+    fig7,
+    fig8,
+    jkr_plane,
+    pressure,
+    table1,
+    tangential,
+)
 from contact1d.workflow.reproduce.studies import STUDIES
 from contact1d.workflow.reproduce.study import Study
 from contact1d.workflow.runs.finished import Run
@@ -73,7 +85,7 @@ class WrongRuns(dict[str, Run]):
 
 @pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.name)
 def test_no_row_passes_where_every_run_is_wrong(study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in (adhesive, eq3, fig4, fig5, fig6, fig7, fig8, pressure, table1, tangential):
+    for module in (adhesive, eq3, fig4, fig5, fig6, fig7, fig8, jkr_plane, pressure, table1, tangential):
         monkeypatch.setattr(module, "save", lambda *_: None, raising=False)
     paper = read_scene(SCENES / "paper.toml")
     found = study.judge(paper, WrongRuns(paper), tmp_path)

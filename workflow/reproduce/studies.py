@@ -10,7 +10,19 @@ from pathlib import Path
 from contact1d.files import write_whole
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import FolderError
-from contact1d.workflow.reproduce import adhesive, eq3, fig4, fig5, fig6, fig7, fig8, pressure, table1, tangential
+from contact1d.workflow.reproduce import (
+    adhesive,
+    eq3,
+    fig4,
+    fig5,
+    fig6,
+    fig7,
+    fig8,
+    jkr_plane,
+    pressure,
+    table1,
+    tangential,
+)
 from contact1d.workflow.reproduce.markdown import validation_markdown
 from contact1d.workflow.reproduce.page import html_page
 from contact1d.workflow.reproduce.paper import calibrated
@@ -36,6 +48,7 @@ STUDIES: tuple[Study, ...] = (
     table1.TABLE1,
     pressure.MEAN_PRESSURE_STUDY,
     adhesive.STUDY,
+    jkr_plane.STUDY,
     tangential.STUDY,
 )
 NAMES = tuple(study.name for study in STUDIES)
