@@ -14,6 +14,9 @@ import pytest
 
 from contact1d import Run, run
 from contact1d.analysis.reference.slide import Integrator, Trace
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.steps import Hold
+from contact1d.workflow.experiments import planned
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import Settings, settings_for
 from tests.slides import slide_model
@@ -108,6 +111,17 @@ def test_the_work_is_dissipated_or_stored(both: tuple[Run, Trace]) -> None:
     assert slid.friction["cantilever_work"][-1] == work
     assert work > 0.0
     assert lost > 0.0
+
+
+def test_the_drag_is_the_scenes_from_the_first_line_on(both: tuple[Run, Trace]) -> None:
+    """The rows of the way to rest set it anew: a deck without them must have the same."""
+    scene = both[0].scene
+    settings = settings_for(scene)
+    assert scene.damping is not None
+    variables = {name: value for part in Deck(scene, settings).parts for name, value in part.variables.items()}
+    assert float(variables["damping_coefficient"]) == scene.damping.coefficient
+    loading = planned(scene, settings)[0]
+    assert [row.damping for row in loading.rows if isinstance(row, Hold)] == [scene.damping.coefficient]
 
 
 ENERGIES = ("cantilever_work", "dissipated_energy", "stored_energy")
