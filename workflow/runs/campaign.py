@@ -14,6 +14,8 @@ import numpy as np
 
 from contact1d.analysis.curve import Curve
 from contact1d.files import PART, write_whole
+from contact1d.workflow.body.implied import formulas, with_implied
+from contact1d.workflow.body.pressure import with_body
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.failure import NO_MEMORY, TOO_LONG, TOO_WIDE
@@ -24,9 +26,7 @@ from contact1d.workflow.experiments import perform, planned
 from contact1d.workflow.experiments.running.outcome import Outcome, anywhere_between
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import UntrustedError
-from contact1d.workflow.runs.body_pressure import with_body
 from contact1d.workflow.runs.finished import Run
-from contact1d.workflow.runs.implied import formulas, with_implied
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.refinement import Refined, refined
 from contact1d.workflow.runs.report import FILES, FORMATS, curve_of, failure, results, write_results, write_tables

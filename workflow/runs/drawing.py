@@ -16,11 +16,11 @@ from contact1d.analysis.curve import Curve
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.reference.mindlin import mindlin_path, sliding_displacement
 from contact1d.analysis.slip import stick_margin
+from contact1d.workflow.body.closed_form import Case
+from contact1d.workflow.body.pressure import REPORTED, body_pressures
+from contact1d.workflow.body.shear import body_shears, row_of
+from contact1d.workflow.body.theory import applying
 from contact1d.workflow.experiments.running.radii import RadiusRule
-from contact1d.workflow.runs.body_pressure import REPORTED, body_pressures
-from contact1d.workflow.runs.body_shear import body_shears, row_of
-from contact1d.workflow.runs.closed_form import Case
-from contact1d.workflow.runs.theory import applying
 from contact1d.workflow.scene import Scene, Tangential
 from contact1d.workflow.units import Quantity, Scales
 

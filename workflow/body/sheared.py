@@ -9,7 +9,7 @@ import math
 from collections.abc import Mapping
 
 from contact1d.analysis.reference import mindlin
-from contact1d.workflow.runs.closed_form import Case, ClosedForm
+from contact1d.workflow.body.closed_form import Case, ClosedForm
 from contact1d.workflow.scene import Parabola, Tangential
 
 SAME = 1e-12

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.reference.adhesive_power import AdhesivePower
-from contact1d.workflow.runs.closed_form import Case, ClosedForm
+from contact1d.workflow.body.closed_form import Case, ClosedForm
 from contact1d.workflow.scene import Cone, FlatPunch, Parabola, Power
 
 Array = NDArray[np.float64]

@@ -18,10 +18,10 @@ from contact1d.analysis.abel import FEWEST, LineLoad, line_load
 from contact1d.analysis.held import whole_cells
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius
+from contact1d.workflow.body.closed_form import Case
+from contact1d.workflow.body.reading import stands_for_spheres
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.radii import RadiusRule
-from contact1d.workflow.runs.body import stands_for_spheres
-from contact1d.workflow.runs.closed_form import Case
 from contact1d.workflow.scene import Scene, Slide
 from contact1d.workflow.scene.reduction import WIDER_THAN_SPHERES
 from contact1d.workflow.units import ENERGY, LINE_PRESSURE, MEAN_PRESSURE, Quantity

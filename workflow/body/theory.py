@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from contact1d.workflow.runs.adhesive_forms import ADHESIVE
-from contact1d.workflow.runs.closed_form import Case, ClosedForm
-from contact1d.workflow.runs.indenters import INDENTERS
-from contact1d.workflow.runs.sheared import SHEARED
-from contact1d.workflow.runs.tabor_forms import BY_TABOR
+from contact1d.workflow.body.adhesive_forms import ADHESIVE
+from contact1d.workflow.body.closed_form import Case, ClosedForm
+from contact1d.workflow.body.indenters import INDENTERS
+from contact1d.workflow.body.sheared import SHEARED
+from contact1d.workflow.body.tabor_forms import BY_TABOR
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import Quantity, Scales
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 
 from contact1d.analysis.reference.dmt import Dmt
 from contact1d.analysis.reference.jkr import Jkr
-from contact1d.workflow.runs.closed_form import Case, ClosedForm
+from contact1d.workflow.body.closed_form import Case, ClosedForm
 from contact1d.workflow.scene import Parabola
 
 JKR_ABOVE, DMT_BELOW = 5.0, 0.1
