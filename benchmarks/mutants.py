@@ -50,8 +50,8 @@ TESTS: dict[str, tuple[str, ...]] = {
     "analysis/pressure.py": (UNIT + "test_pressure.py",),
     "workflow/settings/dynamics.py": (ESTIMATE, SIMILAR, UNIT + "test_dynamic.py", MOTION, DECKS + "test_goldens.py"),
     "workflow/settings/": (
-        ESTIMATE, SIMILAR, UNIT + "test_dynamic.py", UNIT + "test_lattice.py", MOTION, "tests/decks", COVERAGE,
-        "tests/hard/test_lattice.py", "tests/hard/test_stiff_neighbours.py", "tests/hard/test_out_of_proportion.py",
+        ESTIMATE, SIMILAR, UNIT + "test_dynamic.py", UNIT + "test_lattice.py", MOTION, DECKS + "test_goldens.py",
+        COVERAGE, "tests/hard/test_lattice.py",
     ),
     "workflow/deck/effects/": (MOTION, "tests/decks"),
     "workflow/experiments/slide/": ("tests/decks/test_slide.py", UNIT + "test_experiment_kinds.py"),
