@@ -12,8 +12,8 @@ import pytest
 
 from contact1d.workflow.judging.check import Check
 from contact1d.workflow.stability.case import Class, Findings, at_most
-from contact1d.workflow.stability.record import Answer, Stability, stability_markdown
-from contact1d.workflow.stability.suite import NAMES, measured
+from contact1d.workflow.stability.record import RECORD, Answer, Stability, stability_markdown
+from contact1d.workflow.stability.suite import CLASSES, NAMES, earlier, measured, written
 
 FAILS: dict[str, set[str]] = {}
 """Rows that fail since the program is wrong there, by class."""
@@ -44,6 +44,21 @@ def test_a_row_without_a_number_fails_and_stays_in_the_table() -> None:
     page = stability_markdown(record.document())
     assert "| lost | no number |" in page
     assert "**1 of 2 rows pass.**" in page
+
+
+def test_a_class_that_is_measured_later_joins_the_record(tmp_path: Path) -> None:
+    first, second = (
+        Answer(asked, Findings([at_most(asked.name, "half", 0.5, 1.0, "theory", "–")], "", "what"), 2.0)
+        for asked in CLASSES[:2]
+    )
+    written(tmp_path, {second.asked.name: second}, "quick", 2.0)
+    assert earlier(tmp_path, "full") == {}
+    kept = earlier(tmp_path, "quick")
+    assert kept == {second.asked.name: second}
+    record = written(tmp_path, kept | {first.asked.name: first}, "quick", 4.0)
+    assert [check.study for check in record.checks] == [first.asked.name, second.asked.name]
+    (tmp_path / RECORD).write_text((tmp_path / RECORD).read_text().replace("numpy", "numbers"))
+    assert earlier(tmp_path, "quick") == {}  # of other versions
 
 
 @pytest.mark.parametrize(

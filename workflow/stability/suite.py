@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import datetime
+import json
 import math
 import multiprocessing
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 from contact1d.files import write_whole
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import FolderError
+from contact1d.workflow.judging.check import Check
 from contact1d.workflow.judging.machine import machine
 from contact1d.workflow.runs.cores import cores
 from contact1d.workflow.runs.report import versions
@@ -65,7 +67,8 @@ def stability(
 ) -> Stability:
     """Measure classes of hard cases; write stability.json, stability.md and a figure for each into `folder`.
 
-    Runs that `folder` has already, of the same scenes and versions, are not made again.
+    Runs that `folder` has already, of the same scenes and versions, are not made again; classes of its record, of the
+    same versions and form, that are not among those asked for stay in it. The record is written as each class ends.
 
     Args:
         folder: made if it does not exist; runs go to `folder`/runs.
@@ -87,28 +90,52 @@ def stability(
     folder.mkdir(parents=True, exist_ok=True)
     chosen = [name for name in NAMES if name in (only or NAMES)]
     progress.phase("hard cases", len(chosen))
-    answers: dict[str, Answer] = {}
+    form = "full" if full else "quick"
+    answers = {name: answer for name, answer in earlier(folder, form).items() if name not in chosen}
+    before = sum(answer.seconds for answer in answers.values())
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(min(workers or cores(), len(chosen)), context) as executor:
         futures = {executor.submit(measured, name, folder, full): name for name in chosen}
         try:
             for future in as_completed(futures):
                 answers[futures[future]] = future.result()
+                spent = before + time.perf_counter() - started
+                written(folder, answers, form, spent)
                 progress.advance(1)
         except BaseException:
             executor.shutdown(wait=False, cancel_futures=True)
             raise
-    record = Stability(
-        tuple(answers[name] for name in chosen),
-        "full" if full else "quick",
-        datetime.date.today().isoformat(),
-        machine(),
-        versions(),
-        time.perf_counter() - started,
-    )
+    return written(folder, answers, form, before + time.perf_counter() - started)
+
+
+def written(folder: Path, answers: Mapping[str, Answer], form: str, seconds: float) -> Stability:
+    """Write the record of what was measured so far, and its table."""
+    listed = tuple(answers[name] for name in NAMES if name in answers)
+    record = Stability(listed, form, datetime.date.today().isoformat(), machine(), versions(), seconds)
     write_whole(folder / RECORD, record.to_json())
     write_whole(folder / TABLE, stability_markdown(record.document()))
     return record
+
+
+def earlier(folder: Path, form: str) -> dict[str, Answer]:
+    """The classes of a record of the same form and versions that is there, by name."""
+    try:
+        found = json.loads((folder / RECORD).read_text(encoding="utf-8"))
+        if found["form"] != form or found["versions"] != versions():
+            return {}
+        rows = [Check.from_row(row) for row in found["rows"]]
+        kept = {one["name"]: one for one in found["classes"]}
+    except (OSError, ValueError, KeyError, TypeError):
+        return {}
+    return {
+        asked.name: Answer(
+            asked,
+            Findings([row for row in rows if row.study == asked.name], one["figure"], one["caption"]),
+            one["wall_s"],
+        )
+        for asked in CLASSES
+        if (one := kept.get(asked.name))
+    }
 
 
 def measured(name: str, folder: Path, full: bool) -> Answer:
