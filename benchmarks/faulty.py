@@ -62,6 +62,7 @@ def first_failure(folder: Path, tests: Sequence[str], patience: float) -> str:
             del sys.modules[name]  # that is the whole one's
         sys.dont_write_bytecode = True  # two mutants of one second and size would be taken for each other
         os.environ |= {"PYTHONPATH": f"{folder}/src", "PYTHONDONTWRITEBYTECODE": "1", "OPENBLAS_NUM_THREADS": "1"}
+        os.environ["PATIENCE"] = "20"  # what fails is to fail by its fault, whatever else the machine does
         code = 70
         try:
             import pytest

@@ -38,27 +38,33 @@ def test_a_long_class_has_no_new_failure(name: str, tmp_path: Path) -> None:
 def test_a_row_without_a_number_fails_and_stays_in_the_table() -> None:
     rows = [at_most("kind", "lost", float("nan"), 1.0, "theory", "–"), at_most("kind", "half", 0.5, 1.0, "theory", "–")]
     asked = Class("kind", "A kind", "What for?", lambda bench, folder: Findings(rows, "", ""))
-    record = Stability((Answer(asked, Findings(rows, "", ""), 1.0),), "quick", "2007-01-01", "a machine", {}, 1.0)
+    record = Stability((Answer(asked, Findings(rows, "", ""), 1.0, "quick", "2007-01-01"),), "a machine", {}, 1.0)
     assert [check.name for check in record.failed] == ["lost"]
     assert '"margin": 2.0' in record.to_json()
-    page = stability_markdown(record.document())
+    page = stability_markdown(record.document(), "docs/", ["kind", "other"])
+    assert "Not measured for this record: `other`." in page
     assert "| lost | no number |" in page
     assert "**1 of 2 rows pass.**" in page
 
 
 def test_a_class_that_is_measured_later_joins_the_record(tmp_path: Path) -> None:
     first, second = (
-        Answer(asked, Findings([at_most(asked.name, "half", 0.5, 1.0, "theory", "–")], "", "what"), 2.0)
+        Answer(
+            asked,
+            Findings([at_most(asked.name, "half", 0.5, 1.0, "theory", "–")], "", "what"),
+            2.0,
+            "full",
+            "2007-01-01",
+        )
         for asked in CLASSES[:2]
     )
-    written(tmp_path, {second.asked.name: second}, "quick", 2.0)
-    assert earlier(tmp_path, "full") == {}
-    kept = earlier(tmp_path, "quick")
+    written(tmp_path, {second.asked.name: second}, 2.0)
+    kept = earlier(tmp_path)
     assert kept == {second.asked.name: second}
-    record = written(tmp_path, kept | {first.asked.name: first}, "quick", 4.0)
+    record = written(tmp_path, kept | {first.asked.name: first}, 4.0)
     assert [check.study for check in record.checks] == [first.asked.name, second.asked.name]
     (tmp_path / RECORD).write_text((tmp_path / RECORD).read_text().replace("numpy", "numbers"))
-    assert earlier(tmp_path, "quick") == {}  # of other versions
+    assert earlier(tmp_path) == {}  # of other versions
 
 
 @pytest.mark.parametrize(

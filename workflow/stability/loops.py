@@ -110,8 +110,9 @@ def _rows(words: str, found: Run | Refused, pairs: FoldedPairs) -> list[Check]:
             true,
             source + ", at the same rows",
             "closed form",
-            FORCE,
-            "the tolerance asked for; the rows are the same",
+            FORCE * max(abs(true), scale * abs(float(d[1] - d[0]))),
+            "the tolerance asked for, of the area or, where rows miss the loop, of a force over a row",
+            "absolute",
         ),
     ]
     if "adhesion_force" in found.results:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,11 +21,13 @@ RECORD, TABLE = "stability.json", "stability.md"
 
 @dataclass(frozen=True)
 class Answer:
-    """A class that was measured, and the wall time that took [s]."""
+    """A class that was measured: "quick" or "full", on which day, and the wall time that took [s]."""
 
     asked: Class
     found: Findings
     seconds: float
+    form: str
+    date: str
 
 
 @dataclass(frozen=True)
@@ -34,16 +36,12 @@ class Stability:
 
     Attributes:
         answers: in the order of the classes.
-        form: "quick" or "full".
-        date: day on which it ran.
         machine: kind of machine, without names.
         versions: of the programs.
         wall_s: wall time of all [s].
     """
 
     answers: tuple[Answer, ...]
-    form: str
-    date: str
     machine: str
     versions: Mapping[str, str]
     wall_s: float
@@ -61,8 +59,6 @@ class Stability:
     def document(self) -> dict[str, Any]:
         """Return what stability.json holds."""
         return {
-            "form": self.form,
-            "date": self.date,
             "machine": self.machine,
             "passed": len(self.checks) - len(self.failed),
             "failed": len(self.failed),
@@ -75,6 +71,8 @@ class Stability:
                     "figure": answer.found.figure,
                     "caption": answer.found.caption,
                     "wall_s": answer.seconds,
+                    "form": answer.form,
+                    "date": answer.date,
                 }
                 for answer in self.answers
             ],
@@ -87,17 +85,30 @@ class Stability:
         return json.dumps(self.document(), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def stability_markdown(document: Mapping[str, Any], figures: str = "") -> str:
-    """Return the section of VALIDATION.md, from what stability.json holds; `figures`: their folder, with a slash."""
+def stability_markdown(document: Mapping[str, Any], figures: str = "", names: Sequence[str] = ()) -> str:
+    """Return the section of VALIDATION.md.
+
+    Args:
+        document: what stability.json holds.
+        figures: their folder, with a slash.
+        names: of all classes, so that those that the record lacks are named.
+    """
     rows = [Check.from_row(row) for row in document["rows"]]
-    command = "contact1d stability" + (" --full" if document["form"] == "full" else "")
-    parts = [
-        f"## Hard cases\n\nWritten by `{command}` on {document['date']}, on {document['machine']}, in "
-        f"{duration(document['wall_s'])}. **{document['passed']} of {len(rows)} rows pass.** A row that fails stays. "
+    classes = document["classes"]
+    forms = {form: sum(one["form"] == form for one in classes) for form in ("full", "quick")}
+    head = (
+        f"## Hard cases\n\nWritten by `contact1d stability` (the long form with `--full`) on {document['machine']}: "
+        f"{forms['full']} classes in the long form, {forms['quick']} in the quick one. "
+        f"**{document['passed']} of {len(rows)} rows pass.** A row that fails stays. "
         "The margin is what the bound allows over what was found."
-    ]
-    for one in document["classes"]:
-        parts.append(f"### {prose(one['title'])} (`{one['name']}`)\n\n{prose(one['question'])}")
+    )
+    parts = [head]
+    if missing := [name for name in names if name not in {one["name"] for one in classes}]:
+        parts.append(f"Not measured for this record: {', '.join(f'`{name}`' for name in missing)}.")
+    for one in classes:
+        form = "long" if one["form"] == "full" else "quick"
+        made = f"The {form} form, on {one['date']}, in {duration(one['wall_s'])} beside other work."
+        parts.append(f"### {prose(one['title'])} (`{one['name']}`)\n\n{prose(one['question'])} {made}")
         cells = [
             (c.name, ours(c), bound(c), c.source, _margin(c), c.limited_by, _badge(c))
             for c in rows

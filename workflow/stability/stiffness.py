@@ -65,21 +65,19 @@ SOURCE = "independent pairs with their folds, F_A by bisection and Newton's meth
 
 
 def cases(full: bool) -> list[PairCase]:
-    """Every shape in the long form; in the quick one every second, at a tolerance that goes round."""
+    """Every shape at every ratio in the long form, every second in the quick one; the tolerance goes round."""
     listed = []
     for i, ratio in enumerate(FULL_RATIOS if full else RATIOS):
         for j, shape in enumerate(SHAPES):
             wide = j == len(SHAPES) - 1
             if not full and ((i + j) % 2 or (wide and ratio > 1.0)):
                 continue
-            asked = TOLERANCES if full else (TOLERANCES[(i + 2 * j) % len(TOLERANCES)],)
-            listed += [_case(shape, ratio, tolerance, dynamic=False) for tolerance in asked]
-    for ratio in FULL_DYNAMIC if full else DYNAMIC_RATIOS:
-        shapes = (
-            ("flat punch of 10", "parabola of 21", "power of 40") if full else ("flat punch of 3", "parabola of 21")
-        )
-        asked = TOLERANCES if full else TOLERANCES[:1]
-        listed += [_case(shape, ratio, tolerance, dynamic=True) for shape in shapes for tolerance in asked]
+            listed.append(_case(shape, ratio, TOLERANCES[(i + 2 * j) % len(TOLERANCES)], dynamic=False))
+    shapes = ("flat punch of 10", "parabola of 21", "power of 40") if full else ("flat punch of 3", "parabola of 21")
+    for i, ratio in enumerate(FULL_DYNAMIC if full else DYNAMIC_RATIOS):
+        for j, shape in enumerate(shapes):
+            tolerance = TOLERANCES[(i + 2 * j) % len(TOLERANCES) if full else 0]
+            listed.append(_case(shape, ratio, tolerance, dynamic=True))
     return listed
 
 

@@ -68,7 +68,7 @@ def stability(
     """Measure classes of hard cases; write stability.json, stability.md and a figure for each into `folder`.
 
     Runs that `folder` has already, of the same scenes and versions, are not made again; classes of its record, of the
-    same versions and form, that are not among those asked for stay in it. The record is written as each class ends.
+    same versions, that are not among those asked for stay in it. The record is written as each class ends.
 
     Args:
         folder: made if it does not exist; runs go to `folder`/runs.
@@ -90,8 +90,7 @@ def stability(
     folder.mkdir(parents=True, exist_ok=True)
     chosen = [name for name in NAMES if name in (only or NAMES)]
     progress.phase("hard cases", len(chosen))
-    form = "full" if full else "quick"
-    answers = {name: answer for name, answer in earlier(folder, form).items() if name not in chosen}
+    answers = {name: answer for name, answer in earlier(folder).items() if name not in chosen}
     before = sum(answer.seconds for answer in answers.values())
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(min(workers or cores(), len(chosen)), context) as executor:
@@ -100,28 +99,28 @@ def stability(
             for future in as_completed(futures):
                 answers[futures[future]] = future.result()
                 spent = before + time.perf_counter() - started
-                written(folder, answers, form, spent)
+                written(folder, answers, spent)
                 progress.advance(1)
         except BaseException:
             executor.shutdown(wait=False, cancel_futures=True)
             raise
-    return written(folder, answers, form, before + time.perf_counter() - started)
+    return written(folder, answers, before + time.perf_counter() - started)
 
 
-def written(folder: Path, answers: Mapping[str, Answer], form: str, seconds: float) -> Stability:
+def written(folder: Path, answers: Mapping[str, Answer], seconds: float) -> Stability:
     """Write the record of what was measured so far, and its table."""
     listed = tuple(answers[name] for name in NAMES if name in answers)
-    record = Stability(listed, form, datetime.date.today().isoformat(), machine(), versions(), seconds)
+    record = Stability(listed, machine(), versions(), seconds)
     write_whole(folder / RECORD, record.to_json())
     write_whole(folder / TABLE, stability_markdown(record.document()))
     return record
 
 
-def earlier(folder: Path, form: str) -> dict[str, Answer]:
-    """The classes of a record of the same form and versions that is there, by name."""
+def earlier(folder: Path) -> dict[str, Answer]:
+    """The classes of a record of the same versions that is there, by name."""
     try:
         found = json.loads((folder / RECORD).read_text(encoding="utf-8"))
-        if found["form"] != form or found["versions"] != versions():
+        if found["versions"] != versions():
             return {}
         rows = [Check.from_row(row) for row in found["rows"]]
         kept = {one["name"]: one for one in found["classes"]}
@@ -132,6 +131,8 @@ def earlier(folder: Path, form: str) -> dict[str, Answer]:
             asked,
             Findings([row for row in rows if row.study == asked.name], one["figure"], one["caption"]),
             one["wall_s"],
+            one["form"],
+            one["date"],
         )
         for asked in CLASSES
         if (one := kept.get(asked.name))
@@ -149,4 +150,5 @@ def measured(name: str, folder: Path, full: bool) -> Answer:
     except Exception as error:  # what a class did not expect is the worst of its findings, and no reason to lose others
         words = f"ended by {type(error).__name__}: {error}"
         found = Findings([at_most(name, words, math.nan, 0.0, "a class ends with rows", "–", "set bound")], "", "")
-    return Answer(asked, found, time.perf_counter() - started)
+    form = "full" if full else "quick"
+    return Answer(asked, found, time.perf_counter() - started, form, datetime.date.today().isoformat())
