@@ -70,7 +70,7 @@ def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
     row = Rows(NAME, runs)
     rows = [*_pull_off_checks(row), *_curve_checks(row)]
     a = np.linspace(THEORY.critical_radius_fixed_grips(), FARTHEST * THEORY.zero_load_radius(), 400)
-    unit, depth = THEORY.pull_off_force(), float(THEORY.displacement(THEORY.zero_load_radius()))
+    unit, depth = THEORY.pull_off_force(), THEORY.zero_load_radius() ** 2 / RADIUS
     curves = [
         Series(f"{n:g} particles in a₀", runs[_name(n)].curve.displacement / depth, runs[_name(n)].curve.force / unit)
         for n in FINENESS[:2]
