@@ -37,7 +37,7 @@ DIMENSIONS = {
     "distance": (1, 0), "velocity": (0, 0.5),
 }  # fmt: skip
 """Powers of λ and ε in each key of a scene that has any."""
-UNITS = {"LU": (1, 0), "FU": (-1, 1), "FU/LU²": (-3, 1), "FU·LU": (0, 1)}
+UNITS = {"LU": (1, 0), "FU": (-1, 1), "FU/LU": (-2, 1), "FU/LU²": (-3, 1), "FU·LU": (0, 1)}
 """The same of a result."""
 
 PLANE = {
@@ -143,7 +143,7 @@ def test_every_number_of_the_settings_goes_to_deck_units_and_back() -> None:
     for name, value in vars(again).items():
         if isinstance(value, float):
             assert getattr(written, name) == pytest.approx(value, rel=1e-6), name
-            assert (name in SETTINGS) == (name not in ("tolerance", "plate_mass")), name
+            assert (name in SETTINGS) == (name not in ("tolerance", "plate_mass", "part")), name
     assert written.law is not None
     assert written.law.repulsion.range == pytest.approx(0.13, rel=ROUND_OFF)
     assert written.table is not None
