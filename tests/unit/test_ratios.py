@@ -86,7 +86,7 @@ def test_a_generated_deck_that_is_slower_is_above_one(tmp_path: Path, monkeypatc
         yield Read()
 
     monkeypatch.setattr(deck_overhead.Engine, "session", session)
-    monkeypatch.setattr(deck_overhead, "loop_time", lambda opened, _: WITHOUT if hand in opened.text else ALL)
+    monkeypatch.setattr(deck_overhead, "loop_time", lambda opened, _, __: WITHOUT if hand in opened.text else ALL)
     generated, by_hand, ratio = deck_overhead.ratio("plane", tmp_path)
     assert ratio == pytest.approx(ALL / WITHOUT, rel=ROUND_OFF)
     assert generated > by_hand

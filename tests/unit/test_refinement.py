@@ -142,8 +142,8 @@ def test_passes_that_differ_by_more_than_they_claim_claim_more() -> None:
 def test_a_refined_run_is_one_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its folder holds the finest pass, the scene as it was asked for, and repeats; times are those of all passes."""
     monkeypatch.setattr(
-        "contact1d.workflow.settings.settings.CALIBRATION", replace(CALIBRATION, cutoff=0.5)
-    )  # leaves out some times the tolerance
+        "contact1d.workflow.settings.settings.CALIBRATION", replace(CALIBRATION, cutoff=0.25)
+    )  # leaves out more than the tolerance
     asked, heard = scene(), Heard()
     finished = run(asked, tmp_path / "refined", figures=False, progress=heard)
     document = json.loads((finished.folder / "results.json").read_text())
