@@ -123,7 +123,7 @@ def test_atoms_that_fly_apart_are_no_result(tmp_path: Path, monkeypatch: pytest.
 
 
 def test_a_minimisation_that_is_cut_short_is_no_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("contact1d.workflow.deck.deck.MINIMISER_ITERATIONS", 1)
+    monkeypatch.setattr("contact1d.workflow.deck.parts.MINIMISER_ITERATIONS", 1)
     with pytest.raises(RunError, match="not converged"):
         run(scene_from_dict(tables({"kind": "path", "displacements": [0.3]})), tmp_path / "run", figures=False)
     assert json.loads((tmp_path / "run" / "results.json").read_text())["status"] == "failed"
