@@ -83,6 +83,11 @@ SHOWN = ("LU", "FU", "FU/LU", "FU·LU", "FU/LU²", "MU", "TU", "LU/TU", "FU·TU/
 """Units of the model in the page's first table."""
 
 
+def written(default: object) -> str:
+    """A default as it stands in a scene file; words without their quotes."""
+    return str(default).lower() if isinstance(default, bool) else str(default)
+
+
 def head() -> str:
     rows = [f'| {unit} | {in_words(unit).partition(", such as")[0]} | `"{example(unit)}"` |' for unit in SHOWN]
     return HEAD + "\n".join(rows) + "\n"
@@ -95,7 +100,7 @@ def section(name: str, table: type[Table]) -> str:
         lines.append("| key | what | must be | absent |\n| --- | --- | --- | --- |")
     for key, field in keys.items():
         info = table.model_fields[field]
-        default = "required" if info.is_required() else "none" if info.default is None else f"`{info.default}`"
+        default = "required" if info.is_required() else "none" if info.default is None else f"`{written(info.default)}`"
         what = str(info.description).replace("|", "\\|")
         lines.append(f"| `{key}` | {what} | {described(annotation_of(table, key))} | {default} |")
     return "\n".join(lines) + "\n"
