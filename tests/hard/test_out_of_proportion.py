@@ -12,10 +12,12 @@ from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.failure import NO_MEMORY, TOO_LONG, TOO_WIDE, plain_message
 from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.scene import scene_from_dict
+from contact1d.workflow.scene import read_scene, scene_from_dict
 from contact1d.workflow.settings.settings import SettingsError, settings_for
 from contact1d.workflow.settings.size import in_words
 from tests.scenes import chains
+
+SHIPPED = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 
 LOAD = {"kind": "load", "force": 0.5}
 CLAIMED = 1e-3
@@ -139,3 +141,16 @@ def test_a_large_system_is_told_of() -> None:
 )
 def test_words_of_lammps_are_translated(raw: str, meant: str) -> None:
     assert plain_message(raw).startswith(f"LAMMPS stopped: {meant} (")
+
+
+def test_a_range_without_end_is_refused_in_a_slide_too(tmp_path: Path) -> None:
+    """Its law is summed over a row of opposite particles before the cutoff is known."""
+    scene = read_scene(SHIPPED / "slide.toml", ["interaction.attraction.range=1e300"])
+    with pytest.raises(SettingsError, match="opposite ones, at most"):
+        run(scene, tmp_path / "run", figures=False)
+
+
+def test_a_tangential_of_too_many_rows_is_refused(tmp_path: Path) -> None:
+    scene = read_scene(SHIPPED / "mindlin.toml", ["experiment.displacements.steps=1000000"])
+    with pytest.raises(SettingsError, match="take fewer steps in"):
+        run(scene, tmp_path / "run", figures=False)

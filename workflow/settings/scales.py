@@ -10,6 +10,7 @@ from contact1d.potentials import DoubleExponential
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.estimate import ContactEstimate
 from contact1d.workflow.settings.registry import slide_cutoff
+from contact1d.workflow.settings.size import reaches_too_far
 
 THERMAL_SIGMAS = 5.0
 """Standard deviations by which a particle's thermal motion brings it nearer."""
@@ -23,9 +24,10 @@ def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: fl
     assert scene.interaction is not None
     if scene.interaction.cutoff != "auto":
         return scene.interaction.cutoff
-    if scene.experiment.motion_is_result:
-        return max(law.cutoff_for(share), slide_cutoff(law, scene.bodies.spacing, 0.0, tolerance))
-    return law.cutoff_for(share)
+    reach = law.cutoff_for(share)
+    if scene.experiment.motion_is_result and not reaches_too_far(scene, reach):
+        return max(reach, slide_cutoff(law, scene.bodies.spacing, 0.0, tolerance))
+    return reach
 
 
 def innermost_distance(estimate: ContactEstimate, cutoff: float, displacement: float) -> float:

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Scene, Tangential
 from contact1d.workflow.settings.chain import SettingsError
 
 MOST_PARTICLES = 10_000_000
@@ -41,13 +41,18 @@ def require_reach(scene: Scene, cutoff: float) -> None:
         SettingsError: with the widest reach that is possible.
     """
     spacing = scene.bodies.spacing
-    if cutoff > 0.5 * MOST_PARTNERS * spacing:
+    if reaches_too_far(scene, cutoff):
         raise SettingsError(
             f"with a cutoff of {cutoff:.4g} LU and a spacing of {spacing:.4g} LU a particle would feel "
             f"{2.0 * cutoff / spacing:.2g} opposite ones, at most {MOST_PARTNERS} are possible: take shorter ranges in "
             f"[interaction], an interaction.cutoff below {0.5 * MOST_PARTNERS * spacing:.4g} LU, or a wider "
             f"bodies.spacing. {MIX_UP}"
         )
+
+
+def reaches_too_far(scene: Scene, cutoff: float) -> bool:
+    """Whether a particle would feel more opposite ones within a cutoff [LU] than can be summed over."""
+    return cutoff > 0.5 * MOST_PARTNERS * scene.bodies.spacing
 
 
 def require_apex(scene: Scene, particles: int, cutoff: float) -> None:
@@ -133,7 +138,13 @@ def require_rows(scene: Scene, longest_move: float) -> None:
     Raises:
         SettingsError: with the number of rows.
     """
-    places = [0.0, *scene.experiment.places()]
+    experiment = scene.experiment
+    if isinstance(experiment, Tangential) and len(experiment.along()) > MOST_ROWS:
+        raise SettingsError(
+            f"the way along x would take {len(experiment.along()):.3g} rows, more than {MOST_ROWS:.0e}: take fewer "
+            "steps in experiment.displacements"
+        )
+    places = [0.0, *experiment.places()]
     way = sum(max(0.0, after - before) for before, after in pairwise(places))
     rows = len(places) + math.floor(way / longest_move)
     if rows > MOST_ROWS:
