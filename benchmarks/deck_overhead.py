@@ -51,20 +51,20 @@ SCENES = {
 
 
 PLACES = tuple(2.0 * row / STEPS for row in range(STEPS))
-"""Displacements of a sweep, one for each step."""
+"""Displacements of rows that are steps of one run."""
 BY_HAND = (
     "variable first equal $(step)\nvariable row equal ternary(step>v_first,step-v_first,1)\n"
     f"variable places vector [{','.join(map(repr, PLACES))}]\n"
 )
-"""What a sweep by hand begins each run with."""
+"""What such a run by hand begins with."""
 
 
 def steps_of(deck: Deck) -> tuple[str, str]:
     """STEPS steps of the generated deck, and of that by hand."""
     run = f"run {STEPS}\n"
-    if not deck.swept:
+    if not deck.stepped:
         return run, run
-    return deck.sweep([Displace(place) for place in PLACES]), f"{BY_HAND}{run}"
+    return deck.in_one_run([Displace(place) for place in PLACES]), f"{BY_HAND}{run}"
 
 
 def loop_time(session: Session, folder: Path, steps: str) -> float:
@@ -83,8 +83,8 @@ def ratio(name: str, folder: Path) -> tuple[float, float, float]:
     variables = f"variable points index {points}\nvariable dt index {settings.time_step!r}\n"
     load = "fix plate_load plate addforce 0.0 0.0 -0.005\n"
     steps = steps_of(deck)
-    head = deck.head + (deck.begin("loading") if deck.swept else load)
-    before = "" if deck.swept else variables
+    head = deck.head + (deck.begin("loading") if deck.stepped else load)
+    before = "" if deck.stepped else variables
     texts = (head, before + (HAND / f"{name}.lmp").read_text())
     times: tuple[list[float], list[float]] = ([], [])
     with Engine.session(folder) as first, Engine.session(folder) as second:

@@ -275,7 +275,7 @@ def test_where_nothing_has_to_come_to_rest_nothing_is_minimised(make_scene: Make
 
 
 def test_neighbours_on_a_rigid_plane_bring_what_moves(make_scene: MakeScene) -> None:
-    """And no line of the sweep is left."""
+    """And no line of rows that are steps is left."""
     relaxing = commands(text_of(make_scene(**RELAXING)))
     assert "minimize " in relaxing
     assert "sweep" not in relaxing
@@ -303,9 +303,11 @@ def test_each_group_has_one_integrator_at_most(make_scene: MakeScene, tables: di
     """Particles by nve where there is time, the plate by the rigid body where there is one, a driver by its way."""
     scene = make_scene(**tables)
     found = re.findall(r"^fix +\w+ (\w+) (nve|nvt|npt|nph|rigid|move)\b", commands(text_of(scene)), re.MULTILINE)
-    swept = [("upper", "move")] * (tables == PLANE)
+    stepped = [("upper", "move")] * (tables == PLANE)
     wanted = (
-        swept + [("plate", "rigid")] * (scene.plate is not None) + [("particles", "nve")] * (scene.method == "dynamic")
+        stepped
+        + [("plate", "rigid")] * (scene.plate is not None)
+        + [("particles", "nve")] * (scene.method == "dynamic")
     )
     wanted += [("cantilever_driver", "move")] * 2 * (scene.cantilever is not None)  # at rest, and then not
     assert sorted(found) == sorted(wanted)

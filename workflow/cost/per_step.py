@@ -85,7 +85,7 @@ def opened(deck: Deck, folder: Path) -> Iterator[Session]:
 def _steps(deck: Deck) -> str:
     """STEPS steps: of time, or where nothing has to come to rest as many rows."""
     row = Draw(0.0, 0.0) if deck.scene.experiment.goes_along else Displace(0.0)
-    return deck.sweep((row,) * STEPS) if deck.swept else f"run {STEPS}"
+    return deck.in_one_run((row,) * STEPS) if deck.stepped else f"run {STEPS}"
 
 
 def _interleaved(sessions: Mapping[str, Session], texts: Mapping[str, str], turns: int) -> dict[str, list[float]]:

@@ -42,9 +42,9 @@ class Deck:
         return self.units.scene(self.scene), self.units.settings(self.settings)
 
     @property
-    def swept(self) -> bool:
+    def stepped(self) -> bool:
         """Whether nothing has to come to rest, so that all rows of a phase are steps of one run."""
-        return self.scene.is_swept
+        return self.scene.is_stepped
 
     @cached_property
     def parts(self) -> tuple[Contribution, ...]:
@@ -89,7 +89,7 @@ class Deck:
         return _commands((*self._before(kind), self._step(kind), *self._measuring, self._line))
 
     def as_listed(self, row: AnyRow) -> AnyRow:
-        """A row of a sweep with its numbers as LAMMPS has those of a list: to 15 digits."""
+        """A row that is a step, with its numbers as LAMMPS has those of a list: to 15 digits."""
         numbers = {field.name: getattr(row, field.name) for field in fields(row)}
         read = {
             name: self.units.from_deck(float(f"{self.units.to_deck(value, UNITS[name]):.15g}"), UNITS[name])
@@ -97,7 +97,7 @@ class Deck:
         }
         return replace(row, **read)
 
-    def sweep(self, rows: Sequence[Row]) -> str:
+    def in_one_run(self, rows: Sequence[Row]) -> str:
         """All rows, each a place of the plate, in one run."""
         columns = zip(*(row.texts(self.units.to_deck) for row in rows), strict=True)
         # A column is one word on one line, as LAMMPS has it.
@@ -144,7 +144,7 @@ class Deck:
 
     @property
     def _output(self) -> str:
-        if not self.swept:
+        if not self.stepped:
             return "output"
         return "output_swept_in_units" if self.units.are_own else "output_swept"
 
@@ -152,7 +152,7 @@ class Deck:
         return ("steps/again",) if kind is Hold and self.scene.adhesion is not None else ()
 
     def _step(self, kind: type[Row]) -> str:
-        if self.swept and kind is Displace:
+        if self.stepped and kind is Displace:
             return "steps/sweep"
         return "steps/displace_gently" if kind is Displace and self.settings.gentle else f"steps/{kind.step}"
 
@@ -166,21 +166,21 @@ class Deck:
 
     @property
     def _measuring(self) -> tuple[str, ...]:
-        if self.swept:
+        if self.stepped:
             return ()
         measure = "steps/measuring" if self.scene.cantilever is None else "steps/measuring_energy"
         return (*(name for part in self.parts for name in part.step_begin), measure)
 
     @property
     def _measured(self) -> tuple[str, ...]:
-        if self.swept:
+        if self.stepped:
             return ()
         return ("steps/measured", *(name for part in self.parts for name in part.step_end))
 
     def _loop(self, phase: Phase) -> str:
         title = f"# phase {phase.name}: {len(phase.rows)} rows\n{self.begin(phase.name, phase.begin)}"
-        if self.swept:
-            return f"{title}{self.sweep(phase.rows)}variable        row_phase delete\n"
+        if self.stepped:
+            return f"{title}{self.in_one_run(phase.rows)}variable        row_phase delete\n"
         kind = type(phase.rows[0])
         values = zip(*(row.texts(self.units.to_deck) for row in phase.rows), strict=True)
         lists = "".join(_index(name, texts) for name, texts in zip(kind.columns(), values, strict=True))
@@ -224,10 +224,10 @@ class Deck:
         owners = self._check()
         for phase in phases:
             kind = type(phase.rows[0])
-            given = dict.fromkeys(("row_phase", *kind.columns(), *(("row_count",) if self.swept else ())), "the row")
+            given = dict.fromkeys(("row_phase", *kind.columns(), *(("row_count",) if self.stepped else ())), "the row")
             last = (self._state,) if phase.state else ()
             kept = {"state_append": "the state"} if phase.state else {}
-            row = (self._step(kind),) if self.swept else (
+            row = (self._step(kind),) if self.stepped else (
                 *self._before(kind), self._step(kind), *self._measuring, self._line, *self._measured,
             )  # fmt: skip
             here = owners | given | kept

@@ -24,9 +24,9 @@ CHOSEN_BINS = ("far_bin", "wide_bin")
 
 
 def standing(scene: Scene, settings: Settings) -> list[Contribution]:
-    """A body whose particles stand still in it, over a rigid plane that has their springs: swept, or moved in time."""
+    """A body whose particles stand still, over a rigid plane that has their springs: by steps, or moved in time."""
     plane = _plane("standing_plane", scene, settings)
-    if not scene.is_swept:
+    if not scene.is_stepped:
         clock = {"time_step": number(settings.time_step)}
         return [
             Contribution("bodies", Stage.BODIES, ("standing_plate",)),

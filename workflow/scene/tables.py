@@ -211,10 +211,10 @@ class Scene(Table):
     @property
     def stands(self) -> bool:
         """Whether particles stand still in the upper body, on a rigid plane that has their springs."""
-        return self.is_swept or self.adhesion is not None
+        return self.is_stepped or self.adhesion is not None
 
     @property
-    def is_swept(self) -> bool:
+    def is_stepped(self) -> bool:
         """Whether particles have no place to find: alone at rest on a rigid plane, they have what the plate's gives."""
         alone = self.bodies.lower == "rigid_plane" and self.neighbours is None
         return alone and self.method == "quasistatic"

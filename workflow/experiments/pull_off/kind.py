@@ -7,7 +7,7 @@ import numpy as np
 from contact1d.workflow.deck.steps import Phase, displacements
 from contact1d.workflow.experiments.pull_off.dynamic import pull_off_dynamic
 from contact1d.workflow.experiments.pull_off.quasistatic import pull_off_quasistatic
-from contact1d.workflow.experiments.pull_off.swept import APART
+from contact1d.workflow.experiments.pull_off.stepped import APART
 from contact1d.workflow.experiments.pull_off.thermal import planned_thermal, pull_off_thermal
 from contact1d.workflow.experiments.running.holding import held_phase
 from contact1d.workflow.experiments.running.kind import ExperimentKind, advice_at_rest
@@ -31,7 +31,7 @@ def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         return planned_thermal(scene, settings)
     if scene.method == "quasistatic":
         deepest, apart = settings.largest_displacement, settings.rest - settings.cutoff
-        if scene.is_swept:
+        if scene.is_stepped:
             apart = APART * settings.estimate.parted(0.0)
         down = displacements(np.linspace(0.0, deepest, LOADING_STEPS + 1).tolist())
         back = displacements(np.linspace(deepest, apart, UNLOADING_STEPS).tolist())

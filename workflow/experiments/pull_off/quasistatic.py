@@ -1,4 +1,4 @@
-"""Pull-off by prescribed displacement: `smooth` and `swept` where the force is smooth, passes where particles snap.
+"""Pull-off by prescribed displacement: `smooth` and `stepped` where the force is smooth, passes where particles snap.
 
 Each pass is a whole schedule, refined by what the one before found, since the state depends on the way to it.
 Pass 1 finds its own way: load up to F_D, unload until the bodies separate. Every further pass starts afresh and holds
@@ -25,7 +25,7 @@ from contact1d.workflow.experiments.pull_off.smooth import (
     radius_rate,
     smooth_pass,
 )
-from contact1d.workflow.experiments.pull_off.swept import swept_pass
+from contact1d.workflow.experiments.pull_off.stepped import stepped_pass
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.law_error import law_error
 from contact1d.workflow.experiments.running.outcome import Outcome
@@ -132,9 +132,9 @@ def pull_off_quasistatic(context: RunContext) -> Outcome:
     experiment = scene.experiment
     assert isinstance(experiment, PullOff)
     tolerance = SCHEDULE_SHARE * settings.tolerance
-    if scene.is_swept:
-        swept = swept_pass(context, experiment.preload, tolerance)
-        return _outcome(context, swept, experiment.preload, swept.missed)
+    if scene.is_stepped:
+        stepped = stepped_pass(context, experiment.preload, tolerance)
+        return _outcome(context, stepped, experiment.preload, stepped.missed)
     if settings.is_smooth:
         smooth = smooth_pass(context, experiment.preload, tolerance)
         return _outcome(context, smooth, experiment.preload, smooth.missed)

@@ -18,7 +18,7 @@ from contact1d.workflow.deck.lattice import period
 from contact1d.workflow.deck.steps import Displace, Draw, Phase, Row
 from contact1d.workflow.engine.session import EngineError, Session
 from contact1d.workflow.experiments.running.radii import RadiusRule
-from contact1d.workflow.experiments.running.sweep import FRAMES, Sweep
+from contact1d.workflow.experiments.running.stepped import FRAMES, SteppedRows
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
@@ -112,7 +112,7 @@ class Contact:
         self._rule = RadiusRule(deck.scene, deck.settings.tolerance)
         self._pushes = tuple(part.pushes for part in deck.parts if part.pushes)
         session.execute(deck.head, phase="setting up")
-        self._sweep = Sweep(deck, session) if deck.swept else None
+        self._stepped = SteppedRows(deck, session) if deck.stepped else None
 
     @property
     def phases(self) -> tuple[Phase, ...]:
@@ -138,13 +138,13 @@ class Contact:
     def rows(self, rows: Sequence[Row]) -> list[State]:
         """Run rows of the current phase, which are known beforehand, and measure each. See `row`."""
         found: list[State] = []
-        size = BATCH if self._sweep is None else self._sweep.at_once
-        if self._sweep is not None:
+        size = BATCH if self._stepped is None else self._stepped.at_once
+        if self._stepped is not None:
             rows = [self.deck.as_listed(row) for row in rows]
         for start in range(0, len(rows), size):
             batch = rows[start : start + size]
             self._phases[-1] = replace(self._phases[-1], rows=(*self._phases[-1].rows, *batch))
-            self._latest = self._measured(batch) if self._sweep is None else self._swept(self._sweep, batch)
+            self._latest = self._measured(batch) if self._stepped is None else self._steps(self._stepped, batch)
             found += self._latest
         return found
 
@@ -162,13 +162,13 @@ class Contact:
             states.append(self._state(phase, numbers, atoms))
         return states
 
-    def _swept(self, sweep: Sweep, rows: Sequence[Row]) -> list[State]:
+    def _steps(self, stepped: SteppedRows, rows: Sequence[Row]) -> list[State]:
         first = self.session.timestep
-        self.session.measure(self._unfinished + self.deck.sweep(rows), meanwhile=self._look_back)
+        self.session.measure(self._unfinished + self.deck.in_one_run(rows), meanwhile=self._look_back)
         self._unfinished = ""
-        spacing, residual, phase = self.scene.bodies.spacing, sweep.round_off, self._phases[-1].name
+        spacing, residual, phase = self.scene.bodies.spacing, stepped.round_off, self._phases[-1].name
         states = []
-        for step, (row, profile) in enumerate(zip(rows, sweep.profiles(rows), strict=True), first + 1):
+        for step, (row, profile) in enumerate(zip(rows, stepped.profiles(rows), strict=True), first + 1):
             assert isinstance(row, Displace | Draw)
             place = row.place if isinstance(row, Draw) else 0.0
             force, closest = spacing * float(profile.pressure.sum()), float(profile.z_upper.min())

@@ -126,7 +126,7 @@ def _first(contact: Contact, start: float, force: float, direction: int) -> list
     Raises:
         UntrustedError: see `require_trust`; also where no contact holds the force.
     """
-    if not contact.deck.swept:
+    if not contact.deck.stepped:
         return [measured(contact, start)]
     settings = contact.settings
     expected, held = (

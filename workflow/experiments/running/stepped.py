@@ -26,7 +26,7 @@ MOST_NUMBERS = 1_000_000
 
 
 @dataclass
-class Sweep:
+class SteppedRows:
     """Reads what the rows of one deck left.
 
     Attributes:

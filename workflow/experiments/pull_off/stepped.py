@@ -26,7 +26,7 @@ APART = 1.05
 """End of the way over where fixed grips let go."""
 
 
-def swept_pass(context: RunContext, preload: float, tolerance: float) -> SmoothPass:
+def stepped_pass(context: RunContext, preload: float, tolerance: float) -> SmoothPass:
     """The whole schedule; F = 0 is within `tolerance` of the largest tension.
 
     Raises:
