@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,6 +10,12 @@ from pathlib import Path
 
 PART = ".part"
 """What ends the name of a file that is not whole yet."""
+FULL_DISK = {
+    errno.ENOSPC: "the disk is full",
+    errno.EDQUOT: "the disk quota is used up",
+    errno.EFBIG: "a file would be larger than is allowed (ulimit -f)",
+}
+"""Errors of the system by which no further file can be written, in words."""
 
 
 @contextmanager

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import typer
 import typer.core
 
+from contact1d.files import FULL_DISK
+
 if TYPE_CHECKING:
     from contact1d.workflow.engine.progress import Progress
     from contact1d.workflow.scene import Scene, SceneError
@@ -23,11 +25,6 @@ CALL_IS_WRONG = 2
 RUN_FAILED = 3
 INTERRUPTED = 130
 
-FULL_DISK = {
-    errno.ENOSPC: "the disk is full",
-    errno.EDQUOT: "the disk quota is used up",
-    errno.EFBIG: "a file would be larger than is allowed (ulimit -f)",
-}
 BAD_PLACE = (
     errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.EEXIST, errno.ENAMETOOLONG,
     errno.ELOOP,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -20,6 +20,8 @@ JOB_POINTS = 100
 """Points of a job of Slurm: to begin one takes as long as some tens of quick runs."""
 AHEAD = 4
 """Chunks for each worker that are handed in before their turn, so that none waits for the parent."""
+UNKNOWN_WORKERS = 16
+"""Workers that an executor is taken to have which doesn't say."""
 
 
 class ExecutorError(Contact1dError, RuntimeError):
@@ -27,7 +29,7 @@ class ExecutorError(Contact1dError, RuntimeError):
 
 
 @dataclass(frozen=True)
-class Place:
+class Workplace:
     """Where points run.
 
     Attributes:
@@ -41,11 +43,13 @@ class Place:
     window: int
 
 
-def place_of(name: str, workers: int | None, folder: Path, partition: str | None = None) -> Place:
-    """The place of that name.
+def workplace_of(
+    executor: Executor | str, workers: int | None, folder: Path, partition: str | None = None
+) -> Workplace:
+    """Where an executor works.
 
     Args:
-        name: "local" or "slurm".
+        executor: "local", "slurm", or one that the caller opened and will close.
         workers: processes here, or jobs at a time; None: as many as there are processors.
         folder: of the sweep, where Slurm's scripts and outputs go.
         partition: of Slurm; None: its default one.
@@ -53,22 +57,18 @@ def place_of(name: str, workers: int | None, folder: Path, partition: str | None
     Raises:
         ExecutorError: there is no such place, or what it needs isn't installed; the message says what to install.
     """
+    if isinstance(executor, Executor):
+        return Workplace(lambda: nullcontext(executor), 1, AHEAD * (workers or UNKNOWN_WORKERS))
     count = workers or cores()
-    if name == "local":
-        return Place(lambda: pool(count), 1, AHEAD * count)
-    if name != "slurm":
-        raise ExecutorError(f"there is no executor {name!r}: take {' or '.join(NAMES)}")
+    if executor == "local":
+        return Workplace(lambda: pool(count), 1, AHEAD * count)
+    if executor != "slurm":
+        raise ExecutorError(f"there is no executor {executor!r}: take {' or '.join(NAMES)}")
     if find_spec("executorlib") is None:
         raise ExecutorError("Slurm is reached through executorlib: install it with pip install 'contact1d[cluster]'")
     if which("sbatch") is None:
         raise ExecutorError("there is no sbatch on this machine: start the sweep where jobs of Slurm are handed in")
-    return Place(lambda: _slurm(folder / "slurm", partition or _default_partition()), JOB_POINTS, count)
-
-
-@contextmanager
-def given(executor: Executor) -> Iterator[Executor]:
-    """An executor that the caller opened and will close."""
-    yield executor
+    return Workplace(lambda: _slurm(folder / "slurm", partition or _default_partition()), JOB_POINTS, count)
 
 
 @contextmanager

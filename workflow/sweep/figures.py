@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contact1d.analysis.plots import DPI, SIZE, new_figure, plain_axes
-from contact1d.files import whole
+from contact1d.analysis.plots import SIZE, new_figure, save_figure
 from contact1d.workflow.sweep.axes import Axis, SweepPlan
 from contact1d.workflow.sweep.table import cell, read_table
 
@@ -31,7 +30,7 @@ Line = dict[float, list[tuple[float, float]]]
 """By place on the first axis, values and uncertainties: one for each seed."""
 
 
-def draw(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> list[Path]:
+def draw(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> None:
     """A figure <quantity>.png for each result, in the sweep's folder.
 
     Args:
@@ -39,15 +38,10 @@ def draw(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> list[Path]:
         plan: what it is of.
         units: the results by name, with their units.
     """
-    drawn = []
     for name, unit in units.items():
         lines = lines_of(folder, plan, name)
         if _varies(lines):
-            path = folder / f"{name}.png"
-            with whole(path) as part:
-                sweep_figure(plan, name, unit, lines).savefig(part, format="png", dpi=DPI)
-            drawn.append(path)
-    return drawn
+            save_figure(sweep_figure(plan, name, unit, lines), folder / f"{name}.png")
 
 
 def sweep_figure(plan: SweepPlan, name: str, unit: str, lines: Mapping[tuple[str, ...], Line]) -> Figure:
@@ -77,7 +71,7 @@ def sweep_figure(plan: SweepPlan, name: str, unit: str, lines: Mapping[tuple[str
         axis.text(
             0.99, 1.01, f"{names}: {first} (dark) … {last} (light)", transform=axis.transAxes, ha="right", fontsize=8
         )
-    return plain_axes(figure)
+    return figure
 
 
 def roles_of(plan: SweepPlan) -> tuple[Axis, list[Axis]]:

@@ -5,7 +5,6 @@ What is done is told by the run folders alone, so a sweep that was broken off at
 
 from __future__ import annotations
 
-import errno
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
@@ -14,7 +13,7 @@ from itertools import chain, islice
 from pathlib import Path
 from typing import Any
 
-from contact1d.files import write_whole
+from contact1d.files import FULL_DISK, write_whole
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, FolderError
 from contact1d.workflow.runs.campaign import LOCK, AnyPath, alone, run
@@ -22,13 +21,18 @@ from contact1d.workflow.scene import Scene, SceneError
 from contact1d.workflow.scene.problems import as_toml
 from contact1d.workflow.settings.settings import SettingsError
 from contact1d.workflow.sweep.axes import AnySweep, SweepPlan, read_sweep
-from contact1d.workflow.sweep.executors import Place, given, place_of
+from contact1d.workflow.sweep.executors import Workplace, workplace_of
 from contact1d.workflow.sweep.points import points, require_keys
-from contact1d.workflow.sweep.table import MANY_ROWS, RECORD, RUNS, Answer, answer_in, write_parquet, write_table
-
-DEADLY = 2
-"""Times that a process may die with a point under way: the second time it was alone with it."""
-FULL_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+from contact1d.workflow.sweep.table import (
+    MANY_ROWS,
+    RECORD,
+    RUNS,
+    Answer,
+    answer_in,
+    counts_in,
+    write_parquet,
+    write_table,
+)  # fmt: skip
 
 Task = tuple[Scene, Path]
 
@@ -85,17 +89,14 @@ def sweep(
     plan = read_sweep(source)
     require_keys(plan)
     folder = Path(folder).absolute()
-    if isinstance(executor, str):
-        place = place_of(executor, workers, folder, partition)
-    else:
-        place = Place(lambda: given(executor), 1, 4 * (workers or 16))
+    workplace = workplace_of(executor, workers, folder, partition)
     record = _record(plan)
     _require_own(folder, record)
     ledger = _Ledger()
     with alone(folder, "a sweep is at work in"):
         write_whole(folder / RECORD, record)
         try:
-            _run_missing(plan, folder, place, ledger, progress or Silent())
+            _run_missing(plan, folder, workplace, ledger, progress or Silent())
         finally:
             done = _finish(plan, folder, ledger)
         if figures:
@@ -134,9 +135,9 @@ def _require_own(folder: Path, record: str) -> None:
     folder.mkdir(parents=True, exist_ok=True)
 
 
-def _run_missing(plan: SweepPlan, folder: Path, place: Place, ledger: _Ledger, progress: Progress) -> None:
+def _run_missing(plan: SweepPlan, folder: Path, workplace: Workplace, ledger: _Ledger, progress: Progress) -> None:
     progress.phase("sweep", len(plan), "point")
-    for name, answer in _answered(_missing(plan, folder, ledger, progress), place):
+    for name, answer in _answered(_missing(plan, folder, ledger, progress), workplace):
         if answer.status != "done":
             progress.note(f"{name}: {answer.status}: {answer.reason}")
             ledger.answers[name] = answer
@@ -154,37 +155,31 @@ def _missing(plan: SweepPlan, folder: Path, ledger: _Ledger, progress: Progress)
             progress.note(f"{said}: refused: {point.reason}")
         elif point.name not in seen:
             seen.add(point.name)
-            if answer_in(folder / RUNS, point.name) is None:
+            if answer_in(folder, point.name) is None:
                 yield point.scene, folder / RUNS / point.name
                 continue
         progress.advance(1)
 
 
-def _answered(tasks: Iterator[Task], place: Place) -> Iterator[tuple[str, Answer]]:
-    """Run tasks, `place.window` chunks at a time; yields name and answer as they come.
+def _answered(tasks: Iterator[Task], workplace: Workplace) -> Iterator[tuple[str, Answer]]:
+    """Run tasks, `workplace.window` chunks at a time; yields name and answer as they come.
 
     A process that dies takes its executor along. Then what was under way runs again, one by one, so that one task alone
     has to answer for the second death.
     """
-    doubtful: list[Task] = []
+    suspects: list[Task] = []
     while True:
-        chunk, window = (1, 1) if doubtful else (place.chunk, place.window)
-        queue = iter(doubtful) if doubtful else tasks
+        one_by_one = bool(suspects)
+        queue, chunk, window = (iter(suspects), 1, 1) if one_by_one else (tasks, workplace.chunk, workplace.window)
         first = next(queue, None)
         if first is None:
             return
         broken: list[Task] = []
-        alone_at_work = bool(doubtful)
-        doubtful = []
-        with place.opened() as executor:
+        with workplace.opened() as executor:
             yield from _through(executor, chain([first], queue), chunk, window, broken)
-        if alone_at_work:
-            culprit, rest = broken[:1], [*broken[1:], *queue]
-            for _, path in culprit:
-                yield path.name, Answer("failed", "its process was killed twice, most often for want of memory")
-            doubtful = rest
-        else:
-            doubtful = broken
+        if one_by_one and broken:
+            yield broken[0][1].name, Answer("failed", "its process was killed twice, most often for want of memory")
+        suspects = [*broken[1:], *queue] if one_by_one else broken
 
 
 def _through(
@@ -233,32 +228,23 @@ def _attempt(scene: Scene, folder: Path) -> Answer:
         return Answer("failed", getattr(error, "message", str(error)))
     except Exception as error:
         return Answer("failed", f"{type(error).__name__}: {error}")
-    return Answer("done", run=folder.name)
+    return Answer("done")
 
 
 def _finish(plan: SweepPlan, folder: Path, ledger: _Ledger) -> Sweep:
-    counts: dict[str, int] = {}
-
     def rows() -> Iterator[tuple[tuple[Any, ...], Answer]]:
-        counts.clear()
         for index, values in enumerate(plan.values()):
-            answer = _answer(index, folder, ledger)
-            counts[answer.status] = counts.get(answer.status, 0) + 1
-            yield values, answer
+            yield values, _answer(index, folder, ledger)
 
     units = write_table(folder, [axis.key for axis in plan.axes], rows)
     if len(plan) >= MANY_ROWS:
         write_parquet(folder)
-    return Sweep(folder, counts, units)
+    return Sweep(folder, counts_in(folder), units)
 
 
 def _answer(index: int, folder: Path, ledger: _Ledger) -> Answer:
-    if index >= len(ledger.names):
-        return Answer("missing", "the sweep was broken off before it")
     if index in ledger.refusals:
         return Answer("refused", ledger.refusals[index])
-    name = ledger.names[index]
-    found = answer_in(folder / RUNS, name)
-    if found is not None:
-        return Answer(found.status, found.reason, f"{RUNS}/{name}")
-    return ledger.answers.get(name) or Answer("missing", "the sweep was broken off before it")
+    name = ledger.names[index] if index < len(ledger.names) else ""
+    found = answer_in(folder, name) if name else None
+    return found or ledger.answers.get(name) or Answer("missing", "the sweep was broken off before it")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -38,12 +39,12 @@ class Answer:
 
 
 def answer_in(folder: Path, name: str) -> Answer | None:
-    """What the run folder of that name says; None where no run came to its end there."""
-    document = _document(folder / name)
+    """What the run of that name in a sweep's folder says; None where none came to its end there."""
+    document = _document(folder / RUNS / name)
     if document is None:
         return None
     status = str(document["status"])
-    return Answer(status, "" if status == "done" else str(document["error"]["message"]), name)
+    return Answer(status, "" if status == "done" else str(document["error"]["message"]), f"{RUNS}/{name}")
 
 
 def write_table(
@@ -111,6 +112,11 @@ def _units(folder: Path, answers: Iterable[Answer]) -> dict[str, str]:
         for name, entry in _quantities(folder, answer).items():
             units.setdefault(name, str(entry["unit"]))
     return units
+
+
+def counts_in(folder: Path) -> dict[str, int]:
+    """How many points of a sweep's table ended as `done`, `failed`, `refused`, or are `missing`."""
+    return dict(Counter(row["status"] for row in read_table(folder)))
 
 
 def read_table(folder: Path) -> Iterator[dict[str, str]]:
