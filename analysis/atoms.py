@@ -12,11 +12,13 @@ if TYPE_CHECKING:
     from ase import Atoms
 
 DUMP = "states.lammpstrj"
-BODY = ("", "lower", "upper", "lower", "upper", "lower", "upper")
-ROLE = ("", "particle", "particle", "anchor", "anchor", "far anchor", "far anchor")
+BODY = ("", "lower", "upper", "lower", "upper", "lower", "upper", "upper")
+ROLE = ("", "particle", "particle", "anchor", "anchor", "far anchor", "far anchor", "driver")
 """What a LAMMPS atom type, from 1 on, is part of."""
 COLUMNS = ("id", "type", "x", "y", "z", "opposite_fx", "opposite_fz")
 """What is read of the dump."""
+OF_A_WAY = {"opposite_fx": "fx", "opposite_fz": "fz"}
+"""How columns are called where the whole way is kept: as programs that show atoms know them."""
 
 
 def atoms(folder: str | Path, state: int = -1) -> Atoms:
@@ -25,11 +27,12 @@ def atoms(folder: str | Path, state: int = -1) -> Atoms:
     Args:
         folder: the run folder.
         state: index among the states of states.lammpstrj, in the order in which they were passed (a pull-off has the
-            zero-load state and then the critical one); negative from the end.
+            zero-load state and then the critical one, or with `[output] states` its whole way); negative from the end.
 
     Returns:
         Atoms of the placeholder species X (the model has no chemistry), in the order of the LAMMPS ids, with the arrays
-        "id", "type", "body" ("lower", "upper"), "role" ("particle", "anchor", "far anchor") and "opposite_force", shape
+        "id", "type", "body" ("lower", "upper"), "role" ("particle", "anchor", "far anchor", "driver": a
+        cantilever's far end) and "opposite_force", shape
         (n, 3) [FU]; info["timestep"]. The paper's z is z; y is out of the plane.
 
     Raises:
@@ -66,9 +69,11 @@ def _frame(text: str, where: str) -> tuple[int, dict[str, NDArray[np.float64]]]:
     promised = int(words[words.index("ATOMS") + 1]) if "BOUNDS" in words else None
     if len(lines) != promised or not rows.endswith("\n"):
         raise ValueError(f"{where}: the dump is cut short, the run did not finish writing it")
-    missing = [name for name in COLUMNS if name not in names.split()]
+    there = names.split()
+    renamed = OF_A_WAY if {"fx", "fy", "fz"} <= {*there} else {}
+    missing = [name for name in COLUMNS if renamed.get(name, name) not in there]
     if missing:
         raise ValueError(f"{where}: no column {', '.join(missing)}")
-    wanted = [names.split().index(name) for name in COLUMNS]
+    wanted = [there.index(renamed.get(name, name)) for name in COLUMNS]
     values = np.loadtxt(lines, usecols=wanted, ndmin=2)
     return int(words[0]), dict(zip(COLUMNS, values[np.argsort(values[:, 0])].T, strict=True))

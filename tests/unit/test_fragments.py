@@ -27,7 +27,13 @@ MakeScene = Callable[..., Scene]
 ROOT = Path(__file__).parents[2] / "lammps_inputs" / "fragments"
 NAMES = sorted(path.relative_to(ROOT).with_suffix("").as_posix() for path in ROOT.rglob("*.lmp"))
 DEFINITION = re.compile(r'(?:^|then +")(variable|group|fix|compute)\s+(\w+)\s+(\w+)', re.MULTILINE)
-LOOP_VARIABLES = {"row_phase", "state_append", *(column for kind in STEPS for column in kind.columns())}
+LOOP_VARIABLES = {
+    "row_phase",
+    "state_append",
+    "row_append",
+    "row_skip",
+    *(column for kind in STEPS for column in kind.columns()),
+}
 """Variables that the schedule defines around the steps."""
 
 
@@ -100,7 +106,7 @@ def test_steps_need_nothing_that_no_part_defines() -> None:
 
 
 def test_no_id_is_defined_by_two_fragments_that_meet() -> None:
-    """Only kinds of lower body, upper body, plate, method and measuring share names, and a deck has one of each."""
+    """Only kinds of lower body, upper body, plate, method, measuring and units share names; a deck has one of each."""
     owners: dict[str, list[str]] = {}
     for name in NAMES:
         for word in header_of(name, "Defines"):
@@ -108,6 +114,7 @@ def test_no_id_is_defined_by_two_fragments_that_meet() -> None:
     twice = {word: who for word, who in owners.items() if len(who) > 1}
     planes = ("interaction", "rigid_plane", "standing_plane")
     pairs = {("plate", "plate_alone"), ("steps/measuring", "steps/measuring_energy")}
+    pairs |= {(name, f"{name}_in_units") for name in ("output_states", "steps/kept")}
     assert set(map(tuple, twice.values())) <= pairs | {
         planes,
         planes[1:],

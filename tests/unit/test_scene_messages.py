@@ -63,7 +63,7 @@ def test_a_number_must_be_finite(value: str) -> None:
 QUOTED = "a number stands without quotes"
 SCENE_TABLES = (
     "title, bodies, interaction, neighbours, horizontal, adhesion, friction, damping, noise, plate, cantilever, "
-    "material, accuracy, experiment"
+    "material, accuracy, output, experiment"
 )
 SHAPES = '"parabola", "circle", "ellipsoid", "cone", "flat", "flat_punch", "power" or "table"'
 BODIES = (

@@ -70,6 +70,7 @@ TABLES = {
     "material": scenes.Material,
     "material.upper, material.lower": scenes.Elastic,
     "accuracy": scenes.Accuracy,
+    "output": scenes.Output,
     "experiment, kind load": scenes.Load,
     "experiment, kind path": scenes.Path,
     "experiment.displacements, as a table": scenes.Span,

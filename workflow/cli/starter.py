@@ -81,6 +81,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
         "upper": STEEL, "lower": STEEL, "contact_modulus": 115e9, "length_unit": 1e-9, "force_unit": 1e-6,
         "mass_unit": 1e-12, "surface_energy": 1.0,
     },
+    "output": {"states": 100},
     "experiment": {
         "method": "quasistatic", "normal_displacement": 1.0, "loading_rate": 1e-4,
         "repeats": 20, "path": [[0.05, 6.0], [-0.05, 6.0]],

@@ -12,8 +12,10 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import TypeVar
 
+from contact1d.workflow.deck.blocks import block, commands, listed
 from contact1d.workflow.deck.effects import Contribution, contributions
 from contact1d.workflow.deck.fragments import DeckError, Fragment, fragment
+from contact1d.workflow.deck.keeping import APPENDED, NEW, appended, skipped
 from contact1d.workflow.deck.parts import bins, moving, own_units, standing
 from contact1d.workflow.deck.steps import STEPS, UNITS, Displace, Hold, Phase, Row
 from contact1d.workflow.deck.units import DeckUnits, units_for
@@ -21,7 +23,6 @@ from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 
 AnyRow = TypeVar("AnyRow", bound=Row)
-NUMBERS_PER_LINE = 6
 
 
 @dataclass(frozen=True)
@@ -68,11 +69,11 @@ class Deck:
         styles = [f"pair_style      {part.pair_style}\n" for part in self.parts if part.pair_style]
         bonds = "" if self.scene.stands else "bond_style      harmonic\n"
         styles = [f"atom_style      {atom_style}\n", *styles, bonds]
-        blocks = [_block("start", {}) + "".join(styles)]
+        blocks = [block("start", {}) + "".join(styles)]
         for part in self.parts:
             for index, name in enumerate(part.fragments):
-                blocks.append(_block(name, part.variables if index == 0 else {}))
-        blocks.append(_block(self._output, {}))
+                blocks.append(block(name, part.variables if index == 0 else {}))
+        blocks += [block(name, {}) for name in self._output]
         self._check()
         # LAMMPS looks for triple quotes even in comments.
         title = "# {}\n# effects: {}; {}\n".format(
@@ -82,11 +83,11 @@ class Deck:
 
     def begin(self, phase: str, fragments: Sequence[str] = ()) -> str:
         """What comes before a phase's rows."""
-        return f"variable        row_phase index {phase}\n" + _commands(fragments)
+        return f"variable        row_phase index {phase}\n" + commands(fragments)
 
     def row(self, kind: type[Row]) -> str:
         """One row up to its measurement: move or load, then measure."""
-        return _commands((*self._before(kind), self._step(kind), *self._measuring, self._line))
+        return commands((*self._before(kind), self._step(kind), *self._measuring, self._line, *self._row_state))
 
     def as_listed(self, row: AnyRow) -> AnyRow:
         """A row that is a step, with its numbers as LAMMPS has those of a list: to 15 digits."""
@@ -97,35 +98,41 @@ class Deck:
         }
         return replace(row, **read)
 
-    def in_one_run(self, rows: Sequence[Row]) -> str:
-        """All rows, each a place of the plate, in one run."""
+    def in_one_run(self, rows: Sequence[Row], skips: Sequence[int] = ()) -> str:
+        """All rows, each a place of the plate, in one run; `skips`: of which the state is not kept, else of none."""
         columns = zip(*(row.texts(self.units.to_deck) for row in rows), strict=True)
         # A column is one word on one line, as LAMMPS has it.
         given = {name: f"[{','.join(texts)}]" for name, texts in zip(rows[0].columns(), columns, strict=True)}
         given["row_count"] = str(len(rows))
+        if self.keeps:
+            given["row_skip"] = f"[{','.join(map(str, skips or [0] * len(rows)))}]"
         before = "".join(f"variable        {name} index {value}\n" for name, value in given.items())
         after = "".join(f"variable        {name} delete\n" for name in given)
-        return before + _commands((self._step(type(rows[0])),)) + after
+        return before + commands((*self._before(type(rows[0])), self._step(type(rows[0])))) + after
 
     @property
     def row_end(self) -> str:
         """The end of every measurement."""
-        return _commands(self._measured)
+        return commands(self._measured)
 
-    def values(self, row: Row) -> str:
-        """The variables of one row."""
-        texts = row.texts(self.units.to_deck)
-        return "".join(f"variable        {c} index {v}\n" for c, v in zip(row.columns(), texts, strict=True))
+    def values(self, row: Row, first: bool) -> str:
+        """The variables of one row; `first`: no state has been written before it."""
+        texts = (*row.texts(self.units.to_deck), NEW if first else APPENDED)
+        return "".join(
+            f"variable        {c} index {v}\n" for c, v in zip(self._columns(type(row)), texts, strict=False)
+        )
 
     def forget(self, kind: type[Row]) -> str:
         """Delete the variables of a row, as `next` does after the last one."""
-        return "".join(f"variable        {c} delete\n" for c in kind.columns())
+        return "".join(f"variable        {c} delete\n" for c in self._columns(kind))
 
     def state(self, first: bool) -> str:
-        """Write the state that the last row left."""
-        append = f"variable        state_append index {'no' if first else 'yes'}\n"
-        written = _commands((*self._measuring, self._state, *self._measured))
-        return append + written + "variable        state_append delete\n"
+        """Write the state that the last row left; where rows of one run are kept, they have written it."""
+        if self.stepped and self.keeps:
+            return ""
+        append = f"variable        {self._append} index {NEW if first else APPENDED}\n"
+        written = commands((*self._measuring, self._state, *self._measured))
+        return append + written + f"variable        {self._append} delete\n"
 
     def text(self, phases: Sequence[Phase]) -> str:
         """in.lammps: the head and a loop for each phase.
@@ -138,17 +145,36 @@ class Deck:
         blocks = [self.head]
         first = True
         for phase in passed:
-            blocks.append(self._loop(phase) + (self.state(first) if phase.state else ""))
+            loop = self._loop(phase, first)
+            first = first and not (self.keeps and {*appended(phase, self.stepped, first)} & {NEW, APPENDED})
+            blocks.append(loop + (self.state(first) if phase.state else ""))
             first = first and not phase.state
         return "\n".join(blocks)
 
     @property
-    def _output(self) -> str:
+    def keeps(self) -> bool:
+        """Whether states of the whole way are kept."""
+        return self.scene.output is not None
+
+    @property
+    def _output(self) -> tuple[str, ...]:
         if not self.stepped:
-            return "output"
-        return "output_swept_in_units" if self.units.are_own else "output_swept"
+            return ("output",)
+        return (self._named("output_swept"), *([self._named("output_states")] if self.keeps else []))
+
+    def _named(self, fragment: str) -> str:
+        return f"{fragment}_in_units" if self.units.are_own else fragment
+
+    @property
+    def _row_state(self) -> tuple[str, ...]:
+        return (self._state,) if self.keeps and not self.stepped else ()
+
+    def _columns(self, kind: type[Row]) -> tuple[str, ...]:
+        return (*kind.columns(), *(("row_append",) if self._row_state else ()))
 
     def _before(self, kind: type[Row]) -> tuple[str, ...]:
+        if self.stepped:
+            return ("steps/keep",) if self.keeps else ()
         return ("steps/again",) if kind is Hold and self.scene.adhesion is not None else ()
 
     def _step(self, kind: type[Row]) -> str:
@@ -158,11 +184,15 @@ class Deck:
 
     @property
     def _line(self) -> str:
-        return "steps/line_in_units" if self.units.are_own else "steps/line"
+        return self._named("steps/line")
 
     @property
     def _state(self) -> str:
-        return "steps/state_in_units" if self.units.are_own else "steps/state"
+        return self._named("steps/kept" if self.keeps else "steps/state")
+
+    @property
+    def _append(self) -> str:
+        return "row_append" if self.keeps else "state_append"
 
     @property
     def _measuring(self) -> tuple[str, ...]:
@@ -177,17 +207,20 @@ class Deck:
             return ()
         return ("steps/measured", *(name for part in self.parts for name in part.step_end))
 
-    def _loop(self, phase: Phase) -> str:
+    def _loop(self, phase: Phase, first: bool) -> str:
         title = f"# phase {phase.name}: {len(phase.rows)} rows\n{self.begin(phase.name, phase.begin)}"
         if self.stepped:
-            return f"{title}{self.in_one_run(phase.rows)}variable        row_phase delete\n"
+            return f"{title}{self.in_one_run(phase.rows, skipped(phase))}variable        row_phase delete\n"
         kind = type(phase.rows[0])
-        values = zip(*(row.texts(self.units.to_deck) for row in phase.rows), strict=True)
-        lists = "".join(_index(name, texts) for name, texts in zip(kind.columns(), values, strict=True))
+        names, kept = self._columns(kind), appended(phase, self.stepped, first)
+        values = zip(
+            *((*row.texts(self.units.to_deck), k) for row, k in zip(phase.rows, kept, strict=True)), strict=True
+        )
+        lists = "".join(listed(name, texts) for name, texts in zip(names, values, strict=False))
         return (
             f"{title}{lists}"
             f"label           {phase.name}\n{self.row(kind)}{self.row_end}"
-            f"next            {' '.join(kind.columns())}\njump            SELF {phase.name}\n"
+            f"next            {' '.join(names)}\njump            SELF {phase.name}\n"
             "variable        row_phase delete\n"
         )
 
@@ -214,6 +247,8 @@ class Deck:
             for piece in map(fragment, part.fragments):
                 _pass(owners, piece)
                 needed |= set(piece.needs)
+        for name in self._output:
+            _pass(owners, fragment(name))
         unused = {name for part in self.parts for name in part.variables} - needed
         if unused:
             raise DeckError(f"defined but not used: {', '.join(sorted(unused))}")
@@ -224,30 +259,18 @@ class Deck:
         owners = self._check()
         for phase in phases:
             kind = type(phase.rows[0])
-            given = dict.fromkeys(("row_phase", *kind.columns(), *(("row_count",) if self.stepped else ())), "the row")
-            last = (self._state,) if phase.state else ()
-            kept = {"state_append": "the state"} if phase.state else {}
-            row = (self._step(kind),) if self.stepped else (
-                *self._before(kind), self._step(kind), *self._measuring, self._line, *self._measured,
+            in_one_run = ("row_count", *(("row_skip",) if self.keeps else ())) if self.stepped else ()
+            given = dict.fromkeys(("row_phase", *self._columns(kind), *in_one_run), "the row")
+            written = phase.state and not (self.stepped and self.keeps)
+            last = (self._state,) if written else ()
+            kept = {"state_append": "the state"} if written and not self.keeps else {}
+            row = (*self._before(kind), self._step(kind)) if self.stepped else (
+                *self._before(kind), self._step(kind), *self._measuring, self._line, *self._row_state, *self._measured,
             )  # fmt: skip
             here = owners | given | kept
             for name in (*phase.begin, *row, *row, *last):
                 _pass(here, fragment(name))
             owners = {name: owner for name, owner in here.items() if name not in given and name not in kept}
-
-
-def _block(name: str, variables: dict[str, str]) -> str:
-    """A fragment with its header, below the variables that it needs."""
-    lines = "".join(f"variable        {key} index {value}\n" for key, value in variables.items())
-    piece = fragment(name)
-    header = 5 if piece.redefines else 4
-    comments = piece.text[: len(piece.text) - len(piece.text.split("\n", header)[header])]
-    return comments + lines + piece.text[len(comments) :]
-
-
-def _commands(names: Sequence[str]) -> str:
-    """The commands of fragments, one after the other."""
-    return "".join(fragment(name).commands for name in names)
 
 
 def _own(owners: dict[str, str], name: str, owner: str) -> None:
@@ -263,9 +286,3 @@ def _pass(owners: dict[str, str], piece: Fragment) -> None:
         raise DeckError(f"used but not defined: {', '.join(missing)}, in {piece.name}")
     for name in piece.defines:
         _own(owners, name, piece.name)
-
-
-def _index(name: str, texts: Sequence[str]) -> str:
-    """`variable … index` over several lines."""
-    lines = [" ".join(texts[i : i + NUMBERS_PER_LINE]) for i in range(0, len(texts), NUMBERS_PER_LINE)]
-    return f"variable        {name} index " + " &\n                ".join(lines) + "\n"

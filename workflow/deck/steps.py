@@ -109,12 +109,14 @@ class Phase:
         rows: all of one kind.
         state: whether every atom's place and force are written after the last row.
         begin: fragments that come before the first row.
+        kept: with `[output] states`, whether the state of each row is kept; None: of all.
     """
 
     name: str
     rows: tuple[Row, ...]
     state: bool = False
     begin: tuple[str, ...] = ()
+    kept: tuple[bool, ...] | None = None
 
 
 def displacements(places: Sequence[float]) -> tuple[Displace, ...]:

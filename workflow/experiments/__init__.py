@@ -8,6 +8,7 @@ from contact1d.workflow.experiments.running.kind import ExperimentKind
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.slowness import slowness
+from contact1d.workflow.experiments.running.way import kept_way, planned_way
 from contact1d.workflow.experiments.slide import SLIDE
 from contact1d.workflow.experiments.tangential import TANGENTIAL
 from contact1d.workflow.scene import Scene
@@ -32,7 +33,7 @@ def kind_of(scene: Scene) -> ExperimentKind:
 
 def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     """A schedule without a search."""
-    return kind_of(scene).planned(scene, settings)
+    return planned_way(scene, kind_of(scene).planned(scene, settings))
 
 
 def perform(context: RunContext) -> Outcome:
@@ -45,4 +46,4 @@ def perform(context: RunContext) -> Outcome:
     scene = context.deck.scene
     if slow := slowness(scene, context.deck.settings):
         context.progress.note(slow)
-    return kind_of(scene).run[scene.method](context)
+    return kept_way(context, kind_of(scene).run[scene.method](context))

@@ -23,6 +23,7 @@ from contact1d.workflow.body.theory import theory
 from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.experiments.running.kind import FINER_SPACING
 from contact1d.workflow.experiments.running.outcome import Outcome, in_words, left_open_by_spacing, unmet
+from contact1d.workflow.experiments.running.way import kept_states
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.scales import scales_of, unfound
 from contact1d.workflow.scene import Scene, Tangential
@@ -162,7 +163,8 @@ def write_tables(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> 
         tables["friction.csv"] = dict(outcome.friction)
     if pressures := body_pressures(scene, outcome.profiles):
         tables["pressure_3d.csv"] = _body_columns(pressures)
-    write_states(folder / "states.npz", states_of([state.profile for state in outcome.states]))
+    way = states_of([state.profile for state in outcome.states], kept_states(scene, outcome))
+    write_states(folder / "states.npz", way)
     tables |= {f"{name}.csv": dict(columns) for name, columns in outcome.tables.items()}
     scales = scales_of(scene, outcome.quantities)
     for name, columns in tables.items():

@@ -14,6 +14,7 @@ from contact1d.workflow.scene.effects import (
 )
 from contact1d.workflow.scene.experiments import Experiment, Load, Method, Path, PullOff, Slide, Span, Tangential
 from contact1d.workflow.scene.material import Elastic, Material, Reduction
+from contact1d.workflow.scene.output import Output
 from contact1d.workflow.scene.problems import Problem, SceneError
 from contact1d.workflow.scene.profiles import Cone, Flat, FlatPunch, Measured, Parabola, Power, Profile
 from contact1d.workflow.scene.quantities import Table, Unit
@@ -47,6 +48,7 @@ __all__ = [
     "Method",
     "Neighbours",
     "Noise",
+    "Output",
     "Parabola",
     "Path",
     "Plate",

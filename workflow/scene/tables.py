@@ -23,6 +23,7 @@ from contact1d.workflow.scene.effects import (
 )
 from contact1d.workflow.scene.experiments import Experiment, Method, Slide, Tangential
 from contact1d.workflow.scene.material import PARABOLA_SHARE, Material, Reduction
+from contact1d.workflow.scene.output import Output
 from contact1d.workflow.scene.profiles import Flat, Parabola, Profile
 from contact1d.workflow.scene.quantities import (
     AnyParticleCount,
@@ -130,6 +131,7 @@ class Scene(Table):
     cantilever: Cantilever | None = Field(default=None, description="the plate is pulled through a spring")
     material: Material | None = Field(default=None, description="what the model stands for in SI")
     accuracy: Accuracy = Field(default=Accuracy(), description="how exact")
+    output: Output | None = Field(default=None, description="what is kept besides the results")
     experiment: Experiment = Field(description="what is done")
 
     @model_validator(mode="after")

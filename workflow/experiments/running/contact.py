@@ -58,6 +58,7 @@ class State:
         cantilever_force: [FU].
         step: LAMMPS timestep.
         motion: with a cantilever, what MOTION and HEAT name.
+        number: of its row, over all phases.
     """
 
     phase: str
@@ -74,6 +75,7 @@ class State:
     cantilever_force: float = 0.0
     step: float = 0.0
     motion: Mapping[str, float] = field(default_factory=dict, compare=False)
+    number: int = field(default=0, compare=False)
 
     @property
     def carried(self) -> float:
@@ -106,7 +108,7 @@ class Contact:
         self.session = session
         self._phases: list[Phase] = []
         self._unfinished = ""
-        self._states = 0
+        self._written = 0
         self._latest: list[State] = []
         self._tells = False
         self._rule = RadiusRule(deck.scene, deck.settings.tolerance)
@@ -143,49 +145,40 @@ class Contact:
             rows = [self.deck.as_listed(row) for row in rows]
         for start in range(0, len(rows), size):
             batch = rows[start : start + size]
+            first = sum(len(phase.rows) for phase in self._phases)
             self._phases[-1] = replace(self._phases[-1], rows=(*self._phases[-1].rows, *batch))
-            self._latest = self._measured(batch) if self._stepped is None else self._steps(self._stepped, batch)
+            stepped = self._stepped
+            self._latest = self._measured(batch, first) if stepped is None else self._steps(stepped, batch, first)
             found += self._latest
         return found
 
-    def _measured(self, rows: Sequence[Row]) -> list[State]:
+    def _measured(self, rows: Sequence[Row], first: int) -> list[State]:
         texts = []
         for row in rows:
-            texts.append(self._unfinished + self.deck.values(row) + self.deck.row(type(row)))
+            texts.append(self._unfinished + self.deck.values(row, not self._written) + self.deck.row(type(row)))
+            self._written += self.deck.keeps
             self._unfinished = self.deck.row_end + self.deck.forget(type(row))
         names = self._values()
         readings = self.session.measure_rows(texts, tuple(names), tuple(ATOM_UNITS), meanwhile=self._look_back)
         units, phase, states = self.deck.units, self._phases[-1].name, []
-        for reading in readings:
+        for number, reading in enumerate(readings, first):
             numbers = {name: units.from_deck(v, names[name]) for name, v in zip(names, reading.values, strict=True)}
             atoms = {n: units.from_deck(rows, ATOM_UNITS.get(n, "1")) for n, rows in reading.atoms.items()}
-            states.append(self._state(phase, numbers, atoms))
+            states.append(self._state(phase, numbers, atoms, number))
         return states
 
-    def _steps(self, stepped: SteppedRows, rows: Sequence[Row]) -> list[State]:
-        first = self.session.timestep
+    def _steps(self, stepped: SteppedRows, rows: Sequence[Row], first: int) -> list[State]:
+        began = self.session.timestep
         self.session.measure(self._unfinished + self.deck.in_one_run(rows), meanwhile=self._look_back)
         self._unfinished = ""
         spacing, residual, phase = self.scene.bodies.spacing, stepped.round_off, self._phases[-1].name
         states = []
-        for step, (row, profile) in enumerate(zip(rows, stepped.profiles(rows), strict=True), first + 1):
+        for i, (row, profile) in enumerate(zip(rows, stepped.profiles(rows), strict=True)):
             assert isinstance(row, Displace | Draw)
             place = row.place if isinstance(row, Draw) else 0.0
             force, closest = spacing * float(profile.pressure.sum()), float(profile.z_upper.min())
-            states.append(
-                State(
-                    phase,
-                    row.displacement,
-                    force,
-                    profile,
-                    closest,
-                    0.0,
-                    residual,
-                    self._rule,
-                    plate_x=place,
-                    step=float(step),
-                )
-            )
+            measured = (phase, row.displacement, force, profile, closest, 0.0, residual, self._rule)
+            states.append(State(*measured, plate_x=place, step=float(began + i + 1), number=first + i))
         return states
 
     def _look_back(self) -> None:
@@ -197,8 +190,8 @@ class Contact:
     def write_state(self) -> None:
         """Write the state that the last row left to states.lammpstrj; it ends the phase."""
         self._phases[-1] = replace(self._phases[-1], state=True)
-        self._unfinished += self.deck.state(first=self._states == 0)
-        self._states += 1
+        self._unfinished += self.deck.state(first=not self._written)
+        self._written += 1
 
     def finish(self) -> None:
         """Run what is left of the last row; what its states were made of is not kept."""
@@ -238,7 +231,7 @@ class Contact:
                 names |= dict.fromkeys(HEAT if self.settings.plate_damping > 0.0 else HEAT[:1], "FU·LU")
         return names | dict.fromkeys(self._pushes, "FU")
 
-    def _state(self, phase: str, numbers: dict[str, float], atoms: dict[str, Array]) -> State:
+    def _state(self, phase: str, numbers: dict[str, float], atoms: dict[str, Array], number: int) -> State:
         upper = atoms["type"] == PARTICLES["upper"]
         lower = atoms["type"] == PARTICLES["lower"]
         here = int(upper.sum() + lower.sum())
@@ -281,6 +274,7 @@ class Contact:
             cantilever_force=numbers.get("cantilever_force", 0.0),
             step=numbers["step"],
             motion={name: numbers[name] for name in (*MOTION, *HEAT) if name in numbers},
+            number=number,
         )
 
     def _surface(self, x: Array, z: Array) -> tuple[Array, Array]:
