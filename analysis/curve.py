@@ -60,6 +60,10 @@ FRICTION_COLUMNS = (
     "time", "drive", "plate_x", "plate_z", "friction", "normal_force", "cantilever_force", "cantilever_work",
 )  # fmt: skip
 """Of a slide: times [TU], places [LU], forces [FU], work [FU·LU]."""
+DETACHMENTS = "detachments"
+"""Name of the table, and of the figure, of a thermal pull-off."""
+DETACHMENT_COLUMNS = ("seed", "force", "time")
+"""Of it, one row for each pull: tension when the bodies part [FU], time since the pull began [TU]."""
 TANGENTIAL_COLUMNS = (
     "tangential_displacement", "tangential_force", "normal_force", "stick_radius", "stick_radius_uncertainty",
     "dissipated_energy",
@@ -100,6 +104,11 @@ def read_friction(path: Path) -> dict[str, Array]:
 def read_tangential(path: Path) -> dict[str, Array]:
     """Read the TANGENTIAL_COLUMNS of a curve.csv by name. Raises ValueError as `read_curve`."""
     return {name: _numbers(cells) for name, cells in _read(path, TANGENTIAL_COLUMNS).items()}
+
+
+def read_detachments(path: Path) -> dict[str, Array]:
+    """Read detachments.csv: DETACHMENT_COLUMNS by name. Raises ValueError as `read_curve`."""
+    return {name: _numbers(cells) for name, cells in _read(path, DETACHMENT_COLUMNS).items()}
 
 
 def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Column]:

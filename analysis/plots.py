@@ -156,6 +156,22 @@ def friction_figure(columns: Mapping[str, Sequence[float] | Array]) -> Figure:
     return figure
 
 
+def detachments_figure(forces: Array) -> Figure:
+    """How often the bodies parted at a tension [FU], their mean with its standard error; shape (pulls,)."""
+    figure = new_figure(SIZE)
+    axis = figure.subplots()
+    mean, error = float(forces.mean()), float(forces.std(ddof=1)) / math.sqrt(forces.size)
+    bins = max(4, round(2.0 * forces.size ** (1.0 / 3.0)))  # Rice's rule
+    axis.hist(forces, bins, color=LOADING, edgecolor="white")
+    axis.axvspan(mean - error, mean + error, color=TENSION, alpha=0.3, linewidth=0.0)
+    axis.axvline(mean, color=TENSION, linewidth=1.2, label=f"mean of {forces.size} pulls, standard error")
+    axis.locator_params(axis="y", integer=True)
+    axis.set_xlabel("detachment force (FU)")
+    axis.set_ylabel("pulls")
+    axis.legend(frameon=False, fontsize=9)
+    return figure
+
+
 def new_figure(size: tuple[float, float]) -> Figure:
     """Return an empty figure of that size [inch], without the state that pyplot keeps; a notebook shows it."""
     return _figure_class()(figsize=size, dpi=DPI, layout="constrained")

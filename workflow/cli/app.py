@@ -67,6 +67,9 @@ def run(
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures.")] = True,
     format_: Annotated[Format, typer.Option("--format", help="Of the figures.")] = Format.PNG,
     time_limit: Annotated[float, typer.Option(min=0.1, help="Seconds of wall time for LAMMPS, per pass.")] = 3600.0,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Repeats of a thermal pull-off at a time.", show_default="processors")
+    ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the numbers only.")] = False,
 ) -> None:
     """Run a scene and print its numbers, each with its uncertainty."""
@@ -78,7 +81,9 @@ def run(
         start_ahead()  # LAMMPS loads while numpy and the rest of the program do
         from contact1d.workflow.runs.advised import run as run_scene
 
-        finished = run_scene(checked, folder, format_.value if figures else False, progress, time_limit)
+        finished = run_scene(
+            checked, folder, format_.value if figures else False, progress, time_limit, workers=workers
+        )
     from contact1d.workflow.cli.summary import pressure_plot, quantities
 
     typer.echo("\n".join(quantities(finished.document)))

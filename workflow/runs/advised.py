@@ -30,6 +30,7 @@ def run(
     progress: Progress | None = None,
     time_limit: float = campaign.TIME_LIMIT,
     settings: Settings | None = None,
+    workers: int | None = None,
 ) -> Run:
     """As `workflow.runs.campaign.run`; where it fails, changes of the scene are tried.
 
@@ -37,7 +38,7 @@ def run(
     """
     progress, started = progress or Silent(), time.monotonic()
     try:
-        return campaign.run(scene, folder, figures, progress, time_limit, settings)
+        return campaign.run(scene, folder, figures, progress, time_limit, settings, workers=workers)
     except SceneError as error:
         raise mended(lambda change: read_scene(scene, change.overrides, change.without), error, progress) from None
     except SettingsError as error:

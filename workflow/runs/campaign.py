@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from contact1d.analysis.curve import Curve
+from contact1d.analysis.curve import DETACHMENTS, Curve
 from contact1d.files import PART, write_whole
 from contact1d.workflow.body.implied import formulas, with_implied
 from contact1d.workflow.body.pressure import with_body
@@ -26,6 +26,7 @@ from contact1d.workflow.experiments import perform, planned
 from contact1d.workflow.experiments.running.outcome import Outcome, anywhere_between
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import UntrustedError
+from contact1d.workflow.runs.cores import cores
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.refinement import Refined, refined
@@ -50,6 +51,7 @@ def run(
     time_limit: float = TIME_LIMIT,
     settings: Settings | None = None,
     retries: bool = True,
+    workers: int | None = None,
 ) -> Run:
     """Run a scene in a folder and leave everything there.
 
@@ -61,6 +63,7 @@ def run(
         time_limit: wall time for LAMMPS [s].
         settings: in place of those that `settings_for` chooses and refines; for cost studies.
         retries: whether smaller steps are tried where the bodies went through each other; a trial does without.
+        workers: repeats of a thermal pull-off at a time; None: as many as there are processors.
 
     Raises:
         SceneError: it is no scene; nothing is written.
@@ -75,7 +78,7 @@ def run(
     folder = prepare(Path(folder))
     with alone(folder):
         _write(deck, text, folder)
-        context = RunContext(deck, folder, progress or Silent(), time_limit, retries)
+        context = RunContext(deck, folder, progress or Silent(), time_limit, retries, workers or cores())
         return _run(context, started, figures, refine=settings is None)
 
 
@@ -114,7 +117,8 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
     _draw(folder, scene, outcome, curve, figures)
     document = results(scene, outcome, timing()) | formulas(scene, outcome.quantities)
     write_results(folder, document)
-    return Run(folder, document, scene, curve, outcome.profiles, friction, outcome)
+    detachments = {name: np.asarray(column) for name, column in outcome.tables.get(DETACHMENTS, {}).items()}
+    return Run(folder, document, scene, curve, outcome.profiles, friction, detachments, outcome)
 
 
 def _write_what_is_left(outcome: Outcome, scene: Scene, folder: Path, figures: bool | str) -> None:
@@ -132,8 +136,12 @@ def _draw(folder: Path, scene: Scene, outcome: Outcome, curve: Curve, figures: b
 
     form = figures if isinstance(figures, str) else FORMATS[0]
     values = {name: quantity.value for name, quantity in outcome.quantities.items()}
-    friction = {name: np.asarray(column) for name, column in outcome.friction.items()}
-    draw(folder, scene, values, curve, outcome.profiles, friction, scales_of(scene, outcome.quantities), form)
+    friction, detachments = (
+        {name: np.asarray(column) for name, column in columns.items()}
+        for columns in (outcome.friction, outcome.tables.get(DETACHMENTS, {}))
+    )
+    scales = scales_of(scene, outcome.quantities)
+    draw(folder, scene, values, curve, outcome.profiles, friction, detachments, scales, form)
 
 
 def _scene(scene: AnyScene) -> Scene:

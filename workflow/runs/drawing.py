@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis import body_plots, plots, slip_plots
-from contact1d.analysis.curve import Curve
+from contact1d.analysis.curve import DETACHMENTS, Curve
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.reference.mindlin import mindlin_path, sliding_displacement
 from contact1d.analysis.slip import stick_margin
@@ -41,6 +41,7 @@ def drawings(
     curve: Curve,
     profiles: Mapping[str, Profile],
     friction: Mapping[str, Array],
+    detachments: Mapping[str, Array],
     scales: Scales | None = None,
 ) -> Drawings:
     """What draws each figure, by the names of the files, the main one first.
@@ -48,7 +49,7 @@ def drawings(
     Args:
         scene: what ran.
         values: of the results.
-        curve, profiles, friction: as in `Run`.
+        curve, profiles, friction, detachments: as in `Run`.
         scales: of the run, where its units are known: the figures are in SI then.
     """
     title = f"{scene.title}\n(reduction {scene.bodies.reduction})"
@@ -57,7 +58,7 @@ def drawings(
         figure = body_plots.entitled(draw(), title)
         return figure if scales is None else body_plots.in_si(figure, scales.written)
 
-    plain = _drawings(scene, values, curve, profiles, friction)
+    plain = _drawings(scene, values, curve, profiles, friction, detachments)
     return {name: partial(dressed, draw) for name, draw in plain.items()}
 
 
@@ -67,6 +68,7 @@ def _drawings(
     curve: Curve,
     profiles: Mapping[str, Profile],
     friction: Mapping[str, Array],
+    detachments: Mapping[str, Array],
 ) -> Drawings:
     """The figures without title, in model units."""
     radii = {state: _radius(scene, profile) for state, profile in profiles.items()}
@@ -83,6 +85,8 @@ def _drawings(
         return sheared | pressure | _body_pressure(scene, values, profiles)
     if friction:
         return {"friction": partial(plots.friction_figure, friction), **pressure}
+    if detachments and detachments["force"].size > 1:
+        return {DETACHMENTS: partial(plots.detachments_figure, detachments["force"]), **pressure}
     if scene.noise is not None:
         return pressure
     forces = partial(
@@ -102,11 +106,12 @@ def draw(
     curve: Curve,
     profiles: Mapping[str, Profile],
     friction: Mapping[str, Array],
+    detachments: Mapping[str, Array],
     scales: Scales | None,
     form: str,
 ) -> None:
     """Save every figure of a run in its folder; `form`: png, svg or pdf."""
-    for name, figure in drawings(scene, values, curve, profiles, friction, scales).items():
+    for name, figure in drawings(scene, values, curve, profiles, friction, detachments, scales).items():
         plots.save_figure(figure(), folder / f"{name}.{form}")
 
 

@@ -14,14 +14,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.atoms import atoms
-from contact1d.analysis.curve import Curve, read_curve, read_friction, read_profiles, read_tangential
+from contact1d.analysis.curve import (
+    DETACHMENTS,
+    Curve,
+    read_curve,
+    read_detachments,
+    read_friction,
+    read_profiles,
+    read_tangential,
+)
 from contact1d.analysis.pressure import Profile
 from contact1d.workflow.body.pressure import BodyPressure, body_pressures
 from contact1d.workflow.body.shear import BodyShear, body_shears
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.runs.report import RESULTS
-from contact1d.workflow.scene import Scene, SceneError, Slide, Tangential, scene_from_dict
+from contact1d.workflow.scene import PullOff, Scene, SceneError, Slide, Tangential, scene_from_dict
 from contact1d.workflow.units import FORCE, LENGTH, MASS, Quantity, Scales, scale_of
 
 if TYPE_CHECKING:
@@ -63,6 +71,7 @@ class Run:
         curve: the measured states, arrays by name; what curve.csv holds.
         profiles: pressure and shear along x of the reported states, by name; what profile.csv holds.
         friction: of a slide or a tangential, arrays by name; what friction.csv holds, or curve.csv beside the curve.
+        detachments: of a pull-off with [noise], arrays by name, an entry for each pull; what detachments.csv holds.
         results: quantities by name, each with uncertainty and unit, and in SI where the scene has a [material].
         outcome: what the experiment handed over; None for a run that was read from its folder, or made by `run_many`.
     """
@@ -73,6 +82,7 @@ class Run:
     curve: Curve = field(compare=False)
     profiles: Mapping[str, Profile] = field(compare=False)
     friction: Mapping[str, NDArray[np.float64]] = field(compare=False)
+    detachments: Mapping[str, NDArray[np.float64]] = field(default_factory=dict, compare=False)
     outcome: Outcome | None = field(default=None, compare=False)
     results: Results = field(init=False, compare=False)
 
@@ -122,7 +132,7 @@ class Run:
 
         Args:
             name: "force_displacement", "force_radius", "pressure", "pressure_3d", "friction", "tangential",
-                "stick_slip" or "shear_3d", as the files in the folder are called.
+                "stick_slip", "shear_3d" or "detachments", as the files in the folder are called.
 
         Raises:
             ValueError: the run has no such figure; the message says which it has.
@@ -131,7 +141,7 @@ class Run:
         from contact1d.workflow.runs.drawing import drawings
 
         values = {key: quantity.value for key, quantity in self.results.items()}
-        there = drawings(self.scene, values, self.curve, self.profiles, self.friction, self.scales)
+        there = drawings(self.scene, values, self.curve, self.profiles, self.friction, self.detachments, self.scales)
         name = name or next(iter(there))
         if name not in there:
             raise ValueError(f"the run has no figure {name!r}, it has {', '.join(there)}")
@@ -182,15 +192,17 @@ def read_run(folder: Path) -> Run:
         scene = scene_from_dict(document["scene"])
         if document["status"] == "done":
             curve, profiles = read_curve(folder / "curve.csv"), read_profiles(folder / "profile.csv")
-            friction = {}
+            friction, detachments = {}, {}
             if isinstance(scene.experiment, Slide):
                 friction = read_friction(folder / "friction.csv")
             elif isinstance(scene.experiment, Tangential):
                 friction = read_tangential(folder / "curve.csv")
+            elif isinstance(scene.experiment, PullOff) and scene.noise is not None:
+                detachments = read_detachments(folder / f"{DETACHMENTS}.csv")
         else:
-            curve, profiles, friction = Curve([], [], [], [], [], []), {}, {}
+            curve, profiles, friction, detachments = Curve([], [], [], [], [], []), {}, {}, {}
             str(document["error"]["message"])
-        return Run(folder.resolve(), document, scene, curve, profiles, friction)
+        return Run(folder.resolve(), document, scene, curve, profiles, friction, detachments)
     except (KeyError, TypeError, AttributeError, ValueError, OSError, SceneError) as error:
         reason = f"no {error}" if isinstance(error, KeyError) else str(error).partition("\n")[0]
         raise FolderError(f"{folder} holds no run that this version can read: {reason}. Run its scene again") from None

@@ -65,7 +65,7 @@ def completed(pairs: Sequence[tuple[AnyScene, AnyPath]], executor: Executor) -> 
 
 def _entry(scene: AnyScene, folder: Path) -> Entry:
     try:
-        return replace(run(scene, folder, figures=False), outcome=None)
+        return replace(run(scene, folder, figures=False, workers=1), outcome=None)
     except RunError as error:
         return error
     except Exception as error:

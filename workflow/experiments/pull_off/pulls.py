@@ -1,0 +1,196 @@
+"""One pull under heat, and many of them side by side: a load that grows in small steps until the bodies part."""
+
+from __future__ import annotations
+
+import math
+import os
+import shutil
+import threading
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import suppress
+from dataclasses import dataclass, replace
+
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.steps import Phase, UnderLoad
+from contact1d.workflow.deck.system import write_system
+from contact1d.workflow.engine.progress import Silent
+from contact1d.workflow.engine.session import LOG
+from contact1d.workflow.experiments.running.contact import BATCH, State
+from contact1d.workflow.experiments.running.run_context import RunContext
+from contact1d.workflow.experiments.running.sampling import SETTLING_LOOKS, chunk_steps
+from contact1d.workflow.experiments.running.trust import UntrustedError, require_trust
+from contact1d.workflow.scene import PullOff, Scene
+from contact1d.workflow.settings.settings import Settings
+
+INCREMENTS = 400
+"""Rows on the way to the largest tension of the estimate: the load is a staircase of so many steps."""
+FEWEST_STEPS = 10
+MOST_TENSION = 10.0
+"""Tension over that of the estimate at which the bodies must have parted."""
+BARRIER = 0.99
+"""Share of the largest tension that has its place beyond the barrier."""
+GONE, SURELY = 0.01, 50.0
+"""Share of the largest tension that counts as none, and the energy over k_BT that a plate would need to come back."""
+WAITING_STEPS = 800
+"""Timesteps of rows that go to LAMMPS together: waking two processes takes as long as a hundred of them."""
+FOLDER = ".pulls"
+"""Of the pulls with other seeds than the scene's, in the run folder, while they run."""
+
+
+@dataclass(frozen=True)
+class Detachment:
+    """How one pull ended.
+
+    Attributes:
+        seed: of its heat.
+        force: the tension [FU] when the plate last left the place of the largest one.
+        time: since the pull began [TU].
+        phases: the schedule.
+        states: of all rows, none where only the numbers are kept.
+        held: index of the last one that was held.
+    """
+
+    seed: int
+    force: float
+    time: float
+    phases: tuple[Phase, ...]
+    states: tuple[State, ...]
+    held: int
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """How the load grows: `steps` timesteps in each row, and by `rise` [FU] from row to row, to row `most`."""
+
+    steps: int
+    rise: float
+    most: int
+
+    def row(self, number: int) -> UnderLoad:
+        """The row of that number, from 1 on."""
+        return UnderLoad(-number * self.rise, self.steps)
+
+    def tension(self, number: float) -> float:
+        """Of the load [FU] after so many rows."""
+        return number * self.rise
+
+
+def rate_of(scene: Scene) -> float:
+    """At which the load grows [FU/TU]."""
+    assert isinstance(scene.experiment, PullOff)
+    assert scene.experiment.loading_rate is not None
+    return scene.experiment.loading_rate
+
+
+def ramp_of(scene: Scene, settings: Settings) -> Ramp:
+    """The staircase: its steps are a share of the tension, or more where they would have too few timesteps."""
+    rate, tension = rate_of(scene), settings.estimate.pull_off_force()
+    wanted = max(tension / INCREMENTS, rate * FEWEST_STEPS * settings.time_step)
+    steps = max(FEWEST_STEPS, round(wanted / rate / settings.time_step))
+    rise = rate * steps * settings.time_step
+    return Ramp(steps, rise, math.ceil(MOST_TENSION * tension / rise))
+
+
+def pulls(context: RunContext, count: int) -> list[Detachment]:
+    """So many pulls, with the scene's seed and those after it, `context.workers` of them at a time.
+
+    The files of the run folder are those of the scene's own seed, and only its states are kept.
+
+    Raises:
+        EngineError, UntrustedError: of the first pull that failed; the log in the run folder is then its own.
+    """
+    if count == 1:
+        return [_pull(context, threading.Event())]
+    stop, found = threading.Event(), []
+    context.progress.phase("pulling", count, "pull")
+    with ThreadPoolExecutor(min(count, context.workers)) as executor:
+        tasks = {executor.submit(_apart, context, number, stop): number for number in range(count)}
+        try:
+            for task in as_completed(tasks):
+                found.append(task.result())
+                context.progress.advance(1)
+        except BaseException:
+            stop.set()
+            executor.shutdown(cancel_futures=True)
+            raise
+        finally:
+            shutil.rmtree(context.folder / FOLDER, ignore_errors=True)
+    return sorted(found, key=lambda one: one.seed)
+
+
+def _apart(context: RunContext, number: int, stop: threading.Event) -> Detachment:
+    """The pull of the seed that is `number` after the scene's, in a folder of its own."""
+    scene, settings = context.deck.scene, context.deck.settings
+    assert scene.noise is not None
+    seeded = scene.model_copy(update={"noise": scene.noise.model_copy(update={"seed": scene.noise.seed + number})})
+    folder = context.folder / FOLDER / str(number) if number else context.folder
+    own = RunContext(Deck(seeded, settings), folder, Silent(), context.time_limit, context.retries)
+    if number:
+        folder.mkdir(parents=True, exist_ok=True)
+        write_system(own.deck, folder)
+    try:
+        found = _pull(own, stop)
+    except Exception:
+        if not stop.is_set():
+            context.phase, context.timestep = own.phase, own.timestep
+            with suppress(OSError):
+                os.replace(folder / LOG, context.folder / LOG)
+        raise
+    finally:
+        context.add_time_of(own)
+    return replace(found, phases=(), states=()) if number else found
+
+
+def _pull(context: RunContext, stop: threading.Event) -> Detachment:
+    scene, settings = context.deck.scene, context.deck.settings
+    experiment = scene.experiment
+    assert isinstance(experiment, PullOff)
+    assert scene.noise is not None
+    ramp, look = ramp_of(scene, settings), chunk_steps(settings)
+    barrier = settings.estimate.parted(BARRIER)
+    with context.contact() as contact:
+        states: list[State] = []
+        for name, load in (("loading", experiment.preload), ("settling", 0.0)):
+            contact.begin(name, expected_steps=SETTLING_LOOKS * look)
+            states += contact.rows((UnderLoad(load, look),) * SETTLING_LOOKS)
+        require_trust(scene, settings, states[-1])
+        if min(one.displacement for one in states) < settings.estimate.parted(GONE):
+            raise UntrustedError(
+                "heat alone parts the bodies, before the pull begins: take a lower noise.temperature, or a stronger "
+                "interaction.attraction"
+            )
+        contact.begin("pulling", expected_steps=ramp.most * ramp.steps)
+        settled = len(states)
+        at_once = min(BATCH, max(1, WAITING_STEPS // ramp.steps))
+        for first in range(1, ramp.most + 1, at_once):
+            if stop.is_set():
+                raise UntrustedError("another pull failed")
+            numbers = range(first, min(first + at_once, ramp.most + 1))
+            states += contact.rows([ramp.row(n) for n in numbers])
+            if _has_parted(scene, settings, ramp.tension(numbers[-1]), states[-1]):
+                break
+        else:
+            raise UntrustedError(
+                f"the bodies did not part up to a tension of {ramp.tension(ramp.most):.4g} FU, {MOST_TENSION:g} times "
+                "what holds them by the estimate: they were pulled faster than they move. Take a smaller "
+                "experiment.loading_rate"
+            )
+        contact.write_state()
+        contact.finish()
+    held = max((n for n, one in enumerate(states[settled:], 1) if one.displacement > barrier), default=0)
+    time = (held + 0.5) * ramp.steps * settings.time_step
+    force = ramp.tension(held + 0.5)
+    return Detachment(scene.noise.seed, force, time, contact.phases, tuple(states), settled + held - 1)
+
+
+def _has_parted(scene: Scene, settings: Settings, tension: float, state: State) -> bool:
+    """Whether the plate does not come back: nothing attracts it where it is, and the load does work on the way.
+
+    From d back to the largest tension, at d_A, it needs F (d_A − d) without what attraction gives it, F_A (d_A − d_0)
+    at most, d_0 the place beyond which there is none.
+    """
+    assert scene.noise is not None
+    estimate = settings.estimate
+    barrier, none = estimate.parted(BARRIER), estimate.parted(GONE)
+    needed = tension * (barrier - state.displacement) - estimate.pull_off_force() * (barrier - none)
+    return state.displacement < none and needed > SURELY * scene.noise.temperature
