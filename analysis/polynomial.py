@@ -6,6 +6,7 @@ Places t are of the order of 1 and counted from a sample, or the coefficients ar
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,8 +26,16 @@ def fitting(t: Array, degree: int) -> Array:
 
     P goes through all values where degree = n - 1; for a lower degree it is that of least squares.
     """
+    return _fitting(np.ascontiguousarray(t).tobytes(), degree)
+
+
+@lru_cache(maxsize=512)  # particles that move up and down only are under the same polynomial in every state
+def _fitting(places: bytes, degree: int) -> Array:
+    t = np.frombuffer(places)
     powers = t[:, None] ** np.arange(degree + 1)
-    return np.asarray(np.linalg.inv(powers) if len(t) == degree + 1 else np.linalg.pinv(powers), dtype=np.float64)
+    matrix = np.asarray(np.linalg.inv(powers) if len(t) == degree + 1 else np.linalg.pinv(powers), dtype=np.float64)
+    matrix.flags.writeable = False
+    return matrix
 
 
 def through(t: Array, y: Array) -> Array:
@@ -47,7 +56,8 @@ def real_roots(c: Array, low: float, high: float) -> Array:
 
     They are eigenvalues of the companion matrix; `numpy.polynomial` does the same in twice the time.
     """
-    c = np.trim_zeros(c, "b")
+    while len(c) and c[-1] == 0.0:
+        c = c[:-1]
     if len(c) < 2:
         return np.empty(0)
     companion = np.eye(len(c) - 1, k=-1)
@@ -76,9 +86,9 @@ def lowest_minimum(c: Array, low: float, high: float, near: float | None = None)
 
 def _newton(first: Array, second: Array, low: float, high: float, t: float) -> Array:
     """The root near t of P′, with the coefficients `first`; `second` are those of P″. None where it runs away."""
-    step = math.inf
+    step, exponents = math.inf, np.arange(len(first))
     for _ in range(NEWTON):
-        powers = t ** np.arange(len(first))
+        powers = t**exponents
         slope = float(second @ powers[:-1])
         step = float(first @ powers) / slope if slope > 0.0 else math.nan
         t -= step

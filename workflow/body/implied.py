@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,6 +90,7 @@ def formulas(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, dict
     return {"formulas": said} if said else {}
 
 
+@lru_cache(maxsize=16)  # scenes run one after the other mostly share their law
 def _work(law: DoubleExponential, spacing: float) -> tuple[float, float]:
     """w [FU·LU] by the trapezoid, and what its step leaves open: the difference from twice the step."""
     end = law.cutoff_for(TAIL)

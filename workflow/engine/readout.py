@@ -53,7 +53,7 @@ def read_atoms(lammps: Any, names: Sequence[str]) -> dict[str, Any]:
     arrays = {"id": identity[order], "type": _rows(lammps, "type", count)[order]}
     for name in names:
         arrays[name] = _rows(lammps, name, count)[order]
-        _require_finite(name, arrays[name], arrays["id"])
+        _require_finite("position" if name == "x" else name, arrays[name], arrays["id"])
     return arrays
 
 

@@ -92,7 +92,8 @@ class Session:
             EngineError: LAMMPS failed, ran out of time or left a position that is not finite.
         """
         self._enter(phase, expected_steps)
-        self.measure(text)
+        if text:
+            self.measure(text)
 
     def run_file(self, name: str, phase: str | None = None, expected_steps: int | None = None) -> None:
         """Run the LAMMPS file `name` of the folder, in which `label`, `next` and `jump SELF` work. See `execute`."""

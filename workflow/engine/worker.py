@@ -129,7 +129,10 @@ class Runner:
         try:
             if text or file:
                 self._execute(text, file)
-            return [read_value(self.lammps, name) for name in values], read_atoms(self.lammps, atoms) if atoms else {}
+                if "x" not in atoms:
+                    require_finite_positions(self.lammps)
+            arrays = read_atoms(self.lammps, atoms) if atoms else {}
+            return [read_value(self.lammps, name) for name in values], arrays
         finally:
             self.publish()
 
@@ -181,7 +184,6 @@ class Runner:
             start = self.clock_start
             self._find_clock()
             self.steps += max(0, self.clock_start - start) if mark is None else self._logged_steps(mark)
-        require_finite_positions(self.lammps)
 
     def _logged_steps(self, mark: int) -> int:
         """Return the steps that LAMMPS reported in its log since it was `mark` bytes long."""

@@ -90,19 +90,20 @@ class _Row:
     """The sum over particles whose apex stands at a phase between two of them."""
 
     def __init__(self, estimate: ContactEstimate, phase: float, deepest: float) -> None:
-        """Keep the heights of all particles that are within reach at the deepest displacement [LU]."""
+        """Keep the heights [LU] of all particles within reach at the deepest displacement, and which is whose."""
         self.estimate = estimate
         spacing, reach = estimate.spacing, estimate.half_width(deepest, float(estimate.gap[-1]))
         count = int(reach / spacing) + 2
         x = np.abs(spacing * (np.arange(-count, count + 1) + phase))
-        self.heights = estimate.rest + estimate.profile.height(np.asarray(x[x <= reach], dtype=np.float64))
+        heights = estimate.rest + estimate.profile.height(np.asarray(x[x <= reach], dtype=np.float64))
+        self.heights, self.own = np.unique(heights, return_inverse=True)
         self.lowest = estimate.rest - float(estimate.gap[-1])
         self.highest = deepest + OVERREACH * (abs(deepest) + spacing)
 
     def forces(self, displacements: Array) -> Array:
         """F(d) [FU] at each of the displacements [LU]."""
-        gaps = self.heights - displacements[:, None]
-        return np.asarray(np.interp(gaps, self.estimate.gap, self.estimate.force, right=0.0).sum(axis=1))
+        each = np.interp(self.heights[:, None] - displacements, self.estimate.gap, self.estimate.force, right=0.0)
+        return np.asarray(each.T[:, self.own].sum(axis=1))
 
     def force(self, displacement: float) -> float:
         """F(d) [FU] at a displacement [LU]."""

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,7 +86,8 @@ class ContactEstimate:
         half = self.half_widths(displacements, self.gap[-1])
         x = np.linspace(-half, half, CONTACT_POINTS)
         gap = self.rest + self.profile.height(x.ravel()).reshape(x.shape) - displacements
-        per_particle = np.interp(gap, self.gap, self.force, right=0.0)
+        # Along a body the next gap is near the last one, which is where `numpy.interp` looks first.
+        per_particle = np.ascontiguousarray(np.interp(gap.T, self.gap, self.force, right=0.0).T)
         return np.asarray(np.trapezoid(per_particle, x, axis=0)) / self.spacing
 
     def half_width(self, displacement: float, gap: float) -> float:
@@ -139,10 +140,14 @@ class ContactEstimate:
         counts[: particles % 2] = 1.0
         places = np.linspace(zero, apart, TEETH_POINTS)
         at_once = np.array_split(places, 1 + places.size * heights.size // MOST_AT_ONCE)
-        sums = [np.interp(heights - some[:, None], self.gap, self.force, right=0.0) @ counts for some in at_once]
-        tension = -np.concatenate(sums)
-        tops = _tops(tension, TOOTH * float(tension.max(initial=0.0)))
+        tension = -np.concatenate([self._tensions_of(heights, some) @ counts for some in at_once])
+        tops = _tops(tension.tolist(), TOOTH * float(tension.max(initial=0.0)))
         return math.inf if len(tops) < 2 else float(np.min(-np.diff(places[tops])))
+
+    def _tensions_of(self, heights: Array, displacements: Array) -> Array:
+        """Forces [FU] of particles at these heights [LU], one row for each displacement [LU]."""
+        forces = np.interp(heights[:, None] - displacements, self.gap, self.force, right=0.0)
+        return np.ascontiguousarray(forces.T)
 
     @cached_property
     def snap(self) -> tuple[float, float]:
@@ -218,7 +223,7 @@ class ContactEstimate:
         return float(np.interp(force, forces, places))
 
 
-def _tops(tension: Array, fall: float) -> list[int]:
+def _tops(tension: list[float], fall: float) -> list[int]:
     """Indices of maxima after each of which values fall by more than `fall` before they rise by more than that."""
     tops: list[int] = []
     high = low = 0
@@ -236,11 +241,10 @@ def _tops(tension: Array, fall: float) -> list[int]:
 
 def row_force(law: DoubleExponential, r: Array, spacing: float, cutoff: float) -> Array:
     """Force [FU] of a straight row of opposite particles on the one facing it, at distances r [LU], shape (n,)."""
-    reach = int(cutoff / spacing)
-    offsets = spacing * np.arange(-reach, reach + 1)
+    offsets = spacing * np.arange(int(cutoff / spacing) + 1)
     distance = np.hypot(r[:, None], offsets[None, :])
     forces = np.where(distance <= cutoff, law.force(distance), 0.0) * r[:, None] / distance
-    return np.asarray(forces.sum(axis=1))
+    return np.asarray(np.concatenate([forces[:, :0:-1], forces], axis=1).sum(axis=1))
 
 
 def particles_estimate(
@@ -258,14 +262,25 @@ def particles_estimate(
 
     `row`: spacing [LU] of the opposite row where it differs.
     """
+    gap, force, snaps, bend = _pairs(law, stiffness, cutoff, points, chains, row or spacing)
+    return ContactEstimate(gap, force, rest, profile, spacing, stiffness / chains, snaps, bend)
+
+
+@lru_cache(maxsize=16)  # scenes run one after the other mostly share their law
+def _pairs(
+    law: DoubleExponential, stiffness: float, cutoff: float, points: int, chains: int, row: float
+) -> tuple[Array, Array, bool, float]:
+    """Gaps [LU] and forces [FU] of one particle over a grid of distances, whether pairs snap, and the bend."""
     r = np.linspace(cutoff / points, cutoff, points)
-    force = row_force(law, r, row or spacing, cutoff)
+    force = row_force(law, r, row, cutoff)
     undeformed = r - chains * force / stiffness
     gap = np.maximum.accumulate(undeformed)
     gap += np.arange(points) * 1e-12 * cutoff
     falls = np.flatnonzero(np.diff(undeformed) < 0.0)
     bend = abs(float(np.diff(undeformed, 2)[max(falls[0] - 1, 0)])) / (r[1] - r[0]) ** 2 if falls.size else 0.0
-    return ContactEstimate(gap, force, rest, profile, spacing, stiffness / chains, falls.size > 0, bend)
+    for shared in (gap, force):
+        shared.flags.writeable = False
+    return gap, force, falls.size > 0, bend
 
 
 def plane_estimate(profile: Profile, spacing: float, stiffness: float) -> ContactEstimate:
