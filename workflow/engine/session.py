@@ -80,20 +80,27 @@ class Session:
         self._shown, self._over, self._commands = 0, "", ""
         self._ask("open", str(folder))
 
-    def execute(self, text: str, phase: str | None = None, expected_steps: int | None = None) -> None:
+    def execute(
+        self,
+        text: str,
+        phase: str | None = None,
+        expected_steps: int | None = None,
+        meanwhile: Callable[[], object] | None = None,
+    ) -> None:
         """Run LAMMPS commands.
 
         Args:
             text: any number of lines; `&` continues one, triple quotes may span several.
             phase: name of what they do, for errors and progress; kept until the next one. None: as before.
             expected_steps: steps of the whole phase, for the progress; None where unknown.
+            meanwhile: as of `measure`.
 
         Raises:
             EngineError: LAMMPS failed, ran out of time or left a position that is not finite.
         """
         self._enter(phase, expected_steps)
         if text:
-            self.measure(text)
+            self.measure(text, meanwhile=meanwhile)
 
     def run_file(self, name: str, phase: str | None = None, expected_steps: int | None = None) -> None:
         """Run the LAMMPS file `name` of the folder, in which `label`, `next` and `jump SELF` work. See `execute`."""

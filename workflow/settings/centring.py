@@ -13,6 +13,9 @@ read off between them; a flat punch has its edge particles where it ends, and on
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -42,7 +45,8 @@ POINTS = (200, 40, 40, 40)
 """Displacements at which a sum is looked at, each time between those next to the one looked for."""
 
 
-def left_by_centring(scene: Scene, settings: Settings) -> dict[str, float]:
+@lru_cache(maxsize=4)  # asked for ahead, while LAMMPS is at work
+def left_by_centring(scene: Scene, settings: Settings) -> Mapping[str, float]:
     """By the names of results, the largest change [its unit]."""
     if scene.adheres and scene.adhesion is not None:
         return left_by_cells(scene, settings)
@@ -103,7 +107,7 @@ class _Row:
     def forces(self, displacements: Array) -> Array:
         """F(d) [FU] at each of the displacements [LU]."""
         each = np.interp(self.heights[:, None] - displacements, self.estimate.gap, self.estimate.force, right=0.0)
-        return np.asarray(each.T[:, self.own].sum(axis=1))
+        return np.asarray(np.ascontiguousarray(each.T[:, self.own]).sum(axis=1))
 
     def force(self, displacement: float) -> float:
         """F(d) [FU] at a displacement [LU]."""

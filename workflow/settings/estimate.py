@@ -11,6 +11,7 @@ h is the profile. This chooses chain lengths, first steps and time scales; no re
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -53,9 +54,9 @@ class NotCarriedError(ValueError):
         self.most = most
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ContactEstimate:
-    """Independent pairs under a profile.
+    """Independent pairs under a profile. Scenes one after the other share it, and what was found before with it.
 
     Attributes:
         gap: undeformed gap G [LU] over a grid of distances, made monotone where pairs would snap.
@@ -127,11 +128,24 @@ class ContactEstimate:
         stiffness = np.gradient(forces, places)[top:]
         return float(np.interp(max(force, SOFTEST_SHARE * forces[top]), forces[top:], stiffness))
 
-    def tooth(self, particles: int) -> float:
+    @cached_property
+    def tooth(self) -> Callable[[int], float]:
         """Least distance [LU] of two tops of the tension, between which it falls by TOOTH of the largest; inf for one.
 
         Summed over the particles of a chain of so many: where they let go one by one, F(d) has a tooth for each.
         """
+        return lru_cache(maxsize=4)(self._tooth)
+
+    @cached_property
+    def displacement_at(self) -> Callable[[float], float]:
+        """Displacement [LU] at which F(d) reaches a compressive force [FU] ≥ 0.
+
+        Raises:
+            NotCarriedError: the particles stand on each other before it does.
+        """
+        return lru_cache(maxsize=16)(self._displacement_at)
+
+    def _tooth(self, particles: int) -> float:
         x: Array = self.spacing * (np.arange(particles, dtype=np.float64) - 0.5 * (particles - 1))
         apart, zero = self.rest - float(self.gap[-1]), self.displacement_at(0.0)
         heights = self.rest + self.profile.height(x[x >= -self.spacing / 4])
@@ -203,12 +217,7 @@ class ContactEstimate:
         places = np.linspace(self.rest - float(self.gap[-1]), self.displacement_at(0.0), BRANCH_POINTS)
         return places, self.contact_forces(places)
 
-    def displacement_at(self, force: float) -> float:
-        """Displacement [LU] at which F(d) reaches a compressive force [FU] ≥ 0.
-
-        Raises:
-            NotCarriedError: the particles stand on each other before it does.
-        """
+    def _displacement_at(self, force: float) -> float:
         low = self._largest_tension[0]  # where the force begins to rise
         high = max(self.spacing, 2 * self.rest)
         while (reached := self.contact_force(high)) < force:
@@ -247,6 +256,7 @@ def row_force(law: DoubleExponential, r: Array, spacing: float, cutoff: float) -
     return np.asarray(np.concatenate([forces[:, :0:-1], forces], axis=1).sum(axis=1))
 
 
+@lru_cache(maxsize=16)  # scenes run one after the other mostly share bodies and law
 def particles_estimate(
     law: DoubleExponential,
     profile: Profile,
@@ -262,25 +272,23 @@ def particles_estimate(
 
     `row`: spacing [LU] of the opposite row where it differs.
     """
-    gap, force, snaps, bend = _pairs(law, stiffness, cutoff, points, chains, row or spacing)
-    return ContactEstimate(gap, force, rest, profile, spacing, stiffness / chains, snaps, bend)
-
-
-@lru_cache(maxsize=16)  # scenes run one after the other mostly share their law
-def _pairs(
-    law: DoubleExponential, stiffness: float, cutoff: float, points: int, chains: int, row: float
-) -> tuple[Array, Array, bool, float]:
-    """Gaps [LU] and forces [FU] of one particle over a grid of distances, whether pairs snap, and the bend."""
-    r = np.linspace(cutoff / points, cutoff, points)
-    force = row_force(law, r, row, cutoff)
+    r, force = _row_over(law, row or spacing, cutoff, points)
     undeformed = r - chains * force / stiffness
     gap = np.maximum.accumulate(undeformed)
     gap += np.arange(points) * 1e-12 * cutoff
     falls = np.flatnonzero(np.diff(undeformed) < 0.0)
     bend = abs(float(np.diff(undeformed, 2)[max(falls[0] - 1, 0)])) / (r[1] - r[0]) ** 2 if falls.size else 0.0
-    for shared in (gap, force):
-        shared.flags.writeable = False
-    return gap, force, falls.size > 0, bend
+    gap.flags.writeable = False
+    return ContactEstimate(gap, force, rest, profile, spacing, stiffness / chains, falls.size > 0, bend)
+
+
+@lru_cache(maxsize=16)  # a law is mostly that of several bodies
+def _row_over(law: DoubleExponential, spacing: float, cutoff: float, points: int) -> tuple[Array, Array]:
+    """Distances [LU] up to the cutoff, and the `row_force` [FU] there."""
+    r = np.linspace(cutoff / points, cutoff, points)
+    force = row_force(law, r, spacing, cutoff)
+    r.flags.writeable = force.flags.writeable = False
+    return r, force
 
 
 def plane_estimate(profile: Profile, spacing: float, stiffness: float) -> ContactEstimate:

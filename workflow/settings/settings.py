@@ -60,9 +60,9 @@ least moment of inertia must be more than 1e-7 of the largest, and is 12 STAGGER
 """
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Settings:
-    """The numbers of one run; units as in the scene.
+    """The numbers of one run; units as in the scene. Two are equal if they are the same object.
 
     Attributes:
         tolerance: that all of this is for; that of a refined pass is smaller than the scene's.

@@ -23,8 +23,11 @@ class Profile(Protocol):
     def reach(self) -> float:
         """Half-width [LU] of the body."""
 
+    def __hash__(self) -> int:
+        """The same for equal bodies, which share their estimate."""
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, eq=False)
 class Tabulated:
     """A profile that was asked once for its `heights` [LU] at rising `places` [LU] from 0, with straight lines between.
 

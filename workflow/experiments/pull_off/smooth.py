@@ -22,6 +22,7 @@ from contact1d.workflow.experiments.running.contact import Contact, State
 from contact1d.workflow.experiments.running.prescribing import approach, back_to, measured, separate, still_held
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import UntrustedError
+from contact1d.workflow.settings.settings import Settings
 
 MOST_TRIES = 12
 """Rows at F = 0 after which the search gives up."""
@@ -96,7 +97,7 @@ def smooth_pass(context: RunContext, preload: float, tolerance: float) -> Smooth
 
 def _searched(context: RunContext, preload: float, tolerance: float, through: bool) -> tuple[SmoothPass, Peak]:
     """One schedule, and the largest tension as it was before the bodies were pulled apart."""
-    with context.contact() as contact:
+    with context.contact(meanwhile=_tooth) as contact:
         contact.begin("loading")
         loading = approach(contact, preload, 0.0)
         contact.begin("unloading")
@@ -152,7 +153,7 @@ def _to_largest_tension(
     Rows at half the distance are put on both sides of it until they leave it as it was, and, at most
     HALVINGS_AT_PEAK times more, until the contact radius there is known.
     """
-    tooth = contact.settings.estimate.tooth(contact.settings.particles)
+    tooth = _tooth(contact.settings)
     step = _increment(contact, unloaded[-1].displacement, tooth)
     states = _pulled(contact, unloaded[-1], step, through or tooth < math.inf)
     expected, beside, cuts, changed = _peak([*unloaded, *states]), step, 0, math.inf
@@ -176,6 +177,11 @@ def _to_largest_tension(
         else:
             expected = found
     raise UntrustedError(f"the largest tension is not found near {expected.position:.6g} LU: {JUMPS}")
+
+
+def _tooth(settings: Settings) -> float:
+    """Least distance [LU] of two teeth of the tension, by the estimate."""
+    return settings.estimate.tooth(settings.particles)
 
 
 def _halved(contact: Contact, unloaded: list[State], states: list[State], places: tuple[float, float]) -> float:

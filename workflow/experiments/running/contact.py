@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,8 @@ from contact1d.workflow.engine.session import EngineError, Session
 from contact1d.workflow.experiments.running.radii import RadiusRule
 from contact1d.workflow.experiments.running.stepped import FRAMES, SteppedRows
 from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.centring import left_by_centring
+from contact1d.workflow.settings.settings import Settings
 
 Array = NDArray[np.float64]
 ATOM_UNITS = {"x": "LU", "f": "FU", "v_opposite_x": "FU", "v_opposite_z": "FU"}
@@ -100,8 +102,8 @@ TOLD = "steps/told"
 class Contact:
     """A deck that is being run. It keeps its schedule: `phases` is what in.lammps must hold to repeat it."""
 
-    def __init__(self, deck: Deck, session: Session) -> None:
-        """Run the deck's head: bodies, effects, method."""
+    def __init__(self, deck: Deck, session: Session, meanwhile: Callable[[Settings], object] | None = None) -> None:
+        """Run the deck's head: bodies, effects, method; `meanwhile` works something out of the settings."""
         self.deck = deck
         self.scene: Scene = deck.scene
         self.settings = deck.settings
@@ -113,7 +115,7 @@ class Contact:
         self._tells = False
         self._rule = RadiusRule(deck.scene, deck.settings.tolerance)
         self._pushes = tuple(part.pushes for part in deck.parts if part.pushes)
-        session.execute(deck.head, phase="setting up")
+        session.execute(deck.head, phase="setting up", meanwhile=partial(self._look_ahead, meanwhile))
         self._stepped = SteppedRows(deck, session) if deck.stepped else None
 
     @property
@@ -180,6 +182,11 @@ class Contact:
             measured = (phase, row.displacement, force, profile, closest, 0.0, residual, self._rule)
             states.append(State(*measured, plate_x=place, step=float(began + i + 1), number=first + i))
         return states
+
+    def _look_ahead(self, more: Callable[[Settings], object] | None) -> None:
+        left_by_centring(self.scene, self.settings)  # which every outcome asks for
+        if more:
+            more(self.settings)
 
     def _look_back(self) -> None:
         """Work out the radii of the rows before, which their states keep: LAMMPS is busy with the next ones."""

@@ -74,7 +74,7 @@ def anywhere_between(scene: Scene, settings: Settings, outcome: Outcome) -> Outc
 
     F and a of the mean pressure F/πa² are a load's own.
     """
-    parts = left_by_centring(scene, settings)
+    parts = dict(left_by_centring(scene, settings))
     if "mean_pressure" in outcome.quantities and "contact_radius" in parts:
         share = 2.0 * parts["contact_radius"] / outcome.quantities["contact_radius"].value
         parts["mean_pressure"] = share * abs(outcome.quantities["mean_pressure"].value)

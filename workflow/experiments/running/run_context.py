@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +13,7 @@ from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.engine.session import Engine
 from contact1d.workflow.experiments.running.contact import Contact
 from contact1d.workflow.experiments.running.outcome import Outcome
+from contact1d.workflow.settings.settings import Settings
 
 
 @dataclass
@@ -46,13 +47,16 @@ class RunContext:
     _lock: threading.Lock = field(default_factory=threading.Lock, init=False, repr=False)
 
     @contextmanager
-    def contact(self, purpose: str = "") -> Iterator[Contact]:
-        """A fresh contact at displacement 0, in a LAMMPS instance of its own; `purpose` is told to the user."""
+    def contact(self, purpose: str = "", meanwhile: Callable[[Settings], object] | None = None) -> Iterator[Contact]:
+        """A fresh contact at displacement 0, in a LAMMPS instance of its own; `purpose` is told to the user.
+
+        What `meanwhile` works out of the settings, for later, costs no time: LAMMPS reads the bodies then.
+        """
         if purpose:
             self.progress.note(purpose)
         with Engine.session(self.folder, time_limit=self.time_limit, progress=self.progress) as session:
             try:
-                yield Contact(self.deck, session)
+                yield Contact(self.deck, session, meanwhile)
             finally:
                 self.lammps_seconds += session.lammps_seconds
                 self.lammps_cpu_seconds += session.lammps_cpu_seconds
