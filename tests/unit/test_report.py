@@ -14,7 +14,7 @@ import pytest
 from contact1d import Contact1dError, FolderError, Run, run, sweep
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.states import MOST_NUMBERS, read_states, states_of, write_states
-from contact1d.workflow.report.animation import animate
+from contact1d.workflow.report.animation import animate, ovito_script
 from contact1d.workflow.report.report import report
 from contact1d.workflow.report.words import scene_in_words
 from contact1d.workflow.scene import read_scene
@@ -174,3 +174,18 @@ def test_what_cannot_move_is_told(name: str, words: str, tmp_path: Path) -> None
     run(chains(400.0, experiment={"kind": "path", "displacements": [0.1]}), tmp_path / "run", figures=False)
     with pytest.raises(Contact1dError, match=words):
         animate(tmp_path / "run", tmp_path / name)
+
+
+def test_the_script_for_ovito_lies_beside_the_states_and_a_new_run_removes_it(tmp_path: Path) -> None:
+    """It is Python of its own, which knows nothing of this program."""
+    path = {"kind": "path", "displacements": [0.0, 0.05]}
+    finished = run(chains(400.0, experiment=path), tmp_path / "run", figures=False)
+    script = ovito_script(finished.folder)
+    text = script.read_text()
+    compile(text, str(script), "exec")
+    assert "contact1d" not in text
+    (finished.folder / "states.lammpstrj").unlink()
+    with pytest.raises(FolderError, match=r"lacks states\.lammpstrj.*run the scene again"):
+        ovito_script(finished.folder)
+    run(finished.scene, finished.folder, figures=False)
+    assert not script.exists()

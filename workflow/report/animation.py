@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.plots import COMPRESSION, DPI, TENSION, THEORY, plain_axes
 from contact1d.analysis.states import States, read_states
-from contact1d.files import whole
+from contact1d.files import whole, write_whole
+from contact1d.workflow.deck.keeping import STATES
 from contact1d.workflow.errors import Contact1dError, FolderError
+from contact1d.workflow.pages.parts import text_of
 from contact1d.workflow.report.charts import half_width, main_curve
 from contact1d.workflow.runs.campaign import AnyPath
 from contact1d.workflow.runs.finished import Run, load_run
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
 
 SIZE = (6.4, 6.0)
 FORMATS = (".gif", ".mp4")
+OVITO = "view_in_ovito.py"
 SPRINGS_SHOWN = 160
 """Particles up to which each bulk spring is drawn; of more they would be a grey field."""
 SPRING_LENGTH = 0.25
@@ -53,6 +56,21 @@ def animate(folder: AnyPath, out: AnyPath | None = None, frames_per_second: int 
     if not kept.is_file() or len(run.curve.force) < 2:
         raise FolderError(f"{folder} holds one state only: a path, a pull_off, a tangential or a slide has a way")
     _draw(run, read_states(kept), path, frames_per_second)
+    return path
+
+
+def ovito_script(folder: AnyPath) -> Path:
+    """Put the script beside the states of a run with which OVITO shows them; returns its path.
+
+    Raises:
+        FolderError: the folder holds no finished run, or no states.
+    """
+    run = load_run(folder)
+    missing = [name for name in (STATES, "system.data") if not (run.folder / name).is_file()]
+    if missing:
+        raise FolderError(f"{folder} lacks {' and '.join(missing)}, which OVITO reads: run the scene again")
+    path = run.folder / OVITO
+    write_whole(path, text_of("contact1d.workflow.report", OVITO))
     return path
 
 

@@ -41,7 +41,8 @@ FILES = (
     "detachments.csv", "scene.toml",
     "system.data", "interaction.table", "adhesion.cells", "in.lammps", "log.lammps", "curve.txt", "rows.bin",
     "states.lammpstrj",
-    "states.npz", *(f"{name}.{form}" for name in FIGURES for form in FORMATS),
+    "states.npz", "way.gif", "way.mp4", "view_in_ovito.py", "way.ovito", "way.png",
+    *(f"{name}.{form}" for name in FIGURES for form in FORMATS),
 )  # fmt: skip
 """Every file that a run may leave; a new run in the same folder removes them first."""
 

@@ -1,0 +1,93 @@
+"""The way of a run in OVITO: particles coloured by how the opposite body presses or pulls them, springs as bonds.
+
+With OVITO's Python module (`pip install ovito`), or as a script of OVITO Pro,
+
+    python view_in_ovito.py
+
+writes beside itself, from states.lammpstrj and system.data, way.ovito: a session that every OVITO opens (File, Load
+Session State) and plays; and way.png: the state with the largest force. Heights are drawn larger than x, by the same
+factor in all states. Blue presses, red pulls; the colours' scale is that of the whole way.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from ovito import scene
+from ovito.io import import_file
+from ovito.modifiers import (
+    AffineTransformationModifier,
+    ColorCodingModifier,
+    ComputePropertyModifier,
+    DeleteSelectedModifier,
+    ExpressionSelectionModifier,
+    LoadTrajectoryModifier,
+)
+from ovito.vis import ColorLegendOverlay, TachyonRenderer, Viewport
+
+SHARE = 0.01
+"""Force on a particle over the largest one from which on it is in the picture."""
+SHAPE = 0.35
+"""Height of the bodies in the picture over their width."""
+SIZE = (1600, 900)
+PRESS = "ParticleType == 2 ? Force.Z : (ParticleType == 1 ? -Force.Z : 0)"
+"""What presses a particle onto the opposite body, in OVITO's words [FU]: types are 1 lower, 2 upper particles."""
+COLOURS = np.array([[0.70, 0.02, 0.15], [0.86, 0.86, 0.86], [0.02, 0.30, 0.70]])
+
+
+def main(folder: Path) -> None:
+    """Load the way, find what there is to see, save session and picture."""
+    pipeline = import_file(str(folder / "system.data"))
+    way = LoadTrajectoryModifier()
+    way.source.load(str(folder / "states.lammpstrj"))
+    pipeline.modifiers.append(way)
+    pipeline.modifiers.append(ComputePropertyModifier(output_property="Press", expressions=[PRESS]))
+    states = [pipeline.compute(i).particles for i in range(pipeline.num_frames)]
+    half, height, spacing, largest, frame = measured(states)
+    colours = ColorCodingModifier(property="Press", start_value=-largest, end_value=largest)
+    colours.gradient = ColorCodingModifier.Gradient(COLOURS)
+    larger = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, SHAPE * 2.0 * half / height, 0.0]]
+    size = f"ParticleType > 2 ? {0.1 * spacing} : {0.4 * spacing}"
+    for modifier in (
+        ExpressionSelectionModifier(expression=f"ParticleType > 4 || abs(Position.X) > {half}"),
+        DeleteSelectedModifier(),
+        AffineTransformationModifier(transformation=larger, operate_on={"particles"}),
+        ComputePropertyModifier(output_property="Radius", expressions=[size]),
+        colours,
+    ):
+        pipeline.modifiers.append(modifier)
+    data = pipeline.compute(frame)
+    if data.particles.bonds is not None:
+        data.particles.bonds.vis.width = 0.12 * spacing
+    data.cell.vis.enabled = False
+    pipeline.add_to_scene()
+    view = Viewport(type=Viewport.Type.Front)
+    title = "force on a particle (FU): blue presses, red pulls"
+    view.overlays.append(ColorLegendOverlay(modifier=colours, title=title, font_size=0.06, format_string="%.3g"))
+    view.zoom_all(size=SIZE)
+    scene.save(str(folder / "way.ovito"))
+    flat = TachyonRenderer(ambient_occlusion=False, shadows=False)  # on the processor: needs no graphics driver
+    picture = str(folder / "way.png")
+    view.render_image(filename=picture, size=SIZE, frame=frame, background=(1.0, 1.0, 1.0), renderer=flat)
+    print(folder / "way.ovito")
+
+
+def measured(states: list[Any]) -> tuple[float, float, float, float, int]:
+    """Half-width, height, spacing [LU] of what is to be seen, largest force of a particle [FU], frame of most force."""
+    kinds = np.asarray(states[0]["Particle Type"])
+    press = np.asarray([state["Press"] for state in states])
+    places = np.asarray([state["Position"] for state in states])
+    upper, bodies = kinds == 2, kinds <= 2
+    largest = float(np.abs(press).max()) or 1.0
+    spacing = float(np.median(np.diff(places[0, upper, 0]))) if upper.sum() > 1 else 1.0
+    felt = np.abs(places[:, :, 0])[np.abs(press) > SHARE * largest]
+    half = 1.2 * float(felt.max(initial=0.0)) + 2.0 * spacing
+    heights = places[:, :, 2][bodies & (np.abs(places[:, :, 0]) <= half)]
+    frame = int(np.argmax(np.abs(press[:, upper].sum(axis=1))))
+    return half, float(np.ptp(heights)) or spacing, spacing, largest, frame
+
+
+if __name__ == "__main__":
+    main(Path(__file__).resolve().parent)
