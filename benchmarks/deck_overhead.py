@@ -52,10 +52,7 @@ SCENES = {
 
 PLACES = tuple(2.0 * row / STEPS for row in range(STEPS))
 """Displacements of rows that are steps of one run."""
-BY_HAND = (
-    "variable first equal $(step)\nvariable row equal ternary(step>v_first,step-v_first,1)\n"
-    f"variable places vector [{','.join(map(repr, PLACES))}]\n"
-)
+BY_HAND = f"variable row equal step-$(step)\nvariable places vector [{','.join(map(repr, PLACES))}]\n"
 """What such a run by hand begins with."""
 
 
@@ -64,7 +61,7 @@ def steps_of(deck: Deck) -> tuple[str, str]:
     run = f"run {STEPS}\n"
     if not deck.stepped:
         return run, run
-    return deck.in_one_run([Displace(place) for place in PLACES]), f"{BY_HAND}{run}"
+    return deck.in_one_run([Displace(place) for place in PLACES]), f"{BY_HAND}run {STEPS} pre no\n"
 
 
 def loop_time(session: Session, folder: Path, steps: str) -> float:

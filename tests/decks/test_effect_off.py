@@ -145,7 +145,7 @@ def test_one_effect_off(make_scene: MakeScene, effect: str, noise: bool) -> None
     elif effect == "cantilever":
         assert list(added) == ["thermo_style    custom step c_measuring_total"]  # the energy is not asked for
     elif effect == "friction":
-        assert list(added) == ["atom_style      bond"]
+        assert list(added) == ["atom_style      atomic"]
     elif effect == "noise":
         extra = set(added) - set(fragment_lines("damping"))
         assert [line.split()[1] for line in extra] == ["damping_coefficient"]
@@ -248,13 +248,14 @@ def test_on_a_rigid_plane_no_pair_style_and_no_lower_body(make_scene: MakeScene,
     more = TIMED | {"experiment": LOAD} if timed else {}
     scene = make_scene(**PLANE, **more)
     text = commands(text_of(scene))
-    for word in ("pair_style", "pair_coeff", "neighbor ", "neigh_modify", "lower", "tally", "table"):
+    for word in ("pair_style", "pair_coeff", "neighbor ", "binsize", "lower", "tally", "table"):
         assert word not in text
     assert len(re.findall(r"fix +rigid_plane_wall upper wall/harmonic ", text)) == 1
     write_system(Deck(scene, settings_for(scene)), tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["system.data"]
-    rows = (tmp_path / "system.data").read_text().split("Atoms # bond\n\n")[1].split("\n\n")[0].splitlines()
-    assert Counter(row.split()[2] for row in rows) == {"2": 20, "4": 20} if timed else {"2": 20}
+    style, column = ("bond", 2) if timed else ("atomic", 1)  # molecules are there for bonds only
+    rows = (tmp_path / "system.data").read_text().split(f"Atoms # {style}\n\n")[1].split("\n\n")[0].splitlines()
+    assert Counter(row.split()[column] for row in rows) == ({"2": 20, "4": 20} if timed else {"2": 20})
 
 
 RELAXING = PLANE | {"neighbours": {"stiffness": 0.3}}
@@ -269,7 +270,10 @@ def test_where_nothing_has_to_come_to_rest_nothing_is_minimised(make_scene: Make
     for word in ("minimi", "min_style", "bond_style", "anchors", "jump ", "displace_atoms"):
         assert word not in text
     phases = planned(scene, settings_for(scene))
-    assert re.findall(r"^run +(.*)$", text, re.MULTILINE) == ["${row_count} post no"] * len(phases)
+    assert re.findall(r"^run +(.*)$", text, re.MULTILINE) == [
+        "0 post no",
+        *["${row_count} pre no post no"] * len(phases),
+    ]
     counts = re.findall(r"^variable +row_count index (\d+)$", text, re.MULTILINE)
     assert [int(count) for count in counts] == [len(phase.rows) for phase in phases]
 

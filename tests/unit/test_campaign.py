@@ -29,7 +29,7 @@ def test_a_run_leaves_a_complete_folder(plane: MakeScene, tmp_path: Path) -> Non
     assert document["status"] == "done"
     assert document["effects"] == []
     assert document["force"].keys() == {"value", "uncertainty", "unit"}
-    assert document["timing"].keys() == {"total_s", "lammps_s", "lammps_cpu_s", "steps"}
+    assert document["timing"].keys() == {"total_s", "lammps_s", "lammps_cpu_s", "rows_s", "steps"}
     assert contact1d.read_scene(finished.folder / "scene.toml") == plane()
 
 

@@ -46,7 +46,8 @@ BESIDE = {
     "`scene`, `experiment`, `method`, `effects`": "what ran",
     "`status`, `warnings`": '`done` or `failed`; what limits the trust in the numbers, each `{"name", "message"}`',
     "`accuracy`": "the tolerance of the settings in the end, and how often it was lowered",
-    "`timing`, `versions`": "seconds and steps; of what the numbers depend on",
+    "`timing`, `versions`": "seconds (`total_s` of the run, `lammps_s` of it in LAMMPS, `rows_s` of that for the rows: "
+    "without the deck's head and the files of states) and steps; of what the numbers depend on",
 }
 TABLES = {
     "bodies": scenes.Bodies,

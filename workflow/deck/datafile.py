@@ -107,10 +107,12 @@ def assemble(
 
 
 def write_data(system: System, title: str, path: Path) -> None:
-    """Write a LAMMPS data file for `atom_style bond`, or `sphere`; whole or not at all."""
+    """Write a LAMMPS data file for `atom_style bond`, without bonds `atomic`, or `sphere`; whole or not at all."""
     with whole(path) as part, part.open("w") as file:
-        file.write(f"# {title}\n\n{len(system.types)} atoms\n{len(system.bonds)} bonds\n")
-        file.write(f"{len(system.masses)} atom types\n{len(system.bond_names)} bond types\n\n")
+        file.write(f"# {title}\n\n{len(system.types)} atoms\n{len(system.masses)} atom types\n")
+        if system.bond_names:
+            file.write(f"{len(system.bonds)} bonds\n{len(system.bond_names)} bond types\n")
+        file.write("\n")
         for axis, low, high in zip("xyz", *system.box.tolist(), strict=True):
             file.write(f"{low:.17g} {high:.17g} {axis}lo {axis}hi\n")
         ids = np.arange(1, len(system.types) + 1)
@@ -125,8 +127,9 @@ def write_data(system: System, title: str, path: Path) -> None:
         else:
             file.write("\nMasses\n\n")
             file.writelines(f"{i} {mass:.17g}\n" for i, mass in enumerate(system.masses, 1))
-            file.write("\nAtoms # bond\n\n")
-            _write_rows(file, "%d 1 %d %.17g %.17g %.17g\n", ids, system.types, *system.positions.T)
+            style, template = ("bond", "%d 1 %d") if system.bond_names else ("atomic", "%d %d")
+            file.write(f"\nAtoms # {style}\n\n")
+            _write_rows(file, template + " %.17g %.17g %.17g\n", ids, system.types, *system.positions.T)
         if len(system.bonds):
             file.write("\nBonds\n\n")
         _write_rows(file, "%d %d %d %d\n", np.arange(1, len(system.bonds) + 1), *system.bonds.T)

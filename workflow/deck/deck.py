@@ -65,7 +65,7 @@ class Deck:
         Raises:
             DeckError: if fragments and variables do not fit together.
         """
-        atom_style = next((part.atom_style for part in self.parts if part.atom_style), "bond")
+        atom_style = next((part.atom_style for part in self.parts if part.atom_style), self._plain_style)
         styles = [f"pair_style      {part.pair_style}\n" for part in self.parts if part.pair_style]
         bonds = "" if self.scene.stands else "bond_style      harmonic\n"
         styles = [f"atom_style      {atom_style}\n", *styles, bonds]
@@ -152,6 +152,10 @@ class Deck:
         return "\n".join(blocks)
 
     @property
+    def _plain_style(self) -> str:
+        return "atomic" if self.scene.stands else "bond"
+
+    @property
     def keeps(self) -> bool:
         """Whether states of the whole way are kept."""
         return self.scene.output is not None
@@ -160,7 +164,7 @@ class Deck:
     def _output(self) -> tuple[str, ...]:
         if not self.stepped:
             return ("output",)
-        return (self._named("output_swept"), *([self._named("output_states")] if self.keeps else []))
+        return (self._named("output_swept"), *([self._named("output_states")] if self.keeps else []), "set_up")
 
     def _named(self, fragment: str) -> str:
         return f"{fragment}_in_units" if self.units.are_own else fragment

@@ -92,7 +92,7 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
     def timing() -> dict[str, float]:
         total = time.perf_counter() - started
         lammps = {"lammps_s": context.lammps_seconds, "lammps_cpu_s": context.lammps_cpu_seconds}
-        return {"total_s": total, **lammps, "steps": context.steps}
+        return {"total_s": total, **lammps, "rows_s": context.rows_seconds, "steps": context.steps}
 
     try:
         outcome = perform(context)

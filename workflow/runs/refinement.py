@@ -116,6 +116,7 @@ def _pass(context: RunContext, tolerance: float) -> tuple[Deck, Outcome]:
     finally:
         context.lammps_seconds += finer.lammps_seconds
         context.lammps_cpu_seconds += finer.lammps_cpu_seconds
+        context.rows_seconds += finer.rows_seconds
         context.steps += finer.steps
         shutil.rmtree(folder, ignore_errors=True)
     return finer.deck, outcome

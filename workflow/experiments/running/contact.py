@@ -113,6 +113,7 @@ class Contact:
         self._written = 0
         self._latest: list[State] = []
         self._tells = False
+        self.rows_seconds = 0.0  # wall time of the rows in LAMMPS
         self._rule = RadiusRule(deck.scene, deck.settings.tolerance)
         self._pushes = tuple(part.pushes for part in deck.parts if part.pushes)
         session.execute(deck.head, phase="setting up", meanwhile=partial(self._look_ahead, meanwhile))
@@ -145,6 +146,7 @@ class Contact:
         size = BATCH if self._stepped is None else self._stepped.at_once
         if self._stepped is not None:
             rows = [self.deck.as_listed(row) for row in rows]
+        before = self.session.lammps_seconds
         for start in range(0, len(rows), size):
             batch = rows[start : start + size]
             first = sum(len(phase.rows) for phase in self._phases)
@@ -152,6 +154,7 @@ class Contact:
             stepped = self._stepped
             self._latest = self._measured(batch, first) if stepped is None else self._steps(stepped, batch, first)
             found += self._latest
+        self.rows_seconds += self.session.lammps_seconds - before
         return found
 
     def _measured(self, rows: Sequence[Row], first: int) -> list[State]:

@@ -28,6 +28,7 @@ class RunContext:
         retries: whether a search in which bodies went through each other begins anew in smaller steps.
         workers: contacts that an experiment may have open at a time.
         lammps_seconds, lammps_cpu_seconds, steps: summed over all contacts so far.
+        rows_seconds: of the first, what rows took: without the deck's head and the files of states.
         phase, timestep: where the latest contact is or ended.
         left: what a run that failed had so far, if that is worth looking at; its quantities are no results.
     """
@@ -40,6 +41,7 @@ class RunContext:
     workers: int = 1
     lammps_seconds: float = field(default=0.0, init=False)
     lammps_cpu_seconds: float = field(default=0.0, init=False)
+    rows_seconds: float = field(default=0.0, init=False)
     steps: int = field(default=0, init=False)
     phase: str = field(default="start", init=False)
     timestep: int = field(default=0, init=False)
@@ -55,9 +57,12 @@ class RunContext:
         if purpose:
             self.progress.note(purpose)
         with Engine.session(self.folder, time_limit=self.time_limit, progress=self.progress) as session:
+            contact: Contact | None = None
             try:
-                yield Contact(self.deck, session, meanwhile)
+                contact = Contact(self.deck, session, meanwhile)
+                yield contact
             finally:
+                self.rows_seconds += contact.rows_seconds if contact else 0.0
                 self.lammps_seconds += session.lammps_seconds
                 self.lammps_cpu_seconds += session.lammps_cpu_seconds
                 self.steps += session.steps
