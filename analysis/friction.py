@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
 
 Array = NDArray[np.float64]
 
@@ -53,17 +54,22 @@ class Slip:
     size: float
 
 
-def block_means(time: Array, integral: Array, period: float) -> Array:
+def block_means(time: Array, integral: Array, period: float, rate: Array | None = None) -> Array:
     """Means over whole periods, the last of which ends with the series; shape (periods,).
+
+    A period that ends within a row has the part of it of Hermite's cubic, whose slopes at the row's ends are known:
+    along a straight line the mean of a friction that swings would change from period to period, as they end elsewhere.
 
     Args:
         time: shape (n,), rising [TU].
         integral: of what is averaged, up to each of the times, shape (n,).
         period: [TU].
+        rate: of the integral at these times, what is averaged itself, where it is smooth; shape (n,).
     """
     count = math.floor((time[-1] - time[0]) / period * (1.0 + 1e-9))
-    ends = time[-1] - period * np.arange(count, -1, -1)
-    return np.asarray(np.diff(np.interp(ends, time, integral)) / period)
+    ends = np.maximum(time[-1] - period * np.arange(count, -1, -1), time[0])
+    at = np.interp(ends, time, integral) if rate is None else CubicHermiteSpline(time, integral, rate)(ends)
+    return np.asarray(np.diff(at) / period)
 
 
 def mean_of(blocks: Array) -> Mean:

@@ -15,6 +15,8 @@ MOVING_STEP = 0.2
 """ω_max·Δt of a slide, whose motion itself is the result."""
 DRAG_STEP = 0.2
 """Time step over the time m/γ in which drag stops a particle, or the plate: explicit integration needs it below 1."""
+CALM_STEP = 0.4
+"""The same on the way to rest, whose drag is no part of what is looked at."""
 NOISE_BIAS = 0.4
 """Relative error of ⟨u²⟩ over (ω Δt)² with `fix langevin` and `fix nve`, measured at ω Δt = 0.1: 0.4 %."""
 SOFTENING = 0.6
@@ -100,6 +102,9 @@ def dynamics_of(
     if scene.damping is not None and scene.damping.coefficient == "auto":
         calm = max(damping, 2.0 * math.sqrt(stiffest * bodies.mass))
         calm_step = min(step, DRAG_STEP * bodies.mass / calm)
+    if scene.experiment.motion_is_result:
+        # A plate that swings as it is loaded goes through the other body, which would carry it at rest.
+        calm, calm_step = max(damping, min(critical / particles, CALM_STEP * bodies.mass / step)), step
     return Dynamics(step, damping, damped_stiffness, plate_mass, plate_damping, settle_time, calm, calm_step)
 
 

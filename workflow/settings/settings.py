@@ -92,7 +92,8 @@ class Settings:
             in moves down to NEAR_SHARE of this.
         largest_displacement: what the estimate expects [LU].
         calm_damping, calm_step: damping with which particles snap together and don't swing [FU·TU/LU], and the time
-            step for it [TU]; the usual ones where the scene gives its damping.
+            step for it [TU]; the usual ones where the scene gives its damping. In a slide the one under which it is
+            loaded, with which its plate does not swing.
         part: of increments, moves and loads over the usual ones, of a search that begins anew in smaller steps.
     """
 

@@ -126,16 +126,18 @@ def at_rest(settings: Settings, scale: float) -> float:
     return REST_SHARE * settings.tolerance * scale
 
 
-def hold(contact: Contact, load: float, scale: float, start: Start = Start.KEPT) -> Held:
+def hold(
+    contact: Contact, load: float, scale: float, start: Start = Start.KEPT, settings: Settings | None = None
+) -> Held:
     """Apply a load to a `hold` phase and run until it is held at rest, or lost.
 
     At rest means that what the contact carries balances the load within `at_rest(settings, scale)`, and that the
-    plate's motion keeps it there (see `hold_row`).
+    plate's motion keeps it there (see `hold_row`). `settings` stand for those of the contact, with a drag of their own.
 
     Raises:
         UntrustedError: the contact neither comes to rest nor is lost, or see `require_trust`.
     """
-    settings = contact.settings
+    settings = settings or contact.settings
     near = at_rest(settings, scale)
     row = hold_row(contact.scene, settings, load, scale, start)
     states: list[State] = []

@@ -60,15 +60,17 @@ def means(scene: Scene, settings: Settings, motion: Motion) -> dict[str, Quantit
     time, way = motion.time[rows], sign * motion.place[rows]
     tolerance = SETTINGS_SHARE * settings.tolerance
     found = {}
-    blocks = friction.block_means(time, sign * motion.impulse[rows], period)
+    smooth = scene.noise is None  # a force under heat at an instant says little of the time around it
+    force, pulls = sign * motion.friction[rows], sign * motion.pull[rows]
+    blocks = friction.block_means(time, sign * motion.impulse[rows], period, force if smooth else None)
     if blocks.size >= friction.DROPPED + friction.FEWEST_BLOCKS:
         mean = friction.mean_of(blocks)
-        pulls = friction.block_means(time, sign * motion.pulled[rows], period)[mean.first :]
-        pull = float(pulls.mean())
+        pulled = friction.block_means(time, sign * motion.pulled[rows], period, pulls if smooth else None)[mean.first :]
+        pull = float(pulled.mean())
         found["mean_friction"] = Quantity(mean.value, mean.error + tolerance * abs(mean.value), FORCE)
-        found["mean_cantilever_force"] = Quantity(pull, friction.interval(pulls) + tolerance * abs(pull), FORCE)
+        found["mean_cantilever_force"] = Quantity(pull, friction.interval(pulled) + tolerance * abs(pull), FORCE)
     if number == _first_moving(motion) and way[-1] - way[0] >= scene.bodies.spacing:
-        top, missed = friction.largest_before(sign * motion.friction[rows], way, scene.bodies.spacing)
+        top, missed = friction.largest_before(force, way, scene.bodies.spacing)
         found["static_friction"] = Quantity(top, missed + tolerance * abs(top), FORCE)
     return found
 

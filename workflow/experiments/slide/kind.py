@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from contact1d.workflow.deck.steps import Phase, UnderLoad
-from contact1d.workflow.experiments.running.holding import held_phase
 from contact1d.workflow.experiments.running.kind import ExperimentKind
-from contact1d.workflow.experiments.running.sampling import SETTLING_LOOKS, sampled_phase
+from contact1d.workflow.experiments.slide.loading import loading_phase
 from contact1d.workflow.experiments.slide.slide import leg_begin, leg_name, slide
 from contact1d.workflow.scene import Scene, Slide
 from contact1d.workflow.settings.settings import Settings
@@ -16,9 +15,6 @@ def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     experiment = scene.experiment
     assert isinstance(experiment, Slide)
     force = experiment.normal_force
-    loading = held_phase("loading", scene, settings, (force,), abs(force) or settings.force_scale)
-    if scene.noise is not None:
-        loading = sampled_phase("loading", settings, force, SETTLING_LOOKS)
     legs = settings.drive
     sliding = (
         Phase(
@@ -26,7 +22,7 @@ def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         )
         for i, leg in enumerate(legs)
     )
-    return loading, *sliding
+    return loading_phase(scene, settings, force), *sliding
 
 
 def advice(scene: Scene) -> str:

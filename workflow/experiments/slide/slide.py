@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from contact1d.workflow.deck.steps import UnderLoad
 from contact1d.workflow.experiments.running.contact import TOLD, Contact, State
-from contact1d.workflow.experiments.running.holding import hold
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
-from contact1d.workflow.experiments.running.sampling import SETTLING_LOOKS, chunk_steps
 from contact1d.workflow.experiments.running.trust import UntrustedError, require_trust
 from contact1d.workflow.experiments.slide.findings import is_steady, outcome_of
+from contact1d.workflow.experiments.slide.loading import loaded
 from contact1d.workflow.experiments.slide.motion import motion_of
 from contact1d.workflow.scene import Scene, Slide
 from contact1d.workflow.settings.drive import DriveLeg
@@ -31,7 +30,7 @@ def slide(context: RunContext) -> Outcome:
     assert isinstance(experiment, Slide)
     legs = settings.drive
     with context.contact() as contact:
-        loaded = _loaded(contact, experiment.normal_force)
+        rested = loaded(contact, experiment.normal_force)
         states: list[State] = []
         try:
             for number, leg in enumerate(legs):
@@ -41,10 +40,10 @@ def slide(context: RunContext) -> Outcome:
             contact.finish()
         except Exception:
             if states:
-                context.left = outcome_of(context.deck, loaded, states, contact.phases)
+                context.left = outcome_of(context.deck, rested, states, contact.phases)
             raise
-    outcome = outcome_of(context.deck, loaded, states, contact.phases)
-    if experiment.path is None and (why := is_steady(scene, motion_of(scene, settings, loaded, states))):
+    outcome = outcome_of(context.deck, rested, states, contact.phases)
+    if experiment.path is None and (why := is_steady(scene, motion_of(scene, settings, rested, states))):
         context.left = outcome
         raise UntrustedError(why)
     return outcome
@@ -60,21 +59,6 @@ def leg_begin(scene: Scene, number: int) -> tuple[str, ...]:
     if number:
         return ("steps/turn",)
     return ("steps/drive",) if scene.noise is None else ("steps/drive", TOLD)
-
-
-def _loaded(contact: Contact, force: float) -> State:
-    """At rest under the normal force; with noise, after it has forgotten its start."""
-    if contact.scene.noise is None:
-        contact.begin("loading")
-        held = hold(contact, force, abs(force) or contact.settings.force_scale)
-        if not held.held:
-            raise UntrustedError(
-                f"the bodies do not hold a normal force of {force:.4g} FU: they part. Take a smaller pull"
-            )
-        return held.last
-    steps = chunk_steps(contact.settings)
-    contact.begin("loading", expected_steps=SETTLING_LOOKS * steps)
-    return [contact.row(UnderLoad(force, steps)) for _ in range(SETTLING_LOOKS)][-1]
 
 
 def _drive(contact: Contact, force: float, leg: DriveLeg, states: list[State]) -> None:

@@ -1,0 +1,104 @@
+"""Random slides, curved and flat, with the friction that an independent integrator finds for them."""
+
+from __future__ import annotations
+
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from contact1d.analysis.reference.slide import SlideModel
+from contact1d.workflow.deck.lattice import start_offset
+from contact1d.workflow.scene import Scene, Slide
+from contact1d.workflow.settings.settings import Settings
+
+CURVED = 0.5
+"""Share of the slides of a curved body."""
+FINER = 4
+"""Timesteps of the integrator in one of the program's."""
+LONGER = 2
+"""Way of the integrator over that of the program."""
+RESIDUAL = 1e-6
+"""Force over the largest of a pair below which the integrator's bodies are at rest before they slide."""
+
+
+def random_slide(random: Random) -> dict[str, Any]:
+    """A slide of some particles, by a law, springs, drags, a load and a velocity that are drawn."""
+    spacing, force = 2.0 ** random.uniform(-2.0, 2.0), 10.0 ** random.uniform(-1.0, 1.0)
+    stiffness, curved = force / spacing, random.random() < CURVED
+    mass = 10.0 ** random.uniform(-1.0, 1.0)
+    clock = (mass / stiffness) ** 0.5
+    amplitude, reach = force * spacing * random.uniform(0.3, 0.7), spacing * random.uniform(0.9, 1.1)
+    bodies: dict[str, Any] = {"spacing": spacing, "mass": mass}
+    if curved:
+        count = 20
+        bodies |= {
+            "particles": 48, "upper_particles": count, "upper_offset": spacing * random.uniform(0.3, 0.7),
+            "profile": {"kind": "parabola", "radius": spacing * random.uniform(6.0, 14.0)},
+            "bulk_stiffness": stiffness * random.uniform(2.0, 5.0),
+        }  # fmt: skip
+        load, touching = 4.0 * amplitude / spacing * random.uniform(-0.2, 0.6), 4
+    else:
+        below, count = random.choice([(4, 4), (8, 8), (6, 3), (8, 5), (13, 8)])
+        bodies |= {
+            "particles": below, "upper_particles": count, "upper_spacing": below / count * spacing,
+            "lower": random.choice(["rigid_chain", "particles"]), "periodic": True, "profile": {"kind": "flat"},
+            "bulk_stiffness": stiffness * random.uniform(1.0, 4.0),
+        }  # fmt: skip
+        load, touching = count * amplitude / spacing * random.uniform(-0.1, 0.4), count
+    bodies["bulk_stiffness_tangential"] = random.uniform(0.6, 1.0) * bodies["bulk_stiffness"]
+    return {
+        "title": "random slide",
+        "bodies": bodies,
+        "interaction": {
+            "repulsion": {"amplitude": 2.0 * amplitude, "range": 0.5 * reach},
+            "attraction": {"amplitude": amplitude, "range": reach},
+        },
+        "horizontal": {},
+        "damping": {"coefficient": random.uniform(0.1, 0.5) * stiffness * clock},
+        "plate": {
+            "free": ["x", "z"],
+            "mass": random.uniform(0.5, 2.0) * count * mass,
+            "damping": random.uniform(0.0, 0.3) * count * stiffness * clock,
+        },
+        "cantilever": {
+            "stiffness": touching * stiffness * 10.0 ** random.uniform(-1.3, -0.3),
+            "velocity": spacing / clock * 10.0 ** random.uniform(-2.0, -1.2),
+        },
+        "accuracy": {"tolerance": 10.0 ** random.uniform(-3.0, -2.0)},
+        "experiment": {"kind": "slide", "normal_force": load, "distance": spacing * random.uniform(6.0, 10.0)},
+    }
+
+
+def model_of(scene: Scene, settings: Settings, beyond: int = 0) -> SlideModel:
+    """Places, springs and drags of a slide, with the values that it leaves open; a lower body longer by so many."""
+    bodies, terms = scene.bodies, scene.interaction
+    assert terms is not None
+    assert terms.attraction is not None
+    assert scene.cantilever is not None
+    assert isinstance(scene.experiment, Slide)
+
+    def row(count: int, spacing: float) -> np.ndarray:
+        return (np.arange(count) - 0.5 * (count - 1)) * spacing
+
+    below, along = row(settings.lower_particles + beyond, bodies.spacing), row(settings.particles, bodies.own_spacing)
+    height = settings.rest + bodies.profile.height(along)
+    upper = np.column_stack([along + start_offset(scene, settings), height])
+    return SlideModel(
+        lower=np.column_stack([below, np.zeros_like(below)]),
+        upper=upper,
+        law=(terms.repulsion.amplitude, terms.repulsion.range, terms.attraction.amplitude, terms.attraction.range),
+        cutoff=settings.cutoff,
+        normal_stiffness=scene.bulk_stiffness,
+        tangential_stiffness=scene.tangential_stiffness,
+        mass=bodies.mass,
+        plate_mass=settings.plate_mass,
+        drag=settings.damping,
+        plate_drag=settings.plate_damping,
+        cantilever_stiffness=scene.cantilever.stiffness,
+        velocity=scene.cantilever.velocity,
+        normal_force=scene.experiment.normal_force,
+        rigid=bodies.lower == "rigid_chain",
+        period=settings.lower_particles * bodies.spacing if bodies.periodic else 0.0,
+        neighbours=0.0 if scene.neighbours is None else scene.neighbours.stiffness,
+    )
