@@ -12,7 +12,7 @@ and the same along z with the normal force. (N γ + c) v: the drag is against wh
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,8 +103,19 @@ class Integrator:
                 rows.append((step * time_step, self.friction, pull, self.plate[0], impulse))
         return Trace(*(np.asarray(column) for column in zip(*rows, strict=True)))
 
-    def settle(self, time_step: float, residual: float, most: int = 400_000) -> None:
-        """Move with the drive at rest until nothing moves any more: momentum and forces below `residual` [FU]."""
+    def settle(self, time_step: float, residual: float, drag: float | None = None, most: int = 400_000) -> None:
+        """Move with the drive at rest until nothing moves any more: momentum and forces below `residual` [FU].
+
+        `drag`: of particles on the way [FU·TU/LU], in place of the model's.
+        """
+        own = self.model
+        self.model = replace(own, drag=own.drag if drag is None else drag)
+        try:
+            self._settle(time_step, residual, most)
+        finally:
+            self.model = own
+
+    def _settle(self, time_step: float, residual: float, most: int) -> None:
         for _ in range(most // 200):
             self.run(200, time_step, 0.0)
             forces = self._accelerations(0.0, 0.0)

@@ -114,14 +114,16 @@ def test_the_work_is_dissipated_or_stored(both: tuple[Run, Trace]) -> None:
 
 
 def test_the_drag_is_the_scenes_from_the_first_line_on(both: tuple[Run, Trace]) -> None:
-    """The rows of the way to rest set it anew: a deck without them must have the same."""
+    """The rows of the way to rest set it anew, the last of them to the scene's: a deck without them has the same."""
     scene = both[0].scene
     settings = settings_for(scene)
     assert scene.damping is not None
     variables = {name: value for part in Deck(scene, settings).parts for name, value in part.variables.items()}
     assert float(variables["damping_coefficient"]) == scene.damping.coefficient
     loading = planned(scene, settings)[0]
-    assert [row.damping for row in loading.rows if isinstance(row, Hold)] == [scene.damping.coefficient]
+    drags = [row.damping for row in loading.rows if isinstance(row, Hold)]
+    assert drags == [settings.calm_damping, scene.damping.coefficient]
+    assert settings.calm_damping > scene.damping.coefficient
 
 
 ENERGIES = ("cantilever_work", "dissipated_energy", "stored_energy")

@@ -42,27 +42,51 @@ def without_effects(scene: Scene) -> tuple[dict[str, Change], dict[str, str]]:
     return changes, reasons
 
 
+def standing_without(scene: Scene) -> dict[str, Deck]:
+    """Decks of a slide without what it could not run without, but take steps: by the effect, and "" where none pulls.
+
+    With the settings of the whole scene, so that they have its particles, its cutoff and its table.
+    """
+    if not scene.experiment.motion_is_result:
+        return {}
+    gone: dict[str, tuple[str, ...]] = {"cantilever": ("cantilever",), "plate": ("cantilever", "plate")}
+    if scene.noise is None:
+        gone["damping"] = ("damping",)
+    settings = settings_for(scene)
+    return {
+        effect: Deck(scene.model_copy(update=dict.fromkeys(names)), settings)
+        for effect, names in gone.items()
+        if effect in scene.effects
+    }
+
+
 def effect_costs(scene: Scene, folder: Path, turns: int = TURNS) -> tuple[EffectCost, ...]:
-    """CPU time of a step with and without each effect; medians over `turns` (at least 2) blocks of STEPS steps."""
+    """CPU time of a step with and without each effect; medians over `turns` (at least 2) blocks of STEPS steps.
+
+    A plate that is pulled is measured beside a deck without cantilever, with and without it.
+    """
     changes, reasons = without_effects(scene)
     scenes = {"": scene} | {effect: change.scene(scene) for effect, change in changes.items()}
     with ExitStack() as stack:
         decks = {effect: Deck(changed, settings_for(changed)) for effect, changed in scenes.items()}
+        decks |= (standing := standing_without(scene))
         sessions = {
             effect: stack.enter_context(opened(deck, folder / f"step_{effect}")) for effect, deck in decks.items()
         }
         times = _interleaved(sessions, {effect: _steps(deck) for effect, deck in decks.items()}, turns)
     particles = settings_for(scene).particles * scene.chains
     return tuple(
-        _cost(effect, times, particles) if effect in changes else _cost_of_all(effect, times, particles, reasons)
+        _cost(effect, times, particles, "cantilever" if effect == "plate" and effect in standing else "")
+        if effect in decks
+        else _cost_of_all(effect, times, particles, reasons)
         for effect in scene.effects
     )
 
 
-def _cost(effect: str, times: Mapping[str, list[float]], particles: int) -> EffectCost:
-    ratios = [both / without for both, without in zip(times[""], times[effect], strict=True)]
+def _cost(effect: str, times: Mapping[str, list[float]], particles: int, beside: str) -> EffectCost:
+    ratios = [both / without for both, without in zip(times[beside], times[effect], strict=True)]
     error = MEDIAN_ERROR * stdev(ratios) / math.sqrt(len(ratios))
-    return EffectCost(effect, median(times[""]), median(times[effect]), median(ratios), error, particles)
+    return EffectCost(effect, median(times[beside]), median(times[effect]), median(ratios), error, particles)
 
 
 def _cost_of_all(

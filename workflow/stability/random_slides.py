@@ -39,13 +39,13 @@ def random_slide(random: Random) -> dict[str, Any]:
         }  # fmt: skip
         load, touching = 4.0 * amplitude / spacing * random.uniform(-0.2, 0.6), 4
     else:
-        below, count = random.choice([(4, 4), (8, 8), (6, 3), (8, 5), (13, 8)])
+        below, count = random.choice([(4, 4), (6, 6), (6, 3), (3, 1), (4, 2), (8, 5)])
         bodies |= {
             "particles": below, "upper_particles": count, "upper_spacing": below / count * spacing,
             "lower": random.choice(["rigid_chain", "particles"]), "periodic": True, "profile": {"kind": "flat"},
             "bulk_stiffness": stiffness * random.uniform(1.0, 4.0),
         }  # fmt: skip
-        load, touching = count * amplitude / spacing * random.uniform(-0.1, 0.4), count
+        load, touching = count * amplitude / spacing * random.uniform(-0.1, 0.5), count
     bodies["bulk_stiffness_tangential"] = random.uniform(0.6, 1.0) * bodies["bulk_stiffness"]
     return {
         "title": "random slide",
@@ -55,15 +55,15 @@ def random_slide(random: Random) -> dict[str, Any]:
             "attraction": {"amplitude": amplitude, "range": reach},
         },
         "horizontal": {},
-        "damping": {"coefficient": random.uniform(0.1, 0.5) * stiffness * clock},
+        "damping": {"coefficient": random.uniform(0.05, 0.3) * stiffness * clock},
         "plate": {
             "free": ["x", "z"],
             "mass": random.uniform(0.5, 2.0) * count * mass,
-            "damping": random.uniform(0.0, 0.3) * count * stiffness * clock,
+            "damping": random.uniform(0.0, 0.1) * count * stiffness * clock,
         },
         "cantilever": {
-            "stiffness": touching * stiffness * 10.0 ** random.uniform(-1.3, -0.3),
-            "velocity": spacing / clock * 10.0 ** random.uniform(-2.0, -1.2),
+            "stiffness": touching * stiffness * 10.0 ** random.uniform(-1.7, -0.5),
+            "velocity": spacing / clock * 10.0 ** random.uniform(-2.6, -1.5),
         },
         "accuracy": {"tolerance": 10.0 ** random.uniform(-3.0, -2.0)},
         "experiment": {"kind": "slide", "normal_force": load, "distance": spacing * random.uniform(6.0, 10.0)},
