@@ -118,3 +118,22 @@ def test_two_and_three_particles_slide_as_one_does(tmp_path: Path) -> None:
         each = run(tables, tmp_path / str(count), figures=False).results["mean_friction"].value / count
         alone = alone or each
         assert each == pytest.approx(alone, rel=5e-3)
+
+
+def test_a_tolerance_far_below_the_period_has_far_bonds_whose_bins_fit_into_the_box(tmp_path: Path) -> None:
+    """Bonds of 10/tolerance spacings in a box of four: LAMMPS wants no bin a hundred times the box."""
+    tables = flat(upper_particles=4, particles=4, lower="particles", bulk_stiffness_tangential=0.6)
+    tables |= {"accuracy": {"tolerance": 1e-4}, "cantilever": {"stiffness": 0.4, "velocity": 0.02}}
+    tables["experiment"] = {"kind": "slide", "normal_force": 0.8, "distance": 4.0}
+    assert run(tables, tmp_path / "run", figures=False).results["mean_friction"].value > 0.0
+
+
+def test_little_drag_throws_no_slide_through_the_other_body_while_it_is_loaded(tmp_path: Path) -> None:
+    """The plate would swing to 25 LU below; the drag of the loading is its own, and gone before the drive starts."""
+    scene = scene_of(damping__coefficient=0.02, plate__damping=0.2)
+    found = run(scene, tmp_path / "run", figures=False)
+    text = (tmp_path / "run" / "in.lammps").read_text(encoding="utf-8")
+    drags = text.partition("row_damping index ")[2].split("\n")[0].split()
+    assert float(drags[0]) > 0.02
+    assert float(drags[-1]) == 0.02
+    assert found.friction["friction"][0] == pytest.approx(0.0, abs=0.05 * np.abs(found.friction["friction"]).max())

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from contact1d.workflow.deck.effects.base import LEAST_SLENDERNESS
 from contact1d.workflow.deck.effects.interaction import SKIN
 from contact1d.workflow.deck.lattice import Body
 from contact1d.workflow.scene import Scene
@@ -26,8 +27,6 @@ BIN_MARGIN = 1e-3
 """Least free space over the length of a long bond: LAMMPS wants no box much thinner than its bins."""
 MOST_BINS = 4_000_000
 """Bins beyond which they are made larger: some 100 MB of them."""
-LEAST_SLENDERNESS = 0.02
-"""Least free space over the edge of a bin: LAMMPS wants no bin above 100 times the box."""
 
 Lengths = tuple[float, float, float]
 

@@ -8,6 +8,8 @@ from enum import IntEnum
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 
+LEAST_SLENDERNESS = 0.02
+"""Least edge of the box over that of a bin: LAMMPS wants no bin above 100 times the box."""
 BINS = 100
 """Most bins of LAMMPS's neighbour search across a box made wide by atoms that feel no pair force: they take memory."""
 
