@@ -1,11 +1,13 @@
 """Do the tests notice? One small fault after the other is put into the code, and its tests must fail.
 
-    python -m benchmarks.mutants [FILE ...] [--part 0.25] [--workers 2]
+    python -m benchmarks.mutants [FILE ...] [--part 0.25] [--seed 1] [--workers 2] [--callers KEPT.json]
 
-A mutant changes one operator, comparison or number of one file in a copy of this folder; the tests of TESTS run there,
-up to the first that fails. One that passes them all survives: it is printed, and listed in results/mutants.json, with
-the reason if one was written there by hand (it is kept for the same change of the same line). All files take a night;
-`--part` draws a share of each file's mutants, the same ones every time. Exit code 1 where fewer than ASKED are killed.
+A mutant changes one operator, comparison or number of one file in a copy of this folder. The tests that call the
+function run there, the quickest first, up to the first that fails or LONGEST; goldens, which hold any number, run last.
+One that passes them all survives: it is printed, and listed in results/mutants.json, with the reason if one was written
+there by hand (it is kept for the same change of the same line). All files take a night; `--part` draws a share of each
+file's mutants, the same ones for one seed. `--callers` keeps which test calls what. Exit code 1 where fewer than ASKED
+are killed. What is changed, and what is not: `benchmarks/mutating.py`.
 
 mutmut and cosmic-ray were not taken: neither follows src/contact1d, whose folders are links, and both start Python
 anew for every mutant (`benchmarks/faulty.py` forks).
@@ -14,227 +16,189 @@ anew for every mutant (`benchmarks/faulty.py` forks).
 from __future__ import annotations
 
 import argparse
-import ast
 import json
 import os
 import random
 import sys
 import tempfile
-import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from pathlib import Path
 from queue import Queue
 from typing import Any
 
+from benchmarks.callers import WHOLE, Called, callers
 from benchmarks.faulty import ROOT, copy_of_this, first_failure, load
+from benchmarks.mutating import Mutant, mutants
 
 RESULTS = Path(__file__).parent / "results" / "mutants.json"
 ASKED = 0.9
 """Asked of the share that is killed."""
+LONGEST = 30.0
+"""Time of the tests that look for one mutant, as long as they took when they were traced [s]."""
 PATIENCE, LEAST = 5.0, 60.0
-"""Time of a mutant's tests over that of the unchanged ones, and at least [s], after which it counts as killed."""
-UNIT = "tests/unit/"
-COVERAGE, DECKS, MOTION = UNIT + "test_coverage.py", "tests/decks/", "tests/decks/test_motion.py"
-ESTIMATE, SIMILAR = UNIT + "test_estimate.py", UNIT + "test_settings_similarity.py"
-TESTS: dict[str, tuple[str, ...]] = {
-    "potentials/double_exponential.py": (UNIT + "test_potential.py", UNIT + "test_table.py"),
-    "potentials/table.py": (UNIT + "test_table.py",),
-    "analysis/law_error.py": (UNIT + "test_law_error.py",),
-    "analysis/loop.py": (UNIT + "test_loop.py",),
-    "analysis/polynomial.py": (UNIT + "test_polynomial.py", UNIT + "test_curve_marks.py"),
-    "analysis/curve_marks.py": (UNIT + "test_curve_marks.py", COVERAGE),
-    "analysis/extremum.py": (UNIT + "test_extremum.py", UNIT + "test_radius.py"),
-    "analysis/radius.py": (UNIT + "test_radius.py",),
-    "analysis/pressure.py": (UNIT + "test_pressure.py",),
-    "workflow/settings/dynamics.py": (ESTIMATE, SIMILAR, UNIT + "test_dynamic.py", MOTION, DECKS + "test_goldens.py"),
-    "workflow/settings/": (
-        ESTIMATE, SIMILAR, UNIT + "test_dynamic.py", UNIT + "test_lattice.py", MOTION, DECKS + "test_goldens.py",
-        COVERAGE, "tests/hard/test_lattice.py",
-    ),
-    "workflow/deck/effects/": (MOTION, "tests/decks"),
-    "workflow/experiments/slide/": ("tests/decks/test_slide.py", UNIT + "test_experiment_kinds.py"),
-    "workflow/experiments/": (
-        UNIT + "test_claims.py", UNIT + "test_trust.py", UNIT + "test_sampling.py", COVERAGE,
-        UNIT + "test_law_error.py", UNIT + "test_experiment_kinds.py", "tests/decks/test_run_folder.py",
-        "tests/validation/test_dynamic.py", "tests/validation/test_pull_off.py", "tests/hard/test_untrusted.py",
-    ),
-    "workflow/judging/": (UNIT + "test_reproduce_page.py", UNIT + "test_reproduce_rows.py"),
-    "workflow/reproduce/": (
-        UNIT + "test_reproduce_judges.py", UNIT + "test_reproduce_page.py", "tests/validation/test_reproduce.py",
-    ),
-}  # fmt: skip
-"""For each file, or folder, whose faults are looked for: the tests that are to notice. The longest name counts."""
-OPERATORS: dict[type[ast.AST], type[ast.AST]] = {
-    ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.FloorDiv: ast.Mult,
-    ast.Pow: ast.Mult, ast.Mod: ast.Mult, ast.And: ast.Or, ast.Or: ast.And, ast.Lt: ast.GtE, ast.GtE: ast.Lt,
-    ast.Gt: ast.LtE, ast.LtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq, ast.Is: ast.IsNot, ast.IsNot: ast.Is,
-    ast.In: ast.NotIn, ast.NotIn: ast.In,
-}  # fmt: skip
-NAMES = {"min": "max", "max": "min", "argmin": "argmax", "argmax": "argmin", "ceil": "floor", "floor": "ceil"}
-SKIPPED = (ast.Assert, ast.Raise, ast.JoinedStr, ast.Import, ast.ImportFrom)
-"""Words and types: no fault of these makes a wrong number."""
+"""Time after which a mutant counts as killed, over that of its tests, and at least [s]."""
+ROOMS = {
+    "analysis": ("analysis/*.py",),
+    "settings": ("workflow/settings/*.py",),
+    "effects": ("workflow/deck/effects/*.py",),
+    "experiments": ("workflow/experiments/*/*.py",),
+    "potentials": ("potentials/*.py",),
+    "reproduce": ("workflow/reproduce/*.py", "workflow/judging/*.py"),
+    "body": ("workflow/body/*.py",),
+}
+"""Where faults are looked for."""
+DRAWN = ("plots.py", "figures.py")
+"""Ends of names of files that only draw."""
+TESTS = ("tests/unit", "tests/decks", "tests/validation", "tests/hard")
+PROCESSES = ("cost", "sweep", "report", "readme", "benchmarks", "cli", "engine", "tutorial", "stability", "browser")
+"""In names of test files that run commands in processes of their own, which are not seen, or for minutes."""
+GOLDEN = "tests/decks/test_goldens.py"
 
 
-@dataclass(frozen=True)
-class Mutant:
-    """One change: the file, the line and its text, what becomes what, and the whole new text of the file."""
+def tests_of(mutant: Mutant, called: Called) -> list[str]:
+    """Those that call the mutant's function, the quickest first, up to LONGEST; goldens last.
 
-    file: str
-    line: int
-    text: str
-    change: str
-    source: str
-
-    @property
-    def name(self) -> tuple[str, str, str]:
-        """What stays the same when lines above are added."""
-        return self.file, self.text, self.change
-
-
-Change = tuple[str, Callable[[], None], Callable[[], None]]
-
-
-def changes(node: ast.AST) -> Iterator[Change]:
-    """(words, do, undo) of every change of this node itself."""
-
-    def swap(owner: Any, field: str, new: Any, words: str) -> Change:
-        old = getattr(owner, field)
-        return words, lambda: setattr(owner, field, new), lambda: setattr(owner, field, old)
-
-    match node:
-        case ast.BinOp(op=op) | ast.AugAssign(op=op) | ast.BoolOp(op=op) if type(op) in OPERATORS:
-            new = OPERATORS[type(op)]
-            yield swap(node, "op", new(), f"{type(op).__name__} → {new.__name__}")
-        case ast.Compare(ops=[op]) if type(op) in OPERATORS:
-            new = OPERATORS[type(op)]
-            yield swap(node, "ops", [new()], f"{type(op).__name__} → {new.__name__}")
-            limit = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt}.get(type(op))  # type: ignore[call-overload]
-            if limit is not None:
-                yield swap(node, "ops", [limit()], f"{type(op).__name__} → {limit.__name__}")
-        case ast.UnaryOp(op=ast.USub()):
-            yield swap(node, "op", ast.UAdd(), "−x → x")
-        case ast.UnaryOp(op=ast.Not(), operand=operand):
-            yield swap(node, "operand", ast.UnaryOp(ast.Not(), operand), "not x → x")
-        case ast.Constant(value=bool(value)):
-            yield swap(node, "value", not value, f"{value} → {not value}")
-        case ast.Constant(value=int(value) | float(value)):
-            yield swap(node, "value", 2 * value if value else 1, f"{value:g} → {2 * value if value else 1:g}")
-        case ast.Name(id=name) if name in NAMES:
-            yield swap(node, "id", NAMES[name], f"{name} → {NAMES[name]}")
-        case ast.Attribute(attr=name) if name in NAMES:
-            yield swap(node, "attr", NAMES[name], f"{name} → {NAMES[name]}")
+    What stands in no function belongs to all functions of its file.
+    """
+    name = f"{mutant.file}:{mutant.function}"
+    wanted = name.removesuffix(WHOLE) if mutant.function == WHOLE else name
+    those = {
+        test: taken
+        for test, (taken, functions) in called.items()
+        if any(one == wanted or (mutant.function == WHOLE and one.startswith(wanted)) for one in functions)
+    }
+    chosen, whole = [], 0.0
+    for test in sorted(those, key=lambda test: (test.startswith(GOLDEN), those[test])):
+        whole += those[test]
+        if chosen and whole > LONGEST:
+            break
+        chosen.append(test)
+    return chosen
 
 
-def inner(node: ast.AST) -> Iterator[ast.AST]:
-    """The node and all below it whose change may make a wrong number: no annotations, no words, no types."""
-    if isinstance(node, SKIPPED):
-        return
-    yield node
-    for field, value in ast.iter_fields(node):
-        if field in ("annotation", "returns", "decorator_list"):
-            continue
-        for child in value if isinstance(value, list) else [value]:
-            if isinstance(child, ast.AST):
-                yield from inner(child)
+@dataclass
+class Found:
+    """What the tests said: the mutants that survive, and those that goldens alone have noticed."""
+
+    alive: list[Mutant] = field(default_factory=list)
+    golden: list[Mutant] = field(default_factory=list)
 
 
-def mutants(file: str) -> list[Mutant]:
-    """Every mutant of a file."""
-    source = (ROOT / file).read_text(encoding="utf-8")
-    tree, lines = ast.parse(source), source.splitlines()
-    found = []
-    for node in inner(tree):
-        for words, do, undo in changes(node):
-            line = getattr(node, "lineno", 0)
-            do()
-            found.append(
-                Mutant(file, line, lines[line - 1].strip(), words, ast.unparse(ast.fix_missing_locations(tree)))
-            )
-            undo()
-    return found
-
-
-def tests_of(file: str) -> tuple[str, ...]:
-    """The tests that are to notice. Raises KeyError for a file that is not looked at."""
-    return TESTS[max((name for name in TESTS if file.startswith(name)), key=len)]
-
-
-def survivors(chosen: Sequence[Mutant], workers: int) -> list[Mutant]:
-    """Those whose tests pass. Raises SystemExit where tests fail on the unchanged code."""
+def looked_for(chosen: Sequence[Mutant], workers: int, kept: Path | None) -> Found:
+    """Run the tests of each."""
     load()
+    found = Found()
     with tempfile.TemporaryDirectory() as temporary, ThreadPoolExecutor(workers) as executor:
         free: Queue[Path] = Queue()
         for number in range(workers):
             free.put(copy_of_this(Path(temporary) / str(number)))
-        taken: dict[tuple[str, ...], float] = {}
-        for tests in {tests_of(mutant.file): None for mutant in chosen}:
-            folder, started = free.queue[0], time.monotonic()
-            if first_failure(folder, tests, 3600.0):
-                raise SystemExit(f"the tests fail without any fault: {' '.join(tests)}")
-            taken[tests] = time.monotonic() - started
+        called = callers(free.queue[0], test_files(), kept)
 
-        def survives(mutant: Mutant) -> bool:
-            folder, tests = free.get(), tests_of(mutant.file)
+        def look(mutant: Mutant) -> None:
+            folder, tests = free.get(), tests_of(mutant, called)
             path = folder / mutant.file
             whole = path.read_text(encoding="utf-8")
+            patience = max(LEAST, PATIENCE * sum(called[test][0] for test in tests))
             try:
                 path.write_text(mutant.source, encoding="utf-8")
-                alive = not first_failure(folder, tests, max(LEAST, PATIENCE * taken[tests]))
+                by = first_failure(folder, tests, patience) if tests else ""
             finally:
                 path.write_text(whole, encoding="utf-8")
                 free.put(folder)
-            print(f"{'SURVIVES' if alive else 'killed  '} {mutant.file}:{mutant.line}: {mutant.change}", flush=True)
-            return alive
+            if not by:
+                found.alive.append(mutant)
+            elif by.startswith(GOLDEN):
+                found.golden.append(mutant)
+            word = "killed  " if by else "SURVIVES" if tests else "NO TEST "
+            print(f"{word} {mutant.file}:{mutant.line}: {mutant.change}   {by or mutant.text}", flush=True)
 
-        return [m for m, alive in zip(chosen, executor.map(survives, chosen), strict=True) if alive]
+        list(executor.map(look, chosen))
+    return found
 
 
-def record(chosen: Sequence[Mutant], alive: Sequence[Mutant]) -> dict[str, Any]:
+def test_files() -> list[str]:
+    """The files of tests that are traced."""
+    paths = (path for room in TESTS for path in sorted((ROOT / room).glob("test_*.py")))
+    return [str(path.relative_to(ROOT)) for path in paths if not any(word in path.name for word in PROCESSES)]
+
+
+def record(chosen: Sequence[Mutant], found: Found, part: float, seed: int) -> dict[str, Any]:
     """What mutants.json holds: the files of this time anew, and those of earlier times."""
     old = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {"files": {}, "survivors": []}
     reasons = {(row["file"], row["text"], row["change"]): row["reason"] for row in old["survivors"]}
     files = {mutant.file: None for mutant in chosen}
+    date = datetime.now(UTC).date().isoformat()
     counts = {
-        file: {"mutants": sum(m.file == file for m in chosen), "survive": sum(m.file == file for m in alive)}
+        file: {
+            "mutants": sum(m.file == file for m in chosen),
+            "survive": sum(m.file == file for m in found.alive),
+            "goldens_only": sum(m.file == file for m in found.golden),
+            "part": part,
+            "seed": seed,
+            "date": date,
+        }
         for file in files
     }
     rows = [row for row in old["survivors"] if row["file"] not in files]
     rows += [
         {"file": m.file, "line": m.line, "text": m.text, "change": m.change, "reason": reasons.get(m.name, "")}
-        for m in alive
+        for m in found.alive
     ]
+    every = {file: row for file, row in (old["files"] | counts).items() if (ROOT / file).exists()}
+    rows = [row for row in rows if row["file"] in every]
     return {
         "asked": ASKED,
-        "files": old["files"] | counts,
+        "rooms": {room: shares(room, every, rows) for room in ROOMS},
+        "files": every,
         "survivors": sorted(rows, key=lambda r: (r["file"], r["line"])),
     }
 
 
-def looked_at() -> list[str]:
-    """Every file that TESTS speaks of."""
-    folders = (ROOT / name for name in TESTS)
-    paths = (path for name in folders for path in ([name] if name.is_file() else name.rglob("*.py")))
-    return sorted({str(path.relative_to(ROOT)) for path in paths if path.name != "__init__.py"})
+def shares(room: str, files: dict[str, Any], rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """Of the mutants of a room: the share killed, and that with the survivors whose reason is written."""
+    names = set(looked_at([room])) & set(files)
+    drawn = sum(files[name]["mutants"] for name in names)
+    alive = [row for row in rows if row["file"] in names]
+    told = sum(bool(row["reason"]) for row in alive)
+    every = max(drawn, 1)
+    return {
+        "mutants": drawn,
+        "killed": round(1.0 - len(alive) / every, 3),
+        "killed_or_explained": round(1.0 - (len(alive) - told) / every, 3),
+    }
+
+
+def looked_at(rooms: Sequence[str]) -> list[str]:
+    """The files of these rooms that do more than draw."""
+    paths = (path for room in rooms for pattern in ROOMS[room] for path in ROOT.glob(pattern))
+    return sorted(str(p.relative_to(ROOT)) for p in paths if p.name != "__init__.py" and not p.name.endswith(DRAWN))
 
 
 def main() -> int:
     """Look for faults that no test notices; 1 where there are too many."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("files", nargs="*", default=looked_at())
+    parser.add_argument("files", nargs="*", help="files, or rooms by name")
     parser.add_argument("--part", type=float, default=1.0)
+    parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--callers", type=Path)
     options = parser.parse_args()
+    wanted = options.files or list(ROOMS)
     chosen = []
-    for file in options.files:
+    for file in (name for one in wanted for name in (looked_at([one]) if one in ROOMS else [one])):
         every = mutants(file)
         count = max(1, round(options.part * len(every))) if every else 0
-        chosen += sorted(random.Random(file).sample(every, count), key=lambda mutant: mutant.line)
-    alive = survivors(chosen, options.workers)
-    RESULTS.write_text(json.dumps(record(chosen, alive), indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    killed = 1.0 - len(alive) / max(1, len(chosen))
-    print(f"{len(chosen)} mutants, {len(alive)} survive: {100.0 * killed:.1f} % killed")
+        draw = random.Random(f"{options.seed} {file}").sample(every, count)
+        chosen += sorted(draw, key=lambda mutant: mutant.line)
+    found = looked_for(chosen, options.workers, options.callers)
+    told = record(chosen, found, options.part, options.seed)
+    RESULTS.write_text(json.dumps(told, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    killed = 1.0 - len(found.alive) / max(1, len(chosen))
+    print(f"{len(chosen)} mutants, {len(found.alive)} survive: {100.0 * killed:.1f} % killed")
+    print(f"{len(found.golden)} of them by goldens alone")
     return int(killed < ASKED)
 
 
