@@ -17,7 +17,10 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from contact1d.analysis.pressure import Profile
-from contact1d.workflow.experiments.pull_off.dynamic import BRACKET, Search, top_of
+from contact1d.analysis.reference.interaction import Exponential, PairInteraction
+from contact1d.analysis.reference.pair_lattice import PairLattice
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.experiments.pull_off.dynamic import BRACKET, Search, missed_teeth, top_of
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.holding import Held, damping_under, overshoot
 from contact1d.workflow.scene import Scene, scene_from_dict
@@ -28,6 +31,10 @@ from tests.scenes import chains
 NOTHING = np.zeros(3)
 PROFILE = Profile(NOTHING, NOTHING, NOTHING, NOTHING, NOTHING)
 RULE: Any = None  # no radius is asked for here
+SNAPPING = (0.18, 0.03, 0.09, 0.06)
+"""Short against the spacing, so that a particle feels its opposite alone; 1.9 times as stiff as the springs."""
+ESTIMATED = 1e-3
+"""Relative: the estimate's drop of one pair's tension is between points of a grid."""
 TIMED = chains(
     200.0,
     damping={"coefficient": "auto"},
@@ -142,3 +149,18 @@ def test_top_of_a_cubic() -> None:
     states = [at(x, -(2.0 - 3.0 * x**2 + x**3)) for x in (0.9, 0.6, 0.3, 0.1)]
     assert top_of(states) == (pytest.approx(0.0, abs=1e-9), pytest.approx(2.0, abs=1e-12))
     assert top_of([at(x, -x) for x in (0.3, 0.2, 0.1)]) is None
+
+
+def test_a_plate_that_swings_past_a_tooth_misses_what_the_tension_falls_there() -> None:
+    """Reference: independent pairs with their folds. The outermost that hold, one at each edge, let go together."""
+    law = PairInteraction(Exponential(*SNAPPING[:2]), Exponential(*SNAPPING[2:]))
+    pairs = PairLattice(law, 0.83, (np.arange(40) - 19.5) ** 2 / 200.0)
+    deepest = pairs.preloaded(0.5)
+    stuck = pairs.stuck_after(deepest)
+    lets_go = law.force_free_distance() + np.unique(pairs.heights[stuck]) - pairs.snap_off
+    falls = [pairs.force(d - 1e-9, stuck) - pairs.force(d + 1e-9, stuck) for d in lets_go]
+    for swing in (0.0, 0.3):
+        search = Search(1e-2, 1.0, lambda tension, swing=swing: swing, [Held(0.0, (at(1.0, 0.0),), True, 0.0)])
+        scene = scene_from_dict(TIMED | chains(100.0, law=SNAPPING, bodies={"particles": 40}))
+        missed = missed_teeth(Deck(scene, settings_for(scene)), search)
+        assert missed == pytest.approx(swing * max(falls), rel=ESTIMATED)

@@ -163,7 +163,7 @@ def _outcome(context: RunContext, search: Search, loaded: Held, critical: Held, 
     scene, settings = context.deck.scene, context.deck.settings
     zero = search.held[0].last
     adhesion = 0.5 * (search.best + search.broken)
-    half = 0.5 * (search.broken - search.best) + critical.unbalance + _swung_past(context.deck, search)
+    half = 0.5 * (search.broken - search.best) + critical.unbalance + missed_teeth(context.deck, search)
     rest = (*(h.last for h in search.held[:-1]), critical.last)
     zero_radius = zero.radius_or_spot
     if settings.estimate.snaps:
@@ -188,7 +188,7 @@ def _outcome(context: RunContext, search: Search, loaded: Held, critical: Held, 
     return marked_outcome(quantities, states, marked, phases, doubts(scene, settings, states), by_spacing)
 
 
-def _swung_past(deck: Deck, search: Search) -> float:
+def missed_teeth(deck: Deck, search: Search) -> float:
     """Tension [FU] that a plate may miss which swings past a tooth of the tension, where pairs snap."""
     return EDGES * deck.settings.estimate.snap[1] * search.overshoot(search.best)
 
