@@ -122,7 +122,10 @@ def line_load(
         return _cubics(right, mean, end)
     own = slice(None) if right[0] > 0.0 else slice(1, None)
     even = _cubics(np.append(-right[own][::-1], right), np.append(mean[own][::-1], mean), end)
-    even.coefficients[1, 0] = 0.0  # by symmetry, but for round-off
+    if right[0] > 0.0:
+        even.coefficients[1, 0] = 0.0  # by symmetry, but for round-off
+    else:  # the four nearest are not the same on both sides of the axis
+        even.coefficients[:, 0] = (mean[0], 0.0, (mean[1] - mean[0]) / right[1] ** 2, 0.0)
     return even
 
 
@@ -130,7 +133,7 @@ def _cubics(x: Array, q: Array, end: float) -> LineLoad:
     """From 0 to the `end` the cubic through the four nearest of the places x, of fewer a parabola or a line."""
     count = min(4, x.size)
     right_of_axis = x[x > 1e-12 * end]
-    inner = right_of_axis[right_of_axis < end * (1.0 - 1e-12)] if right_of_axis[-1] >= end else right_of_axis[:-1]
+    inner = right_of_axis[right_of_axis < end * (1.0 - 1e-12)]
     breaks = np.concatenate([[0.0], inner, [end]])
     middle = 0.5 * (breaks[1:] + breaks[:-1])
     first = np.clip(np.searchsorted(x, middle) - count // 2, 0, x.size - count)

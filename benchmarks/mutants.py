@@ -26,12 +26,12 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from queue import Queue
 from typing import Any
 
 from benchmarks.callers import WHOLE, Called, callers
 from benchmarks.faulty import ROOT, copy_of_this, first_failure, load
 from benchmarks.mutating import Mutant, mutants
+from benchmarks.patched import Wanted, is_quick, noticed
 
 RESULTS = Path(__file__).parent / "results" / "mutants.json"
 ASKED = 0.9
@@ -92,22 +92,17 @@ def looked_for(chosen: Sequence[Mutant], workers: int, kept: Path | None) -> Fou
     load()
     found = Found()
     with tempfile.TemporaryDirectory() as temporary, ThreadPoolExecutor(workers) as executor:
-        free: Queue[Path] = Queue()
-        for number in range(workers):
-            free.put(copy_of_this(Path(temporary) / str(number)))
-        called = callers(free.queue[0], test_files(), kept)
+        copies = [copy_of_this(Path(temporary) / str(number)) for number in range(workers)]
+        called = callers(copies[0], test_files(), kept)
 
-        def look(mutant: Mutant) -> None:
-            folder, tests = free.get(), tests_of(mutant, called)
-            path = folder / mutant.file
-            whole = path.read_text(encoding="utf-8")
-            patience = max(LEAST, PATIENCE * sum(called[test][0] for test in tests))
-            try:
-                path.write_text(mutant.source, encoding="utf-8")
-                by = first_failure(folder, tests, patience) if tests else ""
-            finally:
-                path.write_text(whole, encoding="utf-8")
-                free.put(folder)
+        def wanted(number: int, mutant: Mutant) -> Wanted:
+            tests = tests_of(mutant, called)
+            return number, mutant, tests, max(LEAST, PATIENCE * sum(called[test][0] for test in tests))
+
+        every = [wanted(*one) for one in enumerate(chosen)]
+
+        def tell(number: int, by: str) -> None:
+            mutant, tests = every[number][1:3]
             if not by:
                 found.alive.append(mutant)
             elif by.startswith(GOLDEN):
@@ -115,7 +110,19 @@ def looked_for(chosen: Sequence[Mutant], workers: int, kept: Path | None) -> Fou
             word = "killed  " if by else "SURVIVES" if tests else "NO TEST "
             print(f"{word} {mutant.file}:{mutant.line}: {mutant.change}   {by or mutant.text}", flush=True)
 
-        list(executor.map(look, chosen))
+        def look(folder: Path, mine: Sequence[Wanted]) -> None:
+            whole = {one.file: (ROOT / one.file).read_text(encoding="utf-8") for _, one, _, _ in mine}
+            quick = [one for one in mine if one[2] and is_quick(one[1], whole[one[1].file])]
+            done = noticed(folder, quick, tell) if quick else set()
+            for number, mutant, tests, patience in mine:
+                if number in done:
+                    continue
+                path = folder / mutant.file
+                path.write_text(mutant.source, encoding="utf-8")
+                tell(number, first_failure(folder, tests, patience) if tests else "")
+                path.write_text(whole[mutant.file], encoding="utf-8")
+
+        list(executor.map(look, copies, [every[number::workers] for number in range(workers)]))
     return found
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from contact1d.analysis.abel import FEWEST, line_load
+from contact1d.analysis.abel import FEWEST, LineLoad, line_load
 from contact1d.analysis.reference.mdr import ReducedContact
 
 Array = NDArray[np.float64]
@@ -151,3 +151,26 @@ def test_residual_forces_move_the_pressure_by_as_little() -> None:
 def test_what_is_no_line_load_is_refused(x: Array, q: Array, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         line_load(x, q, 3.0, ends_at_zero=False)
+
+
+@pytest.mark.parametrize("apex", [False, True])
+@pytest.mark.parametrize("count", [14, 15])
+def test_the_load_goes_through_the_mean_of_both_sides_at_every_place(count: int, apex: bool) -> None:
+    """Whatever the load: one that is no polynomial, and not the same on both sides."""
+    x = places(count)
+    q = np.exp(-((x / 4.0) ** 2)) * (1.0 + 0.1 * np.tanh(x))
+    found = line_load(x, q, apex=apex)
+    assert found.edge == x[-1]
+    right = x[(x > 0.0) & (x < x[-1])]
+    piece = np.searchsorted(found.breaks, right)
+    for coefficients in (found.coefficients[:, piece - 1], found.coefficients[:, piece]):  # from both sides
+        met = np.sum(coefficients * right ** np.arange(4)[:, None], axis=0)
+        assert met == pytest.approx(np.exp(-((right / 4.0) ** 2)), abs=POWERS)
+    if apex and count % 2 == 0:
+        assert found.coefficients[:, 0] @ x[7] ** np.arange(4) == pytest.approx(math.exp(-((x[7] / 4.0) ** 2)))
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_slope_on_the_axis_alone_says_to_which_side_the_pressure_grows(side: float) -> None:
+    rising_again = np.array([[1.0, -1.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [2.0, -1.0, 0.0, 0.0]]).T
+    assert LineLoad(np.arange(4.0), side * rising_again).pressure(0.0) == side * np.inf
