@@ -18,7 +18,7 @@ def left_out(law: DoubleExponential, table: Table, profile: Profile) -> float:
     """Σ |F_table(r) - f(r)| |z|/r [FU] of a profile, offset by offset along the chain: memory for one row of pairs."""
     reach = table.cutoff + TAIL_REACH * law.longest_range
     x, lower, upper = profile.x, profile.z_lower, profile.z_upper
-    spacing = float(x[-1] - x[0]) / (len(x) - 1)
+    spacing = float(np.ptp(x)) / (len(x) - 1)
     near = np.flatnonzero(upper - lower < reach)
     total = 0.0
     for offset in range(-math.ceil(reach / spacing), math.ceil(reach / spacing) + 1):

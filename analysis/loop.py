@@ -32,7 +32,7 @@ class Loop:
 
 
 def loop_of(displacement: Sequence[float], force: Sequence[float]) -> Loop | None:
-    """The loop of a path through the rows, (n,) [LU] and (n,) [FU]; None where it ends elsewhere than it begins.
+    """The loop of a path through the rows, (n,) [LU] and (n,) [FU]; None where it does not close, or stays in place.
 
     Between two rows a smooth curve departs from its chord by h³F″/12, F″ from the chords before and after. Where the
     chord's own slope is not the mean of these two, the force may have jumped, anywhere between the rows: that part of
@@ -41,7 +41,7 @@ def loop_of(displacement: Sequence[float], force: Sequence[float]) -> Loop | Non
     """
     d, f = np.asarray(displacement, dtype=np.float64), np.asarray(force, dtype=np.float64)
     same = CLOSURE * float(np.ptp(d))
-    if len(d) < 3 or abs(d[-1] - d[0]) > same:
+    if same == 0.0 or len(d) < 3 or abs(d[-1] - d[0]) > same:
         return None
     h, mean = np.diff(d), 0.5 * (f[1:] + f[:-1])
     half = len(d) // 2
@@ -49,7 +49,8 @@ def loop_of(displacement: Sequence[float], force: Sequence[float]) -> Loop | Non
         uncertainty = _missed(np.abs(h[:half]), np.diff(f[: half + 1] - f[half:][::-1]))
     else:
         turns = np.flatnonzero(np.diff(np.sign(h)) != 0.0) + 1
-        uncertainty = sum(_missed(np.abs(h[leg]), np.diff(f)[leg]) for leg in np.split(np.arange(len(h)), turns))
+        legs = [leg for leg in np.split(np.arange(len(h)), turns) if h[leg[0]] != 0.0]
+        uncertainty = sum(_missed(np.abs(h[leg]), np.diff(f)[leg]) for leg in legs)
     return Loop(float(mean @ h), uncertainty, float(np.abs(mean) @ np.abs(h)), float(np.abs(h).sum()))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact1d.analysis.extremum import place_of_minimum
+from contact1d.analysis.extremum import _median, _noise, _steepness, place_of_minimum
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import compressive_radius
 
@@ -59,3 +59,49 @@ def test_the_edge_of_a_parabolic_pressure_is_exact_at_any_spacing(spacing: float
     zero = np.zeros_like(x)
     found = compressive_radius(Profile(x, zero, zero, pressure, zero))
     assert found.value == pytest.approx(half, rel=1e-9)
+
+
+def test_noise_on_a_smooth_row_is_found_as_large_as_it_is() -> None:
+    """White noise of unit variance on a parabola, a wave and nothing; the mean of 300 rows is known to 2 %."""
+    random = np.random.default_rng(11)
+    t = np.arange(41.0)
+    for smooth in (0.0 * t, 0.3 * (t - 17.0) ** 2, 50.0 * np.cos(0.2 * t)):
+        found = [_noise(smooth + random.normal(size=t.size), 20) for _ in range(300)]
+        assert 0.75 < np.mean(found) < 1.0  # the least of several estimates, each of which has a mean of 1
+    assert _noise(np.asarray([1.0, 2.0]), 0) == 0.0
+    assert _noise(0.3 * t**2, 20) < 1e-12
+
+
+def test_the_middle_of_a_few_values() -> None:
+    random = np.random.default_rng(12)
+    for count in (1, 2, 5, 8):
+        values = random.normal(size=count)
+        assert _median(values) == np.median(values)
+
+
+@pytest.mark.parametrize(
+    ("y", "steep"),
+    [([3.0, 1.0, 0.0, 2.0, 5.0], 2.0 / 3.0), ([5.0, 2.0, 0.0, 1.0, 3.0], 2.0 / 3.0), ([1.0, 1.0, 0.0, 9.0, 9.0], 1.0),
+     ([8.0, 3.0, 1.0, 2.0, 9.0], 2.0 / 7.0), ([0.0, 0.0, 0.0, 0.0, 0.0], 1.0)],
+)  # fmt: skip
+def test_a_dip_is_as_steep_as_its_higher_neighbour_has_risen_to_the_lower_shoulder(
+    y: list[float], steep: float
+) -> None:
+    assert _steepness(np.asarray(y), 2) == pytest.approx(steep)
+
+
+def test_a_flat_dip_in_noise_is_found_within_its_claim_and_better_than_its_lowest_sample() -> None:
+    """Noise of 1 % of the depth hides which of some fifteen samples is lowest."""
+    random = np.random.default_rng(13)
+    t, middle = np.arange(61.0), 30.3
+    law = 1e-4 * ((t - middle) ** 2 + 0.01 * np.abs(t - middle) ** 3)
+    errors, claims, lowest = [], [], []
+    for _ in range(200):
+        y = law + 1e-3 * random.normal(size=t.size)
+        found = place_of_minimum(t, y, np.arange(t.size))
+        errors.append(found.position - middle)
+        claims.append(found.uncertainty)
+        lowest.append(t[y.argmin()] - middle)
+    assert np.mean(np.abs(errors) <= claims) >= 0.95
+    assert np.sqrt(np.mean(np.square(errors))) < 0.5 * np.sqrt(np.mean(np.square(lowest)))
+    assert np.median(claims) < 6.0 * np.sqrt(np.mean(np.square(errors)))

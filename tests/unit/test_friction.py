@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.stats import t as students
 
 from contact1d.analysis.friction import block_means, interval, largest_before, mean_of, slips, student
 
 PERIOD, ROWS = 2.0, 50
+PRINTED = 0.006
+"""Relative: the table of Student's factors has three figures, and goes on by 1.96 + 2.4/n."""
 
 
 def saw(periods: float, run_in: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
@@ -73,3 +76,34 @@ def test_the_largest_friction_is_looked_for_before_the_plate_has_slid() -> None:
     top, missed = largest_before(friction, place, 1.0)
     assert top == friction[:100].max()
     assert missed < 0.01
+
+
+def test_the_interval_is_students_for_blocks_of_one_two_and_four() -> None:
+    """As long as four of them are left; the last ones, without a rest. A drift of the means counts by half."""
+    random = np.random.default_rng(4)
+    for count in (2, 3, 4, 7, 8, 9, 15, 16, 17, 33, 64):
+        blocks = np.repeat(random.normal(size=count), 3)[:count] + random.normal(size=count)
+        found = []
+        for together in (one for one in (1, 2, 4) if one == 1 or count // one >= 4):
+            means = [blocks[i : i + together].mean() for i in range(count % together, count, together)]
+            error = np.std(means, ddof=1) / np.sqrt(len(means))
+            found.append(students.ppf(0.975, len(means) - 1) * error)
+        halves = blocks[: count // 2].mean(), blocks[-(count // 2) :].mean()
+        assert interval(blocks) == pytest.approx(max(*found, 0.5 * abs(halves[1] - halves[0])), rel=PRINTED)
+
+
+def test_the_largest_friction_ends_with_the_row_before_one_spacing() -> None:
+    place = np.array([5.0, 5.3, 5.6, 5.9, 6.0, 6.2])
+    assert largest_before(np.arange(6.0), place, 1.0)[0] == 3.0
+    assert largest_before(np.array([9.0, 1.0, 2.0, 3.0, 0.0, 0.0]), place, 1.0) == (9.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("before", "missed"),
+    [([0.0, 2.0, 4.0], 0.25), ([0.0, 7.0, 12.0], 0.625), ([0.0, 1.0, 4.0], 2.0), ([0.0, 3.0], 3.0)],
+)
+def test_what_a_row_may_miss_of_a_friction_that_rises_to_a_slip(before: list[float], missed: float) -> None:
+    """A straight rise: an eighth of it, as of one that falls off; where it grows: by what it grew."""
+    friction = np.array([*before, 0.0, 0.0])
+    found = largest_before(friction, 0.1 * np.arange(friction.size), 1.0)
+    assert found == (before[-1], pytest.approx(missed))

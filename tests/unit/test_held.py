@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
-from contact1d.analysis.held import held_radius, whole_cells
+from contact1d.analysis.held import _share, held_radius, whole_cells
 from contact1d.analysis.pressure import Profile
 
 ROUND_OFF = 1e-9
@@ -44,10 +46,12 @@ def test_an_end_is_told() -> None:
     assert held_radius(row(40.0, -1.0)).reaches_end
 
 
-def test_pressures_at_the_edge_are_those_of_the_inside() -> None:
-    profile = row(16.2, -0.3)
+@pytest.mark.parametrize("edge", [16.2, 16.8])
+def test_pressures_at_the_edge_are_those_of_the_inside(edge: float) -> None:
+    """Where the last particle stands outside of the edge, and inside with less than a whole cell."""
+    profile = row(edge, -0.3)
     found = whole_cells(profile, held_radius(profile))
-    inside = np.abs(X) < 16.2
+    inside = np.abs(X) < edge
     assert found[inside] == pytest.approx((-0.3 - X**2 / 200.0)[inside], abs=ROUND_OFF)
     assert (found[~inside] == 0.0).all()
 
@@ -56,3 +60,10 @@ def test_too_few_particles() -> None:
     two = np.zeros(2)
     with pytest.raises(ValueError, match="at least 3 particles"):
         held_radius(Profile(np.arange(2.0), two, two, two, two))
+
+
+def test_a_share_is_that_of_the_pressure_inside_and_none_where_that_vanishes() -> None:
+    """An even pressure of 1, and one that falls to 0 at the edge particle's own place."""
+    assert _share(0.5, [1.0, 1.0, 1.0]) == pytest.approx(0.5)
+    assert _share(1.0, [0.25, 0.5, 0.75]) == pytest.approx(1.0)
+    assert math.isnan(_share(0.5, [3.0, 2.0, 1.0]))

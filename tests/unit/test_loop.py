@@ -82,3 +82,14 @@ def test_of_a_way_of_one_row_only_the_ends_are_known() -> None:
     loop = loop_of([0.0, 2.0, 0.0], [1.0, 1.0, -1.0])
     assert loop is not None
     assert (loop.area, loop.uncertainty) == pytest.approx((2.0, 2.0), rel=ROUND_OFF)
+
+
+def test_rows_that_stay_in_place_add_nothing() -> None:
+    d, f = [0.0, 0.1, 0.25, 0.4, 0.3, 0.15, 0.0], [0.0, 1.0, 2.0, 2.5, 0.3, 0.1, 0.0]
+    alone = loop_of(d, f)
+    held = loop_of([*d[:4], d[3], d[3], d[3], *d[4:]], [*f[:4], 2.4, 2.2, 2.5, *f[4:]])
+    assert alone is not None
+    assert held is not None
+    assert held.uncertainty == pytest.approx(alone.uncertainty, rel=ROUND_OFF)
+    assert (held.area, held.whole, held.length) == pytest.approx((alone.area, alone.whole, alone.length))
+    assert loop_of([0.1, 0.1, 0.1], [1.0, 1.0, 1.0]) is None

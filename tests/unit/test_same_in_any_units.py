@@ -69,6 +69,7 @@ def pressures() -> Iterator[tuple[Callable[[Profile], ContactRadius], Array]]:
         yield compressive_radius, np.maximum(0.0, 1.0 - np.abs(t / half)) ** 0.5
         yield held_radius, np.where(np.abs(t) < half, 0.7 - (t / half) ** 2, 0.0)
         yield compressive_radius, np.zeros(count)
+        yield held_radius, np.zeros(count)
 
 
 @pytest.mark.parametrize(("radius", "p"), list(pressures()))
