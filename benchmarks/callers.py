@@ -56,7 +56,7 @@ class Trace:
         sys.settrace(self._note)
         yield
         sys.settrace(None)
-        fixtures = getattr(item, "_fixtureinfo").name2fixturedefs.values()  # noqa: B009 - pytest has no public name
+        fixtures = getattr(item, "_fixtureinfo").name2fixturedefs.values()  # noqa: B009 (a name of pytest that is not public)
         for definition in (one for several in fixtures for one in several):
             self._now |= self._of_fixture.get(id(definition), set())
         self.found[item.nodeid] = time.monotonic() - started, sorted(self._now)

@@ -177,4 +177,4 @@ class ExactContext(RunContext):
 
 def exact_context(scene: Scene, settings: Settings | None = None) -> ExactContext:
     """For the experiment's own functions: `pull_off_quasistatic(exact_context(scene))`."""
-    return ExactContext(Deck(scene, settings or settings_for(scene)), None, Silent(), 1.0)  # type: ignore[arg-type]
+    return ExactContext(Deck(scene, settings or settings_for(scene)), None, Silent(), 1.0)

@@ -7,6 +7,25 @@ from typing import Any
 
 LAW = (0.18, 0.13, 0.09, 0.26)
 """A [FU·LU], a [LU], B [FU·LU], b [LU] of V(r) = A exp(−r/a) − B exp(−r/b)."""
+STEEL_ON_GLASS = """
+title = "Steel on glass"
+
+[bodies]
+particles = "auto"
+spacing = "4 µm"
+profile = { kind = "parabola", radius = "10 mm" }
+bulk_stiffness = "auto"
+lower = "rigid_plane"
+
+[material]
+upper = { youngs_modulus = "210 GPa", poisson_ratio = 0.3 }
+lower = { youngs_modulus = "70 GPa", poisson_ratio = "22 %" }
+
+[experiment]
+kind = "load"
+force = "10 N"
+"""
+"""A scene in SI, every number of which has a unit."""
 
 
 def chains(radius: float, stiffness: float = 0.83, law: Sequence[float] = LAW, **tables: Any) -> dict[str, Any]:

@@ -70,7 +70,7 @@ class ReleasedPlate:
             def slope(_: float, state: Floats) -> list[float]:
                 return [state[1], -2.0 * damping_ratio * state[1] - (float(law(state[0])) + tension) / stiffness]
 
-            apart.terminal = True  # type: ignore[attr-defined]
+            apart.terminal = True  # type: ignore[attr-defined]  # scipy reads it off the function
             found = solve_ivp(
                 slope, (0.0, LONGEST), [start, 0.0], method="LSODA", events=apart, rtol=STEP_ERROR, atol=STEP_ERROR
             )

@@ -25,7 +25,7 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_name] = "1"
 
 from benchmarks.peers.contacts import POINTS, Curve, closed_form, displacements, errors, reduced_distance  # noqa: E402 (threads)
-from benchmarks.peers.table import write_figure, write_section  # noqa: E402
+from benchmarks.peers.table import write_figure, write_section  # noqa: E402 (threads)
 
 MODULES = ("contact1d_peer", "scipy_peer", "tamaas_peer", "contact_mechanics_peer", "granular_peer")
 PACKAGES = (

@@ -41,9 +41,9 @@ SIDE = {"hertz": 2.3, "jkr": 3.2}
 
 def load() -> None:
     """Import the packages."""
-    import Adhesion.System  # noqa: F401
-    import ContactMechanics.Systems  # noqa: F401
-    import SurfaceTopography  # noqa: F401
+    import Adhesion.System  # noqa: F401 (loading it is the point)
+    import ContactMechanics.Systems  # noqa: F401 (loading it is the point)
+    import SurfaceTopography  # noqa: F401 (loading it is the point)
 
 
 def heights(side: float, grid: int) -> Array:

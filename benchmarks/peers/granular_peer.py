@@ -54,7 +54,7 @@ fix curve all print 1 "${{force}}" file force.txt screen no title ""
 
 def load() -> None:
     """Import the engine; LAMMPS is loaded by the worker of the first session."""
-    import contact1d.workflow.engine.session  # noqa: F401
+    import contact1d.workflow.engine.session  # noqa: F401 (loading it is the point)
 
 
 def curve(contact: str, setting: Setting) -> Curve:

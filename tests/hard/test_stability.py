@@ -71,5 +71,5 @@ def test_a_class_that_is_measured_later_joins_the_record(tmp_path: Path) -> None
     ("comparison", "value", "expected"), [("relative", 1.1, 2.0), ("absolute", 1.05, 4.0), ("at most", 0.25, 4.0)]
 )
 def test_the_margin_is_what_is_allowed_over_what_is_found(comparison: str, value: float, expected: float) -> None:
-    row = Check("kind", "row", value, 0.0, "1", 1.0, "theory", "closed form", 0.2, "–", comparison)  # type: ignore[arg-type]
+    row = Check("kind", "row", value, 0.0, "1", 1.0, "theory", "closed form", 0.2, "–", comparison)
     assert row.margin == pytest.approx(expected)

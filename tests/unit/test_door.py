@@ -64,7 +64,7 @@ def test_a_scene_comes_from_a_path_text_tables_or_a_scene(plane: MakeScene, tmp_
         ({}, "title: missing"),
     ):
         with pytest.raises(SceneError, match=words):
-            read_scene(wrong)  # type: ignore[arg-type]
+            read_scene(wrong)
 
 
 def test_a_run_takes_paths_as_text(plane: MakeScene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

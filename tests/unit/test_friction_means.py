@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,11 +16,8 @@ from contact1d.workflow.settings.drive import DriveLeg
 PERIODS, VELOCITY = 12, 0.5
 
 
-class Spaced:
-    """A scene, as far as it is asked."""
-
-    class bodies:  # noqa: N801
-        spacing = 1.0
+SPACED = SimpleNamespace(bodies=SimpleNamespace(spacing=1.0))
+"""A scene, as far as it is asked."""
 
 
 def test_a_mean_leaves_the_run_in_out() -> None:
@@ -44,5 +42,5 @@ def moved(place: Any, leg: DriveLeg) -> Motion:
 @pytest.mark.parametrize(("share", "steady"), [(1.0, True), (0.95, True), (0.5, False)])
 def test_a_plate_that_falls_behind_the_drive_does_not_slide_steadily(share: float, steady: bool) -> None:
     leg = DriveLeg(VELOCITY, 40 * PERIODS, 10, 0.005)
-    told = is_steady(Spaced(), moved(lambda time: share * VELOCITY * time, leg))  # type: ignore[arg-type]
+    told = is_steady(SPACED, moved(lambda time: share * VELOCITY * time, leg))
     assert (told == "") == steady

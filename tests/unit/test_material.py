@@ -15,7 +15,7 @@ from contact1d import Run, Scene, read_scene, run
 from contact1d.workflow.runs.scales import jkr_scales, scales_of
 from contact1d.workflow.scene import Elastic, Material, Problem, SceneError, scene_from_dict, scene_to_toml
 from contact1d.workflow.units import Quantity, Scales
-from tests.scenes import chains
+from tests.scenes import STEEL_ON_GLASS, chains
 
 ROUND_OFF = 1e-13
 """Relative: a few operations each."""
@@ -486,23 +486,6 @@ def test_with_a_material_the_stiffness_need_not_be_named() -> None:
     assert unnamed == named
     with pytest.raises(SceneError, match=r"bodies.bulk_stiffness: missing; give the stiffness .* or \[material\]"):
         read_scene(named.model_dump(by_alias=True) | {"material": None, "bodies": unnamed_bodies(named)})
-
-
-STEEL_ON_GLASS = """
-title = "steel on glass"
-[bodies]
-particles = "auto"
-spacing = "2 um"
-profile = { kind = "parabola", radius = "10 mm" }
-lower = "rigid_plane"
-bulk_stiffness = "auto"
-[material]
-upper = { youngs_modulus = "210 GPa", poisson_ratio = 0.3 }
-lower = { youngs_modulus = "70 GPa", poisson_ratio = 0.22 }
-[experiment]
-kind = "load"
-force = "10 N"
-"""
 
 
 def unnamed_bodies(scene: Scene) -> dict[str, Any]:

@@ -125,7 +125,7 @@ def test_neighbour_springs_rest_on_the_undeformed_profile() -> None:
 )
 def test_wrong_models_are_refused(arguments: dict[str, object], message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        ChainModel(5, 0.83, ADHESIVE, **arguments)  # type: ignore[arg-type]
+        ChainModel(5, 0.83, ADHESIVE, **arguments)
 
 
 def test_wrong_laws_are_refused() -> None:

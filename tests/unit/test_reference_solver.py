@@ -169,4 +169,4 @@ def test_states_are_frozen() -> None:
     state = trace(ChainModel(1, 1.0, PAPERLIKE, heights=np.zeros(1)), [0.0])[0]
     assert isinstance(state, State)
     with pytest.raises(AttributeError):
-        state.force = 1.0  # type: ignore[misc]
+        state.force = 1.0

@@ -238,7 +238,7 @@ def test_problems_of_changes_and_of_the_scene_come_together() -> None:
 
 def test_what_is_not_a_table_of_tables() -> None:
     with pytest.raises(SceneError, match="scene: must be a table of tables"):
-        scene_from_dict([1])  # type: ignore[arg-type]
+        scene_from_dict([1])
 
 
 def test_a_scene_can_be_changed_as_data() -> None:

@@ -19,29 +19,10 @@ from contact1d.workflow.scene.quantities import Table, Unit, annotation_of, keys
 from contact1d.workflow.scene.si_text import UnitTextError, in_words, si_value
 from contact1d.workflow.scene.wording import members, statement, table_of, text_of, unit_of, unwrapped
 from contact1d.workflow.units import SI, Scales
+from tests.scenes import STEEL_ON_GLASS
 
 SHIPPED = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 BOLTZMANN = 1.380649e-23  # J/K, by the definition of the kelvin
-
-STEEL_ON_GLASS = """
-title = "Steel on glass"
-
-[bodies]
-particles = "auto"
-spacing = "4 µm"
-profile = { kind = "parabola", radius = "10 mm" }
-reduction = "mdr"
-bulk_stiffness = "auto"
-lower = "rigid_plane"
-
-[material]
-upper = { youngs_modulus = "210 GPa", poisson_ratio = 0.3 }
-lower = { youngs_modulus = "70 GPa", poisson_ratio = "22 %" }
-
-[experiment]
-kind = "load"
-force = "10 N"
-"""
 
 SLIDE = {
     "title": "slide",
@@ -119,7 +100,7 @@ def test_every_table_has_texts_and_times_follow_from_the_mass() -> None:
 def test_times_are_in_tu_of_the_given_units() -> None:
     # TU = √(MU·LU/FU) = √(1e-25 · 1e-9/1e-9) s
     units = {"length_unit": 1e-9, "force_unit": "1 nN", "mass_unit": "1e-25 kg"}
-    bodies = {key: value for key, value in SLIDE["bodies"].items() if key != "mass"}  # type: ignore[attr-defined]
+    bodies = {key: value for key, value in SLIDE["bodies"].items() if key != "mass"}
     scene = scene_from_dict(SLIDE | {"bodies": bodies, "material": units})
     time = 1e-25**0.5
     assert scene.cantilever is not None
@@ -143,7 +124,7 @@ def test_lists_spans_overrides_and_changes_take_texts() -> None:
     path = {"kind": "path", "displacements": ["0 nm", 0, "100 nm", "-1e-7 m"]}
     span = {"kind": "path", "displacements": {"from": 0, "to": "1 µm", "steps": 4}}
     listed = scene_from_dict(data | {"experiment": path})
-    assert getattr(listed.experiment, "displacements") == (0.0, 0.0, 1e-7, -1e-7)  # noqa: B009
+    assert listed.experiment.places() == [0.0, 0.0, 1e-7, -1e-7]
     assert scene_from_dict(data | {"experiment": span}).experiment.compression is None
     scene = read_scene(STEEL_ON_GLASS, ["bodies.profile.radius=20 mm", 'experiment.force="5 N"'])
     assert (scene.bodies.profile.curvature_radius, scene.experiment.compression) == (0.02, 5.0)

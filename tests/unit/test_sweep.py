@@ -261,8 +261,8 @@ def test_an_executor_that_is_not_there_says_what_to_install(tmp_path: Path, monk
 
 def test_progress_counts_points_and_tells_of_those_that_failed(tmp_path: Path) -> None:
     class Heard(Silent):
-        notes: list[str] = []  # noqa: RUF012
-        points = 0
+        def __init__(self) -> None:
+            self.points, self.notes = 0, list[str]()
 
         def advance(self, steps: int) -> None:
             self.points += steps

@@ -59,7 +59,7 @@ def lammps_forces(session: Session, table: Table, closest: float, r: Array) -> t
     """Forces [FU] (n, 3) on the upper one of n pairs, each alone, r apart along z and ε along y; and their energy."""
     write_table(table, closest, session.folder / "interaction.table")
     text = (session.folder / "interaction.table").read_text()
-    offset = float(re.search(r"e = (\S+) LU", text)[1])  # type: ignore[index]
+    offset = float(re.search(r"e = (\S+) LU", text)[1])
     apart = 2.0 * table.cutoff + 1.0
     x = apart * np.arange(len(r))
     lines = [f"# pairs\n\n{2 * len(r)} atoms\n2 atom types\n", f"{-1.0} {x[-1] + 1.0} xlo xhi", "-1 2 ylo yhi"]

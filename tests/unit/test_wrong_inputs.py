@@ -14,26 +14,9 @@ from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.remedies import Change, _in_si
 from contact1d.workflow.scene import Scene, SceneError, read_scene
 from contact1d.workflow.units import Scales
+from tests.scenes import STEEL_ON_GLASS
 
 SHIPPED = (Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "pull_off.toml").read_text(encoding="utf-8")
-STEEL_ON_GLASS = """
-title = "Steel on glass"
-
-[bodies]
-particles = "auto"
-spacing = "4 µm"
-profile = { kind = "parabola", radius = "10 mm" }
-bulk_stiffness = "auto"
-lower = "rigid_plane"
-
-[material]
-upper = { youngs_modulus = "210 GPa", poisson_ratio = 0.3 }
-lower = { youngs_modulus = "70 GPa", poisson_ratio = 0.22 }
-
-[experiment]
-kind = "load"
-force = "10 N"
-"""
 R, F, H = "bodies.profile.radius", "experiment.force", "bodies.spacing"
 E, NU = "material.upper.youngs_modulus", "material.upper.poisson_ratio"
 LENGTH, PRESSURE = "must be a length, such as 10 mm", "must be a pressure, such as 210 GPa"

@@ -131,7 +131,7 @@ def reduced_time(pairs: FoldedPairs, settings: Settings, mass: float, load: floa
     def there(_: float, y: Floats) -> float:
         return float(y[0] - end)
 
-    there.terminal = True  # type: ignore[attr-defined]
+    there.terminal = True  # type: ignore[attr-defined]  # scipy reads it off the function
     found = solve_ivp(motion, (0.0, 1e9), [begin, 0.0], "LSODA", events=there, rtol=1e-8, atol=1e-12)
     return float(found.t[-1])
 

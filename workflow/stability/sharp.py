@@ -58,7 +58,6 @@ def drawn(rng: np.random.Generator, number: int) -> tuple[PairCase, str, Callabl
     tolerance = float(10.0 ** rng.uniform(-4.0, -2.0))
     case = PairCase(f"sharp_{number}", ratio, profile, particles, preload, tolerance, timed and kind != "path")
     group = f"{kind} {'in time' if timed else 'at rest'}"
-    numbers: Callable[[], dict[str, float]] = lambda: _pulled(case)  # noqa: E731
     if kind == "load":
         tension = bool(rng.random() < 0.5)
         load = -float(rng.uniform(0.1, 0.95)) * case.exact().adhesion(0.0)[0] if tension else preload
@@ -74,7 +73,7 @@ def drawn(rng: np.random.Generator, number: int) -> tuple[PairCase, str, Callabl
         tables: dict[str, Any] = {"experiment": {"kind": "path", "method": method, "displacements": way}}
         case = _with(case, tables | ({"damping": {"coefficient": "auto"}} if timed else {}))
         return case, group, lambda: _passed(case, deepest)
-    return case, group, numbers
+    return case, group, lambda: _pulled(case)
 
 
 def _fits(case: PairCase) -> bool:
