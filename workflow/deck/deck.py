@@ -184,7 +184,9 @@ class Deck:
     def _step(self, kind: type[Row]) -> str:
         if self.stepped and kind is Displace:
             return "steps/sweep"
-        return "steps/displace_gently" if kind is Displace and self.settings.gentle else f"steps/{kind.step}"
+        if kind is Displace and self.settings.gentle:
+            return "steps/displace_gently"
+        return "steps/displace_snapping" if kind is Displace and self.settings.snaps else f"steps/{kind.step}"
 
     @property
     def _line(self) -> str:

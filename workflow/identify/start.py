@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 from contact1d.workflow.identify.target import IdentifyError, Target, require_reachable
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.estimate import ContactEstimate, particles_estimate
-from contact1d.workflow.settings.settings import interaction_law
+from contact1d.workflow.settings.scales import interaction_law
 
 Array = NDArray[np.float64]
 SLOPE_STEP = 0.03

@@ -185,7 +185,8 @@ class ContactEstimate:
 
     def stuck_stiffness(self, displacement: float) -> float:
         """Contact stiffness [FU/LU] of all pairs together that have not let go at a displacement [LU]; one at least."""
-        width = 2.0 * self.half_width(displacement, self.snap[0])
+        lets_go = self.snap[0] if self.snaps else float(self.gap[self.force.argmin()])
+        width = 2.0 * self.half_width(displacement, lets_go)
         return max(1.0, width / self.spacing) * self.stiffness
 
     def parted(self, share: float) -> float:

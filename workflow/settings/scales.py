@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from contact1d.potentials import DoubleExponential
+from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.estimate import ContactEstimate
 from contact1d.workflow.settings.registry import slide_cutoff
@@ -14,6 +14,15 @@ from contact1d.workflow.settings.size import reaches_too_far
 
 THERMAL_SIGMAS = 5.0
 """Standard deviations by which a particle's thermal motion brings it nearer."""
+
+
+def interaction_law(scene: Scene) -> DoubleExponential | None:
+    """The scene's law, or None on a rigid plane."""
+    if scene.interaction is None:
+        return None
+    terms = scene.interaction
+    attraction = None if terms.attraction is None else Exponential(terms.attraction.amplitude, terms.attraction.range)
+    return DoubleExponential(Exponential(terms.repulsion.amplitude, terms.repulsion.range), attraction)
 
 
 def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: float) -> float:

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from contact1d.potentials import DoubleExponential, Exponential
+from contact1d.potentials import DoubleExponential
 from contact1d.potentials.table import Table, table_for
 from contact1d.workflow.scene import Measured, Scene
 from contact1d.workflow.settings.adhesion import estimate_on_plane
@@ -25,6 +26,7 @@ from contact1d.workflow.settings.scales import (
     cutoff_for,
     force_scale_of,
     innermost_distance,
+    interaction_law,
     loading_step_of,
     plane_stiffness_of,
     thermal_motion,
@@ -139,9 +141,19 @@ class Settings:
         return self.part < 1.0
 
     @property
+    def snaps(self) -> bool:
+        """Whether particles snap to the opposite ones and off them."""
+        return self.law is not None and self.estimate.snaps
+
+    @cached_property
+    def is_toothed(self) -> bool:
+        """Whether the tension falls between two of its tops: pairs let go one by one; they snap, or nearly so."""
+        return self.snaps or (self.law is not None and self.estimate.tooth(self.particles) < math.inf)
+
+    @property
     def is_smooth(self) -> bool:
         """Whether the force is a smooth function of the displacement: particles, and none of them snaps."""
-        return self.law is not None and not self.estimate.snaps
+        return self.law is not None and not self.snaps
 
     @property
     def strongest(self) -> tuple[float, float]:
@@ -182,15 +194,6 @@ class Settings:
             smooth_step=part * self.smooth_step,
             longest_move=part * self.longest_move,
         )
-
-
-def interaction_law(scene: Scene) -> DoubleExponential | None:
-    """The scene's law, or None on a rigid plane."""
-    if scene.interaction is None:
-        return None
-    terms = scene.interaction
-    attraction = None if terms.attraction is None else Exponential(terms.attraction.amplitude, terms.attraction.range)
-    return DoubleExponential(Exponential(terms.repulsion.amplitude, terms.repulsion.range), attraction)
 
 
 def settings_for(scene: Scene, tolerance: float | None = None, calibration: Calibration | None = None) -> Settings:
@@ -240,7 +243,8 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
         estimate = particles_estimate(
             law, shape, bodies.own_spacing, scene.bulk_stiffness, cutoff, rest, chains=scene.chains, row=bodies.spacing
         )
-    largest = _largest_displacement(scene, estimate)
+    load = scene.experiment.compression
+    largest = max(scene.experiment.places()) if load is None else estimate.displacement_at(load)
     particles, lower = chains_of(scene, estimate, largest, calibration.chain * tolerance)
     require_body(bodies, largest, particles)
     require_apex(scene, particles, cutoff)
@@ -293,8 +297,3 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
         calm_damping=dynamics.calm_damping,
         calm_step=dynamics.calm_step,
     )
-
-
-def _largest_displacement(scene: Scene, estimate: ContactEstimate) -> float:
-    compression = scene.experiment.compression
-    return max(scene.experiment.places()) if compression is None else estimate.displacement_at(compression)

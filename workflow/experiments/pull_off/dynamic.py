@@ -166,13 +166,13 @@ def _outcome(context: RunContext, search: Search, loaded: Held, critical: Held, 
     half = 0.5 * (search.broken - search.best) + critical.unbalance + missed_teeth(context.deck, search)
     rest = (*(h.last for h in search.held[:-1]), critical.last)
     zero_radius = zero.radius_or_spot
-    if settings.estimate.snaps:
+    if settings.is_toothed:
         critical_radius, spread = _radius_between_snaps(context, critical.last, zero_radius.value, half / adhesion)
     else:
         critical_radius, spread = _critical_radius(rest)
     slope = abs(critical_radius.value - zero_radius.value) / adhesion
     at_zero = abs(zero.force)
-    if settings.estimate.snaps:
+    if settings.is_toothed:
         swung = overshoot(settings, scene.bodies.mass, loaded.last.force, 0.0) * loaded.last.force
         at_zero += min(swung, adhesion)  # beyond the largest tension the plate would not have come back
     quantities = {
@@ -189,14 +189,16 @@ def _outcome(context: RunContext, search: Search, loaded: Held, critical: Held, 
 
 
 def missed_teeth(deck: Deck, search: Search) -> float:
-    """Tension [FU] that a plate may miss which swings past a tooth of the tension, where pairs snap."""
-    return EDGES * deck.settings.estimate.snap[1] * search.overshoot(search.best)
+    """Tension [FU] that a plate may miss which swings past a tooth of the tension, where pairs let go one by one."""
+    settings = deck.settings
+    lost = (settings.estimate.snap[1] or settings.strongest[1]) if settings.is_toothed else 0.0
+    return EDGES * lost * search.overshoot(search.best)
 
 
 def _radius_between_snaps(
     context: RunContext, critical: State, zero_radius: float, missed: float
 ) -> tuple[Quantity, float]:
-    """Radius of the last state that held, where pairs snap: the tension's teeth have no smooth top to go on to.
+    """Radius of the last state that held, where pairs let go one by one: a tooth has no smooth top to go on to.
 
     The pull-off may be at the next tooth, with one particle less at each edge, and further off where up to twice the
     share `missed` of the tension is left to it: the teeth's tops lie near F = F_A (1 − y²), y = (a − a_cr)/(a₀ − a_cr).

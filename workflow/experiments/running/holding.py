@@ -2,9 +2,9 @@
 
 LAMMPS itself looks every few timesteps whether the plate is at rest or out of reach, and stops there; only then a state
 is measured. With automatic damping each load has the drag that is critical for the contact's stiffness under it: the
-stiffness falls to zero towards the pull-off, and one drag for all makes the last tensions creep. Where pairs snap, it
-does not fall: F(d) is a row of teeth, each as stiff as the pairs that still hold, and a plate that swings past one
-lets go of pairs that would have held.
+stiffness falls to zero towards the pull-off, and one drag for all makes the last tensions creep. Where pairs let go one
+by one, it does not fall: F(d) is a row of teeth, each as stiff as the pairs that still hold, and a plate that swings
+past one lets go of pairs that would have held.
 """
 
 from __future__ import annotations
@@ -69,8 +69,8 @@ class Held:
 
 
 def stiffness_under(settings: Settings, load: float) -> float:
-    """Contact stiffness [FU/LU] under a load [FU]; where pairs snap, that of all that are stuck when deepest."""
-    if settings.estimate.snaps:
+    """Contact stiffness [FU/LU] under a load [FU]; of a row of teeth, that of all that are stuck when deepest."""
+    if settings.is_toothed:
         return settings.estimate.stuck_stiffness(settings.largest_displacement)
     return settings.estimate.stiffness_under(load)
 
