@@ -27,6 +27,8 @@ ROWS = 2e-3
 AREA = 1e-3
 """Of the loop over the same rows; measured 1e-4."""
 DEEPEST = 0.1
+BEFORE = 1e-3
+"""A row over the range, before the snap."""
 
 
 def scene(ratio: float, wide: float, method: str = "quasistatic") -> dict[str, Any]:
@@ -97,3 +99,17 @@ def test_a_sharp_maximum_between_two_rows_is_within_the_claim(
     exact, _ = pairs.adhesion(TENSION)
     assert abs(found.value - exact) <= found.uncertainty
     assert found.uncertainty <= 0.5 * exact
+
+
+@pytest.mark.parametrize("wide", [0.1, 1.0])
+@pytest.mark.parametrize("ratio", [3.0, 30.0])
+def test_pairs_that_are_drawn_apart_hold_until_their_snap(ratio: float, wide: float, tmp_path: Path) -> None:
+    """A body that is moved with its particles puts a pair behind the top that still holds it: up to 2 % of a range."""
+    case = PairCase("hold", ratio, shaped("flat_punch", 3, 0.0), 3, 0.0, TOLERANCE)
+    pairs = case.exact()
+    assert pairs.fold is not None
+    off = pairs.interaction.force_free_distance() - pairs.fold.gap_off
+    rows = [off + BEFORE * RANGE + i * wide * RANGE for i in range(6)]
+    scene = {"title": "hold"} | case.scene() | {"experiment": {"kind": "path", "displacements": [DEEPEST, *rows[::-1]]}}
+    held = run(scene, tmp_path / "run", figures=False).curve.force[-1]
+    assert held == pytest.approx(float(pairs.unloading(np.array([rows[0]]), DEEPEST)[0]), rel=ROWS)
