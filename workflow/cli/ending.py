@@ -141,13 +141,14 @@ def _of_program(error: BaseException, what: str, blame: int) -> tuple[str, int] 
     if isinstance(error, SceneError):
         return problems_in("the scene", error), blame
     from contact1d.workflow.engine.failure import EngineError
+    from contact1d.workflow.engine.launcher import RanksError
     from contact1d.workflow.errors import FolderError, RunError
     from contact1d.workflow.identify import IdentifyError
     from contact1d.workflow.identify.finished import FinishedRunError
     from contact1d.workflow.settings.settings import SettingsError
     from contact1d.workflow.sweep.executors import ExecutorError
 
-    if isinstance(error, FolderError | FinishedRunError | ExecutorError):
+    if isinstance(error, FolderError | FinishedRunError | ExecutorError | RanksError):
         return str(error), CALL_IS_WRONG
     if isinstance(error, SettingsError | IdentifyError):
         return (str(error) if blame == CALL_IS_WRONG else f"{what} failed: {error}"), blame

@@ -16,12 +16,15 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from itertools import accumulate, pairwise
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
+
+from contact1d.workflow.engine.launcher import Calls, cause_among_ranks, launcher_of
 
 BOOT = """
 import sys, types
@@ -29,11 +32,11 @@ for depth, name in enumerate(("contact1d", "contact1d.workflow", "contact1d.work
     package = types.ModuleType(name)
     package.__path__ = [sys.argv[1 + depth]]
     sys.modules[name] = package
-from contact1d.workflow.engine.worker import main
-main(*map(int, sys.argv[4:]))
 """
 """How a worker starts: from our files, whatever the current folder and the user's script are, and from no more of them
 than it needs: the packages' `__init__.py` do not run."""
+ALONE = "from contact1d.workflow.engine.worker import main\nmain(*map(int, sys.argv[4:]))"
+RANKS = "from contact1d.workflow.engine.ranks import main\nmain(*sys.argv[4:])"
 
 TICK = 0.2
 """Seconds between two looks at the deadline and the progress while a worker is busy."""
@@ -88,34 +91,55 @@ class WorkerProcess:
     """A running worker. After any failure it is dead, and stays so.
 
     Attributes:
-        pid: its process id.
+        ranks: MPI ranks that it is.
+        pid: its process id; that of the launcher for several ranks.
         last_words: what it printed before it died; "" while it lives.
     """
 
-    def __init__(self) -> None:
-        """Start a worker, which loads LAMMPS."""
-        self._connection, theirs = Pipe()
+    def __init__(self, ranks: int = 1) -> None:
+        """Start a worker of so many MPI ranks, which loads LAMMPS.
+
+        Raises:
+            RanksError: several ranks, and what they need isn't installed.
+        """
+        self.ranks = ranks
         self._output = tempfile.TemporaryFile()  # noqa: SIM115 (open as long as the worker lives)
-        with tempfile.TemporaryFile() as file:
-            file.truncate(16)
-            self._board_map = mmap.mmap(file.fileno(), 16)
-            numbers = theirs.fileno(), file.fileno(), os.getpid()
-            packages = (str(parent) for parent in reversed(Path(__file__).parents[:3]))
-            command = [sys.executable, "-c", BOOT, *packages, *map(str, numbers)]
-            self._process = subprocess.Popen(
-                command,
-                pass_fds=(theirs.fileno(), file.fileno()),
-                stdin=subprocess.DEVNULL,
-                stdout=self._output,
-                stderr=subprocess.STDOUT,
-                env=worker_environment(os.environ),
-            )
-        theirs.close()
+        self._start() if ranks == 1 else self._start_ranks()
         self._board = memoryview(self._board_map).cast("q")
         self._ready = select.poll()
         self._ready.register(self._connection.fileno(), select.POLLIN)
         self.pid = self._process.pid
         self.last_words, self._last_board = "", (0, 0)
+
+    def _start(self) -> None:
+        self._connection, theirs = Pipe()
+        with tempfile.TemporaryFile() as file:
+            file.truncate(16)
+            self._board_map = mmap.mmap(file.fileno(), 16)
+            self._run([], ALONE, (theirs.fileno(), file.fileno(), os.getpid()), theirs.fileno(), file.fileno())
+        theirs.close()
+
+    def _start_ranks(self) -> None:
+        """A launcher starts the ranks, wherever it does; what a child inherits they may not have."""
+        launcher = launcher_of(self.ranks)
+        with tempfile.TemporaryDirectory() as folder, (Path(folder) / "board").open("w+b") as file:
+            file.truncate(16)
+            self._board_map = mmap.mmap(file.fileno(), 16)
+            with Calls(Path(folder) / "socket") as calls:
+                self._run(launcher, RANKS, (calls.address, file.name))
+                self._connection = calls.answered(self._process)
+
+    def _run(self, launcher: Sequence[str], entry: str, arguments: tuple[object, ...], *files: int) -> None:
+        packages = (str(parent) for parent in reversed(Path(__file__).parents[:3]))
+        self._process = subprocess.Popen(
+            [*launcher, sys.executable, "-c", BOOT + entry, *packages, *map(str, arguments)],
+            pass_fds=files,
+            stdin=subprocess.DEVNULL,
+            stdout=self._output,
+            stderr=subprocess.STDOUT,
+            env=worker_environment(os.environ),
+            start_new_session=bool(launcher),  # Ctrl-C reaches the whole terminal group; the parent decides
+        )
 
     @property
     def alive(self) -> bool:
@@ -163,7 +187,7 @@ class WorkerProcess:
 
     def kill(self) -> None:
         """End it at once and release everything that it held."""
-        self._process.kill()
+        self._end()
         self._release()
 
     def stop(self) -> None:
@@ -172,7 +196,7 @@ class WorkerProcess:
         try:
             self._process.wait(1.0)
         except subprocess.TimeoutExpired:
-            self._process.kill()
+            self._end()
         self._release()
 
     def forget(self) -> None:
@@ -180,6 +204,14 @@ class WorkerProcess:
         self._connection.close()
         self._output.close()
         self._process.returncode = 0
+
+    def _end(self) -> None:
+        """Kill it; a launcher is asked first, which then ends its ranks, on other machines too."""
+        if self.ranks > 1:
+            self._process.terminate()
+            with suppress(subprocess.TimeoutExpired):
+                self._process.wait(1.0)
+        self._process.kill()
 
     def _release(self) -> None:
         self._process.wait()
@@ -196,9 +228,11 @@ class WorkerProcess:
         try:
             self._process.wait(5.0)
         except subprocess.TimeoutExpired:
-            self._process.kill()
+            self._end()
         self._release()
         code = self._process.returncode
+        if self.ranks > 1 and (cause := cause_among_ranks(self.ranks, self.last_words)):
+            return cause
         if code >= 0:
             words = self.last_words.splitlines()[-1:] or ["no message"]
             return f"the LAMMPS process ended by itself with exit code {code} ({words[0]})"
@@ -212,15 +246,20 @@ _idle: list[WorkerProcess] = []
 _lock = threading.Lock()
 
 
-def borrow() -> WorkerProcess:
-    """Return a worker that nobody else uses: an idle one if it lives, otherwise a new one."""
+def borrow(ranks: int = 1) -> WorkerProcess:
+    """Return a worker of so many ranks that nobody else uses: an idle one if it lives, otherwise a new one.
+
+    Raises:
+        RanksError: several ranks, and what they need isn't installed.
+    """
     with _lock:
-        while _idle:
-            worker = _idle.pop()
+        while fitting := [worker for worker in _idle if worker.ranks == ranks]:
+            worker = fitting[-1]
+            _idle.remove(worker)
             if worker.alive:
                 return worker
             worker.kill()
-    return WorkerProcess()
+    return WorkerProcess(ranks)
 
 
 def start_ahead() -> None:

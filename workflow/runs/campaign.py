@@ -29,6 +29,7 @@ from contact1d.workflow.experiments.running.trust import UntrustedError
 from contact1d.workflow.runs.cores import cores
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.runs.plausibility import implausible
+from contact1d.workflow.runs.ranks import require_ranks
 from contact1d.workflow.runs.refinement import Refined, refined
 from contact1d.workflow.runs.report import FILES, FORMATS, curve_of, failure, results, write_results, write_tables
 from contact1d.workflow.runs.scales import scales_of
@@ -52,6 +53,7 @@ def run(
     settings: Settings | None = None,
     retries: bool = True,
     workers: int | None = None,
+    ranks: int = 1,
 ) -> Run:
     """Run a scene in a folder and leave everything there.
 
@@ -64,9 +66,11 @@ def run(
         settings: in place of those that `settings_for` chooses and refines; for cost studies.
         retries: whether smaller steps are tried where the bodies went through each other; a trial does without.
         workers: repeats of a thermal pull-off at a time; None: as many as there are processors.
+        ranks: of MPI, that share one large contact; the numbers are those of one.
 
     Raises:
         SceneError: it is no scene; nothing is written.
+        RanksError: several ranks can't run it, or are no use; nothing is written.
         SettingsError: the scene's numbers lead to no computable system; nothing is written.
         FolderError: the folder holds something else, or another run is at work in it.
         RunError: LAMMPS failed, or the result can't be trusted.
@@ -75,10 +79,11 @@ def run(
     scene = _scene(scene)
     deck = Deck(scene, settings or settings_for(scene))
     text = _planned_text(deck)
+    require_ranks(deck, ranks)
     folder = prepare(Path(folder))
     with alone(folder):
         _write(deck, text, folder)
-        context = RunContext(deck, folder, progress or Silent(), time_limit, retries, workers or cores())
+        context = RunContext(deck, folder, progress or Silent(), time_limit, retries, workers or cores(), ranks)
         return _run(context, started, figures, refine=settings is None)
 
 

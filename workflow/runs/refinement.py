@@ -107,7 +107,7 @@ def _pass(context: RunContext, tolerance: float) -> tuple[Deck, Outcome]:
     folder = context.folder / FOLDER
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
-    finer = RunContext(deck, folder, context.progress, context.time_limit)
+    finer = RunContext(deck, folder, context.progress, context.time_limit, workers=context.workers, ranks=context.ranks)
     try:
         write_system(deck, folder)
         outcome = perform(finer)

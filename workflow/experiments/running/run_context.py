@@ -27,6 +27,7 @@ class RunContext:
         time_limit: for each contact [s].
         retries: whether a search in which bodies went through each other begins anew in smaller steps.
         workers: contacts that an experiment may have open at a time.
+        ranks: of MPI, for each of them.
         lammps_seconds, lammps_cpu_seconds, steps: summed over all contacts so far.
         rows_seconds: of the first, what rows took: without the deck's head and the files of states.
         phase, timestep: where the latest contact is or ended.
@@ -39,6 +40,7 @@ class RunContext:
     time_limit: float
     retries: bool = True
     workers: int = 1
+    ranks: int = 1
     lammps_seconds: float = field(default=0.0, init=False)
     lammps_cpu_seconds: float = field(default=0.0, init=False)
     rows_seconds: float = field(default=0.0, init=False)
@@ -56,7 +58,7 @@ class RunContext:
         """
         if purpose:
             self.progress.note(purpose)
-        with Engine.session(self.folder, time_limit=self.time_limit, progress=self.progress) as session:
+        with Engine.session(self.folder, self.time_limit, self.progress, self.ranks) as session:
             contact: Contact | None = None
             try:
                 contact = Contact(self.deck, session, meanwhile)

