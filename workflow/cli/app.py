@@ -71,7 +71,7 @@ def run(
         int | None, typer.Option(min=1, help="Repeats of a thermal pull-off at a time.", show_default="processors")
     ] = None,
     ranks: Annotated[
-        int, typer.Option(min=1, help="MPI ranks that share one large contact; see docs/how_to/ranks.md.")
+        int, typer.Option(min=1, help="MPI ranks (processors) that share one large contact.")
     ] = 1,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the numbers only.")] = False,
 ) -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import mmap
 import os
+import select
 import sys
 import threading
 import time
@@ -47,8 +48,11 @@ def main(socket: str, board: str) -> None:
     connection = Client(socket, "AF_UNIX")
     runner = Runner(memoryview(shared).cast("q"), world)
 
+    hung_up = select.poll()
+    hung_up.register(connection.fileno(), getattr(select, "POLLRDHUP", select.POLLHUP))  # the former is Linux's
+
     def gone() -> bool:
-        return os.getppid() != launcher
+        return bool(hung_up.poll(0)) or os.getppid() != launcher
 
     threading.Thread(target=watch, args=(runner, gone), daemon=True).start()
     _tell(world, ("prepare",))

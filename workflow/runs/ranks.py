@@ -27,10 +27,10 @@ def require_ranks(deck: Deck, ranks: int) -> None:
             "with [noise] each rank draws random forces of its own, so that several give other numbers than one: take "
             "one rank, and seeds side by side (contact1d sweep over noise.seed)"
         )
-    if scene.stands:
+    if scene.bodies.lower == "rigid_plane":
         raise RanksError(
-            "on a rigid plane particles that have no springs between them don't feel each other, and LAMMPS takes the "
-            "least part of a run: there is nothing to share among ranks, take one"
+            "on a rigid plane there are no forces between particles but neighbour springs, so that LAMMPS hands no "
+            "particles from rank to rank: take one rank"
         )
     if deck.settings.far > 0.0 and scene.tangential_stiffness > scene.bulk_stiffness:
         raise RanksError(
