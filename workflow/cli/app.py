@@ -70,9 +70,7 @@ def run(
     workers: Annotated[
         int | None, typer.Option(min=1, help="Repeats of a thermal pull-off at a time.", show_default="processors")
     ] = None,
-    ranks: Annotated[
-        int, typer.Option(min=1, help="MPI ranks (processors) that share one large contact.")
-    ] = 1,
+    ranks: Annotated[int, typer.Option(min=1, help="MPI ranks (processors) that share one large contact.")] = 1,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the numbers only.")] = False,
 ) -> None:
     """Run a scene and print its numbers, each with its uncertainty."""
