@@ -85,6 +85,12 @@ def ranks_of(launched: int) -> list[int]:
     return sorted(pid for pid, parent in parents.items() if parent in proxies)
 
 
+def wait_for_the_end_of(ranks: list[int]) -> None:
+    """Ranks that live on end this test by its time limit."""
+    while any(map(alive, ranks)):
+        time.sleep(0.02)
+
+
 @pytest.mark.parametrize("name", SCENES)
 def test_two_ranks_have_the_numbers_of_one(tmp_path: Path, name: str) -> None:
     one, two = (run(SCENES[name], tmp_path / str(ranks), figures=False, ranks=ranks) for ranks in (1, 2))
@@ -116,7 +122,7 @@ def test_a_rank_that_is_killed_ends_the_others_in_words(tmp_path: Path, which: i
             threading.Timer(0.5, os.kill, (ranks[which], signal.SIGKILL)).start()
             session.execute(ENDLESS_RUN, phase="on and on")
     assert caught.value.phase == "on and on"
-    assert not any(map(alive, ranks))
+    wait_for_the_end_of(ranks)
 
 
 @pytest.mark.parametrize("place", [5.0, 15.0])
@@ -128,7 +134,7 @@ def test_an_error_on_one_rank_is_that_of_the_run(tmp_path: Path, place: float) -
             session.execute(ENDLESS)
             ranks = ranks_of(session.pid)
             session.execute(alone)
-    assert not any(map(alive, ranks))
+    wait_for_the_end_of(ranks)
 
 
 def test_a_position_that_is_no_number_is_found_on_any_rank(tmp_path: Path) -> None:
@@ -145,7 +151,7 @@ def test_ranks_out_of_time_are_ended(tmp_path: Path) -> None:
             session.execute(ENDLESS)
             ranks = ranks_of(session.pid)
             session.execute(ENDLESS_RUN)
-    assert not any(map(alive, ranks))
+    wait_for_the_end_of(ranks)
 
 
 def test_ranks_are_kept_for_the_next_session_and_end_with_the_program(tmp_path: Path) -> None:
@@ -157,10 +163,7 @@ def test_ranks_are_kept_for_the_next_session_and_end_with_the_program(tmp_path: 
     assert pids[0] == pids[1]
     ranks = ranks_of(pids[0])
     stop_idle()
-    until = time.monotonic() + 10.0
-    while any(map(alive, ranks)):
-        assert time.monotonic() < until
-        time.sleep(0.02)
+    wait_for_the_end_of(ranks)
 
 
 PARENT = """
@@ -181,10 +184,7 @@ def test_ranks_end_with_a_parent_that_is_killed(tmp_path: Path) -> None:
         ranks = ranks_of(int(parent.stdout.readline()))
         assert len(ranks) == 2
         parent.kill()
-    until = time.monotonic() + 20.0
-    while any(map(alive, ranks)):
-        assert time.monotonic() < until
-        time.sleep(0.02)
+    wait_for_the_end_of(ranks)
 
 
 REFUSED = {
