@@ -9,20 +9,40 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from heapq import heappop, heappush
 from itertools import count
 
 from contact1d.workflow.engine.failure import EngineError
 from contact1d.workflow.errors import Contact1dError
-from contact1d.workflow.experiments.running.trust import ChainEndError, ThroughError, UntrustedError
+from contact1d.workflow.experiments.running.trust import (
+    ChainEndError,
+    OffEndError,
+    PartedError,
+    RestlessError,
+    ThroughError,
+    UnsteadyError,
+    UntrustedError,
+)
+from contact1d.workflow.runs.change import STEP, rounded
+from contact1d.workflow.runs.change import Change as Change
 from contact1d.workflow.runs.scales import scales_of
+from contact1d.workflow.runs.sliding import (
+    automatic_drag,
+    chain_of,
+    longer_lower_chain,
+    longer_way,
+    no_pull,
+    shorter_way,
+    stiffer_cantilever,
+    stronger_attraction,
+)
 from contact1d.workflow.scene import Load, Path, PullOff, Scene, SceneError, Slide
 from contact1d.workflow.scene.experiments import Span
 from contact1d.workflow.scene.places import places
-from contact1d.workflow.scene.problems import as_toml
 from contact1d.workflow.settings.estimate import NotCarriedError
+from contact1d.workflow.settings.way import ShortChainError
 from contact1d.workflow.units import NUMBER
 
 MOST_TRIALS = 12
@@ -31,40 +51,11 @@ ENOUGH = 2
 """Changes that help after which no other is tried."""
 NARROW = 0.8
 """Range of the repulsion over half of the attraction's below which it counts as short."""
-STEP = 3.0
-"""Factor of a change to a load, a stiffness or an amplitude."""
 
 Reader = Callable[["Change"], Scene]
 """The scene with a change. Raises SceneError."""
 Attempt = Callable[[Scene], object]
 """Runs a scene; raises a Contact1dError where it gives no result."""
-
-
-@dataclass(frozen=True)
-class Change:
-    """Values by dotted keys, and effects that are left out."""
-
-    values: Mapping[str, object] = field(default_factory=dict)
-    without: tuple[str, ...] = ()
-
-    @property
-    def overrides(self) -> tuple[str, ...]:
-        """The values as `read_scene` takes them."""
-        return tuple(
-            f"{key}={value if isinstance(value, str) else as_toml(value)}" for key, value in self.values.items()
-        )
-
-    def __str__(self) -> str:
-        """As options of `contact1d run`."""
-        return " ".join([*(f"--without {name}" for name in self.without), *(f"--set {one}" for one in self.overrides)])
-
-    def then(self, other: Change) -> Change:
-        """Both; of two values for a key the other's."""
-        return Change({**self.values, **other.values}, tuple(dict.fromkeys((*self.without, *other.without))))
-
-    def touches(self, other: Change) -> bool:
-        """Whether both change the same."""
-        return bool(self.values.keys() & other.values.keys() or set(self.without) & set(other.without))
 
 
 @dataclass(frozen=True)
@@ -171,6 +162,16 @@ def _kinds(error: Contact1dError) -> tuple[Callable[[Scene], Change | None], ...
         return (_longer_chain,)
     if isinstance(cause, NotCarriedError):
         return (_smaller_load, _stronger_core)
+    if isinstance(cause, ShortChainError):
+        return (chain_of(cause.needed, cause.above), shorter_way)
+    if isinstance(cause, UnsteadyError):
+        return (longer_way, stiffer_cantilever)
+    if isinstance(cause, OffEndError):
+        return (longer_lower_chain, shorter_way, automatic_drag)
+    if isinstance(cause, PartedError):
+        return (no_pull, stronger_attraction)
+    if isinstance(cause, RestlessError):
+        return (automatic_drag, _without_horizontal, _softer_core, _stiffer_springs, _smaller_load, _longer_chain)
     if isinstance(cause, UntrustedError):
         return (_without_horizontal, _softer_core, _stiffer_springs, _smaller_load, _longer_chain)
     return ()
@@ -190,13 +191,13 @@ def _longer_chain(scene: Scene) -> Change | None:
 def _smaller_load(scene: Scene) -> Change | None:
     experiment = scene.experiment
     if isinstance(experiment, PullOff):
-        return Change({"experiment.preload": _rounded(experiment.preload / STEP)})
+        return Change({"experiment.preload": rounded(experiment.preload / STEP)})
     if isinstance(experiment, Load):
-        return Change({"experiment.force": _rounded(experiment.force / STEP)})
+        return Change({"experiment.force": rounded(experiment.force / STEP)})
     if isinstance(experiment, Path) and isinstance(experiment.displacements, Span) and experiment.displacements.to > 0:
-        return Change({"experiment.displacements.to": _rounded(experiment.displacements.to / STEP)})
+        return Change({"experiment.displacements.to": rounded(experiment.displacements.to / STEP)})
     if isinstance(experiment, Slide):
-        return Change({"experiment.normal_force": _rounded(experiment.normal_force / STEP)})
+        return Change({"experiment.normal_force": rounded(experiment.normal_force / STEP)})
     return None
 
 
@@ -204,7 +205,7 @@ def _stronger_core(scene: Scene) -> Change | None:
     if scene.interaction is None:
         return None
     key = "interaction.repulsion.amplitude"
-    return Change({key: _rounded(STEP * scene.interaction.repulsion.amplitude)})
+    return Change({key: rounded(STEP * scene.interaction.repulsion.amplitude)})
 
 
 def _softer_core(scene: Scene) -> Change | None:
@@ -213,28 +214,23 @@ def _softer_core(scene: Scene) -> Change | None:
         return None
     half = 0.5 * scene.interaction.attraction.range
     longer = scene.interaction.repulsion.range < NARROW * half
-    return Change({"interaction.repulsion.range": _rounded(half)}) if longer else None
+    return Change({"interaction.repulsion.range": rounded(half)}) if longer else None
 
 
 def _weaker_attraction(scene: Scene) -> Change | None:
     if scene.interaction is None or scene.interaction.attraction is None:
         return None
     key = "interaction.attraction.amplitude"
-    return Change({key: _rounded(scene.interaction.attraction.amplitude / STEP)})
+    return Change({key: rounded(scene.interaction.attraction.amplitude / STEP)})
 
 
 def _shorter_attraction(scene: Scene) -> Change | None:
     if scene.interaction is None or scene.interaction.attraction is None:
         return None
-    shorter = _rounded(0.5 * scene.interaction.attraction.range)
+    shorter = rounded(0.5 * scene.interaction.attraction.range)
     return Change({"interaction.attraction.range": shorter}) if shorter > scene.interaction.repulsion.range else None
 
 
 def _stiffer_springs(scene: Scene) -> Change | None:
     given = scene.bodies.bulk_stiffness
-    return None if given == "auto" else Change({"bodies.bulk_stiffness": _rounded(STEP * given)})
-
-
-def _rounded(value: float) -> float:
-    """Three digits."""
-    return float(f"{value:.3g}") if math.isfinite(value) else value
+    return None if given == "auto" else Change({"bodies.bulk_stiffness": rounded(STEP * given)})

@@ -11,6 +11,15 @@ from contact1d.workflow.settings.chain import SettingsError
 from contact1d.workflow.settings.settings import Settings
 
 
+class ShortChainError(ValueError):
+    """A lower chain that is too short for the way, and how many particles it needs under how many."""
+
+    def __init__(self, needed: int, above: int) -> None:
+        """Keep both."""
+        super().__init__(needed, above)
+        self.needed, self.above = needed, above
+
+
 def contact_half_width(scene: Scene, settings: Settings) -> float:
     """Half-width [LU] in which upper particles feel more than the tolerance's share of the largest force."""
     estimate, largest = settings.estimate, settings.largest_displacement
@@ -33,12 +42,13 @@ def require_way(scene: Scene, settings: Settings) -> None:
     half, way = contact_half_width(scene, settings), scene.experiment.way + abs(bodies.upper_offset or 0.0)
     end = 0.5 * settings.lower_particles * bodies.spacing
     if end < half + way:
+        needed = 2 * math.ceil((half + way) / bodies.spacing)
         raise SettingsError(
             f"the lower chain is too short for the way: it ends {end:.4g} LU from its middle, and a contact that "
             f"reaches {half:.4g} LU to each side is drawn {way:.4g} LU along it. Take at least "
-            f"{2 * math.ceil((half + way) / bodies.spacing)} bodies.particles (with upper_particles = "
+            f"{needed} bodies.particles (with upper_particles = "
             f'{settings.particles}), or "auto", or a shorter way'
-        )
+        ) from ShortChainError(needed, settings.particles)
 
 
 def too_fast(scene: Scene) -> str:

@@ -16,7 +16,7 @@ from enum import IntEnum
 
 from contact1d.workflow.deck.steps import Hold, Phase
 from contact1d.workflow.experiments.running.contact import Contact, State
-from contact1d.workflow.experiments.running.trust import ThroughError, UntrustedError, require_trust
+from contact1d.workflow.experiments.running.trust import RestlessError, ThroughError, require_trust
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.dynamics import SOFTENING
 from contact1d.workflow.settings.settings import Settings
@@ -157,9 +157,10 @@ def hold(
             require_trust(contact.scene, settings, state)
             raise ThroughError(f"under {load:.4g} FU the plate went on to {state.displacement:.4g} LU")
         row = replace(row, start=int(Start.HERE), rest=row.rest * (CALMING_FACTOR if calm else 1.0))
-    raise UntrustedError(
+    raise RestlessError(
         f"the contact did not come to rest under {load:.4g} FU within {MOST_HOLDS * row.steps} timesteps "
-        f"(phase {state.phase}): {unbalance:.2g} FU are unbalanced. More [damping] or [plate] damping settles it sooner"
+        f"(phase {state.phase}): {unbalance:.2g} FU are unbalanced",
+        "more [damping] or [plate] damping settles it sooner",
     )
 
 

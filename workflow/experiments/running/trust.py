@@ -35,6 +35,22 @@ class ChainEndError(UntrustedError):
     """The contact is wider than its chain."""
 
 
+class UnsteadyError(UntrustedError):
+    """A slide that is none, or none yet: its way is too short beside what the cantilever is drawn by."""
+
+
+class OffEndError(UntrustedError):
+    """A plate that slid off the lower body."""
+
+
+class PartedError(UntrustedError):
+    """Bodies that do not hold the force that draws them apart."""
+
+
+class RestlessError(UntrustedError):
+    """A plate that does not come to rest."""
+
+
 END_SHARE_LIMIT = 1.0
 """Pressure at a chain's end over the largest one, per unit of tolerance, from which on the chain cuts the contact."""
 INSIDE_SHARE = 0.5

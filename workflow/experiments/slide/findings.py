@@ -23,6 +23,8 @@ STEADY = 0.1
 """Way of plate and drive after the run-in may differ by this share, or by one slip, where sliding counts as steady."""
 SETTINGS_SHARE = 0.3
 """Of the tolerance: what cutoff and timesteps leave open at most; against the integrator 0.05 was measured."""
+LONGER = "take a longer experiment.distance or a stiffer cantilever"
+"""What makes a steady slide of one that is none yet."""
 TEMPERATURE_BLOCKS = 20
 """Parts of the last leg whose spread gives the error of its temperature."""
 CLOSED = 5e-3
@@ -109,18 +111,17 @@ def slips_of(scene: Scene, motion: Motion) -> list[friction.Slip]:
 
 
 def is_steady(scene: Scene, motion: Motion) -> str:
-    """Why a slide of one leg is none, or not yet a steady one; "" where it is."""
+    """Why a slide of one leg is none, or not yet a steady one; "" where it is. LONGER helps."""
     leg, spacing = motion.legs[0], scene.bodies.spacing
-    helps = "take a longer experiment.distance or a stiffer cantilever"
     period = spacing / abs(leg.velocity)
     blocks = friction.block_means(motion.time, motion.impulse, period)
     if blocks.size < friction.DROPPED + friction.FEWEST_BLOCKS:
         return (
             f"no steady sliding yet: the drive's way of {motion.drive[-1]:.3g} LU has {blocks.size} whole periods of "
-            f"the spacing, and a mean needs {friction.DROPPED + friction.FEWEST_BLOCKS}: {helps}"
+            f"the spacing, and a mean needs {friction.DROPPED + friction.FEWEST_BLOCKS}"
         )
     if motion.place[-1] < spacing:
-        return f"the plate moved by {motion.place[-1]:.3g} LU only, which is no sliding yet: {helps}"
+        return f"the plate moved by {motion.place[-1]:.3g} LU only, which is no sliding yet"
     start = motion.time[-1] - period * (blocks.size - friction.mean_of(blocks).first)
     while_ = motion.time[-1] - start
     way = float(motion.place[-1] - np.interp(start, motion.time, motion.place))
@@ -129,7 +130,7 @@ def is_steady(scene: Scene, motion: Motion) -> str:
     if abs(way - leg.velocity * while_) > max(STEADY * leg.velocity * while_, one):
         return (
             f"no steady sliding yet: over the last {while_:.3g} TU the plate moves at {way / while_:.3g} LU/TU and the "
-            f"drive at {leg.velocity:.3g}: {helps}"
+            f"drive at {leg.velocity:.3g}"
         )
     return ""
 

@@ -13,7 +13,7 @@ from contact1d.workflow.deck.steps import Phase, UnderLoad
 from contact1d.workflow.experiments.running.contact import Contact, State
 from contact1d.workflow.experiments.running.holding import MOST_HOLDS, Start, at_rest, hold, hold_row
 from contact1d.workflow.experiments.running.sampling import SETTLING_LOOKS, chunk_steps, sampled_phase
-from contact1d.workflow.experiments.running.trust import UntrustedError, require_trust
+from contact1d.workflow.experiments.running.trust import PartedError, RestlessError, require_trust
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 
@@ -33,7 +33,8 @@ def loaded(contact: Contact, force: float) -> State:
     """At rest under the normal force; with noise, after it has forgotten its start.
 
     Raises:
-        UntrustedError: the bodies part under it; see `hold`.
+        PartedError: the bodies part under it.
+        UntrustedError: see `hold`; or the plate swings on along x.
     """
     scene, settings = contact.scene, contact.settings
     if scene.noise is not None:
@@ -44,7 +45,7 @@ def loaded(contact: Contact, force: float) -> State:
     scale = abs(force) or settings.force_scale
     held = hold(contact, force, scale, settings=_calm(settings))
     if not held.held:
-        raise UntrustedError(f"the bodies do not hold a normal force of {force:.4g} FU: they part. Take a smaller pull")
+        raise PartedError(f"the bodies do not hold a normal force of {force:.4g} FU: they part", "take a smaller pull")
     state = _settled_along(contact, force, scale, held.last)
     if settings.calm_damping == settings.damping:
         return state
@@ -67,8 +68,9 @@ def _settled_along(contact: Contact, force: float, scale: float, state: State) -
             return state
         state = contact.row(row)
         require_trust(scene, settings, state)
-    raise UntrustedError(
+    speed = state.motion["vcm(plate,x)"]
+    raise RestlessError(
         f"the plate did not come to rest along x under {force:.4g} FU within {MOST_HOLDS * row.steps} timesteps: it is "
-        "left with a speed of "
-        f"{state.motion['vcm(plate,x)']:.2g} LU/TU. More [damping] or a stiffer cantilever settles it sooner"
+        f"left with {speed:.2g} LU/TU",
+        "more [damping] or a stiffer cantilever settles it sooner",
     )

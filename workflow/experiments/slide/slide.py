@@ -6,8 +6,8 @@ from contact1d.workflow.deck.steps import UnderLoad
 from contact1d.workflow.experiments.running.contact import TOLD, Contact, State
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
-from contact1d.workflow.experiments.running.trust import UntrustedError, require_trust
-from contact1d.workflow.experiments.slide.findings import is_steady, outcome_of
+from contact1d.workflow.experiments.running.trust import OffEndError, PartedError, UnsteadyError, require_trust
+from contact1d.workflow.experiments.slide.findings import LONGER, is_steady, outcome_of
 from contact1d.workflow.experiments.slide.loading import loaded
 from contact1d.workflow.experiments.slide.motion import motion_of
 from contact1d.workflow.scene import Scene, Slide
@@ -23,7 +23,8 @@ def slide(context: RunContext) -> Outcome:
     nowhere, what it has is left in `context.left`.
 
     Raises:
-        UntrustedError: see `hold` and `require_trust`; the plate runs off the lower body, is torn off, or never slides.
+        UntrustedError: see `loaded` and `require_trust`; the plate runs off the lower body, is torn off, or never
+            slides.
     """
     scene, settings = context.deck.scene, context.deck.settings
     experiment = scene.experiment
@@ -45,7 +46,7 @@ def slide(context: RunContext) -> Outcome:
     outcome = outcome_of(context.deck, rested, states, contact.phases)
     if experiment.path is None and (why := is_steady(scene, motion_of(scene, settings, rested, states))):
         context.left = outcome
-        raise UntrustedError(why)
+        raise UnsteadyError(why, LONGER)
     return outcome
 
 
@@ -75,19 +76,19 @@ def _require_above(scene: Scene, settings: Settings, state: State) -> None:
     """Refuse a plate that has left the lower body, along it or off it.
 
     Raises:
-        UntrustedError: where it is, and what helps.
+        OffEndError, PartedError: where it is, and what helps.
     """
     if state.smallest_distance > settings.cutoff:
-        raise UntrustedError(
-            f"the bodies parted on the way, with the plate at {state.plate_x:.4g} LU: take a larger normal_force, or "
-            "less of a pull"
+        raise PartedError(
+            f"the bodies parted on the way, with the plate at {state.plate_x:.4g} LU",
+            "take a larger normal_force, or less of a pull",
         )
     if scene.bodies.periodic:
         return
     end = 0.5 * settings.lower_particles * scene.bodies.spacing
     place = abs(state.plate_x + (scene.bodies.upper_offset or 0.0))
     if place + contact_half_width(scene, settings) > end + scene.bodies.spacing:
-        raise UntrustedError(
-            f"the plate ran off the lower body: it is {place:.4g} LU from its middle, and the body ends at {end:.4g} "
-            "LU. Take more bodies.particles, a shorter distance, or more [damping]"
+        raise OffEndError(
+            f"the plate ran off the lower body: it is {place:.4g} LU from its middle, and that ends at {end:.4g} LU",
+            "take more bodies.particles, a shorter distance, or more [damping]",
         )

@@ -1,0 +1,83 @@
+"""Changes that may help a slide which gives no result; each returns None where it does not apply."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from contact1d.workflow.runs.change import STEP, Change, rounded
+from contact1d.workflow.scene import Scene, Slide
+from contact1d.workflow.settings.settings import settings_for
+
+
+def chain_of(below: int, above: int) -> Callable[[Scene], Change | None]:
+    """A lower chain of so many particles under as many as there are."""
+    return lambda _: Change({"bodies.particles": below, "bodies.upper_particles": above})
+
+
+def longer_way(scene: Scene) -> Change | None:
+    """More periods of a slide, on a lower chain that is as much longer."""
+    experiment = scene.experiment
+    if not isinstance(experiment, Slide) or experiment.distance is None:
+        return None
+    longer = rounded(STEP * experiment.distance)
+    chain = {} if scene.bodies.particles == "auto" else _longer_by(scene, longer - experiment.distance)
+    return Change({"experiment.distance": longer, **chain})
+
+
+def longer_lower_chain(scene: Scene) -> Change | None:
+    """As much longer on both sides as the way is."""
+    return Change(_longer_by(scene, scene.experiment.way)) if not scene.bodies.periodic else None
+
+
+def shorter_way(scene: Scene) -> Change | None:
+    """Less of a distance."""
+    experiment = scene.experiment
+    if not isinstance(experiment, Slide) or experiment.distance is None:
+        return None
+    return Change({"experiment.distance": rounded(experiment.distance / STEP)})
+
+
+def stiffer_cantilever(scene: Scene) -> Change | None:
+    """One that is wound up sooner."""
+    if scene.cantilever is None:
+        return None
+    return Change({"cantilever.stiffness": rounded(STEP * scene.cantilever.stiffness)})
+
+
+def automatic_drag(scene: Scene) -> Change | None:
+    """Critical for the contact, of particles and plate."""
+    values: dict[str, object] = {}
+    if scene.damping is not None and scene.damping.coefficient != "auto":
+        values["damping.coefficient"] = "auto"
+    if scene.plate is not None and scene.noise is None and scene.plate.damping != "auto":
+        values["plate.damping"] = "auto"
+    return Change(values) if values else None
+
+
+def no_pull(scene: Scene) -> Change | None:
+    """Adhesion alone."""
+    pulled = isinstance(scene.experiment, Slide) and scene.experiment.normal_force < 0.0
+    return Change({"experiment.normal_force": 0.0}) if pulled else None
+
+
+def stronger_attraction(scene: Scene) -> Change | None:
+    """A stronger law of the same force-free distance."""
+    terms = scene.interaction
+    if terms is None or terms.attraction is None:
+        return None
+    return Change(
+        {
+            "interaction.attraction.amplitude": rounded(STEP * terms.attraction.amplitude),
+            "interaction.repulsion.amplitude": rounded(STEP * terms.repulsion.amplitude),
+        }
+    )
+
+
+def _longer_by(scene: Scene, way: float) -> dict[str, object]:
+    """The lower chain of a body that ends, longer by a way [LU] on both sides."""
+    if scene.bodies.periodic:
+        return {}
+    settings = settings_for(scene)
+    longer = settings.lower_particles + 2 * math.ceil(way / scene.bodies.spacing)
+    return {"bodies.particles": longer, "bodies.upper_particles": settings.particles}
