@@ -24,7 +24,7 @@ from contact1d.analysis.reference.winkler import rigid_plane_sum
 from contact1d.workflow.deck.lattice import start_offset
 from contact1d.workflow.scene import Tangential
 from contact1d.workflow.settings.settings import settings_for
-from tests.slides import slide_model
+from contact1d.workflow.stability.random_slides import slide_model
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 

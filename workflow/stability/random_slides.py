@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import fields, replace
 from random import Random
 from typing import Any
 
 import numpy as np
 
-from contact1d.analysis.reference.slide import SlideModel
+from contact1d.analysis import friction
+from contact1d.analysis.reference.slide import Integrator, SlideModel, Trace
 from contact1d.workflow.deck.lattice import start_offset
 from contact1d.workflow.scene import Scene, Slide
 from contact1d.workflow.settings.settings import Settings
 
+SEED = 5
 CURVED = 0.5
 """Share of the slides of a curved body."""
-FINER = 4
-"""Timesteps of the integrator in one of the program's."""
-LONGER = 2
-"""Way of the integrator over that of the program."""
 RESIDUAL = 1e-6
-"""Force over the largest of a pair below which the integrator's bodies are at rest before they slide."""
+"""Force over that of the law, B/b, below which the integrator's bodies are at rest before they slide."""
 
 
 def random_slide(random: Random) -> dict[str, Any]:
@@ -70,7 +69,7 @@ def random_slide(random: Random) -> dict[str, Any]:
     }
 
 
-def model_of(scene: Scene, settings: Settings, beyond: int = 0) -> SlideModel:
+def slide_model(scene: Scene, settings: Settings, beyond: int = 0) -> SlideModel:
     """Places, springs and drags of a slide, with the values that it leaves open; a lower body longer by so many."""
     bodies, terms = scene.bodies, scene.interaction
     assert terms is not None
@@ -102,3 +101,25 @@ def model_of(scene: Scene, settings: Settings, beyond: int = 0) -> SlideModel:
         period=settings.lower_particles * bodies.spacing if bodies.periodic else 0.0,
         neighbours=0.0 if scene.neighbours is None else scene.neighbours.stiffness,
     )
+
+
+def integrated(scene: Scene, settings: Settings) -> Trace:
+    """All legs by the independent integrator, in the program's timesteps, measured where the program measures."""
+    assert scene.interaction is not None
+    assert scene.interaction.attraction is not None
+    law = scene.interaction.attraction
+    body = Integrator(slide_model(scene, settings))
+    body.settle(settings.time_step, RESIDUAL * law.amplitude / law.range, drag=settings.calm_damping)
+    legs, drive, time, impulse = [], 0.0, 0.0, 0.0
+    for leg in settings.drive:
+        trace = body.run(leg.rows * leg.steps, leg.time_step, leg.velocity, start=drive, every=leg.steps)
+        drive += leg.velocity * leg.rows * leg.row_time
+        legs.append(replace(trace, time=time + trace.time, impulse=impulse + trace.impulse))
+        time, impulse = float(legs[-1].time[-1]), float(legs[-1].impulse[-1])
+    return Trace(*(np.concatenate([getattr(leg, one.name) for leg in legs]) for one in fields(Trace)))
+
+
+def mean_friction(trace: Trace, period: float) -> float:
+    """Mean of the friction [FU] over the last whole periods, one less than there are or half of them."""
+    blocks = friction.block_means(trace.time, trace.impulse, period, trace.friction)
+    return float(blocks[min(blocks.size - 1, max(1, blocks.size // 2)) :].mean())

@@ -1,0 +1,125 @@
+"""Claims on random slides, curved and flat: trace and mean friction are the integrator's, means cover what they must.
+
+Bodies, law, springs, drags, load, cantilever, velocity, way and tolerance are drawn with a fixed seed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+from random import Random
+
+import numpy as np
+import pytest
+
+from contact1d import Run, RunError
+from contact1d.workflow.runs.campaign import run
+from contact1d.workflow.scene import Scene, scene_from_dict
+from contact1d.workflow.settings.settings import settings_for
+from contact1d.workflow.stability.random_slides import SEED, integrated, mean_friction, random_slide
+
+TRACE = 3e-4
+"""Of the peak, at a tolerance of 1e-3: the table of the law, the rest from which a slide starts."""
+CANCELLED = 0.02
+"""Of the peak where particles are out of step: what is left of forces that cancel to 1e-3 of themselves and less."""
+SHARP = 1e-3
+QUICK = (5, 12)
+"""A flat and a curved one, each some seconds."""
+TRACED, COVERED = 20, 40
+OUTSIDE, FARTHEST = 0.05, 2.0
+"""Share of means that may be outside of their interval of 95 %, and how far in such intervals."""
+LONGER = 3.0
+"""Way over the scene's own in which its mean is known better."""
+FINER = 0.1
+"""Tolerance over the scene's own of what it is held against."""
+
+
+def slides() -> Iterator[tuple[int, Scene]]:
+    """Random slides without end, with their numbers."""
+    random, number = Random(SEED), 0
+    while True:
+        yield number, scene_from_dict(random_slide(random))
+        number += 1
+
+
+def slid(scene: Scene, folder: Path) -> Run | None:
+    """The run, or None where nothing carries the load: then that is what the message says."""
+    try:
+        return run(scene, folder, figures=False)
+    except RunError as error:
+        assert "went through each other" in str(error)
+        return None
+
+
+def off(scene: Scene, found: Run) -> tuple[float, float]:
+    """(largest difference of the traces over the peak, difference of the means over the stated uncertainty)."""
+    trace = integrated(scene, settings_for(scene))
+    peak = float(np.abs(trace.friction).max())
+    assert scene.cantilever is not None
+    mean = mean_friction(trace, scene.bodies.spacing / scene.cantilever.velocity)
+    stated = found.results["mean_friction"]
+    allowed = TRACE if scene.bodies.own_spacing in (scene.bodies.spacing, 2.0 * scene.bodies.spacing) else CANCELLED
+    worst = float(np.abs(found.friction["friction"] - trace.friction).max())
+    return worst / peak / allowed, abs(stated.value - mean) / stated.uncertainty
+
+
+@pytest.mark.parametrize("number", QUICK)
+def test_a_random_slide_is_that_of_the_integrator(number: int, tmp_path: Path) -> None:
+    scene = next(islice(slides(), number, None))[1].with_({"accuracy.tolerance": SHARP})
+    found = slid(scene, tmp_path / "run")
+    assert found is not None
+    trace, mean = off(scene, found)
+    assert trace <= 1.0
+    assert mean <= 1.0
+
+
+@pytest.mark.slow
+def test_random_slides_are_those_of_the_integrator(tmp_path: Path) -> None:
+    means = []
+    for number, drawn in slides():
+        scene = drawn.with_({"accuracy.tolerance": SHARP})
+        found = slid(scene, tmp_path / str(number))
+        if found is not None:
+            trace, mean = off(scene, found)
+            assert trace <= 1.0, f"slide {number}"
+            means.append(mean)
+        if len(means) == TRACED:
+            break
+    assert sum(mean > 1.0 for mean in means) <= OUTSIDE * TRACED
+    assert max(means) < FARTHEST
+
+
+def longer(scene: Scene) -> Scene:
+    """The same on a longer way, on a lower chain that is as much longer."""
+    assert scene.experiment.way > 0.0
+    changes: dict[str, object] = {"experiment.distance": LONGER * scene.experiment.way}
+    if not scene.bodies.periodic:
+        beside = math.ceil((LONGER - 1.0) * scene.experiment.way / scene.bodies.spacing)
+        changes["bodies.particles"] = settings_for(scene).lower_particles + 2 * beside
+    return scene.with_(changes)
+
+
+@pytest.mark.slow
+def test_tolerance_and_interval_hold_over_random_slides(tmp_path: Path) -> None:
+    """Mean friction of the same slide at a tenth of the tolerance is within it; of a longer one, within the interval.
+
+    The tolerance is of the mean itself, for all that the settings decide: the way is the same.
+    """
+    shares, intervals = [], []
+    for number, scene in slides():
+        found = slid(scene, tmp_path / str(number))
+        if found is not None:
+            stated, tolerance = found.results["mean_friction"], scene.accuracy.tolerance
+            finer = scene.with_({"accuracy.tolerance": FINER * tolerance})
+            same, long = (slid(one, tmp_path / f"{number}-finer") for one in (finer, longer(finer)))
+            assert same is not None
+            assert long is not None
+            exact = same.results["mean_friction"].value
+            shares.append(abs(stated.value / exact - 1.0) / tolerance)
+            intervals.append(abs(stated.value - long.results["mean_friction"].value) / stated.uncertainty)
+        if len(shares) == COVERED:
+            break
+    assert max(shares) <= 1.0
+    assert sum(share > 1.0 for share in intervals) <= OUTSIDE * COVERED
