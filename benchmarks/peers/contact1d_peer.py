@@ -1,4 +1,4 @@
-"""This program: `experiment path` through the Python API without figures, reduction mdr, whole run and LAMMPS apart."""
+"""This program: `experiment path` through the Python API without figures, reduction mdr; LAMMPS, its rows apart."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def curve(contact: str, setting: Setting) -> Curve:
     limit = closed_form(contact, d) if scene is None else own_limit(scene, unit, force_unit, d)
     return Curve(
         columns["displacement"] * unit, columns["force"] * force_unit, columns["contact_radius"] * unit, seconds,
-        start_up, limit, {"lammps": finished.document["timing"]["lammps_s"]},
+        start_up, limit, {name: finished.document["timing"][f"{name}_s"] for name in ("lammps", "rows")},
     )  # fmt: skip
 
 

@@ -21,7 +21,7 @@ from benchmarks.peers.contacts import (
     law_range,
     reduced_distance,
 )  # fmt: skip
-from benchmarks.peers.table import quickest, section, write_section
+from benchmarks.peers.table import quickest, ratios, section, write_section
 
 INTERPOLATION = 1e-8  # of F_A, between 50000 radii
 ROUND_OFF = 1e-15
@@ -87,6 +87,19 @@ def test_the_quickest_setting_is_one_that_is_good_enough() -> None:
     rough, fine, finest = record(0.1, 0.02), record(0.2, 0.009), record(0.4, 0.001)
     assert quickest([rough, finest, fine]) is fine
     assert quickest([rough]) is None
+
+
+def test_rows_in_lammps_stand_beside_a_peers_solve() -> None:
+    """Both without what is done once for any number of curves: reading bodies here, making a model there."""
+    ours, theirs = record(0.02, 0.009), record(9e-3, 0.001)
+    for one in (ours, theirs):
+        one["contact"] = "hertz"
+        one["errors"] |= {"limit_relative": 0.0, "limit_worst_relative": 0.0}
+    ours["parts"], theirs["solver"] = {"lammps": 2e-3, "rows": 6e-4}, "tamaas"
+    said = ratios({"records": [ours, theirs]})
+    assert "- Hertz, 1 % of the largest force (rms): **0.45** (tamaas a_0/8 9 ms, contact1d a_0/8 20 ms)" in said
+    times = "(tamaas a_0/8 9 ms, contact1d a_0/8 0.6 ms)"
+    assert f"- Hertz, rows in LAMMPS alone, 1 % of the largest force (rms): **15** {times}" in said
 
 
 def test_the_table_goes_between_the_markers(tmp_path: Path) -> None:

@@ -75,4 +75,5 @@ class RunContext:
         with self._lock:
             self.lammps_seconds += other.lammps_seconds
             self.lammps_cpu_seconds += other.lammps_cpu_seconds
+            self.rows_seconds += other.rows_seconds
             self.steps += other.steps
