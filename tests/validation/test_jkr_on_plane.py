@@ -201,16 +201,40 @@ def test_cone_and_fourth_power(run_tables: RunTables, exponent: float, profile: 
         assert known[name].value == pytest.approx(value, rel=PLACE), name
 
 
-def test_flat_punch_is_kendalls(run_tables: RunTables) -> None:
-    """F_A = √(8πE*Wa³), all at once; before that F = 2E*ad."""
-    radius = 10.0
-    scene = tables(PULL, 0.5, profile={"kind": "flat_punch", "radius": radius})
-    done = run_tables(scene)
-    assert done.results["adhesion_force"].value == pytest.approx(math.sqrt(8.0 * math.pi * E * W * radius**3), rel=1e-6)
+PUNCH = 10.0
+KENDALL = math.sqrt(8.0 * math.pi * E * W * PUNCH**3)
+"""F_A = √(8πE*Wa³) of a flat punch; before that F = 2E*ad."""
+PUNCH_SPACINGS = [1.0, 0.5, 0.25]
+
+
+def punch(experiment: dict[str, Any], spacing: float) -> dict[str, Any]:
+    profile = {"kind": "flat_punch", "radius": PUNCH}
+    return tables(experiment, spacing, profile=profile, bulk_stiffness=E * spacing)
+
+
+@pytest.mark.parametrize("spacing", PUNCH_SPACINGS)
+def test_flat_punch_is_kendalls_with_any_spacing_and_says_so(run_tables: RunTables, spacing: float) -> None:
+    """It lets go all at once, and ends where its edge particles do: no lattice is in it, and no uncertainty of one."""
+    done = run_tables(punch(PULL, spacing))
+    for name, value in (("adhesion_force", KENDALL), ("critical_radius", PUNCH), ("zero_load_radius", PUNCH)):
+        known = done.results[name]
+        assert known.value == pytest.approx(value, rel=1e-7), name
+        assert abs(known.value - value) <= known.uncertainty + ROUND_OFF * value, name
+        assert known.uncertainty <= 1e-7 * value, name
+    assert not done.warnings
     held = [state for state in done.outcome.states if state.force]
     assert [state.force for state in held] == pytest.approx(
-        [2.0 * E * radius * state.displacement for state in held], rel=ROUND_OFF, abs=ROUND_OFF
+        [2.0 * E * PUNCH * state.displacement for state in held], rel=ROUND_OFF, abs=ROUND_OFF
     )
+
+
+def test_rows_of_a_punch_bracket_where_it_lets_go(run_tables: RunTables) -> None:
+    """Between two rows all of the tension goes: F_A and its place are known to half a row; F = 0 is a contact, too."""
+    path = {"kind": "path", "displacements": {"from": 0.5, "to": -1.0, "steps": 60, "return": False}}
+    known = run_tables(punch(path, 1.0)).results
+    assert known["zero_load_radius"].value == known["critical_radius"].value == PUNCH
+    for name, value in (("adhesion_force", KENDALL), ("fixed_grips_displacement", -KENDALL / (2.0 * E * PUNCH))):
+        assert abs(known[name].value - value) <= known[name].uncertainty <= 0.05 * abs(value), name
 
 
 def test_no_energy_is_hertz_to_round_off(run_tables: RunTables) -> None:

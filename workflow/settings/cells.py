@@ -21,6 +21,8 @@ BESIDE, ASIDE, POINTS = 0.1, 0.3, 61
 """Ways on both sides of JKR's largest tension, and of another force, over the distance from fixed grips, and places."""
 PHASES = (0.25, 0.0)
 """Places of the apex between particles over the spacing, beside 1/2, that of an even chain."""
+JUST_HELD = 1e-9
+"""Way before the place at which a punch lets go of all at once, over that place."""
 MARGIN = 1.25
 """Claim over the difference of the sums."""
 
@@ -73,7 +75,8 @@ def _largest_tension(estimate: AdhesiveEstimate, forces: Callable[[Array], Array
     expected, last = estimate.displacement_at(-estimate.pull_off_force()), estimate.fixed_grips[1]
     width = BESIDE * (expected - last)
     if width <= 0.0:
-        return -float(forces(np.asarray([last]))[0]), last
+        held = last + JUST_HELD * abs(last)
+        return -float(forces(np.asarray([held]))[0]), held
     t = np.linspace(-1.0, 1.0, POINTS)
     c = fitting(t, 2) @ forces(expected + width * t)
     best = float(np.clip(-0.5 * c[1] / c[2], -1.0, 1.0)) if c[2] > 0.0 else 0.0

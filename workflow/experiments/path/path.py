@@ -92,7 +92,7 @@ def _adhesion(context: RunContext, branch: list[State]) -> tuple[dict[str, Quant
         missed = max(peak.uncertainty, missed_between_rows(context.deck.scene, settings, displacement) * peak.smooth)
         missed += _cut_short(settings, branch, peak.index) + _noise(context, branch[peak.index])
         quantities["adhesion_force"] = Quantity(peak.smooth, missed, FORCE)
-        critical = _critical_radius(branch, peak)
+        critical = _critical_radius(branch, peak, context.deck.scene.bodies.profile.has_edge)
         if critical is not None:
             quantities["critical_radius"] = critical
     else:
@@ -120,20 +120,23 @@ def _cut_short(settings: Settings, branch: list[State], index: int) -> float:
 def _fixed_grips(branch: list[State]) -> dict[str, Quantity]:
     """The displacement at which a contact without a range lets go at once: between the last row held and the next."""
     for held, apart in pairwise(branch):
-        if held.profile.pressure.any() and not apart.profile.pressure.any():
+        if held.radius is not None and apart.radius is None:
             middle = 0.5 * (held.displacement + apart.displacement)
             return {"fixed_grips_displacement": Quantity(middle, abs(held.displacement - middle), LENGTH)}
     return {}
 
 
-def _critical_radius(branch: list[State], peak: Peak) -> Quantity | None:
-    """a at the vertex of a smooth maximum, linear between the rows beside it; at the last row before a snap."""
+def _critical_radius(branch: list[State], peak: Peak, has_edge: bool) -> Quantity | None:
+    """a at the vertex of a smooth maximum, linear between the rows beside it; at the last row before a snap.
+
+    A body that ends at an edge is in contact up to there or not at all.
+    """
     rows = branch[peak.index - 1 : peak.index + 2]
     radii = [row.radius for row in rows]
     if radii[1] is None:
         return None
     if radii[0] is None or radii[2] is None:
-        return Quantity(radii[1].value, radii[1].value, LENGTH)
+        return Quantity(radii[1].value, 0.0 if has_edge else radii[1].value, LENGTH)
     values = [radius.value for radius in radii if radius is not None]
     if peak.position == rows[1].displacement:
         return Quantity(values[1], radii[1].uncertainty + abs(values[0] - values[1]), LENGTH)

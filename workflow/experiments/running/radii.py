@@ -25,9 +25,10 @@ class RadiusRule:
         """The contact radius as the contract defines it; None where the bodies do not touch."""
         scene = self.scene
         has_edge, on_plane = scene.bodies.profile.has_edge, scene.bodies.lower == "rigid_plane"
-        if not (-profile.pressure if scene.adheres else profile.pressure).max() > 0.0 and not (
-            (has_edge or on_plane) and profile.pressure.any()
-        ):
+        # A punch that adheres and stands on the plane without any force is held all over.
+        held = has_edge and scene.adhesion is not None and bool((profile.z_upper <= 0.0).any())
+        carries = ((has_edge or on_plane) and profile.pressure.any()) or held
+        if not (-profile.pressure if scene.adheres else profile.pressure).max() > 0.0 and not carries:
             return None
         if has_edge:
             edge = scene.bodies.reach
