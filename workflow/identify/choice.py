@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from contact1d.workflow.identify.contact import AskedContact
 from contact1d.workflow.identify.judgement import judged, require_size
 from contact1d.workflow.identify.material import jkr_target, material_scene
 from contact1d.workflow.identify.reduced import contact_radius, largest_tension, profile_in
+from contact1d.workflow.identify.resolution import fine_enough
 from contact1d.workflow.identify.target import IdentifyError, Target
 from contact1d.workflow.identify.theories import Theories
 from contact1d.workflow.scene import Scene, scene_from_dict
 
-RESOLUTION = 30.0
-"""Particles in the contact radius: F_A and a₀ of the plane are then within 3e-3 of JKR's."""
 PRELOAD_SHARE = 0.7
 """Preload of a pull-off over JKR's F_A, where no load is given."""
 
@@ -59,9 +58,12 @@ def chosen(contact: AskedContact) -> Choice:
         return _particles(contact, theories, doubts)
     radius = contact_radius(contact)
     require_size(contact, radius)
-    unit = radius / RESOLUTION
-    if contact.profile["kind"] == "flat_punch":
-        unit = radius / math.ceil(RESOLUTION)  # a whole number of spacings
+    return Choice(fine_enough(partial(_on_plane, contact, radius)), theories, None, doubts, radius)
+
+
+def _on_plane(contact: AskedContact, radius: float, count: int) -> Scene:
+    """The scene of a chain with so many particles in the contact radius [m]: a whole number, as a punch needs."""
+    unit = radius / count
     force = contact.contact_modulus * unit**2
     data = {
         "title": contact.title,
@@ -79,7 +81,7 @@ def chosen(contact: AskedContact) -> Choice:
     }
     if contact.work_of_adhesion:
         data["adhesion"] = {"work_of_adhesion": contact.work_of_adhesion * unit / force}
-    return Choice(scene_from_dict(data), theories, None, doubts, radius)
+    return scene_from_dict(data)
 
 
 def _experiment(contact: AskedContact, force: float, unit: float) -> dict[str, Any]:

@@ -38,6 +38,12 @@ def left_by_cells(scene: Scene, settings: Settings) -> dict[str, float]:
     return {name: MARGIN * max(abs(some[name] - value) for some in sums) for name, value in whole.items()}
 
 
+def expected_of_adhesion(scene: Scene, settings: Settings) -> dict[str, float]:
+    """By the names of results, JKR's own [its unit]."""
+    assert isinstance(settings.estimate, AdhesiveEstimate)
+    return _marks(scene, settings, settings.estimate, None)
+
+
 def _cells(scene: Scene, settings: Settings, estimate: AdhesiveEstimate, phase: float) -> Cells:
     half = settings.particles // 2
     x = scene.bodies.spacing * (np.arange(-half, half + 1) + phase)

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.polynomial import fitting, lowest_minimum
 from contact1d.workflow.scene import Load, Scene, Tangential
-from contact1d.workflow.settings.cells import left_by_cells
+from contact1d.workflow.settings.cells import expected_of_adhesion, left_by_cells
 from contact1d.workflow.settings.estimate import ContactEstimate
 from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.settings.sliders import sliders_of, stops
@@ -55,6 +55,13 @@ def left_by_centring(scene: Scene, settings: Settings) -> Mapping[str, float]:
     phases = MORE if isinstance(scene.experiment, Tangential) else OTHERS
     own, *others = (_marks(scene, settings, phase) for phase in (OWN, *phases))
     return {name: MARGIN * max(abs(other[name] - value) for other in others) for name, value in own.items()}
+
+
+def expected(scene: Scene, settings: Settings) -> Mapping[str, float]:
+    """By the names of results, what the estimate makes of them [its unit]: what such a change is to be held against."""
+    if scene.adheres and scene.adhesion is not None:
+        return expected_of_adhesion(scene, settings)
+    return _marks(scene, settings, OWN)
 
 
 def _marks(scene: Scene, settings: Settings, phase: float) -> dict[str, float]:
