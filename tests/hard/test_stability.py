@@ -17,7 +17,7 @@ from contact1d.workflow.stability.suite import CLASSES, NAMES, earlier, measured
 
 FAILS: dict[str, set[str]] = {}
 """Rows that fail since the program is wrong there, by class."""
-QUICK = ("loads", "loops", "forces", "motion", "modes", "buckling")
+QUICK = ("loads", "loops", "friction", "forces", "motion", "modes", "buckling")
 """Each some seconds."""
 
 

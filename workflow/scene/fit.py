@@ -45,7 +45,8 @@ EXCLUDED = {
         "neighbours": "friction remembers its way, and a minimiser, which such springs need, has no way",
         "damping": NO_TIME,
         "noise": NO_TIME,
-        "plate": NO_TIME,
+        "plate": f"{NO_TIME}; a plate with inertia would swing past each, without damping for ever, and friction would "
+        "remember how far",
         "cantilever": "only a slide is pulled through a spring",
     },
 }
@@ -123,8 +124,9 @@ def _tables_of_experiment(draft: Draft) -> Iterator[Problem]:
         return
     for name, why in EXCLUDED[kind].items():
         if name in present:
-            other = next(one for one, excluded in EXCLUDED.items() if name not in excluded)
-            yield Problem(name, f"not in a {kind}: {why}", hint=f'remove it, or use kind = "{other}"')
+            other = next((one for one, excluded in EXCLUDED.items() if not excluded.keys() & {*present}), None)
+            hint = "remove it" + (f', or use kind = "{other}"' if other else "")
+            yield Problem(name, f"not in a {kind}: {why}", hint=hint)
     if not draft.sound("experiment", "method"):
         return
     rest = tuple(name for name in present if name not in EXCLUDED[kind])

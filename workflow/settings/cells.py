@@ -11,6 +11,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.analysis.curve_marks import largest_tension
 from contact1d.analysis.polynomial import fitting
 from contact1d.workflow.scene import Load, Scene
 from contact1d.workflow.settings.adhesion import AdhesiveEstimate, Cells
@@ -23,6 +24,12 @@ PHASES = (0.25, 0.0)
 """Places of the apex between particles over the spacing, beside 1/2, that of an even chain."""
 JUST_HELD = 1e-9
 """Way before the place at which a punch lets go of all at once, over that place."""
+PULLING_STEPS = 48
+"""Rows from F = 0 to where fixed grips let go."""
+CLOSER = (0.5, -0.5, 0.25, -0.25, 0.0)
+"""Rows beside the largest tension, over the increment to there, and at it in the end."""
+LAST = 1e-9
+"""How much of the way from F = 0 to where fixed grips let go is left before it."""
 MARGIN = 1.25
 """Claim over the difference of the sums."""
 
@@ -33,7 +40,11 @@ def left_by_cells(scene: Scene, settings: Settings) -> dict[str, float]:
     assert isinstance(estimate, AdhesiveEstimate)
     own = 0.5 if settings.particles % 2 == 0 else 0.0
     phases = (own, *PHASES) if scene.bodies.particles == "auto" and not scene.bodies.profile.has_edge else (own,)
-    sums = [_marks(scene, settings, estimate, _cells(scene, settings, estimate, phase)) for phase in phases]
+    sums = [
+        _marks(scene, settings, estimate, _cells(scene, settings, estimate, phase), by_rows)
+        for phase in phases
+        for by_rows in (False, True)
+    ]
     whole = _marks(scene, settings, estimate, None)
     return {name: MARGIN * max(abs(some[name] - value) for some in sums) for name, value in whole.items()}
 
@@ -50,8 +61,10 @@ def _cells(scene: Scene, settings: Settings, estimate: AdhesiveEstimate, phase: 
     return estimate.cells(np.asarray(x[np.abs(x) <= scene.bodies.reach], dtype=np.float64), estimate.profile)
 
 
-def _marks(scene: Scene, settings: Settings, estimate: AdhesiveEstimate, cells: Cells | None) -> dict[str, float]:
-    """The results by the sum over cells, or by JKR's integral for none."""
+def _marks(
+    scene: Scene, settings: Settings, estimate: AdhesiveEstimate, cells: Cells | None, by_rows: bool = False
+) -> dict[str, float]:
+    """The results by the sum over cells, or by JKR's integral for none; `by_rows`: see `_read_off`."""
 
     def forces(displacements: Array) -> Array:
         if cells is None:
@@ -72,7 +85,7 @@ def _marks(scene: Scene, settings: Settings, estimate: AdhesiveEstimate, cells: 
         place = place_of(scene.experiment.force)
         return {"displacement": place, "contact_radius": radius(place)}
     zero = place_of(0.0)
-    tension, place = _largest_tension(estimate, forces)
+    tension, place = (_read_off if by_rows else _largest_tension)(estimate, forces)
     return {"adhesion_force": tension, "critical_radius": radius(place), "zero_load_radius": radius(zero)}
 
 
@@ -87,3 +100,21 @@ def _largest_tension(estimate: AdhesiveEstimate, forces: Callable[[Array], Array
     c = fitting(t, 2) @ forces(expected + width * t)
     best = float(np.clip(-0.5 * c[1] / c[2], -1.0, 1.0)) if c[2] > 0.0 else 0.0
     return -float(c @ best ** np.arange(3)), expected + width * best
+
+
+def _read_off(estimate: AdhesiveEstimate, forces: Callable[[Array], Array]) -> tuple[float, float]:
+    """The same as rows of a pull-off have it: where a contact is a few cells wide each that lets go makes a crest."""
+    zero, last = estimate.displacement_at(0.0), estimate.fixed_grips[1]
+    rows = pulling_rows(zero, last)
+    before = largest_tension(rows.tolist(), forces(rows).tolist())
+    if not 0 < before.index < len(rows) - 1:
+        return _largest_tension(estimate, forces)
+    beside = np.clip(before.position + (zero - last) / PULLING_STEPS * np.asarray(CLOSER), rows[-1], zero)
+    rows = np.unique(np.concatenate([rows, beside]))[::-1]
+    peak = largest_tension(rows.tolist(), forces(rows).tolist())
+    return peak.smooth, peak.position
+
+
+def pulling_rows(zero: float, last: float) -> Array:
+    """Displacements [LU] of the rows from F = 0 to just before fixed grips let go."""
+    return np.asarray(np.linspace(zero, zero + (1.0 - LAST) * (last - zero), PULLING_STEPS + 1)[1:])

@@ -15,13 +15,8 @@ from contact1d.workflow.experiments.running.contact import Contact, State
 from contact1d.workflow.experiments.running.prescribing import LOADING_STEPS, approach
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import UntrustedError, require_trust
+from contact1d.workflow.settings.cells import CLOSER, LAST, PULLING_STEPS, pulling_rows
 
-PULLING_STEPS = 48
-"""Rows from F = 0 to where fixed grips let go."""
-CLOSER = (0.5, -0.5, 0.25, -0.25, 0.0)
-"""Rows beside the largest tension, over the increment to there, and at it in the end."""
-LAST = 1e-9
-"""How much of the way from F = 0 to where fixed grips let go is left before it."""
 APART = 1.05
 """End of the way over where fixed grips let go."""
 
@@ -41,7 +36,7 @@ def stepped_pass(context: RunContext, preload: float, tolerance: float) -> Smoot
         contact.write_state()
         contact.begin("pulling")
         zero, last = unloaded[-1].displacement, estimate.parted(0.0)
-        pulled = _rows(contact, np.linspace(zero, zero + (1.0 - LAST) * (last - zero), PULLING_STEPS + 1)[1:])
+        pulled = _rows(contact, pulling_rows(zero, last))
         before = _peak([*unloaded, *pulled])
         step = (zero - last) / PULLING_STEPS
         beside = np.clip(before.position + step * np.asarray(CLOSER), pulled[-1].displacement, zero)
