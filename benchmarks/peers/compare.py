@@ -3,7 +3,8 @@
     python -m benchmarks.peers.compare            # with the extra `peers`; about ten minutes
     python -m benchmarks.peers.compare --table    # only the table again, from benchmarks/results/peers.json
 
-Settings run in turn, round after round; a time is the median over the rounds. One thread each.
+Settings run in turn, round after round; a time is the median over the rounds, of processor
+time (`clock`). One thread each.
 """
 
 from __future__ import annotations

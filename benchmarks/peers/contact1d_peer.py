@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 import tempfile
-import time
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from benchmarks.peers.clock import spent
 from benchmarks.peers.contacts import (
     A_0,
     CHAIN_WAY,
@@ -59,16 +59,16 @@ def curve(contact: str, setting: Setting) -> Curve:
 
     on_plane = contact == "hertz" or setting.name.startswith(PLANE)
     d = displacements(contact) if on_plane else displacements(contact, CHAIN_WAY)
-    began = time.perf_counter()
+    began = spent()
     scene, unit, force_unit = (None, 1.0, 1.0) if on_plane else identified(setting)
-    start_up = time.perf_counter() - began
-    began = time.perf_counter()
+    start_up = spent() - began
+    began = spent()
     data = plane_tables(contact, setting) if scene is None else scene.model_dump(by_alias=True, exclude_none=True)
     data["experiment"] = {"kind": "path", "displacements": [float(value) for value in d / unit]}
     with tempfile.TemporaryDirectory() as folder:
         finished = run(scene_from_dict(data), folder, figures=False)
         columns = np.genfromtxt(finished.folder / "curve.csv", delimiter=",", names=True, dtype=None, encoding="utf-8")
-    seconds = time.perf_counter() - began
+    seconds = spent() - began
     limit = closed_form(contact, d) if scene is None else own_limit(scene, unit, force_unit, d)
     return Curve(
         columns["displacement"] * unit, columns["force"] * force_unit, columns["contact_radius"] * unit, seconds,

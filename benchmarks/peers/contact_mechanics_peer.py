@@ -8,11 +8,10 @@ gradients of NuMPI diverge from these starts, since the adhesive Hessian is not 
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 
 from benchmarks.peers.axisymmetric import limit
+from benchmarks.peers.clock import spent
 from benchmarks.peers.contacts import (
     A_0,
     CONTACT_MODULUS,
@@ -58,14 +57,14 @@ def curve(contact: str, setting: Setting) -> Curve:
     from SurfaceTopography import Topography
 
     side, n, d = SIDE[contact] * A_0, setting.grid, displacements(contact)
-    began = time.perf_counter()
+    began = spent()
     space = FreeFFTElasticHalfSpace((n, n), CONTACT_MODULUS, (side, side))
     surface = Topography(heights(side, n), physical_sizes=(side, side))
-    start_up = time.perf_counter() - began
+    start_up = spent() - began
     solve = _hertz if contact == "hertz" else _jkr
-    began = time.perf_counter()
+    began = spent()
     force, area = solve(space, surface, setting, d, (side / n) ** 2)
-    seconds = time.perf_counter() - began
+    seconds = spent() - began
     reference = closed_form(contact, d) if contact == "hertz" else limit(setting.tabor, d)
     return Curve(d, force, np.sqrt(area / np.pi), seconds, start_up, reference)
 

@@ -62,7 +62,7 @@ class Curve:
         displacement: d of every point, zero at first touch of the undeformed bodies [nm].
         force: F [µN].
         radius: a, NaN where the solver has none [nm].
-        seconds: wall time of the whole curve, one thread, without start_up [s].
+        seconds: processor time of the whole curve, one thread, without start_up [s].
         start_up: of what is done once for any number of curves, without imports [s].
         limit: the same curve in the solver's own continuum limit: F [µN] and a [nm].
         parts: other times of the same curve, by name [s].

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import re
 import tempfile
-import time
 from pathlib import Path
 
 import numpy as np
 
+from benchmarks.peers.clock import spent
 from benchmarks.peers.contacts import (
     CONTACT_MODULUS,
     POINTS,
@@ -68,7 +68,7 @@ def curve(contact: str, setting: Setting) -> Curve:
         box=100_000, apart=4.0 * RADIUS - float(d[0]), diameter=4.0 * RADIUS, law=law, step=-float(d[1] - d[0]),
         points=POINTS,
     )  # fmt: skip
-    began = time.perf_counter()
+    began = spent()
     with tempfile.TemporaryDirectory() as name, Engine.session(Path(name)) as session:
         session.execute(text)
         session.execute(f"run {POINTS - 1}\nunfix curve")
@@ -78,4 +78,4 @@ def curve(contact: str, setting: Setting) -> Curve:
     seconds = float(loops[-1])
     d, force = d[force != 0.0], force[force != 0.0]
     limit = closed_form(contact, d)
-    return Curve(d, force, np.full(len(d), np.nan), seconds, time.perf_counter() - began - seconds, limit)
+    return Curve(d, force, np.full(len(d), np.nan), seconds, spent() - began - seconds, limit)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 
+from benchmarks.peers.clock import spent
 from benchmarks.peers.contacts import (
     A_0,
     CHAIN_WAY,
@@ -40,7 +39,7 @@ def curve(contact: str, setting: Setting) -> Curve:
     from contact1d.analysis.reference.tension_radius import state_radius
 
     d = displacements(contact, CHAIN_WAY)
-    began = time.perf_counter()
+    began = spent()
     if contact == "hertz":
         spacing = A_0 / setting.grid
         particles = 2 * round(1.1 * setting.grid) + 4
@@ -51,14 +50,14 @@ def curve(contact: str, setting: Setting) -> Curve:
         bodies = scene.bodies
         assert bodies.plane_radius is not None
         model = ChainModel(2 * round(CHAIN * setting.grid), scene.bulk_stiffness, pair_law(scene), bodies.plane_radius)
-    start_up = time.perf_counter() - began
-    began = time.perf_counter()
+    start_up = spent() - began
+    began = spent()
     states = trace(model, d / unit)
     force = np.array([state.force for state in states]) * force_unit
     if contact == "hertz":
         radius = np.full(len(d), np.nan)
         limit = closed_form(contact, d)
-        return Curve(d, force, radius, time.perf_counter() - began, start_up, limit)
+        return Curve(d, force, radius, spent() - began, start_up, limit)
     radius = np.array([state_radius(model, state) for state in states]) * unit
-    seconds = time.perf_counter() - began
+    seconds = spent() - began
     return Curve(d, force, radius, seconds, start_up, own_limit(scene, unit, force_unit, d))

@@ -9,11 +9,10 @@ do to the curvature, 0.4 % of it under F_A.
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 
 from benchmarks.peers.axisymmetric import limit
+from benchmarks.peers.clock import spent
 from benchmarks.peers.contact_mechanics_peer import heights
 from benchmarks.peers.contacts import (
     A_0,
@@ -55,16 +54,16 @@ def curve(contact: str, setting: Setting) -> Curve:
     import tamaas
 
     side, n = SIDE[contact] * A_0, setting.grid
-    began = time.perf_counter()
+    began = spent()
     model = tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, [side, side], [n, n])
     model.E, model.nu = CONTACT_MODULUS, 0.0
     surface = heights(side, n)
     solve = _hertz if contact == "hertz" else _jkr
     solver, _adhesion = _solver(model, surface, contact, setting)  # the solver does not keep its functional alive
-    start_up = time.perf_counter() - began
-    began = time.perf_counter()
+    start_up = spent() - began
+    began = spent()
     d, force, area = solve(model, solver, surface, side)
-    seconds = time.perf_counter() - began
+    seconds = spent() - began
     reference = closed_form(contact, d) if contact == "hertz" else limit(setting.tabor, d)
     return Curve(d, force, np.sqrt(area / np.pi), seconds, start_up, reference)
 
