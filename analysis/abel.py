@@ -28,6 +28,8 @@ WHOLE = 0.5 - 1e-6
 cuts that off."""
 SAME = 1e-6
 """Of a spacing: places so alike on both sides of the axis are the same."""
+MOST_AT_ONCE = 100_000
+"""Numbers of a kind that are worked out at once, to bound the memory."""
 FEWEST = 3
 """Places on one side from which a shape can be told."""
 
@@ -68,21 +70,24 @@ class LineLoad:
         at = np.atleast_1d(np.asarray(r, dtype=np.float64))
         inside = at < self.edge
         p = np.zeros_like(at)
-        p[inside] = [self._pressure(float(one)) for one in at[inside]]
+        wanted = at[inside]
+        at_once = np.array_split(wanted, 1 + wanted.size * self.breaks.size // MOST_AT_ONCE)
+        p[inside] = np.concatenate([self._pressure(some[:, None]) for some in at_once])
         return p.reshape(np.shape(r))
 
-    def _pressure(self, r: float) -> float:
+    def _pressure(self, r: Array) -> Array:
+        """p at distances below the edge, shape (n, 1)."""
         ends = np.maximum(self.breaks, r)
         root = np.sqrt((ends - r) * (ends + r))
         c_0, c_1, c_2 = (k * self.coefficients[k] for k in (1, 2, 3))
-        total = float(np.sum(c_1 * np.diff(root) + 0.5 * c_2 * np.diff(ends * root)))
-        if r > 0.0:
-            total += float(np.sum((c_0 + 0.5 * c_2 * r**2) * np.diff(np.arccosh(ends / r))))
-        else:
-            total += float(np.sum(c_0[1:] * np.diff(np.log(self.breaks[1:]))))
-            if self.has_apex:
-                return float(np.copysign(np.inf, -c_0[0]))
-        return (self.at_edge / float(root[-1]) - total) / np.pi
+        total = np.sum(c_1 * np.diff(root) + 0.5 * c_2 * np.diff(ends * root), axis=1)
+        off, on = r[:, 0] > 0.0, r[:, 0] == 0.0
+        total[off] += np.sum((c_0 + 0.5 * c_2 * r[off] ** 2) * np.diff(np.arccosh(ends[off] / r[off])), axis=1)
+        total[on] += np.sum(c_0[1:] * np.diff(np.log(self.breaks[1:])))
+        found = (self.at_edge / root[:, -1] - total) / np.pi
+        if self.has_apex:
+            found[on] = np.copysign(np.inf, -c_0[0])
+        return np.asarray(found)
 
 
 def line_load(

@@ -292,6 +292,7 @@ def _row_over(law: DoubleExponential, spacing: float, cutoff: float, points: int
     return r, force
 
 
+@lru_cache(maxsize=16)  # as particles_estimate
 def plane_estimate(profile: Profile, spacing: float, stiffness: float) -> ContactEstimate:
     """The estimate for one chain on a rigid plane: one-sided springs `stiffness` [FU/LU]."""
     deepest = 1e6 * spacing

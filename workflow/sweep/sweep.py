@@ -217,7 +217,7 @@ def attempt_all(tasks: Sequence[Task]) -> list[Answer]:
 def _attempt(scene: Scene, folder: Path) -> Answer:
     """Run a scene. A full disk is raised: no other point would fare better."""
     try:
-        run(scene, folder, figures=False)
+        run(scene, folder, figures=False, workers=1)
     except (SceneError, SettingsError) as error:
         return Answer("refused", str(error))
     except OSError as error:
