@@ -153,8 +153,8 @@ def _parabola_zero(x: Array, p: Array, inner: float, outer: float, residual: flo
     special case.
     """
     width, largest = outer - inner, float(np.max(p))
-    first, second, third = ((float(place) - inner) / width for place in x[-PARABOLA_POINTS:])
-    high, middle, low = (float(pressure) / largest for pressure in p[-PARABOLA_POINTS:])
+    first, second, third = ((place - inner) / width for place in x[-PARABOLA_POINTS:].tolist())
+    high, middle, low = (pressure / largest for pressure in p[-PARABOLA_POINTS:].tolist())
     chord, slope = (low - high) / (third - first), (low - middle) / (third - second)
     a = (slope - chord) / (second - first)
     b = slope - a * (second + third)

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from contact1d.potentials import DoubleExponential, Exponential
@@ -60,10 +61,7 @@ class DeckUnits:
 
     def of(self, unit: str) -> float:
         """One deck unit of this kind, "FU·TU/LU" for instance, in the scene's."""
-        above, _, below = unit.partition("/")
-        names = [(name, 1.0) for name in above.split("·")] + [(name, -1.0) for name in below.split("·") if name]
-        lengths, forces = (sum(sign * POWERS[name][i] for name, sign in names) for i in (0, 1))
-        return float(self.length**lengths * self.force**forces)
+        return _factor(self.length, self.force, unit)
 
     def to_deck(self, value: float, unit: str) -> float:
         """A number of the scene in deck units; the very same where they are the scene's."""
@@ -119,6 +117,15 @@ class DeckUnits:
             return tuple(self._value(item, unit) for item in value)
         is_number = isinstance(value, float | int) and not isinstance(value, bool)
         return self.to_deck(value, unit) if is_number and unit not in (None, "1", "MU") else value
+
+
+@cache
+def _factor(length: float, force: float, unit: str) -> float:
+    """One unit made of these; every number of every row asks for it."""
+    above, _, below = unit.partition("/")
+    names = [(name, 1.0) for name in above.split("·")] + [(name, -1.0) for name in below.split("·") if name]
+    lengths, forces = (sum(sign * POWERS[name][i] for name, sign in names) for i in (0, 1))
+    return float(length**lengths * force**forces)
 
 
 def units_for(scene: Scene) -> DeckUnits:

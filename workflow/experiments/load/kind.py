@@ -9,7 +9,7 @@ from contact1d.workflow.experiments.load.dynamic import SAMPLES, load_dynamic
 from contact1d.workflow.experiments.load.quasistatic import load_quasistatic
 from contact1d.workflow.experiments.running.holding import held_phase
 from contact1d.workflow.experiments.running.kind import ExperimentKind, advice_at_rest
-from contact1d.workflow.experiments.running.prescribing import LOADING_STEPS, in_smaller_steps
+from contact1d.workflow.experiments.running.prescribing import LOADING_STEPS, curve_steps, in_smaller_steps
 from contact1d.workflow.experiments.running.sampling import SETTLING_LOOKS, sampled_phase
 from contact1d.workflow.scene import Load, Scene
 from contact1d.workflow.settings.settings import Settings
@@ -21,7 +21,8 @@ def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     assert isinstance(experiment, Load)
     force = experiment.force
     if scene.method == "quasistatic":
-        down = displacements(np.linspace(0.0, settings.largest_displacement, LOADING_STEPS + 1).tolist())
+        steps = curve_steps(settings) if scene.is_stepped else LOADING_STEPS
+        down = displacements(np.linspace(0.0, settings.largest_displacement, steps + 1).tolist())
         return (Phase("loading", down, state=True),)
     if scene.noise is None:
         return (held_phase("loading", scene, settings, (force,), max(abs(force), settings.force_scale), state=True),)

@@ -10,7 +10,7 @@ from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.law_error import law_error
 from contact1d.workflow.experiments.running.outcome import Outcome
-from contact1d.workflow.experiments.running.prescribing import approach
+from contact1d.workflow.experiments.running.prescribing import approach, curve_steps
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import doubts
 from contact1d.workflow.scene import Load
@@ -33,12 +33,13 @@ def load_quasistatic(context: RunContext) -> Outcome:
     scene, settings = context.deck.scene, context.deck.settings
     assert isinstance(scene.experiment, Load)
     force = scene.experiment.force
+    steps = curve_steps(settings)
     with context.contact() as contact:
         contact.begin("loading")
-        states = approach(contact, max(force, 0.0), 0.0)
+        states = approach(contact, max(force, 0.0), 0.0, steps=steps)
         if force < 0.0:
             contact.begin("unloading")
-            states += approach(contact, force, states[-1].displacement, direction=-1)
+            states += approach(contact, force, states[-1].displacement, direction=-1, steps=steps)
         contact.write_state()
         contact.finish()
     final = states[-1]

@@ -36,6 +36,9 @@ EXPECTED = 1.02
 """End of the rows that are known beforehand over the displacement that the estimate has for the force."""
 LOADING_STEPS = 24
 """Rows of a planned way down, where a run would search, and of one that needs no search."""
+CURVE_STEPS, CURVE_NUMBERS = 100, 200_000
+"""Increments of a load where rows are steps of one run, for the sake of its curve: they cost some tens of microseconds
+each. Of long chains there are so many that places times rows stay below the second."""
 RETRY_SHARES = (1 / 4, 1 / 16)
 """Parts of the increments that are tried where bodies went through each other: a body that moves by much of its
 particles' distance from the opposite ones, or by which their force changes much, lets the minimiser put one beyond.
@@ -75,18 +78,26 @@ def in_smaller_steps(search: Callable[[RunContext], Outcome]) -> Callable[[RunCo
     return searched
 
 
-def approach(contact: Contact, force: float, start: float, direction: int = 1) -> list[State]:
+def curve_steps(settings: Settings) -> int:
+    """Increments of a load's curve where rows are steps of one run."""
+    return max(LOADING_STEPS, min(CURVE_STEPS, CURVE_NUMBERS // settings.particles))
+
+
+def approach(
+    contact: Contact, force: float, start: float, direction: int = 1, steps: int = LOADING_STEPS
+) -> list[State]:
     """Rows of growing displacement (direction 1; falling: −1) from `start` [LU] until the force is `force` [FU].
 
     Increments are those of the settings at most and follow the secant of the last two rows near the end. The last
-    state's force is within FORCE_ACCURACY·tolerance of the wanted one.
+    state's force is within FORCE_ACCURACY·tolerance of the wanted one. Where rows are steps of one run, the way to where
+    the force is expected has `steps` of them.
 
     Raises:
         UntrustedError: see `require_trust`; also where the wanted force cannot be held.
     """
     scale = max(abs(force), contact.settings.force_scale)
     near, spacing = FORCE_ACCURACY * contact.settings.tolerance * scale, contact.scene.bodies.spacing
-    states = _first(contact, start, force, direction)
+    states = _first(contact, start, force, direction, steps)
     before, beyond = _around(states, force, direction)
     while abs(states[-1].carried - force) > near:
         last = states[-1]
@@ -120,7 +131,7 @@ def approach(contact: Contact, force: float, start: float, direction: int = 1) -
     return states
 
 
-def _first(contact: Contact, start: float, force: float, direction: int) -> list[State]:
+def _first(contact: Contact, start: float, force: float, direction: int, steps: int) -> list[State]:
     """The first rows of a way: where nothing has to come to rest, in one run past where the force is expected.
 
     Raises:
@@ -136,7 +147,7 @@ def _first(contact: Contact, start: float, force: float, direction: int) -> list
     end = max(start + EXPECTED * (expected - start), 0.5 * (expected + held))
     if direction * (end - start) <= 0.0:
         return [measured(contact, start)]
-    states = contact.rows(displacements(np.linspace(start, end, LOADING_STEPS + 1).tolist()))
+    states = contact.rows(displacements(np.linspace(start, end, steps + 1).tolist()))
     for state in states:
         require_trust(contact.scene, settings, state)
     if direction < 0 and min(state.carried for state in states) > force:
