@@ -64,6 +64,10 @@ DETACHMENTS = "detachments"
 """Name of the table, and of the figure, of a thermal pull-off."""
 DETACHMENT_COLUMNS = ("seed", "force", "time")
 """Of it, one row for each pull: tension when the bodies part [FU], time since the pull began [TU]."""
+SAMPLE_TABLE = "samples"
+"""Name of the table, and of the figure, of a contact under heat."""
+SAMPLE_COLUMNS = ("time", "load", "displacement", "force", "contact_radius")
+"""Of it, one row for each row of the curve: time since the start [TU], forces [FU], places [LU]."""
 TANGENTIAL_COLUMNS = (
     "tangential_displacement", "tangential_force", "normal_force", "stick_radius", "stick_radius_uncertainty",
     "dissipated_energy",
@@ -109,6 +113,11 @@ def read_tangential(path: Path) -> dict[str, Array]:
 def read_detachments(path: Path) -> dict[str, Array]:
     """Read detachments.csv: DETACHMENT_COLUMNS by name. Raises ValueError as `read_curve`."""
     return {name: _numbers(cells) for name, cells in _read(path, DETACHMENT_COLUMNS).items()}
+
+
+def read_samples(path: Path) -> dict[str, Array]:
+    """Read samples.csv: SAMPLE_COLUMNS by name. Raises ValueError as `read_curve`."""
+    return {name: _numbers(cells) for name, cells in _read(path, SAMPLE_COLUMNS).items()}
 
 
 def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Column]:

@@ -143,6 +143,25 @@ def force_radius_figure(curve: Curve, adhesion_force: float, zero_load_radius: f
     return figure
 
 
+def load_radius_figure(curve: Curve, theory: tuple[str, Array, Array] | None = None) -> Figure:
+    """Force over contact radius of the states that touch; beside it a theory: its name, radius and force."""
+    figure = new_figure(SIZE)
+    axis = figure.subplots()
+    touching = curve.contact_radius > 0.0
+    for branch in dict.fromkeys(curve.branch[touching].tolist()):
+        chosen = touching & (curve.branch == branch)
+        axis.plot(curve.contact_radius[chosen], curve.force[chosen], "o", markersize=3.5, label=branch)
+    if theory is not None:
+        name, radius, force = theory
+        axis.plot(radius, force, "-", color=THEORY, linewidth=1.4, zorder=0, label=name)
+    axis.axhline(0.0, color="black", linewidth=0.8)
+    axis.set_xlim(left=0.0)
+    axis.set_xlabel("contact radius (LU)")
+    axis.set_ylabel("force (FU), compression positive")
+    axis.legend(frameon=False, loc="upper left")
+    return figure
+
+
 def friction_figure(columns: Mapping[str, Sequence[float] | Array]) -> Figure:
     """Friction over the way of the drive, and the normal force below it."""
     figure = new_figure(SIZE)

@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis import body_plots, plots, slip_plots
-from contact1d.analysis.curve import DETACHMENTS, Curve
+from contact1d.analysis.curve import DETACHMENTS, SAMPLE_TABLE, Curve, read_samples
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.reference.mindlin import mindlin_path, sliding_displacement
 from contact1d.analysis.slip import stick_margin
+from contact1d.analysis.time_plots import samples_figure
 from contact1d.workflow.body.closed_form import Case
 from contact1d.workflow.body.pressure import REPORTED, body_pressures
 from contact1d.workflow.body.shear import body_shears, row_of
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
+MEASURED = ("sampling", "unloading", "pulling")
+"""Branches of a motion under heat that are what is asked for; the others forget how it began."""
 Drawings = dict[str, Callable[[], "Figure"]]
 FINE = 300
 """Radii at which a closed form is drawn."""
@@ -43,6 +46,7 @@ def drawings(
     friction: Mapping[str, Array],
     detachments: Mapping[str, Array],
     scales: Scales | None = None,
+    folder: Path | None = None,
 ) -> Drawings:
     """What draws each figure, by the names of the files, the main one first.
 
@@ -51,6 +55,7 @@ def drawings(
         values: of the results.
         curve, profiles, friction, detachments: as in `Run`.
         scales: of the run, where its units are known: the figures are in SI then.
+        folder: of the run, where samples.csv is, if it has one.
     """
     title = f"{scene.title}\n(reduction {scene.bodies.reduction})"
 
@@ -59,6 +64,11 @@ def drawings(
         return figure if scales is None else body_plots.in_si(figure, scales.written)
 
     plain = _drawings(scene, values, curve, profiles, friction, detachments)
+    if folder is not None and (kept := folder / f"{SAMPLE_TABLE}.csv").is_file():
+        traces = partial(
+            samples_figure, read_samples(kept), np.isin(curve.branch, MEASURED), values.get("displacement")
+        )
+        plain = plain | {SAMPLE_TABLE: traces} if DETACHMENTS in plain else {SAMPLE_TABLE: traces} | plain
     return {name: partial(dressed, draw) for name, draw in plain.items()}
 
 
@@ -96,6 +106,8 @@ def _drawings(
     if _adheres_over_a_width(values):
         marks = values["adhesion_force"], values["zero_load_radius"]
         found["force_radius"] = partial(plots.force_radius_figure, curve, *marks)
+    elif np.unique(curve.contact_radius[curve.contact_radius > 0.0]).size > 1:
+        found["force_radius"] = partial(plots.load_radius_figure, curve, _hertz_over_radius(scene, curve))
     return found | pressure | _body_pressure(scene, values, profiles)
 
 
@@ -111,7 +123,7 @@ def draw(
     form: str,
 ) -> None:
     """Save every figure of a run in its folder; `form`: png, svg or pdf."""
-    for name, figure in drawings(scene, values, curve, profiles, friction, detachments, scales).items():
+    for name, figure in drawings(scene, values, curve, profiles, friction, detachments, scales, folder).items():
         plots.save_figure(figure(), folder / f"{name}.{form}")
 
 
@@ -155,6 +167,15 @@ def _mindlin(scene: Scene, curve: Curve, columns: Mapping[str, Array]) -> Array 
     ratio, coefficient = scene.tangential_stiffness / scene.bulk_stiffness, scene.friction.coefficient
     sliding = sliding_displacement(coefficient, ratio, float(curve.displacement[0]))
     return np.asarray(mindlin_path(places.tolist(), float(loads[0]), coefficient, sliding))
+
+
+def _hertz_over_radius(scene: Scene, curve: Curve) -> tuple[str, Array, Array] | None:
+    """Hertz's radius √(2 R₁ d) of the plane parabola x²/2R₁ and force, without adhesion on a plane; else none."""
+    bodies, radius = scene.bodies, scene.bodies.plane_radius
+    if radius is None or scene.interaction is not None or scene.adheres:
+        return None
+    d, force = plots.hertz_curve(float(curve.displacement.max()), radius, scene.bulk_stiffness / bodies.spacing)
+    return "Hertz", np.sqrt(2.0 * radius * d), force
 
 
 def _radius(scene: Scene, profile: Profile) -> float:

@@ -132,7 +132,7 @@ class Run:
 
         Args:
             name: "force_displacement", "force_radius", "pressure", "pressure_3d", "friction", "tangential",
-                "stick_slip", "shear_3d" or "detachments", as the files in the folder are called.
+                "stick_slip", "shear_3d", "detachments" or "samples", as the files in the folder are called.
 
         Raises:
             ValueError: the run has no such figure; the message says which it has.
@@ -141,7 +141,16 @@ class Run:
         from contact1d.workflow.runs.drawing import drawings
 
         values = {key: quantity.value for key, quantity in self.results.items()}
-        there = drawings(self.scene, values, self.curve, self.profiles, self.friction, self.detachments, self.scales)
+        there = drawings(
+            self.scene,
+            values,
+            self.curve,
+            self.profiles,
+            self.friction,
+            self.detachments,
+            self.scales,
+            self.folder,
+        )
         name = name or next(iter(there))
         if name not in there:
             raise ValueError(f"the run has no figure {name!r}, it has {', '.join(there)}")

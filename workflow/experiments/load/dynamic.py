@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from contact1d.analysis.curve import SAMPLE_TABLE
 from contact1d.analysis.pressure import mean_pressure
 from contact1d.workflow.deck.steps import UnderLoad
 from contact1d.workflow.experiments.load.quasistatic import load_outcome, moved_by
@@ -21,6 +22,7 @@ from contact1d.workflow.experiments.running.sampling import (
     SETTLING_LOOKS,
     chunk_steps,
     mean_profile,
+    sample_columns,
     standard_error,
 )
 from contact1d.workflow.experiments.running.trust import ThroughError, UntrustedError, doubts, require_trust
@@ -178,7 +180,8 @@ def _thermal_outcome(
         quantities["contact_radius"] = Quantity(radius.value, spread + radius.uncertainty, LENGTH)
         quantities["mean_pressure"] = Quantity(pressure, abs(pressure) * share, MEAN_PRESSURE)
     radii = {"final": math.nan if radius is None else radius.value}
-    return Outcome(quantities, states, {"final": mean}, radii, contact.phases, warnings)
+    table = {SAMPLE_TABLE: sample_columns(states, contact.phases, context.deck.settings)}
+    return Outcome(quantities, states, {"final": mean}, radii, contact.phases, warnings, tables=table)
 
 
 def _blocks(samples: list[State]) -> list[list[State]]:

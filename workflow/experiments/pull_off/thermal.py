@@ -10,11 +10,12 @@ import math
 
 import numpy as np
 
+from contact1d.analysis.curve import DETACHMENTS, SAMPLE_TABLE
 from contact1d.workflow.deck.steps import Phase, UnderLoad
 from contact1d.workflow.experiments.pull_off.pulls import pulls, ramp_of, rate_of
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
-from contact1d.workflow.experiments.running.sampling import SETTLING_LOOKS, chunk_steps
+from contact1d.workflow.experiments.running.sampling import SETTLING_LOOKS, chunk_steps, sample_columns
 from contact1d.workflow.experiments.running.trust import doubts
 from contact1d.workflow.scene import PullOff, Scene
 from contact1d.workflow.settings.settings import Settings
@@ -55,11 +56,12 @@ def pull_off_thermal(context: RunContext) -> Outcome:
         own.phases,
         doubts(scene, settings, own.states) | _lagging(scene, settings),
         tables={
-            "detachments": {
+            DETACHMENTS: {
                 "seed": tuple(float(one.seed) for one in found),
                 "force": tuple(one.force for one in found),
                 "time": tuple(one.time for one in found),
-            }
+            },
+            SAMPLE_TABLE: sample_columns(own.states, own.phases, settings),
         },
     )
 

@@ -36,7 +36,7 @@ class Outcome:
         phases: the schedule.
         warnings: by name, what limits the trust in the numbers.
         friction: columns of friction.csv, for a slide.
-        tables: columns of further files, by the names of these: slips, detachments.
+        tables: columns of further files, by the names of these: slips, detachments, samples.
         spacing_uncertainty: by name, the part of a quantity's uncertainty that the spacing of the particles leaves,
             whatever the settings.
         centring: by name, the part of it that comes from not knowing where the contact's centre lies between particles

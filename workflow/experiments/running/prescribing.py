@@ -89,8 +89,8 @@ def approach(
     """Rows of growing displacement (direction 1; falling: −1) from `start` [LU] until the force is `force` [FU].
 
     Increments are those of the settings at most and follow the secant of the last two rows near the end. The last
-    state's force is within FORCE_ACCURACY·tolerance of the wanted one. Where rows are steps of one run, the way to where
-    the force is expected has `steps` of them.
+    state's force is within FORCE_ACCURACY·tolerance of the wanted one. Where rows are steps of one run, the way to the
+    place where the force is expected has `steps` of them.
 
     Raises:
         UntrustedError: see `require_trust`; also where the wanted force cannot be held.

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.pressure import Profile
 from contact1d.workflow.deck.steps import Phase, UnderLoad
+from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.settings.settings import Settings
 
 CHUNK = 0.25
@@ -35,6 +36,27 @@ def standard_error(samples: Sequence[float]) -> float:
     """Standard error of the mean of a correlated series, from the means of BLOCKS blocks."""
     means = [float(np.mean(block)) for block in np.array_split(np.asarray(samples), BLOCKS)]
     return float(np.std(means, ddof=1) / math.sqrt(BLOCKS))
+
+
+def sample_columns(
+    states: Sequence[State], phases: Sequence[Phase], settings: Settings
+) -> dict[str, tuple[float, ...]]:
+    """The columns of samples.csv: time [TU], load and force [FU], displacement and contact radius [LU] of each state.
+
+    Args:
+        states: of rows of the phases.
+        phases: under loads.
+        settings: with the length of a timestep.
+    """
+    loads = [row.load for phase in phases for row in phase.rows if isinstance(row, UnderLoad)]
+    radii = [state.radius for state in states]
+    return {
+        "time": tuple(state.step * settings.time_step for state in states),
+        "load": tuple(loads[state.number] for state in states),
+        "displacement": tuple(state.displacement for state in states),
+        "force": tuple(state.force for state in states),
+        "contact_radius": tuple(math.nan if radius is None else radius.value for radius in radii),
+    }
 
 
 def mean_profile(profiles: Sequence[Profile]) -> Profile:
