@@ -155,6 +155,8 @@ def _thermal_outcome(
     goal: float,
 ) -> Outcome:
     scene = context.deck.scene
+    assert isinstance(scene.experiment, Load)
+    load = scene.experiment.force
     displacement = [s.displacement for s in samples]
     error = standard_error(displacement)
     quantities = {
@@ -180,7 +182,7 @@ def _thermal_outcome(
         quantities["contact_radius"] = Quantity(radius.value, spread + radius.uncertainty, LENGTH)
         quantities["mean_pressure"] = Quantity(pressure, abs(pressure) * share, MEAN_PRESSURE)
     radii = {"final": math.nan if radius is None else radius.value}
-    table = {SAMPLE_TABLE: sample_columns(states, contact.phases, context.deck.settings)}
+    table = {SAMPLE_TABLE: sample_columns(states, [load] * len(states), context.deck.settings)}
     return Outcome(quantities, states, {"final": mean}, radii, contact.phases, warnings, tables=table)
 
 

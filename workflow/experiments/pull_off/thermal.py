@@ -48,6 +48,7 @@ def pull_off_thermal(context: RunContext) -> Outcome:
         error = float(abs(forces[0]))  # one pull says nothing of how they scatter
     quantities = {"detachment_force": Quantity(float(forces.mean()), error, FORCE)} | quantities
     own = found[0]
+    loads = [row.load for phase in own.phases for row in phase.rows if isinstance(row, UnderLoad)]
     return Outcome(
         quantities,
         own.states,
@@ -61,7 +62,7 @@ def pull_off_thermal(context: RunContext) -> Outcome:
                 "force": tuple(one.force for one in found),
                 "time": tuple(one.time for one in found),
             },
-            SAMPLE_TABLE: sample_columns(own.states, own.phases, settings),
+            SAMPLE_TABLE: sample_columns(own.states, [loads[state.number] for state in own.states], settings),
         },
     )
 

@@ -38,21 +38,18 @@ def standard_error(samples: Sequence[float]) -> float:
     return float(np.std(means, ddof=1) / math.sqrt(BLOCKS))
 
 
-def sample_columns(
-    states: Sequence[State], phases: Sequence[Phase], settings: Settings
-) -> dict[str, tuple[float, ...]]:
+def sample_columns(states: Sequence[State], loads: Sequence[float], settings: Settings) -> dict[str, tuple[float, ...]]:
     """The columns of samples.csv: time [TU], load and force [FU], displacement and contact radius [LU] of each state.
 
     Args:
-        states: of rows of the phases.
-        phases: under loads.
+        states: in order.
+        loads: under which each was measured [FU].
         settings: with the length of a timestep.
     """
-    loads = [row.load for phase in phases for row in phase.rows if isinstance(row, UnderLoad)]
     radii = [state.radius for state in states]
     return {
         "time": tuple(state.step * settings.time_step for state in states),
-        "load": tuple(loads[state.number] for state in states),
+        "load": tuple(loads),
         "displacement": tuple(state.displacement for state in states),
         "force": tuple(state.force for state in states),
         "contact_radius": tuple(math.nan if radius is None else radius.value for radius in radii),
