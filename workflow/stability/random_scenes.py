@@ -29,6 +29,8 @@ SOLVER = 2e-6
 """Relative error of the solver's forces and radii themselves."""
 COARSE = 0.125
 """First steps of the solver's search over the shortest range: enough where no particle snaps."""
+FARTHEST = 5.0
+"""Distance of a displacement from the estimate's over that, from which on chains that buckled are what it leads to."""
 PATHS, IN_TIME = 0.2, 0.25
 """Shares of the scenes that are made paths, and that are run in time."""
 APART = 12.0
@@ -149,14 +151,20 @@ def model_of(scene: dict[str, Any], particles: int) -> ChainModel:
 
 
 def loaded(model: ChainModel, force: float, near: float) -> State:
-    """The solver's state under a compressive force, by the secant method from a displacement that is near."""
+    """The solver's state under a compressive force, by the secant method from a displacement that is near.
+
+    Raises:
+        RuntimeError: there is none within FARTHEST, or a minimisation does not converge.
+    """
     solver = ChainSolver(model)
     first, second = solver.equilibrium(near), solver.equilibrium(near * (1.0 + 1e-4) + 1e-6)
     for _ in range(20):
         if abs(second.force - force) <= 1e-10 * force:
             return second
         slope = (second.force - first.force) / (second.displacement - first.displacement)
-        place = second.displacement + (force - second.force) / slope
+        place = second.displacement + (force - second.force) / slope if slope else math.inf
+        if abs(place - near) > FARTHEST * abs(near):
+            raise RuntimeError("no displacement near the estimate's carries the load")
         first, second = second, solver.equilibrium(place, second)
     raise RuntimeError("the secant method did not end")
 
