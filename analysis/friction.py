@@ -86,6 +86,26 @@ def mean_of(blocks: Array) -> Mean:
     return Mean(float(blocks[first:].mean()), errors[first - DROPPED], first)
 
 
+def sampled_mean(time: Array, force: Array, period: float) -> Mean:
+    """The mean of forces that are known at single times only, shape (n,), with many in a period.
+
+    Under heat the random kicks of a bath, ∫ ξ dt ~ √(2γkT t), are no part of the friction, but of the balance that
+    gives its integral: samples may know it better. A slip between two is missed by half of the time between at most:
+    slips at random times are in the scatter of the blocks, those that come at the same time in each are in their mean.
+
+    Raises:
+        ValueError: see `mean_of`.
+    """
+    integral = np.concatenate([[0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(time))])
+    mean = mean_of(block_means(time, integral, period))
+    count = math.floor((time[-1] - time[0]) / period * (1.0 + 1e-9)) - mean.first
+    each = max(2, round(period / float(np.median(np.diff(time)))))
+    phases = time[-1] - period * count + period / each * np.arange(count * each + 1)
+    usual = np.interp(phases, time, force)[:-1].reshape(count, each).mean(axis=0)
+    missed = 0.5 * float(np.max(np.abs(np.diff(usual, append=usual[0])))) / each
+    return Mean(mean.value, mean.error + missed, mean.first)
+
+
 def interval(blocks: Array) -> float:
     """Half of the interval of 95 % of the mean of blocks, the largest for blocks of one, two and four of them.
 

@@ -8,7 +8,9 @@ it leaves its well after the mean time
 over y = −d from the well to well beyond the barrier; S′(F) = −S/(τ Ḟ), and ⟨F⟩ = ∫ S dF (Hänggi and others 1990).
 Where the load grows while the plate leaves its well, the density itself is followed in time,
 
-    ∂p/∂t = ∂/∂y [ U′(y, t) p + kT ∂p/∂y ]/Γ,    S = share of it that is not beyond the barrier.
+    ∂p/∂t = ∂/∂y [ U′(y, t) p + kT ∂p/∂y ]/Γ,    S = ∫ p h dy,
+
+h(y, t) the chance to be on the near side of the barrier then or at any later time, by the equation backward in time.
 
 Garg's closed form (1995) takes the barrier as ΔE₀ (1 − F/F_A)^{3/2}, the form next to the fold, for all of it.
 """
@@ -19,9 +21,24 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import solve_banded
 
 Array = NDArray[np.float64]
 TENSIONS = 300
+SMALL = 1e-9
+"""Difference of an energy over kT below which it counts as none."""
+GONE, MOST_STEPS = 1e-6, 30_000
+"""Share of the density that counts as none, and steps of the load after which it is not waited for."""
+
+
+def drag_of_pairs(displacement: Array, free_energy: Array, pairs: int, stiffness: float, drag: float) -> Array:
+    """Γ(d) = N γ [(1 − c)² + c²] [FU·TU/LU] of N opposite pairs, by what either particle moves where the plate does.
+
+    c = A″/(N k): half of the way goes to the lower particle where both stand on each other, nothing where they are
+    apart. A [FU·LU] at even places d [LU], k [FU/LU] of each spring, γ [FU·TU/LU] of each particle.
+    """
+    lower = np.gradient(np.gradient(free_energy, displacement), displacement) / (pairs * stiffness)
+    return np.asarray(pairs * drag * ((1.0 - lower) ** 2 + lower**2))
 
 
 def escape_time(place: Array, energy: Array, barrier: int, drag: float, temperature: float) -> float:
@@ -55,6 +72,81 @@ def detachment(
     survival = np.exp(-np.concatenate([[0.0], np.cumsum(0.5 * (rates[1:] + rates[:-1]))]) * step / rate)
     mean = float(np.trapezoid(survival, tensions))
     square = float(2.0 * np.trapezoid(tensions * survival, tensions))
+    return mean, float(np.sqrt(max(square - mean**2, 0.0)))
+
+
+def detachment_in_time(
+    displacement: Array,
+    free_energy: Array,
+    drag: float | Array,
+    temperature: float,
+    rate: float,
+    barrier: float,
+    spring: float = 0.0,
+    end: float = 0.0,
+) -> tuple[float, float]:
+    """Mean and standard deviation of the detachment force [FU], by the density of the plate as the load grows.
+
+    It begins as Boltzmann's without load and ends where the places end; the force is that of the last time at the
+    barrier. With a spring, whose far end is drawn off, the force is the spring's with the plate there.
+
+    Args:
+        displacement: even places d [LU], rising, from well beyond the barrier, out of reach, to behind the well.
+        free_energy: A(d) [FU·LU].
+        drag: Γ [FU·TU/LU]; one, or one for each place.
+        temperature: kT [FU·LU].
+        rate: Ḟ [FU/TU]; of a spring k v.
+        barrier: d [LU] beyond which the plate has let go.
+        spring: k [FU/LU]; 0: a load.
+        end: d [LU] at which the spring's far end begins.
+
+    Raises:
+        ArithmeticError: the plate stays, or was never held.
+    """
+    y, energy = -displacement[::-1], free_energy[::-1]
+    h, held, middle = float(y[1] - y[0]), y < -barrier, 0.5 * (y[1:] + y[:-1])
+    strongest = float(np.max(np.gradient(energy, y)))
+    step = strongest / rate / TENSIONS
+    own = np.diff(energy) / h + spring * (middle + end)
+    start = energy + 0.5 * spring * (y + end) ** 2
+    p = np.where(held, np.exp(-(start - start[held].min()) / temperature), 0.0)
+    p /= p.sum()
+    drags = np.broadcast_to(np.asarray(drag, dtype=np.float64), y.shape)[::-1]
+    share = temperature / (0.5 * (drags[1:] + drags[:-1])) / h**2 * step
+
+    def bands(force: float) -> Array:
+        """Of the implicit step under a force: the rows of a matrix beside its diagonal, as `solve_banded` has them."""
+        rise = h / temperature * (own - force)
+        safe = np.where(np.abs(rise) < SMALL, SMALL, rise)
+        there = share * safe / np.expm1(safe)  # Scharfetter and Gummel
+        back = there + share * safe
+        there[-1], back[-1] = 2.0 * share[-1], 0.0  # nothing comes back from the last place
+        matrix = np.zeros((3, y.size))
+        matrix[1] = 1.0
+        matrix[1, :-1] += there
+        matrix[1, 1:] += back
+        matrix[0, 1:], matrix[2, :-1] = -back, -there
+        return matrix
+
+    forces, densities = [0.0], [p]
+    while densities[-1][held].sum() > GONE:
+        if len(forces) > MOST_STEPS:
+            raise ArithmeticError("the plate is not drawn off")
+        forces.append(forces[-1] + rate * step)
+        p = solve_banded((1, 1), bands(forces[-1]), densities[-1], check_finite=False)
+        p[-1] = 0.0
+        densities.append(p)
+    returns, stays = held.astype(np.float64), []  # chance to be held then or later, by place
+    for force, density in zip(reversed(forces), reversed(densities), strict=True):
+        stays.append(float(density @ returns))
+        forward = bands(force)
+        transposed = np.zeros_like(forward)
+        transposed[1], transposed[0, 1:], transposed[2, :-1] = forward[1], forward[2, :-1], forward[0, 1:]
+        returns[-1] = 0.0
+        returns = np.where(held, 1.0, solve_banded((1, 1), transposed, returns, check_finite=False))
+    survival, load = np.asarray(stays[::-1]), np.asarray(forces) - spring * (end - barrier)
+    mean = float(load[0] + np.trapezoid(survival, load))
+    square = float(load[0] ** 2 + 2.0 * np.trapezoid(load * survival, load))
     return mean, float(np.sqrt(max(square - mean**2, 0.0)))
 
 

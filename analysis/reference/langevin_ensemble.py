@@ -1,6 +1,6 @@
 """Prandtl and Tomlinson's particle under heat by an ensemble of its equations of motion: inertia, height and plate.
 
-A particle (x, z) hangs by springs k on the plate (X, Z), which carries the normal force and is pulled by the cantilever:
+A particle (x, z) hangs by springs k on the plate (X, Z), which has the normal force and is pulled by the cantilever:
 
     m x″ = −∂V/∂x − k (x − X) − γ (x′ − v) + ξ,    m z″ = −∂V/∂z − k (z − Z) − γ z′ + ξ′,
     M X″ = k (x − X) + k_c (v t − X),              M Z″ = k (z − Z) − F_N,
@@ -12,6 +12,7 @@ drifts, and the drag with its heat exactly. ⟨F⟩ is the mean of ∂V/∂x ove
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -91,7 +92,7 @@ def ensemble_friction(
     return float(means.mean()), float(means.std(ddof=1) / math.sqrt(copies))
 
 
-def _forces(body: PulledParticle):  # type: ignore[no-untyped-def]
+def _forces(body: PulledParticle) -> Callable[[Array, Array], tuple[Array, Array]]:
     """Forces on x, z, X, Z and that of the row against +x, by V(x, z) = V_0(z) + Σ V_n(z) cos(2πn x/s)."""
     A, a, B, b = body.law
     s, count = body.spacing, math.ceil(REACH * max(a, b) / body.spacing)

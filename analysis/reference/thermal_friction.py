@@ -10,8 +10,9 @@ drive, y = x − v t has the density p(y, t) of
     ∂p/∂t = ∂/∂y { μ [ (A′ + k y + γ v z′²) p + kT ∂p/∂y ] },    μ = (1 + m (A″ + k)/γ²)/γ(1 + z′²),    at x = y + v t,
 
 and ⟨F⟩ = −k ⟨y⟩ over a period. μ has inertia to its first order (Wilemski 1976): m max|A″| ≪ γ². Fluxes as of
-Scharfetter and Gummel, which keep Boltzmann's density exactly; implicit in time. Beside it the textbook's law (Sang, Dubé and Grant 2001): slips over a barrier ∝ (1 − F/F_c)^{3/2} come at a
-force that is lower by F_c [(kT/ΔE₀) ln X]^{2/3}, and so is the mean.
+Scharfetter and Gummel, which keep Boltzmann's density exactly; implicit in time. Beside it the textbook's law (Sang,
+Dubé and Grant 2001): slips over a barrier ∝ (1 − F/F_c)^{3/2} come at a force that is lower by
+F_c [(kT/ΔE₀) ln X]^{2/3}, and so is the mean.
 """
 
 from __future__ import annotations
@@ -31,8 +32,8 @@ HEIGHTS, REACH = 1200, 30.0
 """Of the integral over z; and the longer range times it, beyond which rows are left out."""
 PLACES, FINER = 240, 4
 """Places of the density for each spacing, and timesteps while the drive passes one of them."""
-PERIODS = 8
-"""Of the drive, after which the density repeats itself; it begins as that of the drive at rest."""
+FORGOTTEN, MOST_PERIODS = 6.0, 500
+"""Times γ/k after which the density, which begins as that of the drive at rest, has forgotten that; and a bound."""
 SAME = 1e-4
 """Change of ⟨F⟩ over F_max from period to period that counts as none."""
 ROOM = 8.0
@@ -83,11 +84,15 @@ def thermal_friction(
     places: int = PLACES,
     finer: int = FINER,
 ) -> float:
-    """⟨F⟩ [FU] at k [FU/LU], γ [FU·TU/LU], kT [FU·LU], v [LU/TU] and m [MU], in the state that repeats itself."""
+    """⟨F⟩ [FU] at k [FU/LU], γ [FU·TU/LU], kT [FU·LU], v [LU/TU] and m [MU], in the state that repeats itself.
+
+    Raises:
+        ArithmeticError: it does not come to that.
+    """
     s, moments = wells.spacing, finer * places
     half = math.ceil((wells.largest_force / stiffness + s + ROOM * math.sqrt(temperature / stiffness)) / s * places)
     h, step = s / places, s / velocity / moments
-    y = h * np.arange(-half, half + 1)
+    y: Array = h * np.arange(-half, half + 1, dtype=np.float64)
     between = y[1:] - 0.5 * h
     period = s * np.arange(moments) / moments  # the drive goes on by an entry at a time
     climb = heights.slope(period) ** 2
@@ -100,7 +105,8 @@ def thermal_friction(
     p = np.exp(-(energy - energy.min()) / temperature)
     p /= p.sum()
     bands, means = np.zeros((3, y.size)), [math.inf]
-    while len(means) <= PERIODS:
+    least = math.ceil(FORGOTTEN * drag / stiffness * velocity / s)
+    while len(means) <= MOST_PERIODS:
         total = 0.0
         for moment in range(1, moments + 1):
             here = (entries + moment) % moments
@@ -115,14 +121,12 @@ def thermal_friction(
             p = solve_banded((1, 1), bands, p, check_finite=False)
             total -= stiffness * float(p @ y)
         means.append(total / moments)
-        if abs(means[-1] - means[-2]) < SAME * wells.largest_force:
-            break
-    return means[-1]
+        if len(means) > least and abs(means[-1] - means[-2]) < SAME * wells.largest_force:
+            return means[-1]
+    raise ArithmeticError(f"the density does not repeat itself within {MOST_PERIODS} periods of the drive")
 
 
-def textbook_friction(
-    wells: Corrugation, stiffness: float, drag: float, temperature: float, velocity: float
-) -> float:
+def textbook_friction(wells: Corrugation, stiffness: float, drag: float, temperature: float, velocity: float) -> float:
     """⟨F⟩ [FU] by the (ln v)^{2/3} law; NaN where its logarithm is none, v being too fast.
 
     Slow without heat it is `slow_friction`; heat takes from the force at which it slips, and from the mean as much.

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d.analysis.friction import block_means, mean_of
+from contact1d.analysis.friction import block_means, mean_of, sampled_mean
 from contact1d.workflow.experiments.slide.findings import is_steady
 from contact1d.workflow.experiments.slide.motion import Motion
 from contact1d.workflow.settings.drive import DriveLeg
@@ -44,3 +44,21 @@ def test_a_plate_that_falls_behind_the_drive_does_not_slide_steadily(share: floa
     leg = DriveLeg(VELOCITY, 40 * PERIODS, 10, 0.005)
     told = is_steady(SPACED, moved(lambda time: share * VELOCITY * time, leg))
     assert (told == "") == steady
+
+
+def test_samples_know_a_friction_under_heat_better_than_the_balance() -> None:
+    """Kicks of the bath are in the balance of forces over a time, and not in the friction."""
+    generator = np.random.default_rng(3)
+    time = np.linspace(0.0, 40.0, 40 * 50 + 1)
+    friction = 1.0 + 0.3 * generator.standard_normal(time.size)
+    kicks = np.concatenate([[0.0], np.cumsum(generator.standard_normal(time.size - 1) * 0.3)])
+    found, balance = sampled_mean(time, friction, 1.0), mean_of(block_means(time, time + kicks, 1.0))
+    assert abs(found.value - 1.0) < found.error < 0.3 * balance.error
+
+
+def test_a_slip_between_two_samples_is_in_the_error_of_their_mean() -> None:
+    """A sawtooth of 50 rows a period, without heat: each period errs alike."""
+    time = np.linspace(0.0, 20.0, 20 * 50 + 1)
+    sawtooth = (time + 0.99 / 50.0) % 1.0
+    found = sampled_mean(time, sawtooth, 1.0)
+    assert 0.0 < abs(found.value - 0.5) <= found.error < 0.02

@@ -18,12 +18,14 @@ from contact1d.analysis.pressure import Profile
 from contact1d.analysis.reference.line_adhesion import barquins_reduced_force
 from contact1d.workflow.reproduce import (
     adhesive,
+    detachment,
     eq3,
     fig4,
     fig5,
     fig6,
     fig7,
     fig8,
+    heat,
     jkr_plane,
     pressure,
     table1,
@@ -39,6 +41,8 @@ ABOUT = {
     "adhesion_force": (1.47, "FU"), "zero_load_radius": (28.53, "LU"), "critical_radius": (15.0, "LU"),
     "largest_force": (40.0, "FU"), "largest_radius": (30.0, "LU"), "contact_radius": (30.0, "LU"),
     "image_contact_radius": (30.0, "LU"), "image_largest_radius": (30.0, "LU"), "displacement": (0.4, "LU"),
+    "mean_friction": (0.05, "FU"), "plate_temperature": (2e-3, "FU·LU"), "detachment_force": (0.5, "FU"),
+    "detachment_force_spread": (0.1, "FU"),
 }  # fmt: skip
 """About what the paper's scene has, so that nothing fails by its size alone."""
 WRONG = (1.4, 3.0)
@@ -85,7 +89,22 @@ class WrongRuns(dict[str, Run]):
 
 @pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.name)
 def test_no_row_passes_where_every_run_is_wrong(study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in (adhesive, eq3, fig4, fig5, fig6, fig7, fig8, jkr_plane, pressure, table1, tangential):
+    modules = (
+        adhesive,
+        detachment,
+        eq3,
+        fig4,
+        fig5,
+        fig6,
+        fig7,
+        fig8,
+        heat,
+        jkr_plane,
+        pressure,
+        table1,
+        tangential,
+    )
+    for module in modules:
         monkeypatch.setattr(module, "save", lambda *_: None, raising=False)
     paper = read_scene(SCENES / "paper.toml")
     found = study.judge(paper, WrongRuns(paper), tmp_path)

@@ -71,6 +71,47 @@ def slip_figure(forces: Sequence[Series], sticking: Sequence[Series], theory: tu
     return figure
 
 
+def heat_figure(
+    points: Sequence[Series], solved: Sequence[Series], moving: Sequence[Series], laws: Sequence[Series], still: float
+) -> Figure:
+    """⟨F⟩/F_max over velocity, by temperature: runs, Smoluchowski, ensemble, textbook; `still`: slow, without heat."""
+    figure = new_figure((6.4, 4.6))
+    axis = figure.subplots()
+    for one, line, copies, law, colour, marker in zip(points, solved, moving, laws, COLOURS, MARKERS, strict=False):
+        axis.errorbar(one.x, one.y, one.spread, fmt=marker, color=colour, label=one.name, capsize=3, fillstyle="none")
+        axis.plot(line.x, line.y, "-", color=colour, linewidth=1.2)
+        axis.plot(copies.x, copies.y, "x", color=colour, markersize=8)
+        axis.plot(law.x, law.y, "--", color=colour, linewidth=1.0)
+    axis.axhline(still, color=THEORY, linewidth=1.0, linestyle=":", label="slow, without heat")
+    axis.plot([], [], "-", color=THEORY, label="Smoluchowski")
+    axis.plot([], [], "x", color=THEORY, label="ensemble of equations of motion")
+    axis.plot([], [], "--", color=THEORY, label=r"$(\ln v)^{2/3}$")
+    axis.set_xscale("log")
+    axis.set_ylim(0.0, None)
+    axis.set_xlabel("velocity (LU/TU)")
+    axis.set_ylabel(r"mean friction over $F_{max}$")
+    axis.legend(frameon=False, fontsize=9)
+    return figure
+
+
+def detachment_figure(runs: Series, theory: Series, closed: Series, most: float) -> Figure:
+    """Detachment force over the loading rate: runs, Smoluchowski with its spread, Garg, and F_A(T), `most` [FU]."""
+    figure = new_figure((6.4, 4.4))
+    axis = figure.subplots()
+    spread = theory.y * 0.0 if theory.spread is None else theory.spread
+    axis.fill_between(theory.x, theory.y - spread, theory.y + spread, color=COLOURS[0], alpha=0.15, linewidth=0.0)
+    axis.plot(theory.x, theory.y, "-", color=COLOURS[0], linewidth=1.2, label=theory.name)
+    axis.plot(closed.x, closed.y, "--", color=THEORY, linewidth=1.2, label=closed.name)
+    axis.errorbar(runs.x, runs.y, runs.spread, fmt="o", color="black", capsize=3, fillstyle="none", label=runs.name)
+    axis.axhline(most, color=THEORY, linewidth=1.0, linestyle=":", label="$F_A(T)$")
+    axis.set_xscale("log")
+    axis.set_ylim(0.0, None)
+    axis.set_xlabel("loading rate (FU/TU)")
+    axis.set_ylabel("detachment force (FU)")
+    axis.legend(frameon=False, fontsize=9, loc="upper left")
+    return figure
+
+
 def history_figure(force: Sequence[Series], radius: Sequence[Series], limit: float) -> Figure:
     """F_A and a_cr over the preload, each over its mean (Fig. 6); `limit`: preload at which chains slip past."""
     figure = new_figure(WIDE)

@@ -16,7 +16,7 @@ from contact1d.workflow.reproduce.record import Record, StudyRecord
 
 EVIDENCE: dict[Evidence, str] = {
     "closed form": "an equation that is evaluated without any part of this program",
-    "independent solver": "the energy minimiser in analysis/reference, which shares no code with what it judges",
+    "independent solver": "a solver in analysis/reference, which shares no code with what it judges",
     "printed value": "a number that the paper prints, good to its digits: it shows that the model is the paper's, not "
     "that the model is right",
     "paper's words": "something that the paper says without a number for it, put into one",

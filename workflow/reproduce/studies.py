@@ -12,12 +12,14 @@ from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import FolderError
 from contact1d.workflow.reproduce import (
     adhesive,
+    detachment,
     eq3,
     fig4,
     fig5,
     fig6,
     fig7,
     fig8,
+    heat,
     jkr_plane,
     pressure,
     table1,
@@ -50,6 +52,8 @@ STUDIES: tuple[Study, ...] = (
     adhesive.STUDY,
     jkr_plane.STUDY,
     tangential.STUDY,
+    heat.STUDY,
+    detachment.STUDY,
 )
 NAMES = tuple(study.name for study in STUDIES)
 PAGE, VALIDATION = "reproduce.html", "VALIDATION.md"

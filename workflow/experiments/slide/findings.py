@@ -67,6 +67,8 @@ def means(scene: Scene, settings: Settings, motion: Motion) -> dict[str, Quantit
     blocks = friction.block_means(time, sign * motion.impulse[rows], period, force if smooth else None)
     if blocks.size >= friction.DROPPED + friction.FEWEST_BLOCKS:
         mean = friction.mean_of(blocks)
+        if not smooth:
+            mean = min(mean, friction.sampled_mean(time, force, period), key=lambda one: one.error)
         pulled = friction.block_means(time, sign * motion.pulled[rows], period, pulls if smooth else None)[mean.first :]
         pull = float(pulled.mean())
         found["mean_friction"] = Quantity(mean.value, mean.error + tolerance * abs(mean.value), FORCE)
