@@ -20,6 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contact1d.analysis.row import spacing_of
+
 Array = NDArray[np.float64]
 NEAR = 0.3
 """Of a spacing: a place nearer to the edge than that is left out, since a slope over so short a way is mostly noise."""
@@ -113,7 +115,7 @@ def line_load(
         raise ValueError(f"places and loads must be 1-D and equally long, got {places.shape} and {values.shape}")
     half = places.size // 2
     right, mean = places[half:], 0.5 * (values[half:] + values[::-1][half:])
-    spacing = float(places[-1] - places[0]) / max(places.size - 1, 1)
+    spacing = spacing_of(places)
     if places.size < 2 or np.abs(places + places[::-1]).max() > SAME * spacing:
         raise ValueError("the places must be the same on both sides of 0")
     end = float(right[-1]) if edge is None else edge

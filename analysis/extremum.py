@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.polynomial import Array, fitting, lowest_minimum
+from contact1d.analysis.row import spacing_of
 
 INTERPOLANT_SIZES = (7, 5)
 """Samples under the interpolating polynomial, and under the lower one that it is compared with."""
@@ -91,7 +92,7 @@ def place_of_minimum(x: Array, y: Array, candidates: NDArray[np.intp]) -> Place:
     last = len(x) - 1
     index = int(candidates[np.argmin(y[candidates])])
     if index in (0, last):
-        return Place(float(x[index]), float(x[last] - x[0]) / last, True)
+        return Place(float(x[index]), spacing_of(x), True)
     noise = _noise(y, index)
     likely = candidates[y[candidates] <= y[index] + CANDIDATE_SIGMAS * noise]
     first, final = int(likely[0]), int(likely[-1])
@@ -175,7 +176,7 @@ def _is_smooth(x: Array, y: Array, index: int, noise: float) -> bool:
     """Whether, up to noise, the differences about a sample are DECAY_OF_DIFFERENCES with every even order."""
     near = slice(max(0, index - SIDE_COUNTS[-1]), index + SIDE_COUNTS[-1] + 1)
     place, difference = x[near], y[near]
-    spacing, before = float(place[-1] - place[0]) / (len(place) - 1), math.inf
+    spacing, before = spacing_of(place), math.inf
     for order in SMOOTH_ORDERS:
         for k in (order - 1, order):
             difference = (difference[1:] - difference[:-1]) / (place[k:] - place[:-k]) * (k * spacing)

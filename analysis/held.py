@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from contact1d.analysis.extremum import Place
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius
+from contact1d.analysis.row import middle_of, spacing_of
 
 Array = NDArray[np.float64]
 
@@ -39,10 +40,10 @@ def held_radius(profile: Profile) -> ContactRadius:
     x, p = profile.x, profile.pressure
     if len(x) < INNER:
         raise ValueError(f"a contact radius needs at least {INNER} particles, got {len(x)}")
-    spacing = float(x[-1] - x[0]) / (len(x) - 1)
+    spacing = spacing_of(x)
     held = np.flatnonzero(p != 0.0)
     if held.size == 0:
-        middle = 0.5 * float(x[0] + x[-1])
+        middle = middle_of(x)
         return ContactRadius(0.0, 0.5 * spacing, middle, middle, False)
     first, last = int(held[0]), int(held[-1])
     right = _edge(x[: last + 1], p[: last + 1], last - first, spacing, last == len(x) - 1)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from contact1d.analysis.pressure import Profile
+from contact1d.analysis.row import spacing_of
 from contact1d.potentials import DoubleExponential
 from contact1d.potentials.table import Table
 
@@ -18,7 +19,7 @@ def left_out(law: DoubleExponential, table: Table, profile: Profile) -> float:
     """Σ |F_table(r) - f(r)| |z|/r [FU] of a profile, offset by offset along the chain: memory for one row of pairs."""
     reach = table.cutoff + TAIL_REACH * law.longest_range
     x, lower, upper = profile.x, profile.z_lower, profile.z_upper
-    spacing = float(np.ptp(x)) / (len(x) - 1)
+    spacing = spacing_of(x)
     near = np.flatnonzero(upper - lower < reach)
     total = 0.0
     for offset in range(-math.ceil(reach / spacing), math.ceil(reach / spacing) + 1):

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.extremum import Place, place_of_minimum
 from contact1d.analysis.pressure import Profile
+from contact1d.analysis.row import middle_of, spacing_of
 
 Array = NDArray[np.float64]
 
@@ -65,7 +66,7 @@ def tensile_radius(profile: Profile) -> ContactRadius:
         raise ValueError("no particle carries tension, so there is no radius of maximum tensile stress")
     weight = np.abs(p) / largest
     centre = float(np.sum(weight * x) / np.sum(weight))
-    spacing = float(x[-1] - x[0]) / (len(x) - 1)
+    spacing = spacing_of(x)
     left, right = (_edge(x, p, centre, side * spacing) for side in (-1, 1))
     found = _between(left, right)
     value = found.value if found.value > SAME_PLACE * spacing else 0.0
@@ -92,8 +93,8 @@ def compressive_radius(profile: Profile, residual: float = 0.0) -> ContactRadius
         raise ValueError("particles carry tension: the radius is that of maximum tensile stress")
     loaded = np.flatnonzero(p > NEGLIGIBLE * largest)
     if loaded.size == 0:
-        middle, half_spacing = 0.5 * float(x[0] + x[-1]), 0.5 * float(x[-1] - x[0]) / (len(x) - 1)
-        return ContactRadius(0.0, half_spacing, middle, middle, False)
+        middle = middle_of(x)
+        return ContactRadius(0.0, 0.5 * spacing_of(x), middle, middle, False)
     right = _zero(x, p, int(loaded[0]), int(loaded[-1]), residual)
     mirrored = _zero(-x[::-1], p[::-1], len(x) - 1 - int(loaded[-1]), len(x) - 1 - int(loaded[0]), residual)
     return _between(Place(-mirrored.position, mirrored.uncertainty, mirrored.at_end), right)
@@ -130,7 +131,7 @@ def _between(left: Place, right: Place) -> ContactRadius:
 def _zero(x: Array, p: Array, first: int, last: int, residual: float) -> Place:
     """Right edge of a contact whose loaded particles are first … last."""
     if last == len(x) - 1:
-        return Place(float(x[last]), float(x[last] - x[0]) / last, True)
+        return Place(float(x[last]), spacing_of(x), True)
     inner, outer = float(x[last]), float(x[last + 1])
     zero, other = (
         _parabola_zero(x[: end + 1], p[: end + 1], inner, outer, residual)

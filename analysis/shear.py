@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contact1d.analysis.abel import FEWEST, LineLoad
+from contact1d.analysis.row import spacing_of
 
 Array = NDArray[np.float64]
 NEAR = 1e-6
@@ -62,7 +63,7 @@ def shear_load(
     """
     places, values = np.asarray(x, dtype=np.float64), np.asarray(shear, dtype=np.float64)
     half = places.size // 2
-    spacing = float(places[-1] - places[0]) / max(places.size - 1, 1)
+    spacing = spacing_of(places)
     if places.size < 2 or np.abs(places + places[::-1]).max() > NEAR * spacing:
         raise ValueError("the places must be the same on both sides of 0")
     right, mean = places[half:], 0.5 * (values[half:] + values[::-1][half:])

@@ -30,6 +30,11 @@ def test_only_real_roots_in_the_interval_count_also_where_the_degree_is_less(lea
     assert not real_roots(np.zeros(3), -1.0, 1.0).size
 
 
+def test_roots_at_the_ends_of_the_interval_count() -> None:
+    assert sorted(real_roots(np.array([0.0, -1.0, 1.0]), 0.0, 1.0)) == [0.0, 1.0]
+    assert lowest_minimum(np.array([0.0, 0.0, 1.0]), 0.0, 1.0, near=0.3)[0] == 0.0
+
+
 def test_the_lowest_minimum_in_the_interval_is_found_with_its_bend() -> None:
     for low, high, side in ((-1.0, 1.0, -1), (0.2, 1.0, 1)):
         place, bend = lowest_minimum(QUARTIC, low, high)

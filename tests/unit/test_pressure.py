@@ -149,3 +149,12 @@ def test_the_share_at_the_ends_counts_tension_and_compression() -> None:
     assert end_pressure_share(profile(x, np.array([0.1, -4.0, 2.0, -0.2]))) == pytest.approx(0.05, rel=ROUND_OFF)
     assert end_pressure_share(profile(x, np.array([0.0, 1.0, 2.0, 2.0]))) == 1.0
     assert end_pressure_share(profile(x, np.zeros(4))) == 0.0
+
+
+def test_a_profile_is_made_of_rows_of_one_length() -> None:
+    row, shorter, table = np.zeros(3), np.zeros(2), np.zeros((3, 3))
+    for columns in ([row, row, row, row, shorter], [table] * 5):
+        with pytest.raises(ValueError, match="1-D and equally long"):
+            Profile(*columns)
+    with pytest.raises(ValueError, match="sorted by x"):
+        Profile(np.array([0.0, 2.0, 1.0]), row, row, row, row)

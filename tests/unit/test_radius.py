@@ -11,7 +11,7 @@ import pytest
 
 from contact1d.analysis.extremum import place_of_minimum
 from contact1d.analysis.pressure import Profile
-from contact1d.analysis.radius import compressive_radius, tensile_radius
+from contact1d.analysis.radius import _parabola_zero, compressive_radius, tensile_radius
 
 BODY_RADIUS = 1000.0  # LU
 CASES = 200
@@ -277,7 +277,30 @@ def test_the_uncertainty_covers_a_noisy_layer(noise: float) -> None:
         x = np.arange(-80.0, 81.0) + rng.uniform(-0.5, 0.5)
         found = compressive_radius(profile(x, layer(x, radius) * (1.0 + noise * rng.normal(size=x.size))))
         covered += abs(found.value - radius) <= found.uncertainty
+        assert found.uncertainty <= 1.0  # between the outermost loaded particle and the next
     assert covered >= COVERED * CASES
+
+
+def test_the_falling_zero_of_a_parabola_is_the_one_between_two_places() -> None:
+    """Reference: numpy's roots. Parabolas of every shape, the outermost particle at 2 and the next place at 3."""
+    rng = np.random.default_rng(18)
+    places, found, none = np.array([0.0, 1.0, 2.0]), 0, 0
+    for _ in range(600):
+        ends = rng.uniform(1.5, 3.5), rng.uniform(-40.0, 40.0)
+        law = np.polynomial.Polynomial.fromroots(ends) * rng.choice([-1.0, 1.0])
+        if rng.uniform() < 0.2:
+            law = np.polynomial.Polynomial([ends[0], -1.0, 0.0])  # a straight line
+        if law(places).min() <= 0.0:
+            continue
+        roots = [r for r in law.roots() if 2.0 <= r <= 3.0 and law.deriv()(r) < 0.0]
+        zero = _parabola_zero(places, law(places), 2.0, 3.0, 0.0)
+        assert (zero is None) == (not roots)
+        none += zero is None
+        if zero is not None:
+            found += 1
+            assert zero.position == pytest.approx(roots[0], abs=1e-8)
+    assert none > 30
+    assert found > 30
 
 
 def test_what_a_minimiser_leaves_widens_the_uncertainty() -> None:
@@ -285,6 +308,8 @@ def test_what_a_minimiser_leaves_widens_the_uncertainty() -> None:
     x = np.arange(-40.0, 41.0) + 0.2
     cone = profile(x, np.maximum(0.0, 20.0 - np.abs(x)))
     exact, found = compressive_radius(cone), compressive_radius(cone, residual=1e-6)
+    wide = compressive_radius(profile(0.25 * x, cone.pressure), residual=1e-6)
+    assert wide.uncertainty == pytest.approx(0.25 * 2e-5, rel=0.02)
     assert found.value == exact.value == pytest.approx(20.0, abs=ROUND_OFF)
     assert exact.uncertainty < ROUND_OFF
     assert found.uncertainty == pytest.approx(2e-5, rel=0.02)

@@ -153,6 +153,7 @@ def test_states_are_thinned_evenly_and_read_back(tmp_path: Path) -> None:
     assert (kept.rows[0], kept.rows[-1]) == (0, m - 1)
     assert kept.x[0, 0] == -5.0
     assert kept.x[0, -1] == 5.0
+    assert (kept.x[0], kept.rows.size) == (pytest.approx(x.astype(np.float32)), MOST_NUMBERS // n)
     write_states(tmp_path / "states.npz", kept)
     np.testing.assert_array_equal(read_states(tmp_path / "states.npz").pressure, kept.pressure)
 

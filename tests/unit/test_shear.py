@@ -27,7 +27,7 @@ def lattice(count: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("count", [46, 47])
-@pytest.mark.parametrize("stick", [0.0, 5.2, 11.0, 16.8])
+@pytest.mark.parametrize("stick", [0.0, 5.2, 10.5, 11.0, 16.8])
 def test_the_way_out_is_mindlins(count: int, stick: float) -> None:
     x = lattice(count)
     found = shear_load(x, line(A, x) - line(stick, x), A, [stick] if stick else []).pressure(R)
@@ -56,6 +56,26 @@ def test_a_kink_without_places_on_both_sides_is_left_out() -> None:
     x = lattice(46)
     load = shear_load(x, line(A, x), A, [0.7, 18.4, 19.2])
     assert load.pressure(R) == pytest.approx(mindlin_shear(R, A, 1e-300, MU, PEAK), abs=EXACT * MU * PEAK)
+
+
+def test_a_kink_stays_with_three_places_on_each_side_of_it_and_goes_with_two() -> None:
+    """Places 0.5, 1.5, … 19.5 of a contact up to 20; what is next to a kink is between it and the kink before."""
+    x = lattice(46)
+    for kinks, stay in (
+        ([2.4], []), ([2.6], [2.6]), ([17.4], [17.4]), ([17.6], []),
+        ([8.4, 11.2], [8.4, 11.2]), ([8.6, 11.2], [11.2]), ([11.2, 8.4], [8.4, 11.2]), ([8.4, 20.4], [8.4]),
+    ):  # fmt: skip
+        breaks = shear_load(x, line(A, x), A, kinks).breaks.tolist()
+        assert [place for place in breaks if place % 1.0 not in (0.0, 0.5)] == stay
+
+
+@pytest.mark.parametrize("scale", [2.0**-7, 2.0**9])
+def test_zones_are_the_same_in_any_unit_of_length(scale: float) -> None:
+    x, kinks = lattice(60), [7.5, 13.4]
+    values = line(A, x) - line(7.5, x) - 2.0 * (line(A, x) - line(13.4, x))
+    here, there = shear_load(x, values, A, kinks), shear_load(scale * x, values, scale * A, [scale * k for k in kinks])
+    assert there.breaks.tolist() == (scale * here.breaks).tolist()
+    assert (there.coefficients * scale ** np.arange(4.0)[:, None]).tolist() == here.coefficients.tolist()
 
 
 def test_kinks_stay_where_the_zone_that_sticks_grows_and_go_where_it_comes_back() -> None:
