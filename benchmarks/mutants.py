@@ -3,11 +3,11 @@
     python -m benchmarks.mutants [FILE ...] [--part 0.25] [--seed 1] [--workers 2] [--callers KEPT.json]
 
 A mutant changes one operator, comparison or number of one file in a copy of this folder. The tests that call the
-function run there, the quickest first, up to the first that fails or LONGEST; goldens, which hold any number, run last.
-One that passes them all survives: it is printed, and listed in results/mutants.json, with the reason if one was written
-there by hand (it is kept for the same change of the same line). All files take a night; `--part` draws a share of each
-file's mutants, the same ones for one seed. `--callers` keeps which test calls what. Exit code 1 where fewer than ASKED
-are killed. What is changed, and what is not: `benchmarks/mutating.py`.
+function run there, quick ones that call little else first, up to the first that fails or LONGEST; goldens, which hold
+any number, run last. One that passes them all survives: it is printed, and listed in results/mutants.json, with the
+reason if one was written there by hand (it is kept for the same change of the same line). All files take a night;
+`--part` draws a share of each file's mutants, the same ones for one seed. `--callers` keeps which test calls what. Exit
+code 1 where fewer than ASKED are killed. What is changed, and what is not: `benchmarks/mutating.py`.
 
 mutmut and cosmic-ray were not taken: neither follows src/contact1d, whose folders are links, and both start Python
 anew for every mutant (`benchmarks/faulty.py` forks).
@@ -59,20 +59,20 @@ GOLDEN = "tests/decks/test_goldens.py"
 
 
 def tests_of(mutant: Mutant, called: Called) -> list[str]:
-    """Those that call the mutant's function, the quickest first, up to LONGEST; goldens last.
+    """Those that call the mutant's function, quick ones that call little else first, up to LONGEST; goldens last.
 
     What stands in no function belongs to all functions of its file.
     """
     name = f"{mutant.file}:{mutant.function}"
     wanted = name.removesuffix(WHOLE) if mutant.function == WHOLE else name
     those = {
-        test: taken
+        test: (taken, taken * len(functions))
         for test, (taken, functions) in called.items()
         if any(one == wanted or (mutant.function == WHOLE and one.startswith(wanted)) for one in functions)
     }
     chosen, whole = [], 0.0
-    for test in sorted(those, key=lambda test: (test.startswith(GOLDEN), those[test])):
-        whole += those[test]
+    for test in sorted(those, key=lambda test: (test.startswith(GOLDEN), those[test][1])):
+        whole += those[test][0]
         if chosen and whole > LONGEST:
             break
         chosen.append(test)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.scene import SceneError, scene_from_dict
 from contact1d.workflow.settings.adhesion import AdhesiveEstimate
+from contact1d.workflow.settings.cells import MARGIN, left_by_cells
 from contact1d.workflow.settings.settings import SettingsError, settings_for
 
 BODIES = {
@@ -80,8 +81,12 @@ def test_an_edge_that_would_jump_is_refused() -> None:
     flat = AdhesiveEstimate(
         np.asarray([-1.0, 0.0]), np.asarray([0.2, 0.0]), 0.0, Terrace(), 0.2, 0.2, work=W, known=20.0
     )
-    with pytest.raises(SettingsError, match=r"would jump at x = \d"):
+    with pytest.raises(SettingsError, match=r"would jump at x = (\S+) LU") as caught:
         flat.require_one_edge()
+    at = float(str(caught.value).partition("x = ")[2].split()[0])
+    x = np.array([0.97, 1.0, 1.03]) * at
+    before, there, beyond = Terrace().height(x) - np.sqrt(2.0 * math.pi * W * x / E)
+    assert max(before, beyond) < there  # where h begins to fall again
     replace(estimate()).require_one_edge()
 
 
@@ -119,3 +124,24 @@ def test_particles_let_go_from_the_edge_inwards_and_the_last_ones_together() -> 
     assert (np.diff(shares, axis=1) <= 1e-12).all()  # and no particle more than the one inside
     assert ((shares >= 0.0) & (shares <= 1.0)).all()
     assert ((shares > 0.0) & (shares < 1.0)).sum(axis=1).max() <= 1
+
+
+@pytest.mark.parametrize("particles", [120, 121])
+def test_what_cells_leave_open_is_their_sum_beside_jkr(particles: int) -> None:
+    """F_A of the particles' own places, the largest tension of the sum over their cells, against 3π W R/2."""
+    bodies = BODIES | {"particles": particles, "spacing": 0.7, "bulk_stiffness": 0.7}
+    scene = scene_from_dict(SCENE | {"bodies": bodies})
+    settings = settings_for(scene)
+    found = settings.estimate
+    assert isinstance(found, AdhesiveEstimate)
+    x = 0.7 * (np.arange(particles) - 0.5 * (particles - 1))
+    cells = found.cells(x, scene.bodies)
+    places = np.linspace(found.fixed_grips[1], found.displacement_at(0.0), 20_001)
+    tension = -min(float(part.min()) for part in (cells.forces(some, 0.7) for some in np.array_split(places, 20)))
+    exact = 1.5 * math.pi * W * R
+    left = left_by_cells(scene, settings)
+    assert left["adhesion_force"] == pytest.approx(MARGIN * abs(tension - exact), rel=0.1, abs=2e-5 * exact)
+    assert 0.0 < left["adhesion_force"] < 0.02 * exact
+    auto = scene_from_dict(SCENE | {"bodies": bodies | {"particles": "auto"}})
+    wider = left_by_cells(auto, settings_for(auto))
+    assert all(wider[name] >= 0.999 * value for name, value in left.items() if particles % 2 == 0)

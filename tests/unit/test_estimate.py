@@ -26,6 +26,7 @@ from contact1d.workflow.settings.estimate import (
     plane_estimate,
     row_force,
 )
+from contact1d.workflow.settings.registry import largest_holding_force, slide_cutoff
 from contact1d.workflow.settings.settings import Settings, settings_for
 from contact1d.workflow.stability.pairs import ATTRACTION, LAW, REPULSION, STEEPEST
 from tests.scenes import chains
@@ -38,6 +39,8 @@ FLAT = 2e-2
 """Relative, of a place beside a flat top, or of a slope between two places of a grid."""
 PLACES = 0.05
 """Relative, of a tension at one of 400 places."""
+HEIGHTS = 0.15
+"""Relative, of a force that falls by exp(2π) in a spacing of height, at heights 2 % apart."""
 REST = LAW.force_free_distance()
 
 
@@ -241,6 +244,53 @@ def test_marks_of_a_chain_at_a_phase_are_those_of_independent_pairs(phase: float
     for force in (0.0, 0.2):
         exact = brentq(lambda d, f=force: float(pairs.loading(d)) - f, top.x, 0.1)
         assert chain.crossing(force) == pytest.approx(exact, abs=1e-2 * ATTRACTION[1])
+
+
+@pytest.mark.parametrize("move", [1e-3, 3e-3])
+def test_a_pair_lets_go_where_a_move_carries_it_beyond_its_unstable_place(move: float) -> None:
+    """Reference: both roots of G(r) = r − 2 f(r)/k next to its fold, at the gap where they are a move apart."""
+    found = estimate(3.0)
+    stiffness = 2.0 * STEEPEST / 3.0
+
+    def gap(r: float) -> float:
+        return float(r - 2.0 * LAW.force(np.asarray([r]))[0] / stiffness)
+
+    fold = minimize_scalar(lambda r: -gap(r), bounds=(0.5 * REST, REST + ATTRACTION[1]), method="bounded",
+                           options={"xatol": 1e-13}).x  # fmt: skip
+
+    def apart(early: float) -> float:
+        inner, outer = (
+            brentq(lambda r: gap(r) - gap(fold) + early, *ends) for ends in ((0.5 * fold, fold), (fold, 1.3 * fold))
+        )
+        return float(outer - inner) - move
+
+    early = brentq(apart, 1e-12, 1e-3)
+    assert found.let_go_early(move, 0.0) == pytest.approx(early, rel=0.1)  # the fold's third derivative
+    assert found.let_go_early(move, 1e-6) > found.let_go_early(move, 0.0)
+    assert estimate(0.5).let_go_early(move, 1e-6) == 0.0
+
+
+@pytest.mark.parametrize(("spacing", "load"), [(1.0, 0.0), (1.0, 0.2), (0.8, 0.0), (0.8, 0.5)])
+def test_a_row_holds_a_particle_with_the_slope_of_its_energy(spacing: float, load: float) -> None:
+    """Reference: U(x, z) = Σ V(r) over the row, differences of it, and the height that the load has in a hollow."""
+    law = DoubleExponential(Exponential(1.0, 0.5), Exponential(0.5, 1.0))
+    row = spacing * np.arange(-80.0, 81.0)
+
+    def energy(x: float, z: float) -> float:
+        return float(law.energy(np.hypot(x - row, z)).sum())
+
+    def lift(z: float) -> float:
+        return (energy(0.5 * spacing, z - 1e-6) - energy(0.5 * spacing, z + 1e-6)) / 2e-6 - load
+
+    heights = np.geomspace(0.02, 9.0, 2000)
+    outermost = heights[np.flatnonzero([lift(z) >= 0.0 for z in heights])[-1]]
+    slopes = [(energy(x + 1e-6, outermost) - energy(x - 1e-6, outermost)) / 2e-6 for x in np.linspace(0.0, spacing, 41)]
+    found = largest_holding_force(law, spacing, load)
+    assert found == pytest.approx(max(np.abs(slopes)), rel=HEIGHTS)
+    cutoff = slide_cutoff(law, spacing, load, 1e-3)
+    assert 0.5 * math.exp(-cutoff) == pytest.approx(0.1 * 1e-3 * found, rel=1e-9)
+    assert slide_cutoff(law, spacing, load, 1e9) == 1.0  # never below the longest range,
+    assert slide_cutoff(law, spacing, load, 1e-30) == 40.0  # nor beyond the reach of the sums
 
 
 def timed(**more: Any) -> Settings:

@@ -1,0 +1,191 @@
+"""Claim: what a refusal says is possible is possible, and a little more is refused: of chains, profiles and ways."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact1d.workflow.scene import Scene, scene_from_dict
+from contact1d.workflow.settings.chain import SettingsError
+from contact1d.workflow.settings.drive import FEWEST_ROWS, FEWEST_STEPS, MOST_ROWS, drive_steps
+from contact1d.workflow.settings.dynamics import _swinging_apart, stiffest_of
+from contact1d.workflow.settings.settings import settings_for
+from contact1d.workflow.settings.size import require_reach, require_rows, require_steps
+from contact1d.workflow.settings.way import require_way, too_fast
+from tests.scenes import chains
+
+LOAD = {"kind": "load", "force": 0.05}
+CIRCLE = {"kind": "circle", "radius": 30.0}
+FIGURES = 1e-3
+"""Relative: four figures of a number in a message."""
+
+
+def slide(**bodies: Any) -> dict[str, Any]:
+    own = {"mass": 1.0, "upper_offset": 0.5, "upper_particles": 12, "spacing": 0.8} | bodies
+    return chains(
+        30.0, 2.0, law=(1.0, 0.5, 0.5, 1.0), horizontal={}, damping={"coefficient": "auto"}, plate={"free": ["x", "z"]},
+        cantilever={"stiffness": 0.5, "velocity": 0.1}, bodies=own,
+        experiment={"kind": "slide", "normal_force": 1.0, "distance": 9.0},
+    )  # fmt: skip
+
+
+def wide(particles: float) -> dict[str, Any]:
+    return chains(1.0, bodies={"particles": round(particles), "profile": CIRCLE}, experiment=LOAD)
+
+
+def narrow(spacing: float, particles: Any) -> dict[str, Any]:
+    body = {"particles": particles, "profile": {"kind": "circle", "radius": 3.0}, "spacing": spacing}
+    return chains(1.0, bodies=body, experiment={"kind": "path", "displacements": [0.01]})
+
+
+def stiff(stiffness: float) -> dict[str, Any]:
+    return chains(100.0, stiffness, bodies={"particles": 40}, experiment={"kind": "pull_off", "preload": 0.3})
+
+
+def soft(force: float) -> dict[str, Any]:
+    return chains(100.0, 1e-9, bodies={"particles": 20}, experiment={"kind": "load", "force": force})
+
+
+@pytest.mark.parametrize(
+    ("tables", "refused", "told", "step"),
+    [
+        (wide, 80, r"at most (\d+) particles", 2.0),
+        (lambda s: narrow(s, "auto"), 2.5, r"a bodies.spacing below (\S+) LU", 1.0 + FIGURES),
+        (lambda s: narrow(s, 3), 3.5, r"a bodies.spacing below (\S+) LU", 1.0 + FIGURES),
+        (lambda n: slide(particles=round(n)), 20, r"at least (\d+) bodies.particles", -2.0),
+    ],
+)  # fmt: skip
+def test_what_is_said_to_be_possible_is_and_no_more(
+    tables: Callable[[float], dict[str, Any]], refused: float, told: str, step: float
+) -> None:
+    def try_out(value: float) -> None:
+        scene = scene_from_dict(tables(value))
+        require_way(scene, settings_for(scene))
+
+    with pytest.raises(SettingsError, match=told) as caught:
+        try_out(refused)
+    found = re.search(told, str(caught.value))
+    assert found is not None
+    possible = float(found[1].rstrip(":,."))
+    near = FIGURES if abs(step) < 2.0 else 0.0
+    try_out(possible * (1.0 - near))
+    with pytest.raises(SettingsError, match=told):
+        try_out(possible * step if near else possible + step)
+
+
+def test_a_cutoff_reaches_over_five_thousand_particles_at_most() -> None:
+    scene = scene_from_dict(slide(spacing=0.5))
+    with pytest.raises(SettingsError, match=r"cutoff below 1250 LU"):
+        require_reach(scene, 2000.0)
+    require_reach(scene, 1249.9)
+    with pytest.raises(SettingsError, match="would feel"):
+        require_reach(scene, 1250.1)
+
+
+def test_springs_that_are_said_to_be_possible_are_within_a_factor_of_what_is() -> None:
+    with pytest.raises(SettingsError, match=r"(\S+) FU/LU are possible") as caught:
+        settings_for(scene_from_dict(stiff(1e13)))
+    possible = float(str(caught.value).partition(" FU/LU are possible")[0].split()[-1])
+    settings_for(scene_from_dict(stiff(possible)))
+    with pytest.raises(SettingsError, match="are possible"):
+        settings_for(scene_from_dict(stiff(5.0 * possible)))
+
+
+def falling(scene: Scene, from_step: float, to_step: float) -> float:
+    """The least `longest_move` with which a path's rows can be counted."""
+    for _ in range(60):
+        middle = float(np.sqrt(from_step * to_step))
+        try:
+            require_rows(scene, middle)
+            to_step = middle
+        except SettingsError:
+            from_step = middle
+    return to_step
+
+
+def test_a_path_may_take_a_million_rows() -> None:
+    """Only ways towards the other body are done in steps: 3 LU here, in 10⁶ of them."""
+    scene = scene_from_dict(
+        chains(100.0, bodies={"particles": 20}, experiment={"kind": "path", "displacements": [1.0, -1.0, 1.0]})
+    )
+    assert falling(scene, 1e-9, 1.0) == pytest.approx(3e-6, rel=1e-4)
+    require_steps([2**31 - 1, 5])
+    with pytest.raises(SettingsError, match="2147483647 can be counted"):
+        require_steps([2**31])
+
+
+def test_a_drive_is_too_fast_above_the_velocity_that_is_told() -> None:
+    def told(velocity: float) -> str:
+        tables = slide(particles=60)
+        return too_fast(scene_from_dict(tables | {"cantilever": {"stiffness": 0.5, "velocity": velocity}}))
+
+    words = told(3.0)
+    limit = float(re.findall(r"follow below (\S+) LU/TU", words)[0])
+    assert limit == pytest.approx(0.8 * np.sqrt(2.0) / (2.0 * np.pi), rel=FIGURES)  # s √(k/m)/2π
+    assert told(limit * (1.0 - FIGURES)) == ""
+    assert told(limit * (1.0 + FIGURES))
+    swing, passing = re.findall(r"in (\S+) TU, less than .* a swing, (\S+) TU", words)[0]
+    assert float(swing) == pytest.approx(0.8 / 3.0, rel=0.01)
+    assert float(passing) == pytest.approx(2.0 * np.pi / np.sqrt(2.0), rel=0.01)
+
+
+@pytest.mark.parametrize("longest", [1e-3, 0.011, 0.07, 0.4, 3.0, 50.0])
+def test_rows_and_timesteps_make_the_drives_way_exactly(longest: float) -> None:
+    """No timestep is longer than it may be, none needlessly short, and every spacing has its rows."""
+    path = [[0.1, 3.7], [0.0, 0.5], [-0.31, 2.0]]
+    scene = scene_from_dict(slide(particles=60) | {"experiment": {"kind": "slide", "normal_force": 1.0, "path": path}})
+    for leg, (velocity, distance) in zip(drive_steps(scene, longest), path, strict=True):
+        time = distance / (abs(velocity) or 0.1)
+        assert leg.velocity == velocity
+        assert leg.rows * leg.row_time == pytest.approx(time, rel=1e-12)
+        assert leg.steps % FEWEST_STEPS == 0
+        assert leg.time_step <= longest * (1.0 + 1e-9)
+        assert leg.steps == FEWEST_STEPS or time / leg.rows / (leg.steps - FEWEST_STEPS) > longest
+        per_spacing = leg.rows / (distance / 0.8)
+        assert FEWEST_ROWS <= per_spacing < MOST_ROWS + 0.8 / distance
+        # As many rows as measuring is worth: ten timesteps each, where that is possible at all.
+        wanted = np.clip(time / (distance / 0.8) / longest / 10.0, FEWEST_ROWS, MOST_ROWS)
+        assert per_spacing == pytest.approx(wanted, abs=1.0 + 0.8 / distance)
+
+
+@pytest.mark.parametrize("share", [0.02, 0.3, 0.9, 1.0, 4.0])
+def test_a_light_plate_swings_no_longer_against_its_particles_than_one_of_their_mass(share: float) -> None:
+    """Reference: eigenvalues of two masses on a stiff spring, of which the particles have a drag of their own."""
+    particles, rate, spring = 40.0, 0.3, 1e7
+    plate = share * particles
+    drag = _swinging_apart(plate, particles, rate)
+    motion = np.array([
+        [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0],
+        [-spring / plate, spring / plate, -drag / plate, 0.0],
+        [spring / particles, -spring / particles, 0.0, -rate],
+    ])  # fmt: skip
+    values = np.linalg.eigvals(motion)
+    swing = values[np.abs(values.imag) > 1.0].real
+    assert swing == pytest.approx(-0.25 * rate if share <= 1.0 else -0.5 * rate * share / (1.0 + share), rel=1e-4)
+    assert (drag == 0.0) == (share >= 1.0)
+
+
+@pytest.mark.parametrize("neighbours", [None, 0.3, 20.0])
+def test_the_stiffest_motion_of_two_chains_is_no_stiffer_than_what_the_timestep_is_made_for(
+    neighbours: float | None,
+) -> None:
+    """Reference: the eigenvalues of two straight chains face to face at the closest distance, pairs in line alone."""
+    tables = chains(100.0, bodies={"particles": 30, "bulk_stiffness_tangential": 1.1}, experiment=LOAD)
+    if neighbours is not None:
+        tables["neighbours"] = {"stiffness": neighbours}
+    scene = scene_from_dict(tables | {"horizontal": {}})
+    settings = settings_for(scene)
+    assert settings.law is not None
+    pair = float(settings.law.stiffness(settings.closest))
+    between = 2.0 * np.eye(30) - np.eye(30, k=1) - np.eye(30, k=-1)
+    chain = 1.1 * np.eye(30) + (neighbours or 0.0) * between
+    matrix = np.block(
+        [[chain + pair * np.eye(30), -pair * np.eye(30)], [-pair * np.eye(30), chain + pair * np.eye(30)]]
+    )
+    stiffest = float(np.linalg.eigvalsh(matrix).max())
+    assert stiffest <= stiffest_of(scene, settings.law, settings.closest, 0.0) <= 1.3 * stiffest
+    assert stiffest_of(scene, settings.law, settings.closest, 5.0) >= stiffest + 5.0 - 1e-9
