@@ -14,10 +14,14 @@ import numpy as np
 import pytest
 
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
+from contact1d.analysis.reference.pair_lattice import PairLattice
+from contact1d.workflow.experiments.load.dynamic import load_dynamic
+from contact1d.workflow.experiments.load.quasistatic import load_quasistatic
 from contact1d.workflow.experiments.path.path import path
 from contact1d.workflow.experiments.pull_off.dynamic import pull_off_dynamic
 from contact1d.workflow.experiments.pull_off.quasistatic import pull_off_quasistatic
 from contact1d.workflow.experiments.running.outcome import Outcome
+from contact1d.workflow.experiments.running.trust import UntrustedError
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 from tests.exact import ExactContext, Pairs, exact_context
@@ -28,7 +32,7 @@ COVERED = 0.95
 """Share of cases that an uncertainty is to cover; measured 0.97 to 1, of some 60 cases each."""
 COVERED_AT_SNAPS = 0.9
 """The same of the largest tension of a sawtooth, 0.95 measured: two teeth may be as high as each other."""
-CASES = 60
+CASES, SNAPPING_CASES = 60, 12
 OPPOSITE = 12.0
 """Spacing over the longest range: no particle feels another but its opposite."""
 ROUND_OFF = 1e-9
@@ -102,6 +106,27 @@ def test_a_pull_off_at_rest_claims_no_more_than_it_knows() -> None:
     assert covered(found, "critical_radius") >= COVERED
 
 
+def test_a_pull_off_over_snaps_claims_no_more_than_it_knows_and_meets_its_tolerance() -> None:
+    """Reference: the pairs with their folds, to round-off."""
+    rng, found = np.random.default_rng(9), []
+    while len(found) < SNAPPING_CASES:
+        tolerance = log_uniform(rng, 1e-3, 1e-2)
+        scene = random_case(rng, rng.uniform(1.1, 2.5), rng.uniform(0.15, 1.5), tolerance)
+        settings = settings_for(scene)
+        pairs = Pairs.of(scene, settings)
+        lattice = PairLattice(pairs.law, pairs.stiffness, pairs.places**2 / (2.0 * pairs.radius))
+        preload = rng.uniform(0.3, 3.0) * settings.estimate.pull_off_force()
+        tension, place = lattice.pull_off(lattice.preloaded(preload))
+        outcome = pull_off_quasistatic(exact_context(with_experiment(scene, {"kind": "pull_off", "preload": preload})))
+        force = outcome.quantities["adhesion_force"]
+        assert force.uncertainty <= tolerance * force.value
+        assert outcome.quantities["preload"].value == pytest.approx(preload, abs=tolerance * tension)
+        numbers = {"adhesion_force": tension, "critical_radius": pairs.contact_radius(place)}
+        found.append((outcome, numbers))
+    assert covered(found, "adhesion_force") >= COVERED_AT_SNAPS
+    assert covered(found, "critical_radius") >= COVERED_AT_SNAPS
+
+
 @pytest.mark.parametrize("lets_go", [1.0, 0.93])
 def test_a_pull_off_in_time_is_bracketed_as_narrowly_as_was_asked_for(lets_go: float) -> None:
     """Also where the contact lets go before the estimate expects it to, so that no first guess is good enough."""
@@ -110,6 +135,58 @@ def test_a_pull_off_in_time_is_bracketed_as_narrowly_as_was_asked_for(lets_go: f
         force = outcome.quantities["adhesion_force"]
         assert abs(force.value - numbers["adhesion_force"]) <= force.uncertainty
         assert force.uncertainty <= scene.accuracy.tolerance * force.value
+
+
+@pytest.mark.parametrize(("method", "cases"), [("quasistatic", 40), ("dynamic", 12)])
+def test_a_load_claims_no_more_than_it_knows_up_to_its_largest_tension(method: str, cases: int) -> None:
+    rng, found = np.random.default_rng(10), []
+    timed = {"damping": {"coefficient": "auto"}, "plate": {}} if method == "dynamic" else {}
+    timed |= {"experiment": {"kind": "load", "method": method, "force": 0.0}}
+    for _ in range(cases):
+        tolerance = log_uniform(rng, 1e-3, 1e-2)
+        scene = random_case(rng, rng.uniform(0.05, 0.5), log_uniform(rng, 4.0, 200.0), tolerance, **timed)
+        largest, long = settings_for(scene).estimate.pull_off_force(), scene.interaction.attraction.range
+        force = rng.choice([-0.98, -0.8, -0.3, 0.2, 2.0]) * largest
+        scene = with_experiment(scene, {"kind": "load", "method": method, "force": force})
+        settings = settings_for(scene)
+        pairs, top, tension = exact(scene, -8.0 * long, settings.largest_displacement + 0.1, 200)
+        context = exact_context(scene, settings)
+        context.largest_tension = top, tension
+        outcome = (load_dynamic if method == "dynamic" else load_quasistatic)(context)
+        place = pairs.displacement(force, top, 1.5 * settings.largest_displacement + 0.1)
+        radius = pairs.contact_radius(place)
+        found.append((outcome, {
+            "displacement": place, "force": force, "contact_radius": radius,
+            "mean_pressure": force / (np.pi * radius**2),
+        }))  # fmt: skip
+        assert "near_pull_off" not in outcome.warnings
+        known = outcome.quantities
+        assert known["force"].uncertainty <= tolerance * max(abs(force), settings.force_scale)
+        # d goes with √(F_A + F): near the largest tension an error of the force counts more.
+        near = known["force"].uncertainty / (largest * np.sqrt(1.0 + min(force / largest, 0.0)))
+        assert known["displacement"].uncertainty <= 8.0 * near * (place - top)
+    for name in ("displacement", "force", "contact_radius", "mean_pressure"):
+        assert covered(found, name) >= COVERED, name
+
+
+def test_a_load_beyond_the_largest_tension_is_refused_and_one_by_a_hair_is_doubted() -> None:
+    for method, load in (("quasistatic", load_quasistatic), ("dynamic", load_dynamic)):
+        tables = {"damping": {"coefficient": "auto"}, "plate": {}} if method == "dynamic" else {}
+        held = {"kind": "load", "method": method, "force": 0.0}
+        scene = random_case(np.random.default_rng(11), 0.3, 40.0, 1e-3, **tables, experiment=held)
+        long = scene.interaction.attraction.range
+        _, top, tension = exact(scene, -8.0 * long, long, 400)
+        for share, told in ((0.97, "held"), (0.9995, "doubted"), (1.003, "refused")):
+            context = exact_context(
+                with_experiment(scene, {"kind": "load", "method": method, "force": -share * tension})
+            )
+            context.largest_tension = top, tension
+            if told == "refused":
+                with pytest.raises(UntrustedError, match=r"cannot hold|never reached"):
+                    load(context)
+            else:
+                doubted = "near_pull_off" in load(context).warnings
+                assert doubted == (told == "doubted" and method == "dynamic")
 
 
 def test_a_path_claims_no_more_than_its_rows_tell() -> None:
