@@ -158,7 +158,7 @@ def record(chosen: Sequence[Mutant], found: Found, part: float, seed: int) -> di
     rows = [row for row in rows if row["file"] in every]
     return {
         "asked": ASKED,
-        "rooms": {room: shares(room, every, rows) for room in ROOMS},
+        "rooms": {room: shares(room, every, rows) for room in ROOMS if set(looked_at([room])) & set(every)},
         "files": every,
         "survivors": sorted(rows, key=lambda r: (r["file"], r["line"])),
     }
