@@ -7,7 +7,7 @@ hundreds of cases: that is how a claimed uncertainty is judged.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -170,8 +170,10 @@ class ExactContext(RunContext):
     largest_tension: tuple[float, float] | None = None
 
     @contextmanager
-    def contact(self, purpose: str = "") -> Iterator[Contact]:
+    def contact(self, purpose: str = "", meanwhile: Callable[[Settings], object] | None = None) -> Iterator[Contact]:
         """One contact after the other, each from the start."""
+        if meanwhile:
+            meanwhile(self.deck.settings)
         yield ExactContact(self.deck, self.largest_tension)
 
 
