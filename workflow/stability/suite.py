@@ -33,6 +33,7 @@ from contact1d.workflow.stability import (
     settling,
     sharp,
     similarity,
+    slides,
     stiffness,
     thermal,
 )
@@ -54,6 +55,7 @@ CLASSES: tuple[Class, ...] = (
     *thermal.CLASSES,
     extremes.EXTREMES,
     *pressed.CLASSES,
+    slides.SLIDES,
     faults.FAULTS,
     fuzz.FUZZ,
 )

@@ -87,8 +87,10 @@ def _require_above(scene: Scene, settings: Settings, state: State) -> None:
         return
     end = 0.5 * settings.lower_particles * scene.bodies.spacing
     place = abs(state.plate_x + (scene.bodies.upper_offset or 0.0))
-    if place + contact_half_width(scene, settings) > end + scene.bodies.spacing:
+    half = contact_half_width(scene, settings)
+    if place + half > end + scene.bodies.spacing:
         raise OffEndError(
-            f"the plate ran off the lower body: it is {place:.4g} LU from its middle, and that ends at {end:.4g} LU",
+            f"the plate ran off the lower body: {place:.4g} LU from its middle it reaches {half:.4g} LU further, and "
+            f"that ends at {end:.4g} LU",
             "take more bodies.particles, a shorter distance, or more [damping]",
         )
