@@ -96,12 +96,15 @@ def test_bar_shows_phase_and_steps_and_leaves() -> None:
     bar.advance(1)
     bar.phase("loading", 100)
     bar.advance(25)
+    bar.advance(25)
+    bar._rich.refresh()
     bar.phase("sliding")
     bar.note("[red] is not markup")
     bar.close()
     bar.close()
     bar.advance(1)
     assert "sliding" in stream.getvalue()
+    assert "/s " in stream.getvalue()  # the rate
     assert "[red] is not markup" in stream.getvalue()
 
 

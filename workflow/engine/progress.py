@@ -91,7 +91,7 @@ class Lines:
 
 
 class Bar:
-    """A bar on a terminal: phase, steps, expected remaining time.
+    """A bar on a terminal: phase, steps, their rate, expected remaining time.
 
     Args:
         stream: the terminal.
@@ -100,9 +100,23 @@ class Bar:
     def __init__(self, stream: TextIO) -> None:
         """Load rich and show nothing yet."""
         from rich.console import Console
-        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+        from rich.progress import (
+            BarColumn,
+            MofNCompleteColumn,
+            Progress,
+            ProgressColumn,
+            TextColumn,
+            TimeRemainingColumn,
+        )
+        from rich.text import Text
 
-        columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+        class Rate(ProgressColumn):
+            """What is counted, per second."""
+
+            def render(self, task: Any) -> Text:
+                return Text("" if task.speed is None else f"{task.speed:.3g}/s")
+
+        columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), Rate(), TimeRemainingColumn())
         self._rich = Progress(*columns, console=Console(file=stream), transient=True)
         self._task: Any = None
 

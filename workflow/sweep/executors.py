@@ -68,7 +68,8 @@ def workplace_of(
         raise ExecutorError("Slurm is reached through executorlib: install it with pip install 'contact1d[cluster]'")
     if which("sbatch") is None:
         raise ExecutorError("there is no sbatch on this machine: start the sweep where jobs of Slurm are handed in")
-    return Workplace(lambda: _slurm(folder / "slurm", partition or _default_partition()), JOB_POINTS, count)
+    chosen = _partition(partition)
+    return Workplace(lambda: _slurm(folder / "slurm", chosen), JOB_POINTS, count)
 
 
 @contextmanager
@@ -83,12 +84,19 @@ def _slurm(folder: Path, partition: str) -> Iterator[Executor]:
         yield executor
 
 
-def _default_partition() -> str:
-    """Slurm's default partition, which executorlib must be told: it hands in an empty name otherwise."""
+def _partition(wanted: str | None) -> str:
+    """The partition asked for, or Slurm's default one: executorlib hands in an empty name otherwise.
+
+    Raises:
+        ExecutorError: Slurm doesn't run, or has no such partition.
+    """
     from subprocess import run
 
     listed = run(["sinfo", "--noheader", "--format=%P"], capture_output=True, text=True, check=False)
     names = listed.stdout.split()
     if not names:
         raise ExecutorError(f"sinfo knows no partition: {listed.stderr.strip() or 'is Slurm running?'}")
-    return next((name for name in names if name.endswith("*")), names[0]).rstrip("*")
+    plain = [name.rstrip("*") for name in names]
+    if wanted is not None and wanted not in plain:
+        raise ExecutorError(f"Slurm has no partition {wanted!r}: take {' or '.join(plain)}")
+    return wanted or next((name for name in names if name.endswith("*")), names[0]).rstrip("*")

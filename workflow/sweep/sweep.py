@@ -11,6 +11,7 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future
 from dataclasses import dataclass, field
 from itertools import chain, islice
 from pathlib import Path
+from subprocess import CalledProcessError
 from typing import Any
 
 from contact1d.files import FULL_DISK, write_whole
@@ -21,7 +22,7 @@ from contact1d.workflow.scene import Scene, SceneError
 from contact1d.workflow.scene.problems import as_toml
 from contact1d.workflow.settings.settings import SettingsError
 from contact1d.workflow.sweep.axes import AnySweep, SweepPlan, read_sweep
-from contact1d.workflow.sweep.executors import Workplace, workplace_of
+from contact1d.workflow.sweep.executors import ExecutorError, Workplace, workplace_of
 from contact1d.workflow.sweep.points import points, require_keys
 from contact1d.workflow.sweep.table import (
     MANY_ROWS,
@@ -204,9 +205,17 @@ def _through(
                 continue
             except OSError:
                 raise
+            except CalledProcessError as error:
+                raise ExecutorError(f"the job was refused: {' '.join(map(str, error.cmd))} says why") from None
             except Exception as error:  # of the executor: a job that was cancelled, a node that went away
-                answers = [Answer("failed", f"it was not run: {type(error).__name__}: {error}")] * len(some)
+                answers = [answer_in(path.parent.parent, path.name) or _not_run(error) for _, path in some]
             yield from ((path.name, answer) for (_, path), answer in zip(some, answers, strict=True))
+
+
+def _not_run(error: Exception) -> Answer:
+    """The answer of a point whose job ended before it: the same command runs it."""
+    words = " ".join(str(error).split()).rstrip(".")
+    return Answer("missing", f"its job ended before it was run, and the same command runs it: {words}")
 
 
 def attempt_all(tasks: Sequence[Task]) -> list[Answer]:
