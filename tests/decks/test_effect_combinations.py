@@ -62,7 +62,7 @@ def fits(kind: str, method: str, lower: str, effects: frozenset[str]) -> bool:
 
     Particles act on each other through an interaction; a rigid plane is touched, holds nothing and pulls nothing along
     x. Damping, noise, plate and cantilever exist in time only. Time needs damping to come to rest; a plate moves where
-    a force is prescribed, and not where its place is. Noise needs an average, which a load and a slide take. A
+    a force is prescribed, and not where its place is. Noise needs an average, which a load, a path and a slide take. A
     cantilever slides a plate, whose particles have to follow it along x. Coulomb's friction is a rigid plane's, in a
     tangential and alone: its history has no minimum to be found, and no time. An energy of adhesion is a rigid
     plane's, too, of particles that stand still in their body: alone, and in time with the plate that they belong to.
@@ -81,7 +81,7 @@ def fits(kind: str, method: str, lower: str, effects: frozenset[str]) -> bool:
     if method == "quasistatic":
         return held and not timed
     forced = kind != "path"
-    averaged = kind in ("load", "slide")
+    averaged = kind in ("load", "path", "slide")
     return (
         held
         and "damping" in effects

@@ -42,9 +42,9 @@ own.
   of a real pair of bodies has been compared with it.
 - **Absolute time scales of dynamic runs.** Masses are free numbers, and the damping is chosen so that a run settles
   soon; the states of rest that it reaches are checked, how long it takes only against the model's own motion.
-- **Thermal pull-off.** The variances around a state of rest are checked by the tests; the mean force at which
-  fluctuations part a contact depends on the loading rate, and with it on the time scale that the point above leaves
-  open.
+- **Heat in physical time.** Friction and detachment under heat are held against Smoluchowski's equation above, at
+  velocities and loading rates in the model's own time; which laboratory rate one of them stands for the point above
+  leaves open.
 - **Units of time and mass in SI.** Two macroscopic numbers, work of adhesion and elastic modulus, fix the units of
   length and force only; a third, such as a density or a relaxation time, is not part of the identification.
 - **Rate-dependent adhesion.** Bulk and interaction are elastic, and the drag is there to reach equilibrium, so

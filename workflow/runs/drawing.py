@@ -97,7 +97,7 @@ def _drawings(
         return {"friction": partial(plots.friction_figure, friction), **pressure}
     if detachments and detachments["force"].size > 1:
         return {DETACHMENTS: partial(plots.detachments_figure, detachments["force"]), **pressure}
-    if scene.noise is not None:
+    if scene.noise is not None and not scene.experiment.way_is_given:
         return pressure
     forces = partial(
         plots.force_displacement_figure, curve, values, _theory(scene, values, float(curve.displacement.max()))

@@ -27,7 +27,6 @@ EXCLUDED = {
     },
     "path": {
         "plate": "a path prescribes the plate's place, so the plate has no motion of its own",
-        "noise": "a path reads its curve off single states, and noise would be part of every one of them",
         "cantilever": "only a slide is pulled through a spring",
         "friction": "nothing moves along x in it, so that friction does nothing",
     },

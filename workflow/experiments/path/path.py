@@ -12,6 +12,7 @@ from contact1d.analysis.curve_marks import Peak, crossing, largest_tension
 from contact1d.analysis.loop import Loop, loop_of
 from contact1d.workflow.experiments.path.between_rows import missed_between_rows
 from contact1d.workflow.experiments.path.schedule import places, schedule
+from contact1d.workflow.experiments.path.thermal import CERTAIN, averaged
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.law_error import law_error
 from contact1d.workflow.experiments.running.outcome import Outcome
@@ -36,9 +37,11 @@ def path(context: RunContext) -> Outcome:
     scene, settings = context.deck.scene, context.deck.settings
     phases = schedule(scene, settings)
     with context.contact() as contact:
-        in_time = scene.method == "dynamic"
+        in_time = scene.method == "dynamic" and scene.noise is None
         passed = contact.replay(phases, at_rest=partial(is_converged, settings) if in_time else None)
         phases = contact.phases
+    if scene.noise is not None:
+        passed = averaged(passed, places(scene, settings))
     for state in passed:
         require_trust(scene, settings, state)
     asked = [wanted for _, wanted in places(scene, settings)]
@@ -59,14 +62,25 @@ def path(context: RunContext) -> Outcome:
         {name: math.nan if radius is None else radius.value for name, radius in radii.items()},
         phases,
         warnings | doubts(scene, settings, tuple(states)),
+        tables={} if scene.noise is None else {"means": _means(settings, states)},
         compared_with={} if loop is None else {"dissipated_energy": loop.whole},
     )
+
+
+def _means(settings: Settings, states: list[State]) -> dict[str, tuple[float, ...]]:
+    """Columns of means.csv: the mean force at each place, and its standard error."""
+    return {
+        "displacement": tuple(one.displacement for one in states),
+        "force": tuple(one.force for one in states),
+        "force_standard_error": tuple(one.residual * settings.particles / CERTAIN for one in states),
+    }
 
 
 def _dissipated(context: RunContext, states: list[State], loop: Loop) -> Quantity:
     """The loop's area. What the law lacks is the same on both ways; residual forces are not, and of either sign."""
     scene, settings = context.deck.scene, context.deck.settings
-    residual = math.sqrt(settings.particles) * sum(state.residual for state in states) / len(states)
+    several = settings.particles if scene.noise is not None else math.sqrt(settings.particles)
+    residual = several * sum(state.residual for state in states) / len(states)
     strongest = max(states, key=lambda s: abs(s.force))
     share = law_error(scene, settings, strongest) / max(abs(strongest.force), 1e-300)
     return Quantity(loop.area, loop.uncertainty + loop.length * residual + share * abs(loop.area), ENERGY)

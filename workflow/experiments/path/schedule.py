@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from contact1d.workflow.deck.steps import DisplaceInTime, Phase, Row, displacements
+from contact1d.workflow.experiments.path.thermal import thermal_rows
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 
@@ -19,13 +20,13 @@ EARLINESS = 8.0
 
 def schedule(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     """One phase for each stretch of rising ("loading") or falling ("unloading") displacement."""
-    values = [value for value, _ in places(scene, settings)]
-    stretches: list[tuple[str, list[float]]] = [("loading", [values[0]])]
-    for before, value in pairwise(values):
-        branch = "loading" if value > before else "unloading"
+    all_ = places(scene, settings)
+    stretches: list[tuple[str, list[tuple[float, bool]]]] = [("loading", [all_[0]])]
+    for before, place in pairwise(all_):
+        branch = "loading" if place[0] > before[0] else "unloading"
         if stretches[-1][0] != branch:
             stretches.append((branch, []))
-        stretches[-1][1].append(value)
+        stretches[-1][1].append(place)
     stretches = [(branch, rows) for branch, rows in stretches if rows]
     counts: dict[str, int] = {}
     phases = []
@@ -68,11 +69,13 @@ def _longest_drop(settings: Settings) -> float:
     return min(settings.longest_move, math.sqrt(EARLINESS * settings.tolerance) * settings.law.longest_range)
 
 
-def _rows(scene: Scene, settings: Settings, places: Sequence[float]) -> tuple[Row, ...]:
+def _rows(scene: Scene, settings: Settings, places: Sequence[tuple[float, bool]]) -> tuple[Row, ...]:
+    if scene.noise is not None:
+        return thermal_rows(settings, _decay(scene, settings), places)
     if scene.method == "quasistatic":
-        return displacements(places)
+        return displacements([place for place, _ in places])
     steps = math.ceil(RELAXATIONS * _decay(scene, settings) / settings.time_step)
-    return tuple(DisplaceInTime(float(place), steps) for place in places)
+    return tuple(DisplaceInTime(float(place), steps) for place, _ in places)
 
 
 def _decay(scene: Scene, settings: Settings) -> float:
