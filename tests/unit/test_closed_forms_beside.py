@@ -159,6 +159,12 @@ def test_jkr_beside_what_adheres() -> None:
     central = 2.0 * E * a / (math.pi * R) - math.sqrt(2.0 * E * work / (math.pi * a))
     assert form.pressure is not None
     assert float(form.pressure(of, np.asarray([0.0]))[0]) == pytest.approx(central, rel=ROUND_OFF)
+    # Of a path the deepest state is reported, d = a²/R − √(2πaW/E*): not that without a load.
+    deeper = 1.3 * a
+    deepest = deeper**2 / R - math.sqrt(2.0 * math.pi * work * deeper / E)
+    path = scene_from_dict(scene | {"experiment": {"kind": "path", "displacements": [0.0, deepest]}})
+    central = 2.0 * E * deeper / (math.pi * R) - math.sqrt(2.0 * E * work / (math.pi * deeper))
+    assert form.values(Case(path, {}))["central_pressure"] == pytest.approx(central, rel=1e-9)
 
 
 @pytest.mark.parametrize(

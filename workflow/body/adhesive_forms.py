@@ -45,7 +45,7 @@ def _values(case: Case) -> Mapping[str, float]:
     held = case.force is None or case.force >= -body.pull_off_force()
     reported = body.contact_radius(case.force or 0.0) if held else 0.0
     said["adhesion_energy"] = math.pi * reported**2 * _work(case)
-    if held and isinstance(case.scene.bodies.profile, Parabola):
+    if isinstance(case.scene.bodies.profile, Parabola) and _reported_radius(case) > 0.0:
         said["central_pressure"] = said["peak_pressure"] = float(_jkr_pressure(case, np.zeros(1))[0])
     if case.force is not None and held:
         a = reported
@@ -64,11 +64,21 @@ def _punch_values(case: Case) -> Mapping[str, float]:
     return said if case.force is None else said | {"displacement": case.force / (2.0 * e * a)}
 
 
+def _reported_radius(case: Case) -> float:
+    """a [LU] of the reported state: under a load, at the deepest place of a path, at F = 0; 0 where nothing holds."""
+    body, place = _power(case), case.displacement
+    if place is not None:
+        return body.radius_at(place) if place >= body.displacement(body.fixed_grips_radius()) else 0.0
+    force = case.force or 0.0
+    return body.contact_radius(force) if force >= -body.pull_off_force() else 0.0
+
+
 def _jkr_pressure(case: Case, r: Array) -> Array:
-    """p = (2E*a/πR) √(1 − r²/a²) − √(2E*W/πa)/√(1 − r²/a²), in the reported state: under a load, or at F = 0."""
-    body, e = _power(case), case.contact_modulus
+    """p = (2E*a/πR) √(1 − r²/a²) − √(2E*W/πa)/√(1 − r²/a²), in the reported state."""
+    e, a = case.contact_modulus, _reported_radius(case)
     assert case.radius is not None
-    a = body.contact_radius(case.force or 0.0)
+    if a == 0.0:
+        return np.zeros_like(r)
     root = np.sqrt(np.maximum(1.0 - (r / a) ** 2, 0.0))
     with np.errstate(divide="ignore"):
         tension = math.sqrt(2.0 * e * _work(case) / (math.pi * a)) / root

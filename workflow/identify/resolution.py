@@ -15,7 +15,7 @@ from contact1d.workflow.settings.settings import SettingsError, settings_for
 
 FEWEST, MOST = 30, 5000
 """Particles in the contact radius: at FEWEST F_A and a₀ of JKR are within 3e-3; MOST keep 1e-6."""
-LEFT = 0.5
+LEFT = 0.9
 """Part of the tolerance that the lattice may use up."""
 MOST_TRIES = 8
 

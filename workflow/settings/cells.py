@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import largest_tension
-from contact1d.analysis.polynomial import fitting
+from contact1d.analysis.polynomial import fitting, lowest_minimum
 from contact1d.workflow.scene import Load, Scene
 from contact1d.workflow.settings.adhesion import AdhesiveEstimate, Cells
 from contact1d.workflow.settings.settings import Settings
@@ -22,6 +22,8 @@ BESIDE, ASIDE, POINTS = 0.1, 0.3, 61
 """Ways on both sides of JKR's largest tension, and of another force, over the distance from fixed grips, and places."""
 PHASES = (0.25, 0.0)
 """Places of the apex between particles over the spacing, beside 1/2, that of an even chain."""
+NEAR, DEGREE = 0.2, 4
+"""Such a way for a polynomial of that degree."""
 JUST_HELD = 1e-9
 """Way before the place at which a punch lets go of all at once, over that place."""
 PULLING_STEPS = 48
@@ -40,13 +42,13 @@ def left_by_cells(scene: Scene, settings: Settings) -> dict[str, float]:
     assert isinstance(estimate, AdhesiveEstimate)
     own = 0.5 if settings.particles % 2 == 0 else 0.0
     phases = (own, *PHASES) if scene.bodies.particles == "auto" and not scene.bodies.profile.has_edge else (own,)
-    sums = [
-        _marks(scene, settings, estimate, _cells(scene, settings, estimate, phase), by_rows)
-        for phase in phases
-        for by_rows in (False, True)
-    ]
-    whole = _marks(scene, settings, estimate, None)
-    return {name: MARGIN * max(abs(some[name] - value) for some in sums) for name, value in whole.items()}
+    left: dict[str, float] = {}
+    for by_rows in (False, True):
+        whole = _marks(scene, settings, estimate, None, by_rows)
+        for phase in phases:
+            sums = _marks(scene, settings, estimate, _cells(scene, settings, estimate, phase), by_rows)
+            left = {name: max(left.get(name, 0.0), MARGIN * abs(sums[name] - value)) for name, value in whole.items()}
+    return left
 
 
 def expected_of_adhesion(scene: Scene, settings: Settings) -> dict[str, float]:
@@ -85,7 +87,8 @@ def _marks(
         place = place_of(scene.experiment.force)
         return {"displacement": place, "contact_radius": radius(place)}
     zero = place_of(0.0)
-    tension, place = (_read_off if by_rows else _largest_tension)(estimate, forces)
+    by = _largest_tension if not by_rows else _read_off if cells else _vertex
+    tension, place = by(estimate, forces)
     return {"adhesion_force": tension, "critical_radius": radius(place), "zero_load_radius": radius(zero)}
 
 
@@ -113,6 +116,19 @@ def _read_off(estimate: AdhesiveEstimate, forces: Callable[[Array], Array]) -> t
     rows = np.unique(np.concatenate([rows, beside]))[::-1]
     peak = largest_tension(rows.tolist(), forces(rows).tolist())
     return peak.smooth, peak.position
+
+
+def _vertex(estimate: AdhesiveEstimate, forces: Callable[[Array], Array]) -> tuple[float, float]:
+    """The same of a smooth curve, that is known by straight lines: by a polynomial through many of them."""
+    expected, last = estimate.displacement_at(-estimate.pull_off_force()), estimate.fixed_grips[1]
+    width = NEAR * (expected - last)
+    if width <= 0.0:
+        return _largest_tension(estimate, forces)
+    t = np.linspace(-1.0, 1.0, POINTS)
+    c = fitting(t, DEGREE) @ forces(expected + width * t)
+    best, _ = lowest_minimum(c, -1.0, 1.0)
+    best = 0.0 if np.isnan(best) else best
+    return -float(c @ best ** np.arange(DEGREE + 1)), expected + width * best
 
 
 def pulling_rows(zero: float, last: float) -> Array:
