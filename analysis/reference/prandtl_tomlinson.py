@@ -13,15 +13,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-POINTS = 512
+POINTS = 128
 """Places in a period at which the corrugation is computed; its harmonics fall by a factor of ten each, or faster."""
 HARMONICS = 24
+HEIGHTS = 400
+"""Heights among which the innermost minimum is looked for; each is 2 % above the one before, a share of any range."""
 
 
 @dataclass(frozen=True)
@@ -29,11 +31,13 @@ class Corrugation:
     """U(x) by its harmonics: U = Σ c_n cos(2π n x/s) [FU·LU]; `coefficients` c_1, c_2, …
 
     height: of the particle in the hollow, x = s/2 [LU].
+    heights: harmonics of its height, z = h_0 + Σ h_n cos(2π n x/s) [LU].
     """
 
     spacing: float
     coefficients: Array
     height: float = math.nan
+    heights: Array = field(default_factory=lambda: np.empty(0))
 
     def energy(self, x: Array) -> Array:
         """U(x) [FU·LU]."""
@@ -69,12 +73,26 @@ class Corrugation:
         return total
 
 
-def corrugation(law: tuple[float, float, float, float], spacing: float, normal_force: float) -> Corrugation:
-    """U(x) of the law A, a, B, b over a row of this spacing [LU] under a force [FU], compression positive."""
+def corrugation(
+    law: tuple[float, float, float, float],
+    spacing: float,
+    normal_force: float,
+    stiffness: float = 0.0,
+    place: float = 0.0,
+) -> Corrugation:
+    """U(x) of the law A, a, B, b over a row of this spacing [LU] under a force [FU], compression positive.
+
+    With a stiffness [FU/LU] the force is the normal force at the height `place` [LU] and grows by so much above it:
+    that of a spring whose far end stands still.
+
+    Raises:
+        ArithmeticError: the row does not hold the force.
+    """
     A, a, B, b = law
     reach = math.ceil(60.0 * max(a, b) / spacing)
     row = spacing * np.arange(-reach, reach + 1)
-    x = spacing * np.arange(POINTS) / POINTS
+    half = POINTS // 2 + 1  # from the top to the hollow; the other half of the period mirrors it
+    x = spacing * np.arange(half) / POINTS
 
     def sums(z: Array) -> tuple[Array, Array]:
         """dU/dz and d²U/dz² at each x."""
@@ -82,14 +100,15 @@ def corrugation(law: tuple[float, float, float, float], spacing: float, normal_f
         first = -A / a * np.exp(-r / a) + B / b * np.exp(-r / b)
         second = A / a**2 * np.exp(-r / a) - B / b**2 * np.exp(-r / b)
         cosine = z[:, None] / r
-        slope = (first * cosine).sum(axis=1) + normal_force
-        return slope, (second * cosine**2 + first * (1.0 - cosine**2) / r).sum(axis=1)
+        slope = (first * cosine).sum(axis=1) + normal_force + stiffness * (z - place)
+        return slope, (second * cosine**2 + first * (1.0 - cosine**2) / r).sum(axis=1) + stiffness
 
-    low, high = np.full(POINTS, 1e-3 * a), np.full(POINTS, 20.0 * max(a, b))
-    grid = np.geomspace(1e-2 * a, 20.0 * max(a, b), 2000)
-    for i in range(POINTS):  # the innermost minimum: slope rises through 0
+    low, high = np.empty(half), np.empty(half)
+    grid = np.geomspace(1e-2 * a, 20.0 * max(a, b), HEIGHTS)
+    for i in range(half):  # the innermost minimum: slope rises through 0
         r = np.hypot(x[i] - row[:, None], grid[None, :])
-        slope = ((-A / a * np.exp(-r / a) + B / b * np.exp(-r / b)) * grid / r).sum(axis=0) + normal_force
+        slope = ((-A / a * np.exp(-r / a) + B / b * np.exp(-r / b)) * grid / r).sum(axis=0)
+        slope += normal_force + stiffness * (grid - place)
         above = np.flatnonzero((slope[:-1] < 0.0) & (slope[1:] >= 0.0))
         if above.size == 0:
             raise ArithmeticError(f"the row does not hold {normal_force:g} FU")
@@ -101,9 +120,11 @@ def corrugation(law: tuple[float, float, float, float], spacing: float, normal_f
         newton = z - slope / stiff
         z = np.where((newton > low) & (newton < high), newton, 0.5 * (low + high))
     r = np.hypot(x[:, None] - row, z[:, None])
-    energy = (A * np.exp(-r / a) - B * np.exp(-r / b)).sum(axis=1) + normal_force * z
-    waves = np.fft.rfft(energy) / POINTS * 2.0
-    return Corrugation(spacing, np.real(waves[1 : HARMONICS + 1]), float(z[POINTS // 2]))
+    energy = (A * np.exp(-r / a) - B * np.exp(-r / b)).sum(axis=1)
+    energy += normal_force * z + 0.5 * stiffness * (z - place) ** 2
+    waves, heights = (np.real(np.fft.hfft(values, POINTS)[:half]) / POINTS * 2.0 for values in (energy, z))
+    heights[0] *= 0.5
+    return Corrugation(spacing, waves[1 : HARMONICS + 1], float(z[-1]), heights[: HARMONICS + 1])
 
 
 def slow_friction(wells: Corrugation, stiffness: float) -> float:

@@ -20,6 +20,7 @@ from contact1d.workflow.reproduce import (
     fig7,
     fig8,
     heat,
+    fig9,
     jkr_plane,
     pressure,
     table1,
@@ -54,6 +55,7 @@ STUDIES: tuple[Study, ...] = (
     tangential.STUDY,
     heat.STUDY,
     detachment.STUDY,
+    fig9.STUDY,
 )
 NAMES = tuple(study.name for study in STUDIES)
 PAGE, VALIDATION = "reproduce.html", "VALIDATION.md"

@@ -1,0 +1,46 @@
+"""The slides of the study are those of the sweeps that ship with the program, one run for each point."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.sweep.axes import read_sweep
+from contact1d.workflow.sweep.points import points
+
+LOAD, RADIUS = "friction_over_load", "friction_over_radius"
+PARTICLE, VELOCITY, STIFFNESS = "friction_of_one_particle", "friction_over_velocity", "friction_over_stiffness"
+FLATS, LATTICES = "friction_of_flats", "friction_of_lattices"
+SWEEPS = (VELOCITY, LOAD, RADIUS, FLATS, STIFFNESS, PARTICLE, LATTICES)
+"""Those with the longest runs come first."""
+Place = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Slides:
+    """The points of a sweep: names of their runs and scenes, by the values of the axes that have several."""
+
+    names: dict[Place, str]
+    scenes: dict[Place, Scene]
+
+    @property
+    def every(self) -> list[str]:
+        """The names of all runs."""
+        return list(self.names.values())
+
+
+@cache
+def slides(sweep: str) -> Slides:
+    """The slides of a shipped sweep."""
+    plan = read_sweep(Path(str(files("contact1d.lammps_inputs") / "sweeps" / f"{sweep}.toml")))
+    varied = [i for i, axis in enumerate(plan.axes) if len(axis.values) > 1]
+    names, scenes = {}, {}
+    for point in points(plan):
+        assert point.scene is not None, point.reason
+        place = tuple(float(point.values[i]) for i in varied)
+        names[place] = "_".join([sweep, *(f"{value:g}" for value in place)])
+        scenes[place] = point.scene
+    return Slides(names, scenes)
