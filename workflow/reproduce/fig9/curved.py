@@ -19,9 +19,9 @@ from contact1d.workflow.reproduce.study import Rows
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import settings_for
 
-INTEGRATED = {LOAD: (-0.4, 0.0, 1.2), RADIUS: (10.0, 160.0)}
+INTEGRATED = {LOAD: (-0.4, 0.0, 1.2), RADIUS: (10.0, 80.0)}
 """Loads [FU] and radii [LU] of which the integrator does as much as it needs."""
-PERIODS, LAST = 4.0, 2.0
+PERIODS, LAST = 3.0, 1.0
 """Periods of the drive that it does, and those at their end that its mean is over."""
 RESIDUAL = 1e-6
 """Force [FU] below which its bodies rest before they slide."""

@@ -35,12 +35,14 @@ def static(run: Run) -> float:
 def slow_limit(friction: Mapping[float, float], power: float = STICKS) -> Limit:
     """F_0 of ⟨F⟩ = F_0 + C v^p + D v through three velocities [LU/TU].
 
-    What is left out is of the size of the last term at the slowest of them, or less.
+    Which power follows v^p is not known to be 1: it is uncertain by what it is off the line in v^p through the two
+    slowest.
     """
     velocities = np.asarray(sorted(friction))
+    values = np.asarray([friction[v] for v in velocities])
     terms = np.column_stack([np.ones(3), velocities**power, velocities])
-    first, _, last = np.linalg.solve(terms, [friction[v] for v in velocities])
-    return Limit(float(first), abs(float(last)) * float(velocities[0]))
+    limit, line = (float(np.linalg.solve(terms[:n, :n], values[:n])[0]) for n in (3, 2))
+    return Limit(limit, abs(limit - line))
 
 
 def exponent(friction: Mapping[float, float]) -> float:
