@@ -11,9 +11,9 @@ import pytest
 from contact1d import RunError, SceneError, read_scene, run
 from contact1d.analysis.reference.slide import Integrator
 from contact1d.workflow.deck.lattice import start_offset
+from contact1d.workflow.judging.slide_model import slide_model
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import SettingsError, settings_for
-from contact1d.workflow.stability.random_slides import slide_model
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 TRACE = 1e-3

@@ -22,9 +22,9 @@ from contact1d.analysis.reference.spring_sliders import displacement_under as di
 from contact1d.analysis.reference.thermal_chain import displacement_under
 from contact1d.analysis.reference.winkler import rigid_plane_sum
 from contact1d.workflow.deck.lattice import start_offset
+from contact1d.workflow.judging.slide_model import slide_model
 from contact1d.workflow.scene import Tangential
 from contact1d.workflow.settings.settings import settings_for
-from contact1d.workflow.stability.random_slides import slide_model
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 

@@ -17,9 +17,9 @@ from contact1d.analysis.reference.slide import Integrator, Trace
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Hold
 from contact1d.workflow.experiments import planned
+from contact1d.workflow.judging.slide_model import slide_model
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import Settings, settings_for
-from contact1d.workflow.stability.random_slides import slide_model
 
 TRACE = 1e-4
 """Of the peak: the table of the law, the rest from which the slide starts, and the order of the sums."""

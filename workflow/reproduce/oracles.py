@@ -13,11 +13,8 @@ from contact1d.analysis.reference.interaction import Exponential, PairInteractio
 from contact1d.analysis.reference.jkr import jkr_reduced_force
 from contact1d.analysis.reference.line_adhesion import barquins_reduced_force
 from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.slide import SlideModel
 from contact1d.analysis.reference.solver import ChainSolver, State
-from contact1d.workflow.deck.lattice import start_offset
-from contact1d.workflow.scene import Parabola, Scene, Slide
-from contact1d.workflow.settings.settings import Settings
+from contact1d.workflow.scene import Parabola, Scene
 
 Array = NDArray[np.float64]
 ROW_REACH, ROW_POINTS, ROW_HALF = 5.0, 4001, 20
@@ -56,46 +53,6 @@ def chain_model(scene: Scene) -> ChainModel:
         spacing=scene.bodies.spacing,
         neighbour_stiffness=0.0 if scene.neighbours is None else scene.neighbours.stiffness,
         horizontal=scene.horizontal is not None,
-    )
-
-
-def law_of(scene: Scene) -> tuple[float, float, float, float]:
-    """A [FU·LU], a [LU], B [FU·LU], b [LU] of the scene's law."""
-    terms = scene.interaction
-    assert terms is not None
-    assert terms.attraction is not None
-    return terms.repulsion.amplitude, terms.repulsion.range, terms.attraction.amplitude, terms.attraction.range
-
-
-def slide_model(scene: Scene, settings: Settings) -> SlideModel:
-    """A slide for the independent integrator; the values that the scene leaves open are the program's."""
-    bodies = scene.bodies
-    assert scene.cantilever is not None
-    assert isinstance(scene.experiment, Slide)
-
-    def row(count: int, spacing: float) -> Array:
-        return np.asarray((np.arange(count) - 0.5 * (count - 1)) * spacing, dtype=np.float64)
-
-    below, along = row(settings.lower_particles, bodies.spacing), row(settings.particles, bodies.own_spacing)
-    offset = start_offset(scene, settings)
-    upper = np.column_stack([along + offset, settings.rest + bodies.profile.height(along)])
-    return SlideModel(
-        lower=np.column_stack([below, np.zeros_like(below)]),
-        upper=upper,
-        law=law_of(scene),
-        cutoff=settings.cutoff,
-        normal_stiffness=scene.bulk_stiffness,
-        tangential_stiffness=scene.tangential_stiffness,
-        mass=bodies.mass,
-        plate_mass=settings.plate_mass,
-        drag=settings.damping,
-        plate_drag=settings.plate_damping,
-        cantilever_stiffness=scene.cantilever.stiffness,
-        velocity=scene.cantilever.velocity,
-        normal_force=scene.experiment.normal_force,
-        rigid=bodies.lower == "rigid_chain",
-        period=settings.lower_particles * bodies.spacing if bodies.periodic else 0.0,
-        neighbours=0.0 if scene.neighbours is None else scene.neighbours.stiffness,
     )
 
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from contact1d.analysis import friction
-from contact1d.analysis.reference.slide import Integrator, SlideModel, Trace
-from contact1d.workflow.deck.lattice import start_offset
-from contact1d.workflow.scene import Scene, Slide
+from contact1d.analysis.reference.slide import Integrator, Trace
+from contact1d.workflow.judging.slide_model import slide_model
+from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 
 SEED = 5
@@ -67,40 +67,6 @@ def random_slide(random: Random) -> dict[str, Any]:
         "accuracy": {"tolerance": 10.0 ** random.uniform(-3.0, -2.0)},
         "experiment": {"kind": "slide", "normal_force": load, "distance": spacing * random.uniform(6.0, 10.0)},
     }
-
-
-def slide_model(scene: Scene, settings: Settings, beyond: int = 0) -> SlideModel:
-    """Places, springs and drags of a slide, with the values that it leaves open; a lower body longer by so many."""
-    bodies, terms = scene.bodies, scene.interaction
-    assert terms is not None
-    assert terms.attraction is not None
-    assert scene.cantilever is not None
-    assert isinstance(scene.experiment, Slide)
-
-    def row(count: int, spacing: float) -> np.ndarray:
-        return (np.arange(count) - 0.5 * (count - 1)) * spacing
-
-    below, along = row(settings.lower_particles + beyond, bodies.spacing), row(settings.particles, bodies.own_spacing)
-    height = settings.rest + bodies.profile.height(along)
-    upper = np.column_stack([along + start_offset(scene, settings), height])
-    return SlideModel(
-        lower=np.column_stack([below, np.zeros_like(below)]),
-        upper=upper,
-        law=(terms.repulsion.amplitude, terms.repulsion.range, terms.attraction.amplitude, terms.attraction.range),
-        cutoff=settings.cutoff,
-        normal_stiffness=scene.bulk_stiffness,
-        tangential_stiffness=scene.tangential_stiffness,
-        mass=bodies.mass,
-        plate_mass=settings.plate_mass,
-        drag=settings.damping,
-        plate_drag=settings.plate_damping,
-        cantilever_stiffness=scene.cantilever.stiffness,
-        velocity=scene.cantilever.velocity,
-        normal_force=scene.experiment.normal_force,
-        rigid=bodies.lower == "rigid_chain",
-        period=settings.lower_particles * bodies.spacing if bodies.periodic else 0.0,
-        neighbours=0.0 if scene.neighbours is None else scene.neighbours.stiffness,
-    )
 
 
 def integrated(scene: Scene, settings: Settings) -> Trace:

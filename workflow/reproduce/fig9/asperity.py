@@ -10,10 +10,10 @@ import numpy as np
 from contact1d.analysis.reference.prandtl_tomlinson import Corrugation, corrugation, moving_friction, slow_friction
 from contact1d.workflow.judging.check import Check
 from contact1d.workflow.judging.figures import Array, Series
+from contact1d.workflow.judging.slide_model import law_of
 from contact1d.workflow.reproduce.fig9.figures import Panel
 from contact1d.workflow.reproduce.fig9.reading import CRITICAL, SLIDES, exponent, mean, slow_limit, static, threshold
 from contact1d.workflow.reproduce.fig9.sweeps import PARTICLE, STIFFNESS, VELOCITY, slides
-from contact1d.workflow.reproduce.oracles import law_of
 from contact1d.workflow.reproduce.study import Rows
 from contact1d.workflow.scene import Scene, Slide
 from contact1d.workflow.settings.settings import settings_for

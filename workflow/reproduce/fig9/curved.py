@@ -11,10 +11,10 @@ from contact1d.analysis.reference.slide import Integrator, Trace
 from contact1d.workflow.judging.check import Check, Evidence
 from contact1d.workflow.judging.figures import Series
 from contact1d.workflow.judging.runs import found
+from contact1d.workflow.judging.slide_model import slide_model
 from contact1d.workflow.reproduce.fig9.figures import Panel
 from contact1d.workflow.reproduce.fig9.reading import mean, static
 from contact1d.workflow.reproduce.fig9.sweeps import LOAD, RADIUS, slides
-from contact1d.workflow.reproduce.oracles import slide_model
 from contact1d.workflow.reproduce.study import Rows
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import settings_for
@@ -47,7 +47,7 @@ def integrated(scene: Scene) -> Integrated:
     """A slide of the scene by the integrator, measured where the program measures."""
     settings = settings_for(scene)
     body = Integrator(slide_model(scene, settings))
-    body.settle(settings.time_step, RESIDUAL)
+    body.settle(settings.time_step, RESIDUAL, drag=settings.calm_damping)
     (leg,) = settings.drive
     period = scene.bodies.spacing / leg.velocity
     rows = min(leg.rows, round(PERIODS * period / leg.row_time))

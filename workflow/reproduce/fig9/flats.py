@@ -13,11 +13,11 @@ from contact1d.analysis.reference.incommensurate import threshold as law_thresho
 from contact1d.analysis.reference.prandtl_tomlinson import slow_friction
 from contact1d.workflow.judging.check import Check
 from contact1d.workflow.judging.figures import Series
+from contact1d.workflow.judging.slide_model import law_of
 from contact1d.workflow.reproduce.fig9.asperity import BETWEEN, MIDDLE, OF_LARGEST, wells_of
 from contact1d.workflow.reproduce.fig9.figures import Panel
 from contact1d.workflow.reproduce.fig9.reading import exponent, mean, slow_limit, static, threshold
 from contact1d.workflow.reproduce.fig9.sweeps import FLATS, LATTICES, slides
-from contact1d.workflow.reproduce.oracles import law_of
 from contact1d.workflow.reproduce.study import Rows
 from contact1d.workflow.scene import Scene, Slide
 
