@@ -80,6 +80,11 @@ def test_a_chain_too_short_for_the_way_is_refused_before_the_run(tmp_path: Path)
     assert run(longer, tmp_path / "run", figures=False).status == "done"
 
 
+def test_an_upper_chain_of_its_own_that_is_too_short_is_the_one_that_is_named(tmp_path: Path) -> None:
+    words = failure(scene_of(bodies__particles=40, bodies__upper_particles=20), tmp_path)
+    assert "Tried: --set bodies.upper_particles=40 --set bodies.particles=auto gives a result" in words
+
+
 def test_a_drive_beyond_what_particles_follow_is_warned(tmp_path: Path) -> None:
     found = run(scene_of(cantilever__velocity=0.3, experiment__distance=12.0), tmp_path / "run", figures=False)
     assert "the bodies cannot follow" in found.warnings["fast"]

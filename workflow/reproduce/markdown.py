@@ -37,9 +37,9 @@ own.
   surface.
 - **Roughness of any kind within one contact.** All checks have one smooth profile; what a chain makes of several
   summits that share an elastic half-space has not been compared with anything.
-- **Friction of two bodies of particles.** The tangential contact on the rigid plane is held against Cattaneo and
-  Mindlin; what chains of particles that slide on each other make of friction is the model's own, and no friction force
-  of a real pair of bodies has been compared with it.
+- **Friction of a real pair of bodies.** The tangential contact on the rigid plane is held against Cattaneo and Mindlin,
+  and what particles that slide on each other make of friction against the theories of such particles (`fig9`); no
+  friction force that anybody measured has been compared with it.
 - **Absolute time scales of dynamic runs.** Masses are free numbers, and the damping is chosen so that a run settles
   soon; the states of rest that it reaches are checked, how long it takes only against the model's own motion.
 - **Heat in physical time.** Friction and detachment under heat are held against Smoluchowski's equation above, at

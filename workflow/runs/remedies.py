@@ -184,7 +184,10 @@ def _without_horizontal(scene: Scene) -> Change | None:
 
 
 def _longer_chain(scene: Scene) -> Change | None:
-    given = scene.bodies.particles != "auto" and not scene.bodies.profile.has_edge
+    bodies = scene.bodies
+    if bodies.upper_particles is not None and not bodies.periodic:
+        return Change({"bodies.upper_particles": 2 * bodies.upper_particles, "bodies.particles": "auto"})
+    given = bodies.particles != "auto" and not bodies.profile.has_edge
     return Change({"bodies.particles": "auto"}) if given else _smaller_load(scene)
 
 

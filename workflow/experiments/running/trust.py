@@ -85,8 +85,15 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
     if _reaches_end(scene, state.profile):
         raise ChainEndError(
             f"the contact reaches the end of the chain {at}",
-            f'take more bodies.particles than {settings.particles} (or "auto"), or a smaller load',
+            f"take {_more_particles(scene, settings)}, or a smaller load",
         )
+
+
+def _more_particles(scene: Scene, settings: Settings) -> str:
+    """Which number is to grow: of the upper chain, where it has its own."""
+    if scene.bodies.upper_particles is not None:
+        return f"more bodies.upper_particles than {settings.particles}, or leave it out"
+    return f'more bodies.particles than {settings.particles} (or "auto")'
 
 
 def is_converged(settings: Settings, state: State) -> bool:
@@ -132,14 +139,14 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
     if not scene.bodies.profile.has_edge and share > END_SHARE_LIMIT * settings.tolerance:
         found["chain_end"] = (
             f"the outermost particles carry up to {share:.2g} of the largest pressure, so the chain of "
-            f'{settings.particles} particles cuts the contact: take more bodies.particles, or "auto"'
+            f"{settings.particles} particles cuts the contact: take {_more_particles(scene, settings)}"
         )
     ends = reflected(scene, settings.estimate, settings.largest_displacement, settings.particles)
     if not scene.bodies.profile.has_edge and ends > settings.tolerance:
         found["chain_end"] = (
             f"neighbour springs spread the load over {decay_length(scene):.3g} LU to each side, and the chain of "
             f"{settings.particles} particles ends so near to the contact that up to {ends:.1g} of that comes back from "
-            'there: take more bodies.particles, or "auto"'
+            f"there: take {_more_particles(scene, settings)}"
         )
     share = law_share(scene, settings)
     if share > settings.tolerance:

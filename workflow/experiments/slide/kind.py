@@ -27,7 +27,9 @@ def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
 
 def advice(scene: Scene) -> str:
     """A mean is known by the length of what it is taken over."""
-    return "What helps is a longer experiment.distance, of more whole periods of the spacing"
+    assert isinstance(scene.experiment, Slide)
+    way = "experiment.distance" if scene.experiment.path is None else "last leg of experiment.path that moves"
+    return f"What helps is a longer {way}, of more whole periods of the spacing"
 
 
 SLIDE = ExperimentKind(
