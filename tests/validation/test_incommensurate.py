@@ -2,7 +2,8 @@
 
 Frenkel, Kontorova and Tomlinson without springs between neighbours: particles on springs k to a common body over a
 potential of largest negative curvature κ = max(−U″) are all of them in one well each for k > κ, and the body's energy
-does not depend on its place; for k < κ they jump one after the other, and the friction of a slow drive is finite.
+does not depend on its place; for k < κ they jump one after the other, and the friction of a slow drive is finite. κ is
+that of a particle at the height that all share: on the top it presses its spring.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from contact1d import run
-from contact1d.analysis.reference.prandtl_tomlinson import corrugation
+from contact1d.analysis.reference.incommensurate import threshold
 from contact1d.workflow.scene import scene_from_dict
 
 LAW, LOAD = (1.0, 0.5, 0.5, 1.0), 0.2
@@ -44,11 +45,11 @@ def friction(stiffness: float, velocity: float, folder: Path) -> float:
 
 
 def test_it_changes_from_pinned_to_viscous_at_the_threshold(tmp_path: Path) -> None:
-    threshold = corrugation(LAW, 1.0, LOAD).steepest
-    assert threshold == pytest.approx(0.1075, abs=1e-4)
+    stiffness = threshold(LAW, 1.0, LOAD, 1.0)
+    assert stiffness == pytest.approx(0.1225, abs=1e-4)
     ratios = {}
-    for share in (0.8, 2.0):
-        fast, slow = (friction(share * threshold, velocity, tmp_path) for velocity in (FAST, SLOW))
+    for share in (0.75, 1.6):
+        fast, slow = (friction(share * stiffness, velocity, tmp_path) for velocity in (FAST, SLOW))
         ratios[share] = fast / slow
-    assert ratios[0.8] < PINNED
-    assert ratios[2.0] > FREE
+    assert ratios[0.75] < PINNED
+    assert ratios[1.6] > FREE

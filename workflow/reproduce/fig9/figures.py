@@ -58,6 +58,7 @@ def _draw(axis: Axes, panel: Panel) -> None:
     for one, colour, marker in zip(panel.runs, COLOURS, MARKERS, strict=False):
         if panel.lines:
             axis.plot(one.x, one.y, color=colour, linewidth=1.4, label=one.name)
+            axis.margins(y=0.3)  # room for the names
             continue
         axis.errorbar(
             one.x, one.y, one.spread, fmt=marker + ("--" if panel.joined else ""), color=colour, markersize=5.5,
