@@ -16,7 +16,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
 
 Array = NDArray[np.float64]
 
@@ -68,7 +67,12 @@ def block_means(time: Array, integral: Array, period: float, rate: Array | None 
     """
     count = math.floor((time[-1] - time[0]) / period * (1.0 + 1e-9))
     ends = np.maximum(time[-1] - period * np.arange(count, -1, -1), time[0])
-    at = np.interp(ends, time, integral) if rate is None else CubicHermiteSpline(time, integral, rate)(ends)
+    if rate is None:
+        at = np.interp(ends, time, integral)
+    else:
+        from scipy.interpolate import CubicHermiteSpline  # whose import takes longer than a small run
+
+        at = CubicHermiteSpline(time, integral, rate)(ends)
     return np.asarray(np.diff(at) / period)
 
 

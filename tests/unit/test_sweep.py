@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import csv
 import os
+import random
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Mapping
 from concurrent.futures import Executor, Future
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -349,3 +351,25 @@ def test_a_sweep_that_is_killed_at_any_moment_goes_on(tmp_path: Path) -> None:
     sweep(source, tmp_path / "whole", workers=1, figures=False)
     assert (tmp_path / "s" / TABLE).read_text() == (tmp_path / "whole" / TABLE).read_text()
     assert all(path.stat().st_mtime_ns == stamp for path, stamp in stamps.items())
+
+
+@pytest.mark.slow
+def test_a_sweep_killed_at_ten_random_moments_loses_nothing(tmp_path: Path) -> None:
+    """Two workers, moments by the clock: whenever they come, the table is that of a sweep nobody killed."""
+    forces, radii = {"key": FORCE, "from": 0.1, "to": 1.0, "steps": 39}, axis(RADIUS, 50.0, 100.0, 200.0)
+    source, folder = plane(forces, radii), tmp_path / "s"
+    script = f"import contact1d\ncontact1d.sweep({source!r}, {str(folder)!r}, workers=2, figures=False)\n"
+    delays, known = random.Random(7), dict[str, int]()
+    for _ in range(10):
+        begun = subprocess.Popen([sys.executable, "-c", script])
+        with suppress(subprocess.TimeoutExpired):
+            begun.wait(delays.uniform(0.5, 6.0))
+        begun.kill()
+        begun.wait()
+        found = {path.parent.name: path.stat().st_mtime_ns for path in folder.glob("runs/*/results.json")}
+        assert all(found[name] == stamp for name, stamp in known.items())
+        known = found
+    sweep(source, folder, workers=2, figures=False)
+    sweep(source, tmp_path / "whole", workers=2, figures=False)
+    assert (folder / TABLE).read_text() == (tmp_path / "whole" / TABLE).read_text()
+    assert all((folder / "runs" / name / "results.json").stat().st_mtime_ns == stamp for name, stamp in known.items())

@@ -14,6 +14,8 @@ from multiprocessing.connection import Connection
 from types import ModuleType
 from typing import ParamSpec, TypeVar
 
+from contact1d.workflow.engine.process import start_ahead
+
 P = ParamSpec("P")
 T = TypeVar("T")
 
@@ -54,8 +56,9 @@ def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
 
 
 def _begin(parent: Connection) -> None:
-    """Begin a worker."""
+    """Begin a worker: LAMMPS loads while the rest of the program does."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    start_ahead()
 
     def watch() -> None:
         with suppress(EOFError, OSError):
