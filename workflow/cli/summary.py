@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from contact1d.analysis.pressure import Profile
+from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.units import rounded, scale_of
 
 NAMES = {
@@ -27,8 +28,6 @@ NAMES = {
 }
 EXACTNESS = 1e-9
 """A relative uncertainty below it, as of a unit that was given, is left out."""
-SHOWN = 6
-"""Places of a deviation in percent: below that it is round-off."""
 COLUMNS = 64
 ROWS = 9
 BLOCK, EMPTY, AXIS = "█", " ", "─"
@@ -46,7 +45,7 @@ def quantities(results: Mapping[str, Any]) -> list[str]:
             number = in_si(entry["si"]) if "si" in entry else (
                 f"{rounded(entry['value'], entry['uncertainty'])} {entry['unit']}"
             )  # fmt: skip
-            lines.append(f"  {label:<28} {number:<32} {', '.join(_beside(results, name))}".rstrip())
+            lines.append(f"  {label:<28} {number:<32} {', '.join(in_words(results, name))}".rstrip())
     if "units" in results:
         lines += [f"  {'1 ' + unit:<28} {in_si(entry)}" for unit, entry in results["units"].items()]
     return lines
@@ -62,18 +61,6 @@ def _whose(results: Mapping[str, Any]) -> str:
     if any(name.startswith("image_") for name in results):
         return f"{reduction}: two equal spheres; what is called image is the plane model's"
     return f"{reduction}: the plane model of the paper; radii are those of its image"
-
-
-def _beside(results: Mapping[str, Any], name: str) -> Iterator[str]:
-    """What each closed form says of a result, and how far the result is from it: `Hertz 110.37 µm (+0.001 %)`."""
-    for form in results.get("theory", ()):
-        if said := form["values"].get(name):
-            number = f"{said['value']:.5g} {said['unit']}"
-            if "si" in said:
-                factor, unit = scale_of(said["si"]["value"], said["si"]["unit"])
-                number = f"{said['si']['value'] * factor:.5g} {unit}"
-            off = "" if said["deviation"] is None else f" ({round(100.0 * said['deviation'], SHOWN) + 0.0:+.2g} %)"
-            yield f"{form['name']} {number}{off}"
 
 
 def in_si(entry: Mapping[str, Any]) -> str:

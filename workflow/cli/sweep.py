@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from contact1d.workflow.cli.arguments import scene_files
+from contact1d.workflow.cli.arguments import Format, scene_files
 from contact1d.workflow.cli.ending import RUN_FAILED, command
 
 
@@ -26,6 +26,7 @@ def sweep(
     ] = None,
     partition: Annotated[str | None, typer.Option(help="Of Slurm.", show_default="its default")] = None,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures.")] = True,
+    format_: Annotated[Format, typer.Option("--format", help="Of the figures.")] = Format.PNG,
     parquet: Annotated[bool, typer.Option("--parquet", help="Write the table as Parquet as well.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the end only.")] = False,
 ) -> None:
@@ -40,7 +41,7 @@ def sweep(
         from contact1d.workflow.sweep.sweep import sweep as do
         from contact1d.workflow.sweep.table import TABLE, write_parquet
 
-        done = do(file, folder, executor, workers, figures, progress, partition)
+        done = do(file, folder, executor, workers, format_.value if figures else False, progress, partition)
         if parquet:
             write_parquet(done.folder)
     counts = ", ".join(f"{count} {status}" for status, count in sorted(done.counts.items()))

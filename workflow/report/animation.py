@@ -15,7 +15,7 @@ from contact1d.files import whole, write_whole
 from contact1d.workflow.deck.keeping import STATES
 from contact1d.workflow.errors import Contact1dError, FolderError
 from contact1d.workflow.pages.parts import text_of
-from contact1d.workflow.report.charts import half_width, main_curve
+from contact1d.workflow.report.charts import main_curve, rows_of_branches, window
 from contact1d.workflow.runs.campaign import AnyPath
 from contact1d.workflow.runs.finished import Run, load_run
 
@@ -99,8 +99,7 @@ def _bodies(axis: Axes, run: Run, states: States) -> Any:
     """Particles, coloured by pressure, with their bulk springs; returns what moves them. A plane has no particles."""
     from matplotlib.collections import LineCollection
 
-    half = 1.15 * max(half_width(x, p) for x, p in zip(states.x, states.pressure, strict=True))
-    view = np.abs(states.x).min(axis=0) <= half
+    half, view = window(states)
     x, low, high = states.x[:, view], states.z_lower[:, view], states.z_upper[:, view]
     pressure = states.pressure[:, view]
     bottom, top = float(low.min()), float(high.max())
@@ -141,9 +140,7 @@ def _segments(x: NDArray[np.float32], z: NDArray[np.float32], length: float) -> 
 def _trace(axis: Axes, run: Run, states: States) -> Any:
     """The main curve with a mark; returns what moves it."""
     _, name_x, name_y, x, y = main_curve(run)
-    for branch in dict.fromkeys(run.curve.branch.tolist()):
-        rows = np.flatnonzero(run.curve.branch == branch)
-        rows = rows[np.argsort(x[rows], kind="stable")]
+    for rows in rows_of_branches(run.curve.branch, x).values():
         axis.plot(x[rows], y[rows], color=COMPRESSION, linewidth=1.2)
     axis.axhline(0.0, color=THEORY, linewidth=0.6)
     (mark,) = axis.plot([], [], "o", color=TENSION, markersize=8)

@@ -10,24 +10,28 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.analysis.curve import SAMPLE_TABLE, read_samples
 from contact1d.analysis.states import States
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.sweep.axes import SweepPlan
-from contact1d.workflow.sweep.figures import Line, lines_of, mean_of, roles_of, short
+from contact1d.workflow.sweep.figures import Line, lines_of, mean_of, roles_of, short, theories_of
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999933")
 """Okabe and Ito's, which the colour-blind can tell apart."""
 ROUND_OFF = 1e-9
 """Relative distance of two places that are one."""
+WIDER = 1.15
+"""Half-width of a picture over that of what carries."""
 DASHES = ("solid", "dash", "dot", "dashdot")
 Array = NDArray[np.float64]
 Chart = dict[str, Any]
 ALONG = (
     ("time", "Friction over time", "time (TU)", ("friction", "friction (FU)")),
+    ("time", "Displacement over time", "time (TU)", ("displacement", "displacement (LU)")),
     ("tangential_displacement", "Tangential force over displacement", "displacement along x (LU)",
      ("tangential_force", "tangential force (FU)")),
 )  # fmt: skip
-"""Of what happens along x: the column along x of a figure, its title and name, the column along y and its name."""
+"""Of what happens along x, or in time: column along x of a figure, its title and name, column along y and its name."""
 DRAWN: dict[str, Any] = {"x": [], "y": [], "mode": "lines+markers", "marker": {"size": 4}}
 """A line that the slider fills."""
 
@@ -36,9 +40,11 @@ def chart(title: str, x: str, y: str, traces: Iterable[Mapping[str, Any]], **lay
     """A figure with its axes' names."""
     frame = {
         "title": {"text": title, "x": 0, "xanchor": "left", "font": {"size": 15}},
-        "xaxis": {"title": {"text": x}, "zeroline": False, "showline": True, "ticks": "outside"},
-        "yaxis": {"title": {"text": y}, "zerolinecolor": "#888", "showline": True, "ticks": "outside"},
-        "template": "none", "margin": {"l": 70, "r": 15, "t": 45, "b": 50}, "hovermode": "closest",
+        "xaxis": {"title": {"text": x}, "zeroline": False, "showline": True, "ticks": "outside",
+                  "automargin": True},
+        "yaxis": {"title": {"text": y}, "zerolinecolor": "#888", "showline": True, "ticks": "outside",
+                  "automargin": True},
+        "template": "none", "margin": {"l": 70, "r": 15, "t": 45, "b": 60}, "hovermode": "closest",
         "legend": {"orientation": "h", "y": -0.22},
     }  # fmt: skip
     return {"data": list(traces), "layout": frame | layout}
@@ -60,12 +66,13 @@ def curves(runs: Mapping[str, Run]) -> list[Chart]:
                   _traces(touching, "contact_radius", "force"))
         )  # fmt: skip
     for key, title, x, y in ALONG:
-        kept = {name: run for name, run in runs.items() if key in run.friction}
+        every = {name: _over_time(run) for name, run in runs.items()}
+        kept = {name: columns for name, columns in every.items() if {key, y[0]} <= {*columns}}
         if kept:
             traces = [
-                {"x": _listed(run.friction[key]), "y": _listed(run.friction[y[0]]), "name": name, "mode": "lines",
+                {"x": _listed(columns[key]), "y": _listed(columns[y[0]]), "name": name, "mode": "lines",
                  "line": {"color": colour}}
-                for (name, run), colour in zip(kept.items(), _colours(len(kept)), strict=True)
+                for (name, columns), colour in zip(kept.items(), _colours(len(kept)), strict=True)
             ]  # fmt: skip
             found.insert(0, chart(title, x, y[1], traces))
     return found
@@ -80,14 +87,13 @@ def _traces(runs: Mapping[str, Run], x: str, y: str) -> list[dict[str, Any]]:
     """A line for each branch of each run; hovering tells all columns of the state."""
     traces = []
     for (name, run), colour in zip(runs.items(), _colours(len(runs)), strict=True):
-        branches = list(dict.fromkeys(run.curve.branch.tolist()))
-        for branch, dash in zip(branches, DASHES * len(branches), strict=False):
-            rows = np.flatnonzero(run.curve.branch == branch)
-            rows = rows[np.argsort(run.curve.displacement[rows], kind="stable")]  # a search goes to and fro
+        mode = "markers" if "time" in _over_time(run) else "lines+markers"  # a motion has no one line
+        branches = rows_of_branches(run.curve.branch, run.curve.displacement)
+        for (branch, rows), dash in zip(branches.items(), DASHES * len(branches), strict=False):
             label = branch if len(runs) == 1 else f"{name}, {branch}"
             traces.append(
                 {"x": _listed(getattr(run.curve, x)[rows]), "y": _listed(getattr(run.curve, y)[rows]),
-                 "customdata": rows.tolist(), "name": label, "mode": "lines+markers",
+                 "customdata": rows.tolist(), "name": label, "mode": mode,
                  "marker": {"size": 4}, "line": {"color": colour, "dash": dash},
                  "hovertemplate": f"{x.replace('_', ' ')} %{{x:.5g}}<br>{y} %{{y:.5g}}<br>state %{{customdata}}"}
             )  # fmt: skip
@@ -116,8 +122,7 @@ def pressures(runs: Mapping[str, Run]) -> Chart | None:
 def way(run: Run, states: States) -> dict[str, Any]:
     """What the slider moves through: for each kept state its place on the curve, profile, bodies and words."""
     curve, rows = run.curve, states.rows
-    half = 1.15 * max(half_width(x, p) for x, p in zip(states.x, states.pressure, strict=True))
-    view = np.abs(states.x).min(axis=0) <= half
+    half, view = window(states)
     kept = {name: getattr(states, name)[:, view] for name in ("x", "z_lower", "z_upper", "pressure", "shear")}
     title, name_x, name_y, x, y = main_curve(run)
     words = []
@@ -143,7 +148,7 @@ def way(run: Run, states: States) -> dict[str, Any]:
         made["layout"]["yaxis"]["range"] = _range(*(kept[name] for name in columns))
     return {
         "along": _listed(x[rows]), "against": _listed(y[rows]), "words": words,
-        "start": int(np.argmax(np.abs(y[rows]))),
+        "start": int(np.nanargmax(np.abs(y[rows]))),
         "charts": [force, load, bodies], **{name: [_listed(row) for row in array] for name, array in kept.items()},
     }  # fmt: skip
 
@@ -158,44 +163,85 @@ def _branches(x: Array, y: Array, branch: NDArray[np.str_]) -> dict[str, list[An
     """A line through the states, branch after branch, with a gap between them."""
     places: list[float] = []
     values: list[float] = []
-    for name in dict.fromkeys(branch.tolist()):
-        rows = np.flatnonzero(branch == name)
-        rows = rows[np.argsort(x[rows], kind="stable")]
+    for rows in rows_of_branches(branch, x).values():
         places += [*x[rows], math.nan]
         values += [*y[rows], math.nan]
     return {"x": _listed(places), "y": _listed(values)}
 
 
+def rows_of_branches(branch: NDArray[np.str_], along: Array) -> dict[str, NDArray[np.int64]]:
+    """The rows of each branch, by name, in the order of the places `along`: a search goes to and fro."""
+    found = {}
+    for name in dict.fromkeys(branch.tolist()):
+        rows = np.flatnonzero(branch == name)
+        found[name] = rows[np.argsort(along[rows], kind="stable")]
+    return found
+
+
+def window(states: States) -> tuple[float, NDArray[np.bool_]]:
+    """Half-width [LU] of what there is to be seen in all states, and which particles are."""
+    half = WIDER * max(half_width(x, p) for x, p in zip(states.x, states.pressure, strict=True))
+    return half, np.abs(states.x).min(axis=0) <= half
+
+
 def main_curve(run: Run) -> tuple[str, str, str, Array, Array]:
     """The curve that the slider's mark moves on: title, names of the axes, and the columns, a row for each state."""
-    count = len(run.curve.force)
+    count, columns = len(run.curve.force), _over_time(run)
     for key, title, x, (column, y) in ALONG:
-        if key in run.friction and len(run.friction[key]) == count:
-            return title, x, y, run.friction[key], run.friction[column]
+        if {key, column} <= {*columns} and 0 <= count - len(columns[key]) <= 1:
+            loaded = count - len(columns[key])  # a slide begins with a state under the load, before it is driven
+            along, against = (
+                np.concatenate([[first] * loaded, columns[name]]) for name, first in ((key, 0.0), (column, math.nan))
+            )
+            return title, x, y, along, against
     return "Force over displacement", "displacement (LU)", "force (FU)", run.curve.displacement, run.curve.force
+
+
+def _over_time(run: Run) -> Mapping[str, Array]:
+    """What a run has besides its curve, row by row: friction, or samples under heat."""
+    kept = run.folder / f"{SAMPLE_TABLE}.csv"
+    return run.friction or (read_samples(kept) if kept.is_file() else {})
 
 
 def over_axes(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> list[Chart]:
     """Each result of a sweep over its axes."""
     along, others = roles_of(plan)
-    found = []
+    found, beside, unit_along = [], theories_of(folder, plan), along.numbers()[1]
+    place = f"{along.key} ({unit_along})" if unit_along else along.key
     for name, unit in units.items():
-        lines = lines_of(folder, plan, name)
-        traces = [_line(labels, line, [short(other.key) for other in others], colour)
+        lines, theory = lines_of(folder, plan, name), beside.get(name, {})
+        traces = [_line(labels, line, [short(other.key) for other in others], colour,
+                        covered=any(labels in said for said in theory.values()))
                   for (labels, line), colour in zip(lines.items(), _colours(len(lines)), strict=True)]  # fmt: skip
+        for (form, said), dash in zip(theory.items(), DASHES * len(theory), strict=False):
+            traces += [
+                _theory(form, said[labels], dash, colour, shown=number == 0)
+                for number, (labels, colour) in enumerate(zip(lines, _colours(len(lines)), strict=True))
+                if labels in said
+            ]
         found.append(
-            chart(name.replace("_", " "), along.key, f"{name.replace('_', ' ')} ({unit})", traces,
-                  showlegend=bool(others))
+            chart(name.replace("_", " "), place, f"{name.replace('_', ' ')} ({unit})", traces,
+                  showlegend=bool(others or theory))
         )  # fmt: skip
     return found
 
 
-def _line(labels: Sequence[str], line: Line, names: Sequence[str], colour: str) -> dict[str, Any]:
+def _theory(form: str, said: Mapping[float, float], dash: str, colour: str, shown: bool) -> dict[str, Any]:
+    """A closed form along a line of a sweep, in its colour; `shown` in the legend."""
+    places = sorted(said)
+    return {"x": places, "y": _listed([said[place] for place in places]), "name": form, "legendgroup": form,
+            "showlegend": shown, "mode": "lines" if len(places) > 1 else "markers",
+            "line": {"color": colour, "dash": dash}, "hovertemplate": f"{form} %{{y:.5g}}<extra></extra>"}  # fmt: skip
+
+
+def _line(labels: Sequence[str], line: Line, names: Sequence[str], colour: str, covered: bool) -> dict[str, Any]:
+    """The runs of a line; where theory has it `covered`, as points."""
     places = sorted(line)
     means, errors = np.transpose([mean_of(line[place]) for place in places])
     label = ", ".join(f"{name} = {value}" for name, value in zip(names, labels, strict=True))
     return {"x": places, "y": _listed(means), "error_y": {"type": "data", "array": _listed(errors), "thickness": 1},
-            "name": label, "mode": "lines+markers", "line": {"color": colour}}  # fmt: skip
+            "name": label or "runs", "mode": "markers" if covered else "lines+markers", "marker": {"size": 7},
+            "line": {"color": colour}}  # fmt: skip
 
 
 def half_width(x: np.ndarray[Any, Any], pressure: np.ndarray[Any, Any]) -> float:

@@ -11,6 +11,7 @@ from typing import Any
 
 from contact1d.analysis.states import read_states
 from contact1d.files import write_whole
+from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.errors import FolderError
 from contact1d.workflow.pages.parts import environment, text_of
 from contact1d.workflow.report.charts import Chart, curves, over_axes, pressures, way
@@ -116,7 +117,7 @@ def _of_runs(told: Sequence[Told]) -> str:
         if states.is_file() and len(told[0].run.curve.displacement) > 1:
             moving = way(told[0].run, read_states(states))
     quantities = list(dict.fromkeys(name for run in done.values() for name in run.results))
-    return _page("runs.html", charts, moving, told=told, names=names, done=done, quantities=quantities)
+    return _page("runs.html", charts, moving, told=told, names=names, done=done, quantities=quantities, beside=in_words)
 
 
 def _names(told: Sequence[Told]) -> list[str]:

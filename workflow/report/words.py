@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from contact1d.workflow.scene import Scene, Table
+from contact1d.workflow.scene.quantities import annotation_of, keys_of
 from contact1d.workflow.scene.wording import unit_of
 
 MOST_ITEMS = 6
@@ -38,21 +39,14 @@ def _meaning(table: Table) -> str:
 
 
 def _values(table: Table, within: str = "") -> Iterator[tuple[str, str]]:
-    for name, field in type(table).model_fields.items():
+    for key, name in keys_of(type(table)).items():
         value = getattr(table, name)
-        label = (field.alias or name).replace("_", " ")
+        label = key.replace("_", " ")
         if isinstance(value, Table):
             yield from _values(value, f"{within}{label}: ")
         elif value is not None:
-            annotation: Any = field.annotation if not field.metadata else _annotated(field)
-            unit = unit_of(annotation)
+            unit = unit_of(annotation_of(type(table), key))
             yield within + label, _shown(value) + (f" {unit}" if unit not in (None, "1") and value != "auto" else "")
-
-
-def _annotated(field: Any) -> Any:
-    from typing import Annotated
-
-    return Annotated[(field.annotation, *field.metadata)]
 
 
 def _shown(value: Any) -> str:

@@ -67,7 +67,7 @@ def sweep(
     folder: AnyPath,
     executor: Executor | str = "local",
     workers: int | None = None,
-    figures: bool = True,
+    figures: bool | str = True,
     progress: Progress | None = None,
     partition: str | None = None,
 ) -> Sweep:
@@ -78,7 +78,7 @@ def sweep(
         folder: of the sweep; one of an earlier state of this sweep goes on.
         executor: "local", "slurm", or anything with the interface of `concurrent.futures`.
         workers: processes, or jobs of Slurm, at a time; None: as many as there are processors.
-        figures: whether to draw.
+        figures: whether to draw, or the format: "png" (as True has it), "svg" or "pdf".
         progress: told of each point.
         partition: of Slurm; None: its default.
 
@@ -103,7 +103,7 @@ def sweep(
         if figures:
             from contact1d.workflow.sweep.figures import draw
 
-            draw(folder, plan, done.quantities)
+            draw(folder, plan, done.quantities, figures if isinstance(figures, str) else "png")
     return done
 
 
