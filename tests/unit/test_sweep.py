@@ -373,3 +373,40 @@ def test_a_sweep_killed_at_ten_random_moments_loses_nothing(tmp_path: Path) -> N
     sweep(source, tmp_path / "whole", workers=2, figures=False)
     assert (folder / TABLE).read_text() == (tmp_path / "whole" / TABLE).read_text()
     assert all((folder / "runs" / name / "results.json").stat().st_mtime_ns == stamp for name, stamp in known.items())
+
+
+def test_closed_forms_are_the_lines_of_a_sweeps_figures_and_the_runs_points_on_them(tmp_path: Path) -> None:
+    """Hertz over the force for two radii: in the figure and on the page, in the colours of the runs beside them."""
+    from contact1d.workflow.report.charts import over_axes
+    from contact1d.workflow.sweep.figures import lines_of, sweep_figure, theories_of
+
+    bodies = {
+        "particles": "auto", "spacing": 1.0, "lower": "rigid_plane", "reduction": "mdr", "bulk_stiffness": 0.5,
+        "profile": {"kind": "parabola", "radius": 1000.0},
+    }  # fmt: skip
+    base = {"title": "load", "bodies": bodies, "experiment": {"kind": "load", "force": 1.0}}
+    forces, radii = [10.0, 20.0, 40.0], [500.0, 1000.0]
+    axes = [{"key": "experiment.force", "values": forces}, {"key": "bodies.profile.radius", "values": radii}]
+    tables = {"title": "Hertz", "base": base, "axes": axes}
+    done = sweep(tables, tmp_path / "s", workers=1, figures="svg")
+    assert (done.folder / "displacement.svg").is_file()
+    plan = read_sweep(tables)
+    said = theories_of(done.folder, plan)["displacement"]["Hertz"]
+    for radius in radii:
+        hertz = [(0.75 * force / 0.5 / radius**0.5) ** (2.0 / 3.0) for force in forces]
+        assert [said[(str(radius),)][force] for force in forces] == pytest.approx(hertz, rel=1e-12)
+    figure = sweep_figure(
+        plan,
+        "displacement",
+        "LU",
+        lines_of(done.folder, plan, "displacement"),
+        theories_of(done.folder, plan)["displacement"],
+    )
+    labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert labels == ["Hertz", "profile.radius = 500.0", "profile.radius = 1000.0"]
+    chart = next(
+        c for c in over_axes(done.folder, plan, done.quantities) if c["layout"]["title"]["text"] == "displacement"
+    )
+    kinds = [(trace["mode"], trace["line"]["color"]) for trace in chart["data"]]
+    assert [mode for mode, _ in kinds] == ["markers", "markers", "lines", "lines"]
+    assert [colour for _, colour in kinds[:2]] == [colour for _, colour in kinds[2:]]
