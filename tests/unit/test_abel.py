@@ -157,7 +157,7 @@ def test_what_is_no_line_load_is_refused(x: Array, q: Array, words: str) -> None
 @pytest.mark.parametrize("count", [14, 15])
 def test_the_load_goes_through_the_mean_of_both_sides_at_every_place(count: int, apex: bool) -> None:
     """Whatever the load: one that is no polynomial, and not the same on both sides."""
-    x = places(count)
+    x = places(count, 0.7)
     q = np.exp(-((x / 4.0) ** 2)) * (1.0 + 0.1 * np.tanh(x))
     found = line_load(x, q, apex=apex)
     assert found.edge == x[-1]
@@ -174,3 +174,11 @@ def test_the_load_goes_through_the_mean_of_both_sides_at_every_place(count: int,
 def test_the_slope_on_the_axis_alone_says_to_which_side_the_pressure_grows(side: float) -> None:
     rising_again = np.array([[1.0, -1.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [2.0, -1.0, 0.0, 0.0]]).T
     assert LineLoad(np.arange(4.0), side * rising_again).pressure(0.0) == side * np.inf
+
+
+@pytest.mark.parametrize("spacing", [2.0**-20, 1.0, 2.0**20])
+def test_places_must_be_the_same_on_both_sides_in_any_unit(spacing: float) -> None:
+    x = places(12, spacing)
+    line_load(x + 1e-8 * spacing, np.ones(12))
+    with pytest.raises(ValueError, match="the same on both sides"):
+        line_load(x + 1e-3 * spacing, np.ones(12))

@@ -193,6 +193,8 @@ def test_what_a_curve_promises_is_the_polynomial_through_five_rows() -> None:
     force[[0, -1]] += 0.3  # beyond the five
     asked = np.array([2.6, 2.2, 1.3])
     assert promised(d.tolist(), force.tolist(), asked.tolist()) == pytest.approx(law(asked - 2.0))
+    near = promised(d[:5].tolist(), force[:5].tolist(), [2.2])  # one row beyond the largest: it counts
+    assert near == pytest.approx(-force[3])
     for end in (slice(3, None), slice(None, 4)):  # the largest at an end
         assert np.isnan(promised(d[end].tolist(), force[end].tolist(), [2.0])).all()
 

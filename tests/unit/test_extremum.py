@@ -48,7 +48,14 @@ def test_five_samples_on_each_side_are_enough_to_converge() -> None:
     narrow = place_of_minimum(*sampled(np.cosh(0.3 * t[1:-1])))
     assert abs(wide.position - (FAR + SPACING * 4.7)) <= wide.uncertainty
     assert abs(narrow.position - (FAR + SPACING * 3.7)) <= narrow.uncertainty
-    assert wide.uncertainty != pytest.approx(narrow.uncertainty, rel=0.1)
+    assert wide.uncertainty < 1e-3 * narrow.uncertainty
+
+
+@pytest.mark.parametrize(("width", "known"), [(0.7, 1.0), (1.4, 0.8), (2.8, 0.1), (5.6, 1e-3)])
+def test_a_dip_is_known_the_better_the_more_samples_it_has(width: float, known: float) -> None:
+    """One narrower than a sample is anywhere between those beside the lowest, one of ten samples is where it is."""
+    place = place_of_minimum(*sampled(-1.0 / np.cosh((np.arange(60.0) - 30.3) / width)))
+    assert abs(place.position - (FAR + SPACING * 30.3)) <= place.uncertainty <= known * SPACING
 
 
 @pytest.mark.parametrize("spacing", [0.2, 1.0, 7.0])

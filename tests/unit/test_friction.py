@@ -92,6 +92,11 @@ def test_the_interval_is_students_for_blocks_of_one_two_and_four() -> None:
         assert interval(blocks) == pytest.approx(max(*found, 0.5 * abs(halves[1] - halves[0])), rel=PRINTED)
 
 
+def test_students_factors_are_students() -> None:
+    for freedom in range(1, 80):
+        assert student(freedom) == pytest.approx(students.ppf(0.975, freedom), rel=PRINTED)
+
+
 def test_the_largest_friction_ends_with_the_row_before_one_spacing() -> None:
     place = np.array([5.0, 5.3, 5.6, 5.9, 6.0, 6.2])
     assert largest_before(np.arange(6.0), place, 1.0)[0] == 3.0

@@ -324,6 +324,16 @@ def test_few_loaded_particles_leave_half_a_spacing_of_doubt(loaded: int) -> None
     assert (found.value, found.uncertainty) == (0.5 * loaded, 0.5)
 
 
+def test_three_loaded_particles_fix_a_parabola_and_a_fourth_tells_how_well() -> None:
+    """1.45 spacings about a particle, or 1.9 about the middle of two."""
+    for offset, radius, loaded in ((0.0, 1.45, 3), (0.5, 1.9, 4)):
+        x = np.arange(-8.0, 9.0) + offset
+        found = compressive_radius(profile(x, layer(x, radius)))
+        assert np.count_nonzero(layer(x, radius)) == loaded
+        assert found.value == pytest.approx(radius, abs=ROUND_OFF)
+        assert found.uncertainty == pytest.approx(0.55, abs=1e-6) if loaded == 3 else found.uncertainty < 1e-6
+
+
 def test_no_load_has_no_radius() -> None:
     found = compressive_radius(profile(np.arange(-5.0, 6.0), np.zeros(11)))
     assert (found.value, found.uncertainty, found.reaches_end) == (0.0, 0.5, False)
