@@ -10,7 +10,9 @@ from contact1d.analysis.friction import block_means, interval, largest_before, m
 
 PERIOD, ROWS = 2.0, 50
 PRINTED = 0.006
-"""Relative: the table of Student's factors has three figures, and goes on by 1.96 + 2.4/n."""
+"""Relative: the table of Student's factors has three figures."""
+GOES_ON = 0.014
+"""Relative: from ten degrees of freedom on it is 1.96 + 2.4/n."""
 
 
 def saw(periods: float, run_in: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
@@ -89,12 +91,13 @@ def test_the_interval_is_students_for_blocks_of_one_two_and_four() -> None:
             error = np.std(means, ddof=1) / np.sqrt(len(means))
             found.append(students.ppf(0.975, len(means) - 1) * error)
         halves = blocks[: count // 2].mean(), blocks[-(count // 2) :].mean()
-        assert interval(blocks) == pytest.approx(max(*found, 0.5 * abs(halves[1] - halves[0])), rel=PRINTED)
+        assert interval(blocks) == pytest.approx(max(*found, 0.5 * abs(halves[1] - halves[0])), rel=GOES_ON)
 
 
 def test_students_factors_are_students() -> None:
     for freedom in range(1, 80):
-        assert student(freedom) == pytest.approx(students.ppf(0.975, freedom), rel=PRINTED)
+        near = PRINTED if freedom < 10 else GOES_ON
+        assert student(freedom) == pytest.approx(students.ppf(0.975, freedom), rel=near)
 
 
 def test_the_largest_friction_ends_with_the_row_before_one_spacing() -> None:
