@@ -14,7 +14,8 @@ from contact1d.workflow.settings.chain import SettingsError
 from contact1d.workflow.settings.drive import FEWEST_ROWS, FEWEST_STEPS, MOST_ROWS, drive_steps
 from contact1d.workflow.settings.dynamics import _swinging_apart, stiffest_of
 from contact1d.workflow.settings.settings import settings_for
-from contact1d.workflow.settings.size import require_reach, require_rows, require_steps
+from contact1d.workflow.settings.shape import tabulated
+from contact1d.workflow.settings.size import in_words, require_reach, require_rows, require_steps
 from contact1d.workflow.settings.way import require_way, too_fast
 from tests.scenes import chains
 
@@ -189,3 +190,30 @@ def test_the_stiffest_motion_of_two_chains_is_no_stiffer_than_what_the_timestep_
     stiffest = float(np.linalg.eigvalsh(matrix).max())
     assert stiffest <= stiffest_of(scene, settings.law, settings.closest, 0.0) <= 1.3 * stiffest
     assert stiffest_of(scene, settings.law, settings.closest, 5.0) >= stiffest + 5.0 - 1e-9
+
+
+def test_a_large_system_is_told_with_how_many_each_particle_feels() -> None:
+    scene = scene_from_dict(slide(spacing=0.5))
+    assert in_words(scene, 19_000, 2.0) == ""
+    assert "20000 particles per body, each within reach of 10 opposite ones" in in_words(scene, 20_000, 2.0)
+    assert "each within reach of 162 opposite ones" in in_words(scene, 2_000, 40.0)
+
+
+def test_a_rigid_plane_has_neither_snaps_nor_teeth() -> None:
+    plane = {"bodies": {"particles": 20, "lower": "rigid_plane"}, "interaction": None}
+    for tables, snaps in (
+        (chains(100.0, **plane, experiment=LOAD), False),
+        (chains(100.0, law=(0.018, 0.03, 0.009, 0.06), bodies={"particles": 40}, experiment=LOAD), False),
+        (chains(100.0, law=(0.18, 0.03, 0.09, 0.06), bodies={"particles": 40}, experiment=LOAD), True),
+    ):
+        settings = settings_for(scene_from_dict(tables))
+        assert settings.snaps == snaps
+        if snaps or settings.law is None:
+            assert settings.is_toothed == snaps
+
+
+@pytest.mark.parametrize("spacing", [0.01, 1.0])
+def test_a_tabulated_body_is_the_body_down_to_a_fraction_of_its_first_spacing(spacing: float) -> None:
+    body = scene_from_dict(wide(20)).bodies.model_copy(update={"spacing": spacing})
+    x = np.geomspace(0.25 * spacing, 20.0, 500)
+    assert tabulated(body, spacing).height(x) == pytest.approx(body.height(x), rel=5e-4)
