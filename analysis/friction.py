@@ -132,14 +132,15 @@ def student(freedom: int) -> float:
 
 
 def slips(time: Array, place: Array, spacing: float, velocity: float) -> list[Slip]:
-    """Where a plate goes on by one period of the other body or more while it is FASTER than the drive, for a LONG way.
+    """Where a plate goes on, FASTER than the drive, for a LONG way: over a barrier, or down from one into a hollow.
+
+    With much drag it slows down on the barrier itself, wherever that is: no place is asked for.
 
     Args:
         time, place: of the plate, shape (n,) [TU], [LU].
         spacing: of the other body [LU].
         velocity: of the drive [LU/TU].
     """
-    hollow = np.floor(place / spacing + 0.5)
     quick = np.abs(np.diff(place)) > FASTER * abs(velocity) * np.diff(time)
     found, at = [], 0
     while at < quick.size:
@@ -149,7 +150,7 @@ def slips(time: Array, place: Array, spacing: float, velocity: float) -> list[Sl
         end = at
         while end < quick.size and quick[end]:
             end += 1
-        if hollow[end] != hollow[at] and abs(place[end] - place[at]) > LONG * spacing:
+        if abs(place[end] - place[at]) > LONG * spacing:
             found.append(Slip(float(time[end]), float(place[at]), float(place[end] - place[at])))
         at = end
     return found

@@ -31,6 +31,8 @@ from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.runs.sliding import (
     automatic_drag,
     chain_of,
+    colder,
+    drag_of_slide,
     longer_lower_chain,
     longer_way,
     no_pull,
@@ -156,7 +158,8 @@ def _kinds(error: Contact1dError) -> tuple[Callable[[Scene], Change | None], ...
         return (_without_horizontal, _softer_core, _weaker_attraction, _smaller_load)
     if isinstance(cause, ThroughError):
         return (
-            _without_horizontal, _softer_core, _weaker_attraction, _smaller_load, _stronger_core, _shorter_attraction,
+            drag_of_slide, _without_horizontal, _softer_core, _weaker_attraction, _smaller_load, _stronger_core,
+            _shorter_attraction,
         )  # fmt: skip
     if isinstance(cause, ChainEndError):
         return (_longer_chain,)
@@ -169,7 +172,7 @@ def _kinds(error: Contact1dError) -> tuple[Callable[[Scene], Change | None], ...
     if isinstance(cause, OffEndError):
         return (longer_lower_chain, shorter_way, automatic_drag)
     if isinstance(cause, PartedError):
-        return (no_pull, stronger_attraction)
+        return (colder, no_pull, stronger_attraction, drag_of_slide)
     if isinstance(cause, RestlessError):
         return (automatic_drag, _without_horizontal, _softer_core, _stiffer_springs, _smaller_load, _longer_chain)
     if isinstance(cause, UntrustedError):

@@ -55,6 +55,16 @@ def automatic_drag(scene: Scene) -> Change | None:
     return Change(values) if values else None
 
 
+def drag_of_slide(scene: Scene) -> Change | None:
+    """The same in a slide: with little drag a heavy plate swings through the other body as it is loaded."""
+    return automatic_drag(scene) if isinstance(scene.experiment, Slide) else None
+
+
+def colder(scene: Scene) -> Change | None:
+    """A tenth of the heat."""
+    return None if scene.noise is None else Change({"noise.temperature": rounded(0.1 * scene.noise.temperature)})
+
+
 def no_pull(scene: Scene) -> Change | None:
     """Adhesion alone."""
     pulled = isinstance(scene.experiment, Slide) and scene.experiment.normal_force < 0.0

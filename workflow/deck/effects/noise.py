@@ -22,6 +22,9 @@ def noise(scene: Scene, settings: Settings) -> Contribution:
         after = ("steps/heating_plate",)
         variables["noise_plate_damp"] = number(settings.plate_mass / settings.particles / settings.plate_damping)
         variables["noise_plate_id"] = str(first_upper_anchor(scene, settings))
+    if settings.drive and settings.calm_damping != settings.damping:  # until `steps/told`
+        fragments += ("noise_calm",)
+        variables["noise_calm_damp"] = number(scene.bodies.mass / settings.calm_damping)
     if not settings.drive:  # nobody asks for the heat
         before = after = ()
     return Contribution("noise", Stage.DRAG, fragments, variables, step_begin=before, step_end=after)

@@ -15,6 +15,7 @@ from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.trust import doubts
 from contact1d.workflow.experiments.slide.motion import Motion, motion_of
 from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.dynamics import MOVING_TOLERANCE
 from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.settings.way import too_fast
 from contact1d.workflow.units import ENERGY, FORCE, NUMBER, Quantity
@@ -179,7 +180,8 @@ def _doubts(
     if energy > CLOSED * largest:
         found["energy"] = (
             f"{energy:.2g} FU·LU of the cantilever's work were neither dissipated nor stored, {energy / largest:.1g} "
-            "of the largest of the three: take a smaller [accuracy] tolerance, whose timesteps are shorter"
+            "of the largest of the three: take an [accuracy] tolerance below "
+            f"{MOVING_TOLERANCE:g}, whose timesteps are shorter"
         )
     return found
 

@@ -81,7 +81,7 @@ def _require_above(scene: Scene, settings: Settings, state: State) -> None:
     if state.smallest_distance > settings.cutoff:
         raise PartedError(
             f"the bodies parted on the way, with the plate at {state.plate_x:.4g} LU",
-            "take a larger normal_force, or less of a pull",
+            "take a larger normal_force, or less of a pull" + (", or a lower temperature" if scene.noise else ""),
         )
     if scene.bodies.periodic:
         return
