@@ -19,7 +19,7 @@ from benchmarks.scaling import spread
 from contact1d.workflow.cost import per_step
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.progress import Lines
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Scene, read_scene
 from tests.unit.test_benchmarks_peers import record
 from tests.unit.test_benchmarks_scaling import sized
 
@@ -57,6 +57,22 @@ def test_an_effect_costs_what_a_step_with_it_takes_over_one_without(
     cost = costs["neighbours"]
     assert cost.ratio == pytest.approx(ALL / WITHOUT, rel=ROUND_OFF)
     assert (cost.with_us, cost.without_us) == pytest.approx((ALL, WITHOUT), rel=ROUND_OFF)
+
+
+def test_the_table_of_a_slide_has_cantilever_plate_and_drag(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Which it could not run without: each is what it adds to a deck that stands."""
+    slide = read_scene(Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "slide.toml")
+
+    @contextmanager
+    def opened(deck: Deck, _: Path) -> Iterator[Clockwork]:
+        assert deck.head  # fits together
+        yield Clockwork(float(len(deck.scene.effects)))
+
+    monkeypatch.setattr(per_step, "opened", opened)
+    costs = {cost.name: cost for cost in per_step.effect_costs(slide, tmp_path)}
+    assert {name for name, cost in costs.items() if not cost.reason} == {"damping", "plate", "cantilever"}
+    assert all(costs[name].with_us - costs[name].without_us == pytest.approx(1.0) for name in ("damping", "cantilever"))
+    assert (costs["plate"].with_us, costs["plate"].without_us) == pytest.approx((4.0, 3.0))
 
 
 def test_the_plain_way_takes_so_many_times_as_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

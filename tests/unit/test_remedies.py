@@ -9,7 +9,14 @@ from typing import Any
 import pytest
 
 from contact1d.workflow.errors import Contact1dError, RunError
-from contact1d.workflow.experiments.running.trust import ChainEndError, ThroughError, UntrustedError
+from contact1d.workflow.experiments.running.trust import (
+    ChainEndError,
+    OffEndError,
+    PartedError,
+    ThroughError,
+    UnsteadyError,
+    UntrustedError,
+)
 from contact1d.workflow.runs import remedies
 from contact1d.workflow.runs.remedies import Change, Tried, tried
 from contact1d.workflow.scene import Scene, SceneError, read_scene, scene_from_dict
@@ -131,3 +138,34 @@ def test_what_was_tried_in_vain_is_said(monkeypatch: pytest.MonkeyPatch) -> None
     said = str(found(scene_of(), failed(UntrustedError("no end in sight")), lambda _: False))
     assert said.startswith("Tried in vain: --without horizontal, --set bodies.bulk_stiffness=")
     assert said.count("--set") == 2
+
+
+def slide_of(**changes: Any) -> Scene:
+    """The shipped slide."""
+    shipped = Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "slide.toml"
+    return read_scene(shipped).with_({key.replace("__", "."): value for key, value in changes.items()})
+
+
+def test_slide_that_is_none_yet_goes_a_longer_way_on_a_longer_chain_or_has_a_stiffer_cantilever() -> None:
+    way = found(slide_of(), failed(UnsteadyError("not yet")), lambda _: True)
+    assert way.helped == (Change({"experiment.distance": 24.0}), Change({"cantilever.stiffness": 1.5}))
+    given = slide_of(bodies__particles=60, bodies__upper_particles=36)
+    longer = found(given, failed(UnsteadyError("not yet")), lambda _: True).helped[0]
+    assert longer.values == {"experiment.distance": 24.0, "bodies.particles": 92, "bodies.upper_particles": 36}
+
+
+def test_plate_that_runs_off_has_more_below_it() -> None:
+    given = slide_of(bodies__particles=60, bodies__upper_particles=36)
+    longer = found(given, failed(OffEndError("off")), lambda _: True).helped[0]
+    assert longer.values == {"bodies.particles": 76, "bodies.upper_particles": 36}
+
+
+def test_pull_that_nothing_holds_is_none() -> None:
+    pulled = found(slide_of(experiment__normal_force=-5.0), failed(PartedError("part")), lambda _: True)
+    assert pulled.helped[0] == Change({"experiment.normal_force": 0.0})
+
+
+def test_slide_that_goes_through_as_it_is_loaded_has_more_drag() -> None:
+    light = slide_of(damping__coefficient=0.01, plate__damping=0.0)
+    drag = found(light, failed(ThroughError("through")), lambda scene: scene.plate is not None).helped[0]
+    assert drag == Change({"damping.coefficient": "auto", "plate.damping": "auto"})

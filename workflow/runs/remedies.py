@@ -39,6 +39,7 @@ from contact1d.workflow.runs.sliding import (
     shorter_way,
     stiffer_cantilever,
     stronger_attraction,
+    way_within,
 )
 from contact1d.workflow.scene import Load, Path, PullOff, Scene, SceneError, Slide
 from contact1d.workflow.scene.experiments import Span
@@ -166,7 +167,7 @@ def _kinds(error: Contact1dError) -> tuple[Callable[[Scene], Change | None], ...
     if isinstance(cause, NotCarriedError):
         return (_smaller_load, _stronger_core)
     if isinstance(cause, ShortChainError):
-        return (chain_of(cause.needed, cause.above), shorter_way)
+        return (chain_of(cause.needed, cause.above), way_within(cause.room))
     if isinstance(cause, UnsteadyError):
         return (longer_way, stiffer_cantilever)
     if isinstance(cause, OffEndError):

@@ -8,11 +8,23 @@ from collections.abc import Callable
 from contact1d.workflow.runs.change import STEP, Change, rounded
 from contact1d.workflow.scene import Scene, Slide
 from contact1d.workflow.settings.settings import settings_for
+from contact1d.workflow.settings.way import SHORTEST
 
 
 def chain_of(below: int, above: int) -> Callable[[Scene], Change | None]:
     """A lower chain of so many particles under as many as there are."""
     return lambda _: Change({"bodies.particles": below, "bodies.upper_particles": above})
+
+
+def way_within(room: float) -> Callable[[Scene], Change | None]:
+    """A distance that a chain has room for [LU], if that is enough for a mean."""
+
+    def within(scene: Scene) -> Change | None:
+        has = isinstance(scene.experiment, Slide) and scene.experiment.distance is not None
+        enough = room >= SHORTEST * scene.bodies.spacing
+        return Change({"experiment.distance": math.floor(100.0 * room) / 100.0}) if has and enough else None
+
+    return within
 
 
 def longer_way(scene: Scene) -> Change | None:

@@ -10,14 +10,17 @@ from contact1d.workflow.scene import Scene, Slide
 from contact1d.workflow.settings.chain import SettingsError
 from contact1d.workflow.settings.settings import Settings
 
+SHORTEST = 4.0
+"""Way over the spacing below which no mean friction comes of a slide: a run-in and three periods."""
+
 
 class ShortChainError(ValueError):
-    """A lower chain that is too short for the way, and how many particles it needs under how many."""
+    """A lower chain that is too short for the way: how many particles it needs under how many, and its room [LU]."""
 
-    def __init__(self, needed: int, above: int) -> None:
-        """Keep both."""
-        super().__init__(needed, above)
-        self.needed, self.above = needed, above
+    def __init__(self, needed: int, above: int, room: float) -> None:
+        """Keep all."""
+        super().__init__(needed, above, room)
+        self.needed, self.above, self.room = needed, above, room
 
 
 def contact_half_width(scene: Scene, settings: Settings) -> float:
@@ -43,12 +46,14 @@ def require_way(scene: Scene, settings: Settings) -> None:
     end = 0.5 * settings.lower_particles * bodies.spacing
     if end < half + way:
         needed = 2 * math.ceil((half + way) / bodies.spacing)
+        room = end - half - abs(bodies.upper_offset or 0.0)
+        shorter = f", or a way of at most {room:.4g} LU" if room >= SHORTEST * bodies.spacing else ""
         raise SettingsError(
             f"the lower chain is too short for the way: it ends {end:.4g} LU from its middle, and a contact that "
             f"reaches {half:.4g} LU to each side is drawn {way:.4g} LU along it. Take at least "
             f"{needed} bodies.particles (with upper_particles = "
-            f'{settings.particles}), or "auto", or a shorter way'
-        ) from ShortChainError(needed, settings.particles)
+            f'{settings.particles}), or "auto"{shorter}'
+        ) from ShortChainError(needed, settings.particles, room)
 
 
 def too_fast(scene: Scene) -> str:
