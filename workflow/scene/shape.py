@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from typing import TYPE_CHECKING, ClassVar
 
 from contact1d.workflow.scene.quantities import Table
@@ -23,13 +24,13 @@ class Shape(Table):
 
     has_edge: ClassVar[bool] = False
 
+    @abstractmethod
     def height(self, x: Array) -> Array:
         """Height z(x) = f(|x|) [LU] above the apex as drawn, at the places `x` [LU]; same shape."""
-        raise NotImplementedError
 
+    @abstractmethod
     def transformed(self, x: Array) -> Array:
         """Height g(x) [LU] above the apex after the MDR's transform, at the places `x` [LU]; same shape."""
-        raise NotImplementedError
 
     @property
     def reach(self) -> float:
