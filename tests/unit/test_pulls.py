@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 
 from contact1d import Run, RunError, load_run
+from contact1d.workflow.experiments.pull_off.pulls import ramp_of
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import Scene, scene_from_dict
+from contact1d.workflow.settings.settings import settings_for
 
 FAST = 5e-3
 """Loading rate [FU/TU] of pulls that take a tenth of a second."""
@@ -79,3 +81,24 @@ def test_one_that_fails_ends_them_all(tmp_path: Path) -> None:
 def test_a_pull_faster_than_drag_lets_the_bodies_part_says_so(tmp_path: Path) -> None:
     fast = {"kind": "pull_off", "preload": 0.02, "loading_rate": 0.05, "repeats": 2}
     assert "lagging" in run(scene_of(experiment=fast), tmp_path / "run", figures=False).warnings
+
+
+def test_a_spring_that_is_drawn_off_pulls_as_its_equation_says(tmp_path: Path) -> None:
+    """Its force at the barrier is k (v t − (d_0 − d_A)): rows, forces and times of each pull agree."""
+    drawn = {"kind": "pull_off", "preload": 0.02, "velocity": 5e-3, "stiffness": 1.0, "repeats": 3}
+    scene = scene_of(experiment=drawn)
+    found, settings = run(scene, tmp_path / "run", figures=False), settings_for(scene)
+    estimate = settings.estimate
+    slack, barrier = estimate.displacement_at(0.0), estimate.parted(0.99)
+    expected = 1.0 * (5e-3 * found.detachments["time"] - (slack - barrier))
+    assert found.detachments["force"] == pytest.approx(expected, rel=1e-9)
+    assert found.results["detachment_force"].value < 2.0 * estimate.pull_off_force()
+    deck = (found.folder / "in.lammps").read_text(encoding="utf-8")
+    assert "spring tether" in deck
+    assert deck.index("fix             plate_draw") < deck.index("fix             plate_body")
+
+
+def test_without_a_stiffness_the_spring_is_as_stiff_as_the_contact() -> None:
+    scene = scene_of(experiment={"kind": "pull_off", "preload": 0.02, "velocity": 5e-3})
+    settings = settings_for(scene)
+    assert ramp_of(scene, settings).spring == pytest.approx(settings.estimate.stiffness_under(0.0))

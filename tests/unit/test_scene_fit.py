@@ -79,6 +79,15 @@ BAD: list[tuple[list[str], dict[str, str]]] = [
     ([REPULSION_ONLY], {"interaction.attraction": "needed by a pull_off"}),
     ([NOISE, DAMPING, PLATE], {"experiment.loading_rate": "needed by a pull_off with [noise]"}),
     (["experiment.repeats=3"], {"experiment.repeats": "only with [noise]"}),
+    (["experiment.velocity=3"], {"experiment.velocity": "only with [noise]"}),
+    (
+        [NOISE, DAMPING, PLATE, "experiment.velocity=3", "experiment.loading_rate=1"],
+        {"experiment.velocity": "not together with a loading_rate"},
+    ),
+    (
+        [NOISE, DAMPING, PLATE, "experiment.stiffness=3", "experiment.loading_rate=1"],
+        {"experiment.stiffness": "only with a velocity"},
+    ),
     ([CANTILEVER], {"cantilever": 'use kind = "slide"'}),
     ([LOAD, CANTILEVER], {"cantilever": 'use kind = "slide"'}),
     ([PATH, CANTILEVER, DAMPING], {"cantilever": 'use kind = "slide"'}),

@@ -174,7 +174,7 @@ ONE_LINE_EACH: list[tuple[list[str], str]] = [
     (
         ["experiment.tolerance=1e-3"],
         "experiment.tolerance: unknown key; it belongs in [accuracy]; "
-        "allowed here: kind, preload, loading_rate, repeats, method",
+        "allowed here: kind, preload, loading_rate, velocity, stiffness, repeats, method",
     ),
     (
         ["experiment={ kind = 'load', force = 1, preload = 2 }"],
@@ -214,7 +214,7 @@ def test_a_misspelt_kind_does_not_hide_the_other_mistakes() -> None:
     assert lines("experiment={ knid = 'pulloff', preload = -1, x = 2 }") == [
         'experiment.knid: unknown key; did you mean "kind"?',
         f'experiment.kind = "pulloff": must be {KINDS}; did you mean "pull_off"?',
-        "experiment.x: unknown key; allowed here: kind, preload, loading_rate, repeats, method",
+        "experiment.x: unknown key; allowed here: kind, preload, loading_rate, velocity, stiffness, repeats, method",
         "experiment.preload = -1: must be greater than 0 (FU)",
     ]
 

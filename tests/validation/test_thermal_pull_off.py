@@ -13,9 +13,11 @@ import pytest
 
 from contact1d import Run, run, run_many
 from contact1d.analysis.reference.detachment import detachment as quasi_stationary
+from contact1d.analysis.reference.detachment import detachment_in_time, drag_of_pairs
 from contact1d.workflow.reproduce import detachment
 from contact1d.workflow.runs.pool import pool
 from contact1d.workflow.scene import read_scene
+from contact1d.workflow.settings.settings import settings_for
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 REPEATS = 16
@@ -60,3 +62,19 @@ def test_three_decades_of_the_loading_rate(tmp_path: Path) -> None:
     done = {name: one for name, one in zip(scenes, runs, strict=True) if isinstance(one, Run)}
     rows = detachment.judge(paper, done, tmp_path).checks
     assert [row.name for row in rows if row.verdict != "PASS"] == []
+
+
+@pytest.mark.slow
+def test_a_spring_drawn_off_at_a_velocity_lets_go_as_smoluchowskis_equation_says(tmp_path: Path) -> None:
+    """The density of the plate under the spring's force, whose far end begins where it is slack."""
+    drawn = {"kind": "pull_off", "preload": 0.1, "velocity": 2e-3, "stiffness": 0.5, "repeats": REPEATS}
+    scene = detachment.scene(1e-3, REPEATS).with_({"experiment": drawn})
+    found = run(scene, tmp_path / "run", figures=False).results
+    d, energy = detachment.free_energy()
+    drag = drag_of_pairs(d, energy, detachment.PAIRS, detachment.STIFFNESS, detachment.DRAG)
+    slack = settings_for(scene).estimate.displacement_at(0.0)
+    mean, spread = detachment_in_time(
+        d, energy, drag, detachment.TEMPERATURE, 0.5 * 2e-3, detachment.barrier(), 0.5, slack
+    )
+    assert found["detachment_force"].value == pytest.approx(mean, abs=SIGMAS * spread / np.sqrt(REPEATS))
+    assert found["detachment_force_spread"].value == pytest.approx(spread, rel=SIGMAS / np.sqrt(2 * REPEATS))

@@ -12,9 +12,10 @@ from typing import ClassVar
 from contact1d.workflow.deck.effects.base import number
 
 UNITS = (
-    dict.fromkeys(("displacement", "place", "parted", "through"), "LU")
+    dict.fromkeys(("displacement", "place", "parted", "through", "end"), "LU")
     | dict.fromkeys(("load", "rest"), "FU")
     | dict.fromkeys(("damping", "drag"), "FU·TU/LU")
+    | {"spring": "FU/LU"}
 )
 """Units of the numbers in rows; whole ones have none."""
 
@@ -73,6 +74,16 @@ class UnderLoad(Row):
 
 
 @dataclass(frozen=True)
+class DrawnOff(Row):
+    """Plate and particles move while the plate's spring [FU/LU] has its far end at a displacement [LU]."""
+
+    step: ClassVar[str] = "draw"
+    spring: float
+    end: float
+    steps: int
+
+
+@dataclass(frozen=True)
 class Hold(Row):
     """A load [FU], compression positive, until the plate is at rest, parted or through.
 
@@ -97,7 +108,7 @@ class Hold(Row):
     steps: int
 
 
-STEPS: tuple[type[Row], ...] = (Displace, Draw, DisplaceInTime, UnderLoad, Hold)
+STEPS: tuple[type[Row], ...] = (Displace, Draw, DisplaceInTime, UnderLoad, DrawnOff, Hold)
 
 
 @dataclass(frozen=True)

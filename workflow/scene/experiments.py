@@ -22,7 +22,9 @@ from contact1d.workflow.scene.quantities import (
     LoadingRate,
     RepeatCount,
     StepCount,
+    Stiffness,
     Table,
+    Velocity,
 )
 
 Method = Literal["quasistatic", "dynamic"]
@@ -78,12 +80,18 @@ class Kind(Table):
     Attributes:
         way_is_given: the scene prescribes the whole way, so that nothing is searched for and no state is ambiguous.
         motion_is_result: the motion itself is looked at, so that the scene exists in time only and its drag is its own.
+        draws_off: the plate is drawn off through a spring along z.
         goes_along: the scene also prescribes places along x, on a plane, and has no other method.
     """
 
     way_is_given: ClassVar[bool] = False
     motion_is_result: ClassVar[bool] = False
     goes_along: ClassVar[bool] = False
+
+    @property
+    def draws_off(self) -> bool:
+        """See above."""
+        return False
 
     @property
     def compression(self) -> float | None:
@@ -136,6 +144,14 @@ class PullOff(Kind):
     loading_rate: LoadingRate | None = Field(
         default=None, description="with [noise]: rate at which the load is drawn off until the bodies part"
     )
+    velocity: Velocity | None = Field(
+        default=None,
+        description="with [noise], in place of loading_rate: velocity at which the far end of a spring draws the plate "
+        "off",
+    )
+    stiffness: Stiffness | None = Field(
+        default=None, description="with velocity: of that spring; absent: that of the contact without load"
+    )
     repeats: RepeatCount | None = Field(
         default=None, description="with [noise]: how often, each time with the next seed; absent: once"
     )
@@ -145,6 +161,11 @@ class PullOff(Kind):
     def compression(self) -> float:
         """F_D."""
         return self.preload
+
+    @property
+    def draws_off(self) -> bool:
+        """Whether a velocity is given."""
+        return self.velocity is not None
 
 
 class Leg(Table):

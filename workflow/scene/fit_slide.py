@@ -102,10 +102,17 @@ def thermal_pull_off(draft: Draft) -> Iterator[Problem]:
     if draft.kind != "pull_off":
         return
     timeless = draft.get("experiment", "method") == "quasistatic"
-    if draft.has("noise") and not timeless and not draft.has("experiment", "loading_rate"):
-        hint = "give the force per time by which the load is drawn off, in FU/TU, or remove [noise]"
+    has = [key for key in ("loading_rate", "velocity") if draft.has("experiment", key)]
+    if draft.has("noise") and not timeless and not has:
+        hint = "give the force per time by which the load is drawn off, in FU/TU, or a velocity (LU/TU) at which a "
+        hint += "spring draws the plate off, or remove [noise]"
         yield Problem("experiment.loading_rate", "missing, needed by a pull_off with [noise]", hint=hint)
-    for key in ("loading_rate", "repeats"):
+    if len(has) == 2:
+        yield Problem("experiment.velocity", "not together with a loading_rate", hint="remove one of the two")
+    if draft.has("experiment", "stiffness") and "velocity" not in has:
+        hint = "remove it, or give the velocity at which its far end is drawn off"
+        yield Problem("experiment.stiffness", "only with a velocity: it is that of the spring", hint=hint)
+    for key in ("loading_rate", "velocity", "stiffness", "repeats"):
         if draft.has("experiment", key) and not draft.has("noise"):
             hint = "remove it, or add [noise] with temperature and seed"
             yield Problem(f"experiment.{key}", "only with [noise]: without heat each pull ends alike", hint=hint)

@@ -103,6 +103,8 @@ def dynamics_of(
         held = particles * scene.bulk_stiffness
         if scene.cantilever is not None:
             held = particles * max(scene.bulk_stiffness, scene.tangential_stiffness) + scene.cantilever.stiffness
+        if scene.experiment.kind == "pull_off":
+            held += scene.experiment.stiffness or 0.0
         step = min(step, product / math.sqrt(held / plate_mass))
         step = min(step, DRAG_STEP * plate_mass / max(plate_damping, 1e-300))
     settle_time = 2.0 * math.pi / math.sqrt(slowest)

@@ -15,6 +15,8 @@ def plate(scene: Scene, settings: Settings) -> Contribution:
     drag = 0.0 if scene.noise is not None else settings.plate_damping
     variables = {"plate_damping_per_anchor": number(drag / anchors), "plate_free_x": free["x" in scene.plate.free]}
     fragments: tuple[str, ...] = ("plate_alone" if alone else "plate",)
+    if scene.experiment.draws_off:
+        fragments = ("drawn", *fragments)
     width = 2.0 * STAGGER_SHARE * settings.particles * scene.bodies.own_spacing
     own = max(settings.cutoff, settings.far / BINS)
     if scene.interaction is not None and width / BINS > own:

@@ -11,7 +11,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.steps import Phase, UnderLoad
+from contact1d.workflow.deck.steps import DrawnOff, Phase, Row, UnderLoad
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import LOG
@@ -60,35 +60,64 @@ class Detachment:
 
 @dataclass(frozen=True)
 class Ramp:
-    """How the load grows: `steps` timesteps in each row, and by `rise` [FU] from row to row, to row `most`."""
+    """How the plate is pulled: `steps` timesteps in each row, by `rise` [FU] more from row to row, to row `most`.
+
+    With a `spring` [FU/LU], slack at the displacement `slack` [LU], its far end goes on by rise/spring.
+    """
 
     steps: int
     rise: float
     most: int
+    spring: float = 0.0
+    slack: float = 0.0
 
-    def row(self, number: int) -> UnderLoad:
+    def row(self, number: int) -> Row:
         """The row of that number, from 1 on."""
+        if self.spring:
+            return DrawnOff(self.spring, self.slack - number * self.rise / self.spring, self.steps)
         return UnderLoad(-number * self.rise, self.steps)
 
-    def tension(self, number: float) -> float:
-        """Of the load [FU] after so many rows."""
-        return number * self.rise
+    def tension(self, number: float, place: float) -> float:
+        """On a plate at a displacement [LU] after so many rows [FU]."""
+        return number * self.rise - (self.spring * (self.slack - place) if self.spring else 0.0)
+
+    def until(self, tension: float, place: float) -> int:
+        """Rows after which it is as large [FU] on a plate at that displacement [LU]."""
+        return math.ceil((tension - self.tension(0.0, place)) / self.rise)
+
+    def work(self, number: float, place: float, barrier: float) -> float:
+        """What it takes to bring the plate from a displacement back to the barrier's, or does on that way [FU·LU]."""
+        return 0.5 * (self.tension(number, barrier) + self.tension(number, place)) * (barrier - place)
 
 
-def rate_of(scene: Scene) -> float:
-    """At which the load grows [FU/TU]."""
+def spring_of(scene: Scene, settings: Settings) -> float:
+    """Of the spring that draws the plate off [FU/LU]; 0 where a load does."""
     assert isinstance(scene.experiment, PullOff)
+    if scene.experiment.velocity is None:
+        return 0.0
+    return scene.experiment.stiffness or settings.estimate.stiffness_under(0.0)
+
+
+def rate_of(scene: Scene, settings: Settings) -> float:
+    """At which the load grows, or that of the spring on a plate at rest [FU/TU]."""
+    assert isinstance(scene.experiment, PullOff)
+    if scene.experiment.velocity is not None:
+        return scene.experiment.velocity * spring_of(scene, settings)
     assert scene.experiment.loading_rate is not None
     return scene.experiment.loading_rate
 
 
 def ramp_of(scene: Scene, settings: Settings) -> Ramp:
     """The staircase: its steps are a share of the tension, or more where they would have too few timesteps."""
-    rate, tension = rate_of(scene), settings.estimate.pull_off_force()
+    estimate, spring = settings.estimate, spring_of(scene, settings)
+    rate, tension = rate_of(scene, settings), settings.estimate.pull_off_force()
     wanted = max(tension / INCREMENTS, rate * FEWEST_STEPS * settings.time_step)
     steps = max(FEWEST_STEPS, round(wanted / rate / settings.time_step))
-    rise = rate * steps * settings.time_step
-    return Ramp(steps, rise, math.ceil(MOST_TENSION * tension / rise))
+    slack = estimate.displacement_at(0.0) if spring else 0.0
+    ramp = Ramp(steps, rate * steps * settings.time_step, 0, spring, slack)
+    barrier, none = estimate.parted(BARRIER), estimate.parted(GONE)
+    far = spring * (barrier - none) + math.sqrt(2.0 * spring * _needed(scene, settings))
+    return replace(ramp, most=ramp.until(MOST_TENSION * tension + 2.0 * far, barrier))
 
 
 def pulls(context: RunContext, count: int) -> list[Detachment]:
@@ -167,30 +196,35 @@ def _pull(context: RunContext, stop: threading.Event) -> Detachment:
                 raise UntrustedError("another pull failed")
             numbers = range(first, min(first + at_once, ramp.most + 1))
             states += contact.rows([ramp.row(n) for n in numbers])
-            if _has_parted(scene, settings, ramp.tension(numbers[-1]), states[-1]):
+            if _has_parted(scene, settings, ramp, numbers[-1], states[-1]):
                 break
         else:
             raise UntrustedError(
-                f"the bodies did not part up to a tension of {ramp.tension(ramp.most):.4g} FU, {MOST_TENSION:g} times "
-                "what holds them by the estimate: they were pulled faster than they move. Take a smaller "
-                "experiment.loading_rate"
+                f"the bodies did not part up to a tension of {ramp.tension(ramp.most, barrier):.4g} FU, more than "
+                f"{MOST_TENSION:g} times what holds them by the estimate: they were pulled faster than they move. Take "
+                f"a smaller experiment.{'velocity' if ramp.spring else 'loading_rate'}"
             )
         contact.write_state()
         contact.finish()
     held = max((n for n, one in enumerate(states[settled:], 1) if one.displacement > barrier), default=0)
     time = (held + 0.5) * ramp.steps * settings.time_step
-    force = ramp.tension(held + 0.5)
+    force = ramp.tension(held + 0.5, barrier)
     return Detachment(scene.noise.seed, force, time, contact.phases, tuple(states), settled + held - 1)
 
 
-def _has_parted(scene: Scene, settings: Settings, tension: float, state: State) -> bool:
-    """Whether the plate does not come back: nothing attracts it where it is, and the load does work on the way.
+def _has_parted(scene: Scene, settings: Settings, ramp: Ramp, number: int, state: State) -> bool:
+    """Whether the plate does not come back: nothing attracts it, and what pulls it is against its return."""
+    barrier, none = settings.estimate.parted(BARRIER), settings.estimate.parted(GONE)
+    gone = state.displacement < none
+    return gone and ramp.work(number, state.displacement, barrier) > _needed(scene, settings)
 
-    From d back to the largest tension, at d_A, it needs F (d_A − d) without what attraction gives it, F_A (d_A − d_0)
-    at most, d_0 the place beyond which there is none.
+
+def _needed(scene: Scene, settings: Settings) -> float:
+    """Work [FU·LU] that keeps a plate from coming back: SURELY kT, and more than attraction gives it on its way.
+
+    That is F_A (d_A − d_0) at most, d_0 the place beyond which there is none.
     """
     assert scene.noise is not None
     estimate = settings.estimate
-    barrier, none = estimate.parted(BARRIER), estimate.parted(GONE)
-    needed = tension * (barrier - state.displacement) - estimate.pull_off_force() * (barrier - none)
-    return state.displacement < none and needed > SURELY * scene.noise.temperature
+    given = estimate.pull_off_force() * (estimate.parted(BARRIER) - estimate.parted(GONE))
+    return given + SURELY * scene.noise.temperature

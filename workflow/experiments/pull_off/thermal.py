@@ -11,8 +11,9 @@ import math
 import numpy as np
 
 from contact1d.analysis.curve import DETACHMENTS, SAMPLE_TABLE
-from contact1d.workflow.deck.steps import Phase, UnderLoad
-from contact1d.workflow.experiments.pull_off.pulls import pulls, ramp_of, rate_of
+from contact1d.workflow.deck.steps import DrawnOff, Phase, Row, UnderLoad
+from contact1d.workflow.experiments.pull_off.pulls import BARRIER, pulls, ramp_of, rate_of
+from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.sampling import SETTLING_LOOKS, chunk_steps, sample_columns
@@ -48,7 +49,8 @@ def pull_off_thermal(context: RunContext) -> Outcome:
         error = float(abs(forces[0]))  # one pull says nothing of how they scatter
     quantities = {"detachment_force": Quantity(float(forces.mean()), error, FORCE)} | quantities
     own = found[0]
-    loads = [row.load for phase in own.phases for row in phase.rows if isinstance(row, UnderLoad)]
+    rows = [row for phase in own.phases for row in phase.rows]
+    loads = [_load(rows[state.number], state) for state in own.states]
     return Outcome(
         quantities,
         own.states,
@@ -62,9 +64,17 @@ def pull_off_thermal(context: RunContext) -> Outcome:
                 "force": tuple(one.force for one in found),
                 "time": tuple(one.time for one in found),
             },
-            SAMPLE_TABLE: sample_columns(own.states, [loads[state.number] for state in own.states], settings),
+            SAMPLE_TABLE: sample_columns(own.states, loads, settings),
         },
     )
+
+
+def _load(row: Row, state: State) -> float:
+    """On the plate in a row [FU], compression positive: given, or the spring's at the row's end."""
+    if isinstance(row, DrawnOff):
+        return -row.spring * (state.displacement - row.end)
+    assert isinstance(row, UnderLoad)
+    return row.load
 
 
 def _lagging(scene: Scene, settings: Settings) -> dict[str, str]:
@@ -72,14 +82,16 @@ def _lagging(scene: Scene, settings: Settings) -> dict[str, str]:
     assert isinstance(scene.experiment, PullOff)
     assert settings.law is not None
     drag, largest = settings.particles * settings.damping + settings.plate_damping, settings.estimate.pull_off_force()
-    share = drag * settings.law.longest_range * rate_of(scene) / largest**2
+    share = drag * settings.law.longest_range * rate_of(scene, settings) / largest**2
     if share < LAGGING:
         return {}
+    key, unit = ("velocity", "LU/TU") if scene.experiment.velocity else ("loading_rate", "FU/TU")
+    given = scene.experiment.velocity or scene.experiment.loading_rate or 0.0
     return {
         "lagging": (
             f"while the drag on the bodies lets them part, the load grows by {share:.2g} of what holds them: part of "
-            f"detachment_force is drag. Below an experiment.loading_rate of {rate_of(scene) * LAGGING / share:.2g} "
-            "FU/TU it is not"
+            f"detachment_force is drag. Below an experiment.{key} of {given * LAGGING / share:.2g} {unit} it "
+            "is not"
         )
     }
 
@@ -89,7 +101,7 @@ def planned_thermal(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     experiment = scene.experiment
     assert isinstance(experiment, PullOff)
     ramp, look = ramp_of(scene, settings), chunk_steps(settings)
-    rows = math.ceil(FARTHEST * settings.estimate.pull_off_force() / ramp.rise)
+    rows = ramp.until(FARTHEST * settings.estimate.pull_off_force(), settings.estimate.parted(BARRIER))
     return (
         Phase("loading", (UnderLoad(experiment.preload, look),) * SETTLING_LOOKS),
         Phase("settling", (UnderLoad(0.0, look),) * SETTLING_LOOKS),
