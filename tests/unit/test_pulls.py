@@ -95,7 +95,7 @@ def test_a_spring_that_is_drawn_off_pulls_as_its_equation_says(tmp_path: Path) -
     assert found.results["detachment_force"].value < 2.0 * estimate.pull_off_force()
     deck = (found.folder / "in.lammps").read_text(encoding="utf-8")
     assert "spring tether" in deck
-    assert deck.index("fix             plate_draw") < deck.index("fix             plate_body")
+    assert deck.index("fix             drawn_spring") < deck.index("fix             plate_body")
 
 
 def test_without_a_stiffness_the_spring_is_as_stiff_as_the_contact() -> None:
