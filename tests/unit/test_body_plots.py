@@ -92,7 +92,7 @@ def test_figures_come_in_the_format_that_is_asked_for(tmp_path: Path, form: str)
     pressed(tmp_path / "run", "png" if form != "png" else True)
     found = pressed(tmp_path / "run", form)
     figures = {path.name for path in found.folder.iterdir() if path.suffix[1:] in FORMATS}
-    assert figures == {f"{name}.{form}" for name in ("force_displacement", "pressure", "pressure_3d")}
+    assert figures == {f"{name}.{form}" for name in ("force_displacement", "force_radius", "pressure", "pressure_3d")}
     for name in figures:
         assert (found.folder / name).read_bytes().startswith(FORMATS[form])
     figure = found.plot("pressure_3d")
