@@ -2,8 +2,8 @@
 
     python -m benchmarks.breakdown
 
-writes the table between the markers of benchmarks/README.md. Medians over RUNS runs of wall times; functions are timed
-from outside, each without what it calls of the others.
+writes the table between the markers of benchmarks/README.md. Medians over RUNS runs of processor times, the worker's
+with ours; functions are timed from outside, each without what it calls of the others.
 """
 
 from __future__ import annotations
@@ -13,28 +13,28 @@ from collections import defaultdict
 from collections.abc import Callable
 from pathlib import Path
 from statistics import median
-from time import perf_counter
 from typing import Any
 
 import contact1d.workflow.runs.campaign as campaign
 from benchmarks.pages import write_between
+from benchmarks.peers.clock import spent
 from benchmarks.peers.contact1d_peer import SETTINGS, plane_tables
 from benchmarks.peers.contacts import displacements
 from contact1d.workflow.engine.process import WorkerProcess
-from contact1d.workflow.experiments.running.contact import Contact
+from contact1d.workflow.experiments.running.stepped import SteppedRows
 from contact1d.workflow.judging.markdown import table
 from contact1d.workflow.scene import scene_from_dict
 
 README = Path(__file__).parent / "README.md"
-RUNS = 31
-LAMMPS = "LAMMPS: 50 minimisations, and the deck's head"
+RUNS = 15
+LAMMPS = "LAMMPS: 50 rows, each a step, and the deck's head"
 ASKED = "the worker beside LAMMPS (per-atom arrays, LAMMPS opened and closed), and the pipe"
 REST = "all else"
 PARTS: dict[str, tuple[tuple[Any, str], ...]] = {
     "settings": ((campaign, "settings_for"),),
     "deck, data file and table": ((campaign, "_write"),),
     ASKED: ((WorkerProcess, "ask"),),
-    "states from per-atom arrays": ((Contact, "_state"),),
+    "states from the rows' frames": ((SteppedRows, "profiles"),),
     "results, tables and files": tuple(
         (campaign, name) for name in ("write_whole", "curve_of", "write_tables", "results", "write_results")
     ),
@@ -54,12 +54,12 @@ class Clock:
         """The same function, whose time counts for a part."""
 
         def call(*arguments: Any, **named: Any) -> Any:
-            began = perf_counter()
+            began = spent()
             self._inside.append(0.0)
             try:
                 return function(*arguments, **named)
             finally:
-                taken, inner = perf_counter() - began, self._inside.pop()
+                taken, inner = spent() - began, self._inside.pop()
                 self.spent[part] += taken - inner
                 if self._inside:
                     self._inside[-1] += taken
@@ -78,9 +78,9 @@ def measured() -> list[dict[str, float]]:
     with tempfile.TemporaryDirectory() as folder:
         for _ in range(RUNS + 2):
             clock.spent.clear()
-            began = perf_counter()
-            lammps = campaign.run(scene, folder, figures=False).document["timing"]["lammps_s"]
-            total = perf_counter() - began
+            began = spent()
+            lammps = campaign.run(scene, folder, figures=False).document["timing"]["lammps_cpu_s"]
+            total = spent() - began
             parts = dict(clock.spent)
             parts[REST] = total - sum(parts.values())
             found.append({"whole run": total, LAMMPS: lammps} | parts | {ASKED: parts[ASKED] - lammps})
@@ -94,7 +94,7 @@ def main() -> None:
     names = ["whole run", LAMMPS, ASKED, *(part for part in PARTS if part != ASKED), REST]
     times = {name: median(one[name] for one in found) for name in names}
     rows = [(name, f"{1e3 * time:.1f} ms", f"{time / whole:.0%}") for name, time in times.items()]
-    text = table(("part", "wall time", "share"), rows)
+    text = table(("part", "processor time", "share"), rows)
     write_between(README, "breakdown", text)
     print(text)
 
