@@ -65,10 +65,10 @@ def test_rows_of_a_tangential_are_named_by_their_way() -> None:
 
 def test_nobody_is_sent_to_a_method_that_his_experiment_refuses() -> None:
     """A slide exists in time only."""
-    scene = read_scene(SCENES / "pull_off_dynamic.toml")
-    assert "quasistatic" in KINDS["pull_off"].advice(scene)
-    assert "quasistatic" not in KINDS["slide"].advice(scene)
-    assert "distance" in KINDS["slide"].advice(scene)
+    assert "quasistatic" in KINDS["pull_off"].advice(read_scene(SCENES / "pull_off_dynamic.toml"))
+    sliding = KINDS["slide"].advice(read_scene(SCENES / "slide.toml"))
+    assert "quasistatic" not in sliding
+    assert "distance" in sliding
 
 
 def test_a_tight_tolerance_beyond_what_a_scene_may_ask_ends_in_numbers(tmp_path: Path) -> None:
