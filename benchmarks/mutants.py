@@ -38,7 +38,7 @@ ASKED = 0.9
 """Asked of the share that is killed."""
 LONGEST = 30.0
 """Time of the tests that look for one mutant, as long as they took when they were traced [s]."""
-PATIENCE, LEAST = 5.0, 60.0
+PATIENCE, LEAST = 5.0, 300.0
 """Time after which a mutant counts as killed, over that of its tests, and at least [s]."""
 ROOMS = {
     "analysis": ("analysis/*.py",),
