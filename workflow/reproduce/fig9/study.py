@@ -14,6 +14,7 @@ from contact1d.workflow.reproduce.fig9.curved import curved_checks
 from contact1d.workflow.reproduce.fig9.figures import panels_figure
 from contact1d.workflow.reproduce.fig9.flats import flat_checks, lattice_checks
 from contact1d.workflow.reproduce.fig9.sweeps import SWEEPS, slides
+from contact1d.workflow.reproduce.fig9.warmth import temperature_checks
 from contact1d.workflow.reproduce.study import Findings, Rows, Runs, Scenes, Study
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene, read_scene
@@ -27,6 +28,7 @@ CAPTIONS = {
     "fig9_load.png": "Friction over the normal load: adhesion leaves some at no load, and some under a pull",
     "fig9_radius.png": "Friction over the radius under one load: the flatter the body, the more particles take part",
     "fig9_velocity.png": "Friction over the velocity: a straight line over v^{2/3} where the particle sticks and slips",
+    "fig9_temperature.png": "Friction over the temperature: heat carries the particle over what is left of a barrier",
     "fig9_stiffness.png": "From stick-slip to smooth sliding: a stiffer cantilever ends the slips, and slow friction",
     "fig9_flats.png": "Flat on flat: of one spacing it sticks; of others its friction is steady, and ends with stiff "
     "springs",
@@ -49,22 +51,31 @@ def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
     row = Rows(NAME, runs)
     particle, of_particle = load_checks(row)
     velocity, over_velocity = velocity_checks(row)
+    warmth, over_temperature = temperature_checks(row)
     stiffness, over_stiffness = stiffness_checks(row)
     lattices, traces = lattice_checks(row)
     flats, over_springs = flat_checks(row)
     curved, over_load, over_radius = curved_checks(row)
-    panels = ((of_particle, over_load), (over_radius,), (over_velocity,), over_stiffness, (traces, over_springs))
+    panels = (
+        (of_particle, over_load),
+        (over_radius,),
+        (over_velocity,),
+        (over_temperature,),
+        over_stiffness,
+        (traces, over_springs),
+    )
     for name, shown in zip(CAPTIONS, panels, strict=True):
         save(panels_figure(shown), folder / name)
     energy = energy_checks(row)
-    checks = [*curved, *particle, *velocity, *stiffness, *lattices, *flats, *energy]
+    checks = [*curved, *particle, *velocity, *warmth, *stiffness, *lattices, *flats, *energy]
     offset, rise = (next(check for check in curved if check.name.startswith(words)) for words in ("largest", "what it"))
     threshold = next(check for check in flats if check.name.startswith("k_t at"))
     finding = (
         f"A curved body needs {number(offset.value, 3)} FU to slide without a load, and "
         f"{number(rise.value, 3)} FU more for each FU of it; mean friction and trace are the integrator's: "
         f"{agreement(curved)}. One particle is Prandtl's and Tomlinson's over load, velocity and the cantilever's "
-        f"stiffness: {agreement([*particle, *velocity, *stiffness])}. A commensurate flat is so many particles, and an "
+        f"stiffness: {agreement([*particle, *velocity, *stiffness])}; heat lowers its friction by as much as "
+        f"Smoluchowski's equation says: {agreement(warmth)}. A commensurate flat is so many particles, and an "
         f"incommensurate one is free above {number(threshold.value, 3)} FU/LU, where particles that share one height "
         f"should be from {number(threshold.reference, 4)} on: {agreement([*lattices, *flats])}. Of the cantilever's "
         f"work {share(energy[-1].value)} at most are neither dissipated nor stored: {agreement(energy)}."
@@ -78,7 +89,7 @@ def energy_checks(row: Rows) -> list[Check]:
     source, limit = "bound that was asked for", "the drag is sampled at every fifth step"
 
     def closed(words: str, value: float, on: list[str]) -> Check:
-        answers = dict.fromkeys(("tolerance", "drag", "fast"), "the energies are asked for, and no mean")
+        answers = dict.fromkeys(("tolerance", "drag", "fast", "energy"), "the energies are asked for, and no mean")
         return row(words, value, 0.0, "1", CLOSED, source, "set bound", 0.0, limit, on=on, comparison="at most",
                    despite=answers, wide="timesteps are chosen for the means, and the energy follows")  # fmt: skip
 

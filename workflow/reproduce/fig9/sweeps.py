@@ -13,8 +13,8 @@ from contact1d.workflow.sweep.points import points
 
 LOAD, RADIUS = "friction_over_load", "friction_over_radius"
 PARTICLE, VELOCITY, STIFFNESS = "friction_of_one_particle", "friction_over_velocity", "friction_over_stiffness"
-FLATS, LATTICES = "friction_of_flats", "friction_of_lattices"
-SWEEPS = (VELOCITY, LOAD, RADIUS, FLATS, STIFFNESS, PARTICLE, LATTICES)
+FLATS, LATTICES, TEMPERATURE = "friction_of_flats", "friction_of_lattices", "friction_over_temperature"
+SWEEPS = (TEMPERATURE, VELOCITY, LOAD, RADIUS, FLATS, STIFFNESS, PARTICLE, LATTICES)
 """Those with the longest runs come first."""
 Place = tuple[float, ...]
 
