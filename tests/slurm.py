@@ -15,6 +15,8 @@ from pathlib import Path
 DAEMONS = ("slurmctld", "slurmd")
 PATIENCE = 60.0
 """Seconds in which both must be there; they take about one."""
+FAREWELL = 5.0
+"""Seconds that a daemon has to end by itself."""
 CONFIGURATION = """
 ClusterName=test
 SlurmctldHost={host}(127.0.0.1)
@@ -70,7 +72,17 @@ def slurm(folder: Path) -> Iterator[dict[str, str]]:
         subprocess.run(["scancel", "--full", "-u", getpass.getuser()], env=environment, check=False)
         for name in reversed(DAEMONS):
             with suppress(OSError, ValueError):
-                os.kill(int((folder / f"{name}.pid").read_text()), signal.SIGTERM)
+                _end(int((folder / f"{name}.pid").read_text()))
+
+
+def _end(daemon: int) -> None:
+    """Ask a daemon to end; one that waits for a job that was cancelled does not. Raises OSError once it is gone."""
+    until = time.monotonic() + FAREWELL
+    os.kill(daemon, signal.SIGTERM)
+    while time.monotonic() < until:
+        time.sleep(0.1)
+        os.kill(daemon, 0)
+    os.kill(daemon, signal.SIGKILL)
 
 
 def _state(environment: dict[str, str]) -> str:
