@@ -30,7 +30,7 @@ FRICTION: dict[str, Any] = {
 }
 NAMES = ("load_tension", "load_thermal", "path", "pull_off", "pull_off_dynamic", "plane", "plane_adhesion", "slide")
 SCENES = {name: OTHERS[name] for name in NAMES} | {
-    "snapping": chains(400.0, stiffness=0.2, experiment={"kind": "pull_off", "preload": 0.5}),
+    "snapping": chains(400.0, 0.2, (0.18, 0.065, 0.09, 0.13), experiment={"kind": "pull_off", "preload": 0.5}),
     "tangential": FRICTION,
     "units": {
         "bodies": MICRO | {"lower": "rigid_plane"},
