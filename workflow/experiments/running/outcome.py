@@ -85,6 +85,8 @@ def anywhere_between(scene: Scene, settings: Settings, outcome: Outcome) -> Outc
     warnings = dict(outcome.warnings)
     sizes = {name: outcome.compared_with.get(name, abs(known[name].value)) for name in parts}
     shares = {name: part / sizes[name] for name, part in parts.items() if sizes[name]}
+    # A radius that is 0 here, and not where the contact's centre lies elsewhere.
+    shares |= {name: math.inf for name in parts.keys() - shares.keys() if parts[name] and name.endswith("radius")}
     if open_ := {name: share for name, share in shares.items() if share > scene.accuracy.tolerance}:
         limits = f"{in_words(open_)} only, more than the tolerance of {scene.accuracy.tolerance:g}, because "
         warnings["lattice"] = limits + (
@@ -100,7 +102,7 @@ def anywhere_between(scene: Scene, settings: Settings, outcome: Outcome) -> Outc
 
 def _finer(scene: Scene, shares: Mapping[str, float]) -> float:
     """The spacing [LU] that leaves half of the tolerance: with the same layer errors go with its square."""
-    return scene.bodies.spacing * math.sqrt(0.5 * scene.accuracy.tolerance / max(shares.values()))
+    return scene.bodies.spacing * math.sqrt(0.5 * scene.accuracy.tolerance / min(1.0, max(shares.values())))
 
 
 def unmet(scene: Scene, outcome: Outcome) -> dict[str, float]:
