@@ -119,8 +119,9 @@ def is_steady(scene: Scene, motion: Motion) -> str:
     period = spacing / abs(leg.velocity)
     blocks = friction.block_means(motion.time, motion.impulse, period)
     if blocks.size < friction.DROPPED + friction.FEWEST_BLOCKS:
+        periods = "1 whole period" if blocks.size == 1 else f"{blocks.size} whole periods"
         return (
-            f"no steady sliding yet: the drive's way of {motion.drive[-1]:.3g} LU has {blocks.size} whole periods of "
+            f"no steady sliding yet: the drive's way of {motion.drive[-1]:.3g} LU has {periods} of "
             f"the spacing, and a mean needs {friction.DROPPED + friction.FEWEST_BLOCKS}"
         )
     if motion.place[-1] < spacing:
