@@ -203,7 +203,7 @@ def test_particles_in_a_rigid_plane_have_the_series_stiffness(make_scene: MakeSc
     scene_tables["bodies"]["lower"] = "rigid_plane"
     deck, session = open_deck(make_scene(**scene_tables))
     down = DisplaceInTime(0.3, TO_REST)
-    session.execute(deck.values(down) + deck.begin("down") + deck.row(DisplaceInTime))
+    session.execute(deck.values(down, first=True) + deck.begin("down") + deck.row(DisplaceInTime))
     read = session.atoms("x", "v_opposite_z")
     x = (np.arange(PARTICLES) - 9.5) * 1.0
     wanted = NORMAL * np.maximum(0.0, 0.3 - x**2 / 60.0)
