@@ -178,3 +178,19 @@ def smooth_crossing(displacement: Sequence[float], force: Sequence[float], level
     x = (d - d[1]) / (d[2] - d[1])
     inside = real_roots(through(x, over), 0.0, 1.0)
     return float(d[1] + inside[0] * (d[2] - d[1])) if len(inside) == 1 else place
+
+
+def tops(tension: list[float], fall: float) -> list[int]:
+    """Indices of maxima after each of which values fall by more than `fall` before they rise by more than that."""
+    found: list[int] = []
+    high = low = 0
+    for i, here in enumerate(tension):
+        if here > tension[high]:
+            high = low = i
+        elif here < tension[low]:
+            low = i
+            if tension[high] - here > fall and (not found or found[-1] != high):
+                found.append(high)
+        elif found and found[-1] == high and here - tension[low] > fall:
+            high = low = i
+    return found

@@ -71,6 +71,21 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
 }
 
 
+@pytest.mark.parametrize("distance", [1e6, 1e20])
+@pytest.mark.parametrize("shipped", ["slide", "prandtl_tomlinson"])
+def test_a_slide_around_the_earth_is_refused_at_once(shipped: str, distance: float) -> None:
+    scene = read_scene(SHIPPED / f"{shipped}.toml", [f"experiment.distance={distance!r}"])
+    with pytest.raises(SettingsError, match=r"the drive's way would take .* rows.* shorter"):
+        settings_for(scene)
+
+
+def test_a_spacing_of_nothing_is_refused_at_once() -> None:
+    """It took 10 s to find that no chain fits."""
+    scene = read_scene(SHIPPED / "steel_on_glass.toml", ["bodies.spacing='1e-300 µm'"])
+    with pytest.raises(SettingsError, match="the spacing is nothing beside the body"):
+        settings_for(scene)
+
+
 @pytest.mark.parametrize("name", REFUSED)
 def test_it_is_refused_in_words_before_anything_runs(name: str, tmp_path: Path) -> None:
     tables, words = REFUSED[name]

@@ -102,11 +102,12 @@ def test_pressure_at_zero_load_is_jkrs(done: tuple[Material, MaterialRun]) -> No
     assert np.abs(own - wanted).max() <= ONE_PERCENT * wanted.max()
 
 
-def test_scene_has_thirty_particles_in_the_contact_radius_and_nothing_sideways(
+def test_scene_has_the_particles_in_the_contact_radius_that_its_tolerance_takes_and_nothing_sideways(
     done: tuple[Material, MaterialRun],
 ) -> None:
+    """At 1e-3: test_spacing_from_tolerance holds the tolerance itself."""
     _, found = done
-    assert found.run.results.zero_load_radius.value == pytest.approx(30.0, rel=ONE_PERCENT)
+    assert found.run.results.zero_load_radius.value == pytest.approx(33.0, rel=ONE_PERCENT)
     assert (found.scene.bodies.reduction, found.scene.effects) == ("mdr", ("adhesion",))
 
 

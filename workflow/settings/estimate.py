@@ -18,6 +18,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.analysis.curve_marks import tops
 from contact1d.potentials import DoubleExponential
 from contact1d.workflow.settings.shape import Profile
 
@@ -41,6 +42,8 @@ UNRELAXED = 20.0
 tolerances of 1e-2 and 1e-3."""
 ROUNDS, FRACTIONS = 12, np.linspace(0.0, 1.0, 33)[:, None]
 """How often a bracket is cut, and where: one step of a bisection takes as long, and 60 are needed for all digits."""
+DOUBLINGS = 200
+"""Of the spacing, up to a width that no chain has."""
 MOST_AT_ONCE = 1_000_000
 """Pairs whose forces are looked up at once, to bound the memory."""
 
@@ -102,7 +105,9 @@ class ContactEstimate:
         """
         height, reach = gap - self.rest + displacements, self.profile.reach
         inner, outer = np.zeros_like(height), np.full_like(height, min(self.spacing, reach))
-        while (short := (outer < reach) & (self.profile.height(outer) < height)).any():
+        for _ in range(DOUBLINGS):
+            if not (short := (outer < reach) & (self.profile.height(outer) < height)).any():
+                break
             inner[short], outer[short] = outer[short], np.minimum(2 * outer[short], reach)
         column = np.arange(len(height))
         for _ in range(ROUNDS):
@@ -142,6 +147,7 @@ class ContactEstimate:
 
         Raises:
             NotCarriedError: the particles stand on each other before it does.
+            OverflowError: the spacing is too small beside the body.
         """
         return lru_cache(maxsize=16)(self._displacement_at)
 
@@ -155,8 +161,8 @@ class ContactEstimate:
         places = np.linspace(zero, apart, TEETH_POINTS)
         at_once = np.array_split(places, 1 + places.size * heights.size // MOST_AT_ONCE)
         tension = -np.concatenate([self._tensions_of(heights, some) @ counts for some in at_once])
-        tops = _tops(tension.tolist(), TOOTH * float(tension.max(initial=0.0)))
-        return math.inf if len(tops) < 2 else float(np.min(-np.diff(places[tops])))
+        found = tops(tension.tolist(), TOOTH * float(tension.max(initial=0.0)))
+        return math.inf if len(found) < 2 else float(np.min(-np.diff(places[found])))
 
     def _tensions_of(self, heights: Array, displacements: Array) -> Array:
         """Forces [FU] of particles at these heights [LU], one row for each displacement [LU]."""
@@ -224,6 +230,8 @@ class ContactEstimate:
         while (reached := self.contact_force(high)) < force:
             if self.profile.reach < np.inf and high > self._all_the_way:
                 raise NotCarriedError(reached)
+            if high > 2.0**DOUBLINGS * self.spacing:
+                raise OverflowError("the spacing is nothing beside the body")
             high *= 2
         for _ in range(CUTS):
             places = np.linspace(low, high, PARTS)
@@ -231,22 +239,6 @@ class ContactEstimate:
             cell = int(np.clip(np.searchsorted(forces, force), 1, PARTS - 1))
             low, high = float(places[cell - 1]), float(places[cell])
         return float(np.interp(force, forces, places))
-
-
-def _tops(tension: list[float], fall: float) -> list[int]:
-    """Indices of maxima after each of which values fall by more than `fall` before they rise by more than that."""
-    tops: list[int] = []
-    high = low = 0
-    for i, value in enumerate(tension):
-        if value > tension[high]:
-            high = low = i
-        elif value < tension[low]:
-            low = i
-            if tension[high] - value > fall and (not tops or tops[-1] != high):
-                tops.append(high)
-        elif tops and tops[-1] == high and value - tension[low] > fall:
-            high = low = i
-    return tops
 
 
 def row_force(law: DoubleExponential, r: Array, spacing: float, cutoff: float) -> Array:

@@ -264,7 +264,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     drive = drive_steps(scene, dynamics.time_step)
     different = scene.horizontal is not None and scene.tangential_stiffness != scene.bulk_stiffness
     longest_move = MOVE_SHARE * closest if law is not None else math.inf
-    require_rows(scene, longest_move)
+    require_rows(scene, longest_move, drive)
     loading_step = loading_step_of(law, bodies.spacing, calibration.loading_increment * largest)
     return Settings(
         tolerance=tolerance,

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
 import numpy as np
 
 from contact1d.workflow.scene import Scene, Tangential
 from contact1d.workflow.settings.chain import SettingsError
+from contact1d.workflow.settings.drive import DriveLeg
 
 MOST_PARTICLES = 10_000_000
 MOST_PARTNERS = 5_000
@@ -132,8 +133,10 @@ def require_digits(scene: Scene, particles: int, deepest: float, force: float) -
         )
 
 
-def require_rows(scene: Scene, longest_move: float) -> None:
+def require_rows(scene: Scene, longest_move: float, drive: Sequence[DriveLeg]) -> None:
     """Refuse a prescribed path of too many rows; a body moves towards the other by `longest_move` [LU] at most.
+
+    A slide's rows are those of its drive.
 
     Raises:
         SettingsError: with the number of rows.
@@ -143,6 +146,11 @@ def require_rows(scene: Scene, longest_move: float) -> None:
         raise SettingsError(
             f"the way along x would take {len(experiment.along()):.3g} rows, more than {MOST_ROWS:.0e}: take fewer "
             "steps in experiment.displacements"
+        )
+    if (driven := sum(leg.rows for leg in drive)) > MOST_ROWS:
+        raise SettingsError(
+            f"the drive's way would take {driven:.3g} rows, more than {MOST_ROWS:.0e}: each spacing of it has some "
+            f"tens. Take a shorter experiment.distance, or shorter legs of experiment.path. {MIX_UP}"
         )
     places = [0.0, *experiment.places()]
     way = sum(max(0.0, after - before) for before, after in pairwise(places))
