@@ -42,8 +42,8 @@ UNRELAXED = 20.0
 tolerances of 1e-2 and 1e-3."""
 ROUNDS, FRACTIONS = 12, np.linspace(0.0, 1.0, 33)[:, None]
 """How often a bracket is cut, and where: one step of a bisection takes as long, and 60 are needed for all digits."""
-DOUBLINGS = 200
-"""Of the spacing, up to a width that no chain has."""
+DOUBLINGS = 600
+"""Of the spacing, up to a width that no body has."""
 MOST_AT_ONCE = 1_000_000
 """Pairs whose forces are looked up at once, to bound the memory."""
 
@@ -109,6 +109,8 @@ class ContactEstimate:
             if not (short := (outer < reach) & (self.profile.height(outer) < height)).any():
                 break
             inner[short], outer[short] = outer[short], np.minimum(2 * outer[short], reach)
+        else:
+            raise OverflowError("the body is endlessly wide beside its spacing")
         column = np.arange(len(height))
         for _ in range(ROUNDS):
             places = inner + (outer - inner) * FRACTIONS
@@ -225,13 +227,13 @@ class ContactEstimate:
         return places, self.contact_forces(places)
 
     def _displacement_at(self, force: float) -> float:
+        if self.spacing**2 == 0.0:
+            raise OverflowError("the spacing is nothing beside the body")
         low = self._largest_tension[0]  # where the force begins to rise
         high = max(self.spacing, 2 * self.rest)
         while (reached := self.contact_force(high)) < force:
             if self.profile.reach < np.inf and high > self._all_the_way:
                 raise NotCarriedError(reached)
-            if high > 2.0**DOUBLINGS * self.spacing:
-                raise OverflowError("the spacing is nothing beside the body")
             high *= 2
         for _ in range(CUTS):
             places = np.linspace(low, high, PARTS)
