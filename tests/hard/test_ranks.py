@@ -238,7 +238,7 @@ def test_what_ranks_say_at_the_end_becomes_one_clause() -> None:
 
 
 @pytest.mark.cluster
-def test_in_a_job_of_slurm_srun_starts_the_ranks(tmp_path: Path) -> None:
+def test_in_a_job_of_slurm_the_ranks_share_its_node(tmp_path: Path) -> None:
     script = tmp_path / "job.sh"
     scene = tmp_path / "scene.toml"
     scene.write_text(scene_to_toml(read_scene(SCENES["load"])))

