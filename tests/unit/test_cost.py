@@ -370,3 +370,10 @@ def test_a_wrong_scene_is_told_and_nothing_is_written(options: list[str], words:
     assert words in done.stderr
     assert "Traceback" not in done.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_a_variant_that_its_run_refuses_is_a_row_with_the_reason(tmp_path: Path) -> None:
+    """A lower chain that is too short for the way is found as the run begins."""
+    scene = read_scene(SCENES / "slide.toml", ["bodies.particles=34"])
+    done = measure([Prepared("short", scene, settings_for(scene))], tmp_path, 1, 1, Silent())
+    assert "too short for the way" in done["short"].failure

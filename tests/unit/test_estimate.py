@@ -7,6 +7,7 @@ springs solved as linear equations.
 from __future__ import annotations
 
 import math
+import pickle
 from typing import Any
 
 import numpy as np
@@ -320,3 +321,19 @@ def test_a_given_drag_is_used_as_it_is_and_an_automatic_one_follows_the_load() -
     )
     assert path.damping == pytest.approx(math.sqrt(path.bulk_stiffness * 1.0))
     assert path.plate_damping == 0.0
+
+
+def test_goes_to_another_process_with_what_it_was_made_of() -> None:
+    """`contact1d cost` sends settings to its workers, after their estimate was asked for this and that."""
+    scene = scene_from_dict({
+        "title": "sent",
+        "bodies": {"particles": 41, "profile": {"kind": "parabola", "radius": 100.0}, "bulk_stiffness": 0.83},
+        "interaction": {
+            "repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26},
+        },
+        "experiment": {"kind": "load", "force": 0.5},
+    })  # fmt: skip
+    here = settings_for(scene).estimate
+    asked = here.displacement_at(0.5), here.tooth(41), here.pull_off_force()
+    there = pickle.loads(pickle.dumps(here))
+    assert (there.displacement_at(0.5), there.tooth(41), there.pull_off_force()) == asked

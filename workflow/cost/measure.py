@@ -18,7 +18,7 @@ from contact1d.workflow.experiments.running.outcome import unmet
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.pool import pool
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import Settings
+from contact1d.workflow.settings.settings import Settings, SettingsError
 from contact1d.workflow.units import Quantity
 
 LONG_RUN = 4.0
@@ -100,7 +100,7 @@ def run_once(variant: Prepared, folder: Path, fresh: bool) -> Measured:
         stop_idle()
     try:
         finished = run(variant.scene, folder, figures=False, settings=variant.settings)
-    except (RunError, FolderError, DeckError) as error:
+    except (RunError, FolderError, DeckError, SettingsError) as error:
         return Measured(failure=getattr(error, "message", str(error)))
     finally:
         shutil.rmtree(folder, ignore_errors=True)

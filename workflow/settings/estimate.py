@@ -12,8 +12,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,6 +81,10 @@ class ContactEstimate:
     stiffness: float
     snaps: bool = False
     bend: float = 0.0
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What goes to another process: not what was found before, which keeps functions."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}
 
     def contact_force(self, displacement: float) -> float:
         """F(d) [FU], compression positive."""
