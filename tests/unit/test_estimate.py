@@ -327,7 +327,10 @@ def test_goes_to_another_process_with_what_it_was_made_of() -> None:
     """`contact1d cost` sends settings to its workers, after their estimate was asked for this and that."""
     scene = scene_from_dict({
         "title": "sent",
-        "bodies": {"particles": 41, "profile": {"kind": "parabola", "radius": 100.0}, "bulk_stiffness": 0.83},
+        "bodies": {
+            "particles": 41, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 100.0}, "bulk_stiffness": 0.83,
+            "reduction": "geike_popov",
+        },
         "interaction": {
             "repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26},
         },
