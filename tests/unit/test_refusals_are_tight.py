@@ -101,7 +101,7 @@ def falling(scene: Scene, from_step: float, to_step: float) -> float:
     for _ in range(60):
         middle = float(np.sqrt(from_step * to_step))
         try:
-            require_rows(scene, middle)
+            require_rows(scene, middle, ())
             to_step = middle
         except SettingsError:
             from_step = middle
