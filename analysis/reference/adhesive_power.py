@@ -45,6 +45,18 @@ class AdhesivePower:
                 "coefficient, contact_modulus and work_of_adhesion must be positive, the exponent at least 1"
             )
 
+    @classmethod
+    def with_zero_load_radius(
+        cls, coefficient: float, exponent: float, contact_modulus: float, radius: float
+    ) -> AdhesivePower:
+        """The indenter with the work of adhesion with which a contact without load has this radius > 0 [length].
+
+        That radius is a power of W: W^(1/(2n - 1)).
+        """
+        unit = cls(coefficient, exponent, contact_modulus, 1.0).zero_load_radius()
+        work = (radius / unit) ** (2.0 * exponent - 1.0)
+        return cls(coefficient, exponent, contact_modulus, work)
+
     @property
     def _rise(self) -> float:
         """kappa_n c, kappa_n = (sqrt(pi)/2) n Gamma(n/2)/Gamma((n+1)/2)."""

@@ -114,13 +114,15 @@ def test_the_deck_by_hand_on_two_ranks_has_the_same_rows(tmp_path: Path) -> None
 
 @pytest.mark.parametrize("which", [0, 1])
 def test_a_rank_that_is_killed_ends_the_others_in_words(tmp_path: Path, which: int) -> None:
-    with pytest.raises(EngineError, match="one of its 2 ranks was killed") as caught:  # noqa: SIM117
-        with Engine.session(tmp_path, ranks=2) as session:
-            session.execute(ENDLESS)
-            ranks = ranks_of(session.pid)
-            assert len(ranks) == 2
-            threading.Timer(0.5, os.kill, (ranks[which], signal.SIGKILL)).start()
-            session.execute(ENDLESS_RUN, phase="on and on")
+    with (
+        pytest.raises(EngineError, match="one of its 2 ranks was killed") as caught,
+        Engine.session(tmp_path, ranks=2) as session,
+    ):
+        session.execute(ENDLESS)
+        ranks = ranks_of(session.pid)
+        assert len(ranks) == 2
+        threading.Timer(0.5, os.kill, (ranks[which], signal.SIGKILL)).start()
+        session.execute(ENDLESS_RUN, phase="on and on")
     assert caught.value.phase == "on and on"
     wait_for_the_end_of(ranks)
 
@@ -129,28 +131,34 @@ def test_a_rank_that_is_killed_ends_the_others_in_words(tmp_path: Path, which: i
 def test_an_error_on_one_rank_is_that_of_the_run(tmp_path: Path, place: float) -> None:
     """`error->one`: the others wait for it in the middle of a step, and would wait for good."""
     alone = f"variable bad atom 1.0/(x-{place})\ncompute bad all reduce sum v_bad\nthermo_style custom c_bad\nrun 0"
-    with pytest.raises(EngineError, match="LAMMPS stopped: Divide by 0"):  # noqa: SIM117
-        with Engine.session(tmp_path, ranks=2) as session:
-            session.execute(ENDLESS)
-            ranks = ranks_of(session.pid)
-            session.execute(alone)
+    with (
+        pytest.raises(EngineError, match="LAMMPS stopped: Divide by 0"),
+        Engine.session(tmp_path, ranks=2) as session,
+    ):
+        session.execute(ENDLESS)
+        ranks = ranks_of(session.pid)
+        session.execute(alone)
     wait_for_the_end_of(ranks)
 
 
 def test_a_position_that_is_no_number_is_found_on_any_rank(tmp_path: Path) -> None:
-    with pytest.raises(EngineError, match="position of atom 2 is not"):  # noqa: SIM117
-        with Engine.session(tmp_path, ranks=2) as session:
-            session.execute(ENDLESS)
-            session.execute("neigh_modify every 1000 delay 1000\nrun 0\ngroup second id 2\n")
-            session.execute("fix push second addforce 1e308 1e308 1e308\ntimestep 1e100\nrun 5")
+    with (
+        pytest.raises(EngineError, match="position of atom 2 is not"),
+        Engine.session(tmp_path, ranks=2) as session,
+    ):
+        session.execute(ENDLESS)
+        session.execute("neigh_modify every 1000 delay 1000\nrun 0\ngroup second id 2\n")
+        session.execute("fix push second addforce 1e308 1e308 1e308\ntimestep 1e100\nrun 5")
 
 
 def test_ranks_out_of_time_are_ended(tmp_path: Path) -> None:
-    with pytest.raises(EngineError, match="longer than its time limit"):  # noqa: SIM117
-        with Engine.session(tmp_path, 3.0, ranks=2) as session:
-            session.execute(ENDLESS)
-            ranks = ranks_of(session.pid)
-            session.execute(ENDLESS_RUN)
+    with (
+        pytest.raises(EngineError, match="longer than its time limit"),
+        Engine.session(tmp_path, 3.0, ranks=2) as session,
+    ):
+        session.execute(ENDLESS)
+        ranks = ranks_of(session.pid)
+        session.execute(ENDLESS_RUN)
     wait_for_the_end_of(ranks)
 
 

@@ -13,10 +13,10 @@ import pytest
 
 from contact1d import Run, run
 from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.reproduce.heat import FLAT_PAIR, TEMPERATURE
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 
-TEMPERATURE = 2e-3
 SIGMAS = 3.0
 CLOSED = 5e-3
 """Work that is neither given to the baths nor stored, over the energy that the drive and the baths exchange."""
@@ -24,20 +24,7 @@ CLOSED = 5e-3
 
 def scene_of(**tables: Any) -> Scene:
     """A flat pair of eight particles that slides slowly under heat."""
-    base: dict[str, dict[str, Any]] = {
-        "bodies": {
-            "particles": 8, "upper_particles": 8, "spacing": 1.0, "lower": "rigid_chain", "periodic": True,
-            "profile": {"kind": "flat"}, "bulk_stiffness": 1.0,
-        },
-        "interaction": {"repulsion": {"amplitude": 1.0, "range": 0.5}, "attraction": {"amplitude": 0.5, "range": 1.0}},
-        "horizontal": {},
-        "damping": {"coefficient": 0.4},
-        "noise": {"temperature": TEMPERATURE, "seed": 3},
-        "plate": {"free": ["x", "z"], "mass": 8.0, "damping": 4.0},
-        "cantilever": {"stiffness": 0.4, "velocity": 5e-3},
-        "accuracy": {"tolerance": 1e-2},
-        "experiment": {"kind": "slide", "normal_force": 1.6, "distance": 12.0},
-    }  # fmt: skip
+    base = FLAT_PAIR | {"experiment": {"kind": "slide", "normal_force": 1.6, "distance": 12.0}}
     changed = {name: base.get(name, {}) | tables.get(name, {}) for name in {**base, **tables}}
     return scene_from_dict({"title": "slide under heat"} | changed)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -53,6 +53,20 @@ INTERVAL = 1.96
 """Half-width of the intervals of 95 % that a run states, over its standard error."""
 TEMPERATURE, RATIO = 2e-3, 3.0
 """Of the flat pair at rest [FU·LU], and the standard errors that its ratio is allowed."""
+FLAT_PAIR: dict[str, Any] = {
+    "bodies": {
+        "particles": 8, "upper_particles": 8, "spacing": 1.0, "lower": "rigid_chain", "periodic": True,
+        "profile": {"kind": "flat"}, "bulk_stiffness": 1.0,
+    },
+    "interaction": {"repulsion": {"amplitude": 1.0, "range": 0.5}, "attraction": {"amplitude": 0.5, "range": 1.0}},
+    "horizontal": {},
+    "damping": {"coefficient": 0.4},
+    "noise": {"temperature": TEMPERATURE, "seed": 3},
+    "plate": {"free": ["x", "z"], "mass": 8.0, "damping": 4.0},
+    "cantilever": {"stiffness": 0.4, "velocity": 5e-3},
+    "accuracy": {"tolerance": 1e-2},
+}  # fmt: skip
+"""Eight particles on a rigid row, under heat; the plate's own drag is ten times that of one of them."""
 STATISTICS = "statistics: four standard errors of the run and of the reference"
 AT_REST = {
     "energy": "the plate's temperature is asked for, not the balance of energies",
@@ -93,22 +107,9 @@ def scene(share: float, velocity: float, distance: float, seed: int = 1) -> Scen
 
 
 def _plate_at_rest() -> Scene:
-    """Eight particles on a rigid row that don't slide; the plate's own drag is ten times that of one of them."""
-    return scene_from_dict({
-        "title": "a plate at rest, under heat",
-        "bodies": {
-            "particles": 8, "upper_particles": 8, "spacing": 1.0, "lower": "rigid_chain", "periodic": True,
-            "profile": {"kind": "flat"}, "bulk_stiffness": 1.0,
-        },
-        "interaction": {"repulsion": {"amplitude": 1.0, "range": 0.5}, "attraction": {"amplitude": 0.5, "range": 1.0}},
-        "horizontal": {},
-        "damping": {"coefficient": 0.4},
-        "noise": {"temperature": TEMPERATURE, "seed": 3},
-        "plate": {"free": ["x", "z"], "mass": 8.0, "damping": 4.0},
-        "cantilever": {"stiffness": 0.4, "velocity": 5e-3},
-        "accuracy": {"tolerance": 1e-2},
-        "experiment": {"kind": "slide", "normal_force": 1.6, "path": [[0.0, 20.0]]},
-    })  # fmt: skip
+    """The flat pair, which does not slide."""
+    at_rest = {"kind": "slide", "normal_force": 1.6, "path": [[0.0, 20.0]]}
+    return scene_from_dict({"title": "a plate at rest, under heat"} | FLAT_PAIR | {"experiment": at_rest})
 
 
 def run_name(share: float, velocity: float) -> str:

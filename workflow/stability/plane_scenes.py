@@ -93,14 +93,11 @@ def _drawn_along(rng: np.random.Generator, law: PowerLaw, radius: float, spacing
 
 def _adhesive(law: PowerLaw, radius: float) -> Drawn:
     """W is such that the contact radius without a load is `radius`."""
-    n = law.exponent
-    unit = AdhesivePower(law.coefficient, n, MODULUS, 1.0).zero_load_radius()
-    work = (radius / unit) ** (2.0 * n - 1.0)
-    adhesive = AdhesivePower(law.coefficient, n, MODULUS, work)
+    adhesive = AdhesivePower.with_zero_load_radius(law.coefficient, law.exponent, MODULUS, radius)
     exact = {
         "adhesion_force": adhesive.pull_off_force(),
         "critical_radius": adhesive.critical_radius(),
         "zero_load_radius": adhesive.zero_load_radius(),
     }
     experiment = {"kind": "pull_off", "preload": 0.5 * adhesive.pull_off_force()}
-    return {"adhesion": {"work_of_adhesion": work}}, experiment, exact
+    return {"adhesion": {"work_of_adhesion": adhesive.work_of_adhesion}}, experiment, exact
