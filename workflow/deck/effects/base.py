@@ -68,3 +68,9 @@ def sphere_radius(scene: Scene, settings: Settings) -> float:
     """Radius [LU] of particles that are spheres; 0 where they are points."""
     deepest = max(settings.largest_displacement, scene.bodies.spacing)
     return DEEP * deepest if scene.friction is not None else 0.0
+
+
+def first_upper_anchor(scene: Scene, settings: Settings) -> int:
+    """Its number among the atoms: first come the particles of both bodies, then the lower anchors."""
+    below = {"particles": 2, "rigid_chain": 1, "rigid_plane": 0}[scene.bodies.lower]
+    return settings.particles + below * settings.lower_particles + 1

@@ -7,7 +7,7 @@ What is drawn along moves at v on the mean, and so does the bath that drags at i
 since the bulk goes with its body. Otherwise the cantilever would pull at a drag that is no friction of the contact.
 """
 
-from contact1d.workflow.deck.effects.base import Contribution, Stage, number
+from contact1d.workflow.deck.effects.base import Contribution, Stage, first_upper_anchor, number
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 
@@ -18,6 +18,7 @@ def cantilever(scene: Scene, settings: Settings) -> Contribution:
     legs = settings.drive
     velocities, clocks = [leg.velocity for leg in legs], [leg.time_step for leg in legs]
     variables = {
+        "cantilever_grip_id": str(first_upper_anchor(scene, settings)),
         "cantilever_stiffness": number(scene.cantilever.stiffness),
         "cantilever_velocity": " ".join(map(number, velocities)),
         "cantilever_time_step": " ".join(map(number, clocks)),

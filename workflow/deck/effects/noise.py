@@ -1,6 +1,6 @@
 """Effect [noise]: thermal forces of variance 2 γ k_BT/Δt on every particle, with the damping γ (Langevin)."""
 
-from contact1d.workflow.deck.effects.base import Contribution, Stage, number
+from contact1d.workflow.deck.effects.base import Contribution, Stage, first_upper_anchor, number
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 
@@ -28,9 +28,3 @@ def noise(scene: Scene, settings: Settings) -> Contribution:
     if not settings.drive:  # nobody asks for the heat
         before = after = ()
     return Contribution("noise", Stage.DRAG, fragments, variables, step_begin=before, step_end=after)
-
-
-def first_upper_anchor(scene: Scene, settings: Settings) -> int:
-    """Its number among the atoms: first come the particles of both bodies, then the lower anchors."""
-    below = {"particles": 2, "rigid_chain": 1, "rigid_plane": 0}[scene.bodies.lower]
-    return settings.particles + below * settings.lower_particles + 1

@@ -31,12 +31,12 @@ BATCH = 8
 HEAT = ("heat_particles", "heat_plate")
 """Energy that the heat baths of particles and plate took in a row [FU·LU]."""
 MOTION = {
-    "f_cantilever_means[1]": "FU", "f_cantilever_means[2]": "FU·LU", "f_cantilever_means[3]": "LU·LU/TU·TU",
+    "f_cantilever_means[1]": "FU", "f_cantilever_means[2]": "FU·LU", "f_cantilever_means[3]": "FU·LU",
     "c_measuring_energy": "FU·LU", "cantilever_kinetic": "FU·LU", "vcm(plate,x)": "LU/TU", "vcm(plate,z)": "LU/TU",
     "vcm(upper,x)": "LU/TU", "xcm(upper,x)": "LU",
 }  # fmt: skip
-"""Of a slide: means since the start over every fifth step of the cantilever's force, of the particles' kinetic energy
-and of the plate's squared velocity; energies; velocities and places."""
+"""Of a slide: means since the start over every fifth step of the cantilever's force and of the kinetic energies of
+particles and plate; energies; velocities and places."""
 MOST_REPEATS = 200
 """Repeats of a row after which it counts as never coming to rest: near a snap the motion is slower without end."""
 

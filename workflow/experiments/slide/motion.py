@@ -92,10 +92,10 @@ def motion_of(scene: Scene, settings: Settings, start: State, states: list[State
     speeds = read("vcm(plate,x)") ** 2 + read("vcm(plate,z)") ** 2
     force = summed_over_rows(1, pull)
     kinetic = summed_over_rows(2, read("cantilever_kinetic"))
-    squares = summed_over_rows(3, speeds)
     bodies, mass, c = scene.bodies, settings.plate_mass, settings.plate_damping
     drag = settings.particles * settings.damping
-    heavy, _ = inertia(scene, settings)
+    heavy, heavy_plate = inertia(scene, settings)
+    squares = 2.0 / heavy_plate * summed_over_rows(3, 0.5 * heavy_plate * speeds)
     momentum = settings.particles * bodies.mass * read("vcm(upper,x)") + mass * read("vcm(plate,x)")
     lag = velocity * span - np.diff(read("xcm(upper,x)")), velocity * span - np.diff(place)
     lost = 2.0 * settings.damping / heavy * kinetic + c * squares
