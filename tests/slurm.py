@@ -1,4 +1,7 @@
-"""A real Slurm of one node on this machine, for as long as a test lasts: two daemons that listen on 127.0.0.1 only."""
+"""A real Slurm on this machine, for as long as a test lasts: daemons that listen on 127.0.0.1 only.
+
+Its nodes, one or more, are names: each has a daemon of its own, and all are this machine.
+"""
 
 from __future__ import annotations
 
@@ -9,30 +12,28 @@ import socket
 import subprocess
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-DAEMONS = ("slurmctld", "slurmd")
 PATIENCE = 60.0
-"""Seconds in which both must be there; they take about one."""
+"""Seconds in which all must be there; they take about one."""
 FAREWELL = 5.0
 """Seconds that a daemon has to end by itself."""
 CONFIGURATION = """
 ClusterName=test
 SlurmctldHost={host}(127.0.0.1)
 SlurmctldPort={controller}
-SlurmdPort={node}
 CommunicationParameters=NoInAddrAny,NoCtldInAddrAny
 AuthType=auth/none
 CredType=cred/none
 SlurmUser={user}
 SlurmdUser={user}
 StateSaveLocation={folder}/state
-SlurmdSpoolDir={folder}/spool
+SlurmdSpoolDir={folder}/%n
 SlurmctldPidFile={folder}/slurmctld.pid
-SlurmdPidFile={folder}/slurmd.pid
+SlurmdPidFile={folder}/%n.pid
 SlurmctldLogFile={folder}/slurmctld.log
-SlurmdLogFile={folder}/slurmd.log
+SlurmdLogFile={folder}/%n.log
 ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
 JobAcctGatherType=jobacct_gather/none
@@ -44,33 +45,36 @@ ReturnToService=2
 MpiDefault=none
 PlugStackConfig=/dev/null
 MailProg=/bin/true
-NodeName={host} NodeAddr=127.0.0.1 CPUs=2 State=UNKNOWN
-PartitionName=local Nodes={host} Default=YES MaxTime=INFINITE State=UP
+PartitionName=local Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 """
+NODE = "NodeName={name} NodeHostname={host} NodeAddr=127.0.0.1 Port={port} CPUs=2 State=UNKNOWN\n"
 
 
 @contextmanager
-def slurm(folder: Path) -> Iterator[dict[str, str]]:
+def slurm(folder: Path, nodes: int = 1) -> Iterator[dict[str, str]]:
     """Start it; gives the environment in which sbatch finds it. What runs in it when the block ends is killed."""
-    for name in ("state", "spool"):
+    names = [f"node{number}" for number in range(1, nodes + 1)]
+    for name in ("state", *names):
         (folder / name).mkdir(parents=True)
     host = socket.gethostname().split(".")[0]
-    ports = _free_ports()
-    text = CONFIGURATION.format(host=host, folder=folder, user=getpass.getuser(), controller=ports[0], node=ports[1])
+    controller, *ports = _free_ports(1 + nodes)
+    text = CONFIGURATION.format(host=host, folder=folder, user=getpass.getuser(), controller=controller)
+    text += "".join(NODE.format(name=name, host=host, port=port) for name, port in zip(names, ports, strict=True))
     (folder / "slurm.conf").write_text(text)
     path = os.environ["PATH"] + os.pathsep + "/usr/sbin"
     environment = {**os.environ, "SLURM_CONF": str(folder / "slurm.conf"), "PATH": path}
     try:
         subprocess.run(["slurmctld", "-c"], env=environment, check=True)
-        subprocess.run(["slurmd"], env=environment, check=True)
+        for name in names:
+            subprocess.run(["slurmd", "-N", name], env=environment, check=True)
         until = time.monotonic() + PATIENCE
-        while _state(environment) != "idle":
+        while set(_states(environment)) != {"idle"}:
             assert time.monotonic() < until, (folder / "slurmctld.log").read_text()[-2000:]
             time.sleep(0.2)
         yield environment
     finally:
         subprocess.run(["scancel", "--full", "-u", getpass.getuser()], env=environment, check=False)
-        for name in reversed(DAEMONS):
+        for name in (*names, "slurmctld"):
             with suppress(OSError, ValueError):
                 _end(int((folder / f"{name}.pid").read_text()))
 
@@ -85,13 +89,14 @@ def _end(daemon: int) -> None:
     os.kill(daemon, signal.SIGKILL)
 
 
-def _state(environment: dict[str, str]) -> str:
-    asked = ["sinfo", "--noheader", "--format=%T"]
-    return subprocess.run(asked, env=environment, capture_output=True, text=True, check=False).stdout.strip()
+def _states(environment: dict[str, str]) -> list[str]:
+    asked = ["sinfo", "--noheader", "--Node", "--format=%T"]
+    return subprocess.run(asked, env=environment, capture_output=True, text=True, check=False).stdout.split()
 
 
-def _free_ports() -> tuple[int, int]:
-    with socket.socket() as first, socket.socket() as second:
-        first.bind(("127.0.0.1", 0))
-        second.bind(("127.0.0.1", 0))
-        return first.getsockname()[1], second.getsockname()[1]
+def _free_ports(count: int) -> list[int]:
+    with ExitStack() as stack:
+        sockets = [stack.enter_context(socket.socket()) for _ in range(count)]
+        for one in sockets:
+            one.bind(("127.0.0.1", 0))
+        return [one.getsockname()[1] for one in sockets]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -246,19 +247,22 @@ def test_what_ranks_say_at_the_end_becomes_one_clause() -> None:
 
 
 @pytest.mark.cluster
-def test_in_a_job_of_slurm_the_ranks_share_its_node(tmp_path: Path) -> None:
-    script = tmp_path / "job.sh"
-    scene = tmp_path / "scene.toml"
+@pytest.mark.parametrize("nodes", [1, 2])
+def test_in_a_job_of_slurm_the_ranks_have_its_nodes(tmp_path: Path, nodes: int) -> None:
+    script, scene, said = tmp_path / "job.sh", tmp_path / "scene.toml", tmp_path / "said"
     scene.write_text(scene_to_toml(read_scene(SCENES["load"])))
     here = run(SCENES["load"], tmp_path / "here", figures=False)
     command = (
         f"{sys.executable} -m contact1d.workflow.cli.app run {scene} --out {tmp_path}/there --no-figures --ranks 2"
     )
-    script.write_text(f"#!/bin/bash\n{command} >{tmp_path}/said 2>&1\n")
-    with slurm(tmp_path / "slurm") as environment:
-        job = ["sbatch", "--wait", "--ntasks=2", "--partition=local", f"--output={tmp_path}/job.out", str(script)]
+    script.write_text(f"#!/bin/bash\n{command} >{said} 2>&1\n")
+    with slurm(tmp_path / "slurm", nodes) as environment:
+        job = ["sbatch", "--wait", "--ntasks=2", f"--nodes={nodes}", f"--output={tmp_path}/job.out", str(script)]
         subprocess.run(job, env=environment, check=False, timeout=120)
-    assert (tmp_path / "there" / "results.json").is_file(), (tmp_path / "said").read_text()
+        log = "".join((tmp_path / "slurm" / f"node{number}.log").read_text() for number in range(1, nodes + 1))
+    # The script is a step of the first node; ranks on two nodes are one more, of both.
+    assert len(re.findall(r"launch task", log)) == (2 if nodes == 2 else 0), log
+    assert (tmp_path / "there" / "results.json").is_file(), said.read_text()
     document = json.loads((tmp_path / "there" / "results.json").read_text())
     assert document["status"] == "done"
     assert document["force"]["value"] == pytest.approx(here.results.force.value, rel=SAME)

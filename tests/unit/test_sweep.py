@@ -1,158 +1,30 @@
-"""A sweep: its points, what is kept and run again, and one table of all."""
+"""A sweep: what is run, kept and run again, and one table of all."""
 
 from __future__ import annotations
 
-import csv
 import os
 import random
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Mapping
-from concurrent.futures import Executor, Future
+from concurrent.futures import Future
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 import contact1d.workflow.sweep.sweep as sweeping
-from contact1d import FolderError, SceneError, load_run, sweep
+from contact1d import FolderError, load_run, sweep
 from contact1d.workflow.cli.app import app
 from contact1d.workflow.engine.progress import Silent
-from contact1d.workflow.sweep.axes import MOST_POINTS, Axis, read_sweep
 from contact1d.workflow.sweep.executors import ExecutorError
-from contact1d.workflow.sweep.table import PARQUET, TABLE, Answer, write_parquet
+from contact1d.workflow.sweep.table import PARQUET, TABLE
+from tests.sweeps import FORCE, RADIUS, Here, Stub, axis, plane, rows
 
-PLANE: dict[str, Any] = {
-    "title": "on a plane",
-    "bodies": {
-        "particles": 41, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 100.0}, "bulk_stiffness": 1.0,
-        "lower": "rigid_plane",
-    },
-    "experiment": {"kind": "load", "force": 1.0},
-}  # fmt: skip
-RADIUS = "bodies.profile.radius"
-FORCE = "experiment.force"
 PATIENCE = 120.0
-
-
-def plane(*axes: Mapping[str, Any], **more: Any) -> dict[str, Any]:
-    """A sweep of a quick scene."""
-    return {"title": "a sweep", "base": PLANE, "axes": list(axes)} | more
-
-
-def axis(key: str, *values: Any) -> dict[str, Any]:
-    """An axis of a sweep file."""
-    return {"key": key, "values": list(values)}
-
-
-class Here(Executor):
-    """Runs at once, in this process, and keeps what it was given."""
-
-    def __init__(self) -> None:
-        self.given: list[str] = []
-
-    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        self.given += [path.name for _, path in args[0]]
-        future: Future[Any] = Future()
-        try:
-            future.set_result(fn(*args, **kwargs))
-        except Exception as error:
-            future.set_exception(error)
-        return future
-
-
-class Stub(Here):
-    """Answers without running anything."""
-
-    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        return super().submit(lambda tasks: [Answer("failed", "a stub")] * len(tasks), *args)
-
-
-def rows(folder: Path) -> list[dict[str, str]]:
-    with (folder / TABLE).open(newline="") as file:
-        return list(csv.DictReader(file))
-
-
-def problems(source: Mapping[str, Any]) -> str:
-    with pytest.raises(SceneError) as caught:
-        read_sweep(source)
-    return str(caught.value)
-
-
-def test_a_product_has_every_value_with_every_other_the_last_axis_quickest() -> None:
-    plan = read_sweep(plane(axis(RADIUS, 50.0, 100.0), axis(FORCE, 0.5, 1.0, 1.5)))
-    assert len(plan) == 6
-    assert list(plan.values())[:4] == [(50.0, 0.5), (50.0, 1.0), (50.0, 1.5), (100.0, 0.5)]
-
-
-def test_zip_takes_values_side_by_side() -> None:
-    plan = read_sweep(plane(axis(RADIUS, 50.0, 100.0), axis(FORCE, 0.5, 1.0), combine="zip"))
-    assert list(plan.values()) == [(50.0, 0.5), (100.0, 1.0)]
-
-
-def test_spans_have_steps_and_one_more_value_with_exact_ends() -> None:
-    spans = [
-        {"key": RADIUS, "from": 0.1, "to": 0.7, "steps": 6},
-        {"key": FORCE, "from": 1.0, "to": 1000.0, "steps": 3, "scale": "log"},
-        {"key": "noise.seed", "from": 1, "to": 3, "steps": 2},
-    ]
-    linear, log, seeds = (a.values for a in read_sweep(plane(*spans)).axes)
-    np.testing.assert_allclose(linear, [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7])
-    np.testing.assert_allclose(log, [1.0, 10.0, 100.0, 1000.0])
-    assert (linear[-1], log[-1]) == (0.7, 1000.0)
-    assert seeds == (1, 2, 3)
-    assert all(isinstance(seed, int) for seed in seeds)
-
-
-def test_an_axis_may_have_a_unit() -> None:
-    span = {"key": RADIUS, "from": "1 µm", "to": "100 µm", "steps": 2, "scale": "log"}
-    (radii,) = read_sweep(plane(span)).axes
-    assert radii.values == ("1.0 µm", "10.0 µm", "100.0 µm")
-    assert radii.numbers() == ((1.0, 10.0, 100.0), "µm")
-    assert Axis(RADIUS, ("1 µm", "1 mm")).numbers() == ((), "")
-    assert Axis("bodies.lower", ("particles", "rigid_plane")).numbers() == ((), "")
-
-
-@pytest.mark.parametrize(
-    ("source", "sentence"),
-    [
-        (plane({"key": RADIUS, "from": "1 m", "to": "2 mm", "steps": 1}), "must have the same unit at both ends"),
-        (plane(), "axes: missing; write [[axes]]"),
-        (plane(axis(RADIUS)), "axes[0].values: is empty: the sweep would have no point"),
-        (plane(axis(RADIUS, 1.0), axis(RADIUS, 2.0)), "another axis has the same key"),
-        (plane({"key": RADIUS}), "axes[0]: lacks from, to, steps; give values, or from, to and steps"),
-        (plane({"key": RADIUS, "form": 1.0, "to": 2.0, "steps": 2}), 'axes[0].form: unknown key; did you mean "from"?'),
-        (plane({"key": RADIUS, "from": 0.0, "to": 2.0, "steps": 2, "scale": "log"}), "log needs from and to above 0"),
-        (plane({"key": RADIUS, "from": 1.0, "to": 2.0, "steps": 0}), "must be a whole number from 1 to"),
-        (plane({"key": RADIUS, "from": "1", "to": 2.0, "steps": 1}), 'axes[0].from = "1": must be a finite number'),
-        (plane({"values": [1.0]}), "axes[0].key: missing; such as noise.seed"),
-        (plane(axis(RADIUS, 1.0) | {"steps": 3}), "axes[0].values: not together with steps"),
-        (plane(axis(RADIUS, 1.0), scene="a.toml"), "scene: not together with [base]"),
-        ({"axes": [axis(RADIUS, 1.0)]}, "scene: missing; give a scene file"),
-        ({"scene": "nowhere.toml", "axes": [axis(RADIUS, 1.0)]}, "nowhere.toml: no such file"),
-        (plane(axis(RADIUS, 1.0), combine="cross"), 'combine = "cross": must be "product" or "zip"'),
-        (plane(axis(RADIUS, 1.0), axis(FORCE, 1.0, 2.0), combine="zip"), '"zip" needs axes of one length'),
-        (plane(axis(RADIUS, 1.0), colour="red"), "colour: unknown key; allowed here: title, scene"),
-        (
-            plane(*({"key": key, "from": 1.0, "to": 2.0, "steps": n} for key, n in ((RADIUS, 9999), (FORCE, 999)))),
-            f"10000 × 1000 = 10000000 points are more than {MOST_POINTS}",
-        ),
-    ],
-)  # fmt: skip
-def test_a_wrong_sweep_file_is_told_in_a_sentence(source: dict[str, Any], sentence: str) -> None:
-    assert sentence in problems(source)
-
-
-@pytest.mark.parametrize("key", ["bodies.profile.radus", "boddies.spacing", "title.key", "interaction..range"])
-def test_an_axis_that_is_no_key_of_the_scene_is_refused_before_anything_is_written(key: str, tmp_path: Path) -> None:
-    with pytest.raises(SceneError):
-        sweep(plane(axis(key, 1.0, 2.0)), tmp_path / "out")
-    assert not (tmp_path / "out").exists()
 
 
 def test_each_point_has_a_row_whatever_became_of_it(tmp_path: Path) -> None:
@@ -261,6 +133,17 @@ def test_an_executor_that_is_not_there_says_what_to_install(tmp_path: Path, monk
     assert not (tmp_path / "s").exists()
 
 
+def test_a_slurm_that_does_not_answer_is_told_with_what_to_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("sbatch", "sinfo"):
+        program = tmp_path / name
+        program.write_text("#!/bin/sh\necho 'sinfo: no address' >&2\necho 'sinfo: fatal: no source' >&2\nexit 1\n")
+        program.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(ExecutorError, match=r"\(sinfo: fatal: no source\).* leave out --executor slurm"):
+        sweep(plane(axis(FORCE, 0.5)), tmp_path / "s", "slurm")
+    assert not (tmp_path / "s").exists()
+
+
 def test_progress_counts_points_and_tells_of_those_that_failed(tmp_path: Path) -> None:
     class Heard(Silent):
         def __init__(self) -> None:
@@ -310,30 +193,6 @@ def test_the_command_prints_counts_and_ends_with_3_where_a_point_failed(tmp_path
     assert (tmp_path / "o" / PARQUET).is_file()
 
 
-def test_parquet_says_the_same_as_the_table(tmp_path: Path) -> None:
-    from pyarrow import parquet
-
-    sweep(plane(axis(FORCE, 0.5, 1.0)), tmp_path, Here(), figures=False)
-    write_parquet(tmp_path)
-    read = parquet.read_table(tmp_path / PARQUET).to_pydict()
-    assert read["displacement"] == [float(row["displacement"]) for row in rows(tmp_path)]
-
-
-def test_seeds_are_averaged_and_lines_told_apart(tmp_path: Path) -> None:
-    from contact1d.workflow.sweep.figures import sweep_figure
-
-    plan = read_sweep(plane(axis(FORCE, 0.5, 1.0), axis(RADIUS, 50.0, 100.0), axis("noise.seed", 1, 2)))
-    lines = {("50.0",): {0.5: [(1.0, 0.1), (3.0, 0.1)], 1.0: [(4.0, 0.2)]}, ("100.0",): {0.5: [(5.0, 0.1)]}}
-    figure = sweep_figure(plan, "displacement", "LU", lines)
-    first, second = figure.axes[0].containers
-    np.testing.assert_allclose(first[0].get_ydata(), [2.0, 4.0])
-    np.testing.assert_allclose(second[0].get_ydata(), [5.0])
-    assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == [
-        "profile.radius = 50.0", "profile.radius = 100.0",
-    ]  # fmt: skip
-    assert figure.axes[0].get_ylabel() == "displacement (LU)"
-
-
 def test_a_sweep_that_is_killed_at_any_moment_goes_on(tmp_path: Path) -> None:
     """SIGKILL at three moments; then the table is that of a sweep nobody killed, and nothing was run twice."""
     source = plane({"key": FORCE, "from": 0.1, "to": 1.0, "steps": 11})
@@ -373,40 +232,3 @@ def test_a_sweep_killed_at_ten_random_moments_loses_nothing(tmp_path: Path) -> N
     sweep(source, tmp_path / "whole", workers=2, figures=False)
     assert (folder / TABLE).read_text() == (tmp_path / "whole" / TABLE).read_text()
     assert all((folder / "runs" / name / "results.json").stat().st_mtime_ns == stamp for name, stamp in known.items())
-
-
-def test_closed_forms_are_the_lines_of_a_sweeps_figures_and_the_runs_points_on_them(tmp_path: Path) -> None:
-    """Hertz over the force for two radii: in the figure and on the page, in the colours of the runs beside them."""
-    from contact1d.workflow.report.charts import over_axes
-    from contact1d.workflow.sweep.figures import lines_of, sweep_figure, theories_of
-
-    bodies = {
-        "particles": "auto", "spacing": 1.0, "lower": "rigid_plane", "reduction": "mdr", "bulk_stiffness": 0.5,
-        "profile": {"kind": "parabola", "radius": 1000.0},
-    }  # fmt: skip
-    base = {"title": "load", "bodies": bodies, "experiment": {"kind": "load", "force": 1.0}}
-    forces, radii = [10.0, 20.0, 40.0], [500.0, 1000.0]
-    axes = [{"key": "experiment.force", "values": forces}, {"key": "bodies.profile.radius", "values": radii}]
-    tables = {"title": "Hertz", "base": base, "axes": axes}
-    done = sweep(tables, tmp_path / "s", workers=1, figures="svg")
-    assert (done.folder / "displacement.svg").is_file()
-    plan = read_sweep(tables)
-    said = theories_of(done.folder, plan)["displacement"]["Hertz"]
-    for radius in radii:
-        hertz = [(0.75 * force / 0.5 / radius**0.5) ** (2.0 / 3.0) for force in forces]
-        assert [said[(str(radius),)][force] for force in forces] == pytest.approx(hertz, rel=1e-12)
-    figure = sweep_figure(
-        plan,
-        "displacement",
-        "LU",
-        lines_of(done.folder, plan, "displacement"),
-        theories_of(done.folder, plan)["displacement"],
-    )
-    labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
-    assert labels == ["Hertz", "profile.radius = 500.0", "profile.radius = 1000.0"]
-    chart = next(
-        c for c in over_axes(done.folder, plan, done.quantities) if c["layout"]["title"]["text"] == "displacement"
-    )
-    kinds = [(trace["mode"], trace["line"]["color"]) for trace in chart["data"]]
-    assert [mode for mode, _ in kinds] == ["markers", "markers", "lines", "lines"]
-    assert [colour for _, colour in kinds[:2]] == [colour for _, colour in kinds[2:]]

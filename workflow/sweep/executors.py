@@ -95,7 +95,11 @@ def _partition(wanted: str | None) -> str:
     listed = run(["sinfo", "--noheader", "--format=%P"], capture_output=True, text=True, check=False)
     names = listed.stdout.split()
     if not names:
-        raise ExecutorError(f"sinfo knows no partition: {listed.stderr.strip() or 'is Slurm running?'}")
+        said = listed.stderr.strip().splitlines()
+        raise ExecutorError(
+            f"Slurm does not answer here{f' ({said[-1]})' if said else ''}: start the sweep on a machine of the "
+            "cluster, or leave out --executor slurm to run it on this machine"
+        )
     plain = [name.rstrip("*") for name in names]
     if wanted is not None and wanted not in plain:
         raise ExecutorError(f"Slurm has no partition {wanted!r}: take {' or '.join(plain)}")

@@ -1,0 +1,74 @@
+"""What a sweep leaves to look at: its table as Parquet, its figures, its charts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from contact1d import sweep
+from contact1d.workflow.sweep.axes import read_sweep
+from contact1d.workflow.sweep.table import PARQUET, write_parquet
+from tests.sweeps import FORCE, RADIUS, Here, axis, plane, rows
+
+
+def test_parquet_says_the_same_as_the_table(tmp_path: Path) -> None:
+    from pyarrow import parquet
+
+    sweep(plane(axis(FORCE, 0.5, 1.0)), tmp_path, Here(), figures=False)
+    write_parquet(tmp_path)
+    read = parquet.read_table(tmp_path / PARQUET).to_pydict()
+    assert read["displacement"] == [float(row["displacement"]) for row in rows(tmp_path)]
+
+
+def test_seeds_are_averaged_and_lines_told_apart(tmp_path: Path) -> None:
+    from contact1d.workflow.sweep.figures import sweep_figure
+
+    plan = read_sweep(plane(axis(FORCE, 0.5, 1.0), axis(RADIUS, 50.0, 100.0), axis("noise.seed", 1, 2)))
+    lines = {("50.0",): {0.5: [(1.0, 0.1), (3.0, 0.1)], 1.0: [(4.0, 0.2)]}, ("100.0",): {0.5: [(5.0, 0.1)]}}
+    figure = sweep_figure(plan, "displacement", "LU", lines)
+    first, second = figure.axes[0].containers
+    np.testing.assert_allclose(first[0].get_ydata(), [2.0, 4.0])
+    np.testing.assert_allclose(second[0].get_ydata(), [5.0])
+    assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == [
+        "profile.radius = 50.0", "profile.radius = 100.0",
+    ]  # fmt: skip
+    assert figure.axes[0].get_ylabel() == "displacement (LU)"
+
+
+def test_closed_forms_are_the_lines_of_a_sweeps_figures_and_the_runs_points_on_them(tmp_path: Path) -> None:
+    """Hertz over the force for two radii: in the figure and on the page, in the colours of the runs beside them."""
+    from contact1d.workflow.report.charts import over_axes
+    from contact1d.workflow.sweep.figures import lines_of, sweep_figure, theories_of
+
+    bodies = {
+        "particles": "auto", "spacing": 1.0, "lower": "rigid_plane", "reduction": "mdr", "bulk_stiffness": 0.5,
+        "profile": {"kind": "parabola", "radius": 1000.0},
+    }  # fmt: skip
+    base = {"title": "load", "bodies": bodies, "experiment": {"kind": "load", "force": 1.0}}
+    forces, radii = [10.0, 20.0, 40.0], [500.0, 1000.0]
+    axes = [{"key": "experiment.force", "values": forces}, {"key": "bodies.profile.radius", "values": radii}]
+    tables = {"title": "Hertz", "base": base, "axes": axes}
+    done = sweep(tables, tmp_path / "s", workers=1, figures="svg")
+    assert (done.folder / "displacement.svg").is_file()
+    plan = read_sweep(tables)
+    said = theories_of(done.folder, plan)["displacement"]["Hertz"]
+    for radius in radii:
+        hertz = [(0.75 * force / 0.5 / radius**0.5) ** (2.0 / 3.0) for force in forces]
+        assert [said[(str(radius),)][force] for force in forces] == pytest.approx(hertz, rel=1e-12)
+    figure = sweep_figure(
+        plan,
+        "displacement",
+        "LU",
+        lines_of(done.folder, plan, "displacement"),
+        theories_of(done.folder, plan)["displacement"],
+    )
+    labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert labels == ["Hertz", "profile.radius = 500.0", "profile.radius = 1000.0"]
+    chart = next(
+        c for c in over_axes(done.folder, plan, done.quantities) if c["layout"]["title"]["text"] == "displacement"
+    )
+    kinds = [(trace["mode"], trace["line"]["color"]) for trace in chart["data"]]
+    assert [mode for mode, _ in kinds] == ["markers", "markers", "lines", "lines"]
+    assert [colour for _, colour in kinds[:2]] == [colour for _, colour in kinds[2:]]
