@@ -21,8 +21,9 @@ Array = NDArray[np.float64]
 
 STUDENT = (12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26)
 """Half-widths of 95 % of Student's distribution with 1, 2, … degrees of freedom, over the standard error."""
-NORMAL, EXCESS = 1.96, 2.4
-"""The same of a normal distribution, and what it grows by over the degrees of freedom, beyond the list."""
+BEYOND = (1.95996, 2.37227, 2.82250, 2.55585)
+"""Beyond the list: coefficients of the powers of 1/freedom. The first is that of a normal distribution (Fisher's
+expansion of the quantile: Abramowitz and Stegun 26.7.5)."""
 FEWEST_BLOCKS = 2
 """Periods that a mean needs after the run-in."""
 DROPPED = 1
@@ -128,7 +129,9 @@ def interval(blocks: Array) -> float:
 
 def student(freedom: int) -> float:
     """Half-width of 95 % of Student's distribution over the standard error."""
-    return STUDENT[freedom - 1] if freedom <= len(STUDENT) else NORMAL + EXCESS / freedom
+    if freedom <= len(STUDENT):
+        return STUDENT[freedom - 1]
+    return sum(coefficient / float(freedom) ** power for power, coefficient in enumerate(BEYOND))
 
 
 def slips(time: Array, place: Array, spacing: float, velocity: float) -> list[Slip]:

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from contact1d import FolderError
 from contact1d.workflow.reproduce.studies import NAMES, reproduce
+from contact1d.workflow.runs.campaign import alone
 
 QUICK = ("eq3", "fig4", "exponents", "table1", "mean_pressure", "tangential")
 
@@ -20,6 +22,19 @@ def failed(folder: Path, names: tuple[str, ...]) -> list[str]:
 
 def test_the_quick_studies_pass(tmp_path: Path) -> None:
     assert failed(tmp_path, QUICK) == []
+
+
+def test_a_second_reproduction_at_work_in_a_folder_is_refused_and_leaves_it(tmp_path: Path) -> None:
+    with alone(tmp_path), pytest.raises(FolderError, match="a reproduction is at work in"):
+        reproduce(tmp_path, QUICK[:1])
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_of_other_things_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "letter.txt").write_text("dear")
+    with pytest.raises(FolderError, match="not of a reproduction"):
+        reproduce(tmp_path, QUICK[:1])
+    assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]
 
 
 @pytest.mark.slow

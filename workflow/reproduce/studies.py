@@ -32,6 +32,7 @@ from contact1d.workflow.reproduce.paper import calibrated
 from contact1d.workflow.reproduce.record import RECORD, Record, StudyRecord, read_record
 from contact1d.workflow.reproduce.runs import finish
 from contact1d.workflow.reproduce.study import Scenes, Study
+from contact1d.workflow.runs.campaign import LOCK, alone
 from contact1d.workflow.runs.cores import cores
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.runs.report import versions
@@ -79,7 +80,7 @@ def reproduce(
 
     Raises:
         KeyError: a name that no study has.
-        FolderError: the folder holds something else.
+        FolderError: the folder holds something else, or another reproduction is at work in it.
         IdentifyError, RunError: the paper's scene could not be identified.
     """
     started = time.perf_counter()
@@ -87,23 +88,25 @@ def reproduce(
     chosen = [study for study in STUDIES if study.name in (only or NAMES)]
     if unknown := set(only) - set(NAMES):
         raise KeyError(", ".join(sorted(unknown)))
-    if folder.is_dir() and any(folder.iterdir()) and not any((folder / name).exists() for name in ("runs", RECORD)):
+    strange = folder.is_dir() and any(entry.name != LOCK for entry in folder.iterdir())
+    if strange and not any((folder / name).exists() for name in ("runs", RECORD)):
         raise FolderError(f"{folder} holds files that are not of a reproduction; choose another folder with --out")
     folder.mkdir(parents=True, exist_ok=True)
-    progress.phase("identifying the interaction")
-    paper = calibrated(folder / "runs" / "identification")
-    needed: Scenes = {}
-    for study in _longest_first(chosen):
-        needed |= study.scenes(paper)
-    progress.phase("runs", len(needed))
-    done = finish(needed, folder / "runs", workers or cores(), progress)
-    progress.phase("judging")
-    records = tuple(_judged(study, paper, done, folder) for study in chosen)
-    record = Record(_merged(folder, records), versions(), time.perf_counter() - started)
-    write_whole(folder / RECORD, record.to_json())
-    write_whole(folder / PAGE, html_page(record, folder))
-    write_whole(folder / VALIDATION, validation_markdown(record))
-    return record
+    with alone(folder, "a reproduction is at work in"):
+        progress.phase("identifying the interaction")
+        paper = calibrated(folder / "runs" / "identification")
+        needed: Scenes = {}
+        for study in _longest_first(chosen):
+            needed |= study.scenes(paper)
+        progress.phase("runs", len(needed))
+        done = finish(needed, folder / "runs", workers or cores(), progress)
+        progress.phase("judging")
+        records = tuple(_judged(study, paper, done, folder) for study in chosen)
+        record = Record(_merged(folder, records), versions(), time.perf_counter() - started)
+        write_whole(folder / RECORD, record.to_json())
+        write_whole(folder / PAGE, html_page(record, folder))
+        write_whole(folder / VALIDATION, validation_markdown(record))
+        return record
 
 
 def _merged(folder: Path, records: tuple[StudyRecord, ...]) -> tuple[StudyRecord, ...]:
