@@ -10,7 +10,7 @@ from tests.scenes import chains
 
 BASE = chains(1000.0, bodies={"particles": 200}, experiment={"kind": "pull_off", "preload": 1.0})
 POSITIVE = [
-    ("bodies.spacing", "LU"),
+    ("bodies.upper_spacing", "LU"),
     ("bodies.profile.radius", "LU"),
     ("bodies.bulk_stiffness_tangential", "FU/LU"),
     ("bodies.mass", "MU"),
@@ -77,8 +77,10 @@ DISPLACEMENTS = "must be a list, each item a number (LU), or a table with from, 
 ONE_LINE_EACH: list[tuple[list[str], str]] = [
     (
         ['bodies.spacing="1.0"'],
-        f'bodies.spacing = "1.0": must be a number greater than 0 (LU); {QUOTED}, or with its unit: "10 mm"',
+        f'bodies.spacing = "1.0": must be a number greater than 0 (LU), or "auto"; {QUOTED}, or with its unit: "10 mm"',
     ),
+    (["bodies.spacing=-1"], 'bodies.spacing = -1: must be greater than 0 (LU), or "auto"'),
+    (["bodies.spacing=true"], 'bodies.spacing = true: must be a number greater than 0 (LU), or "auto"'),
     (["bodies.particles=2"], f"bodies.particles = 2: {COUNT}"),
     (["bodies.particles=200.0"], f"bodies.particles = 200.0: {COUNT}; write 200"),
     (["bodies.particles=20.5"], f"bodies.particles = 20.5: {COUNT}"),

@@ -29,12 +29,14 @@ def cost(
     """
     folder = out if out is not None else Path("costs") / scene.stem
     with command("the study", kept="it begins anew next time") as progress:
-        checked = read(scene, set_, without)
+        asked = read(scene, set_, without)
         from contact1d.workflow.cost.report import closing, summary, write_report
         from contact1d.workflow.cost.study import cost_of
         from contact1d.workflow.runs.cores import cores
         from contact1d.workflow.settings.settings import settings_for
+        from contact1d.workflow.settings.spacing import with_spacing
 
+        checked = with_spacing(asked)
         settings_for(checked)
         folder.mkdir(parents=True, exist_ok=True)
         record = cost_of(checked, scene.stem, folder, repeats, workers or cores(), progress)

@@ -17,6 +17,7 @@ from contact1d.workflow.runs.report import RESULTS, write_results
 from contact1d.workflow.scene import AnyScene, Scene, SceneError, read_scene
 from contact1d.workflow.scene.problems import Problem
 from contact1d.workflow.settings.settings import Settings, SettingsError, settings_for
+from contact1d.workflow.settings.spacing import with_spacing
 
 TRIAL, PATIENCE = 60.0, 90.0
 """Wall time [s] of LAMMPS in one trial, and of all trials: at least, and never less than the run that failed took, or
@@ -86,8 +87,9 @@ def _attempt(limit: float) -> Attempt:
 
     def attempt(scene: Scene) -> None:
         with TemporaryDirectory() as folder:
-            settings = settings_for(scene)
-            campaign.run(scene, Path(folder) / "trial", False, time_limit=limit, settings=settings, retries=False)
+            chosen = with_spacing(scene)
+            settings = settings_for(chosen)
+            campaign.run(chosen, Path(folder) / "trial", False, time_limit=limit, settings=settings, retries=False)
 
     return attempt
 

@@ -36,6 +36,7 @@ from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import AnyScene, Scene, read_scene, scene_to_toml
 from contact1d.workflow.settings.settings import Settings, settings_for
 from contact1d.workflow.settings.size import MIX_UP, in_words, require_steps
+from contact1d.workflow.settings.spacing import with_spacing
 from contact1d.workflow.settings.way import require_way
 
 AnyPath = str | PathLike[str]
@@ -76,14 +77,17 @@ def run(
         RunError: LAMMPS failed, or the result can't be trusted.
     """
     started = time.perf_counter()
-    scene = _scene(scene)
+    asked, progress = _scene(scene), progress or Silent()
+    scene = with_spacing(asked)
+    if scene is not asked:
+        progress.note(f"bodies.spacing = {scene.bodies.spacing:.4g} LU for a tolerance of {scene.accuracy.tolerance:g}")
     deck = Deck(scene, settings or settings_for(scene))
     text = _planned_text(deck)
     require_ranks(deck, ranks)
     folder = prepare(Path(folder))
     with alone(folder):
         _write(deck, text, folder)
-        context = RunContext(deck, folder, progress or Silent(), time_limit, retries, workers or cores(), ranks)
+        context = RunContext(deck, folder, progress, time_limit, retries, workers or cores(), ranks)
         return _run(context, started, figures, refine=settings is None)
 
 
@@ -171,7 +175,7 @@ def write_deck(scene: AnyScene, folder: AnyPath) -> Path:
 
     Arguments and errors are those of `run`.
     """
-    scene = _scene(scene)
+    scene = with_spacing(_scene(scene))
     deck = Deck(scene, settings_for(scene))
     text = _planned_text(deck)
     folder = prepare(Path(folder))

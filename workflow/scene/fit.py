@@ -15,6 +15,7 @@ from contact1d.workflow.scene.effects import Plate
 from contact1d.workflow.scene.fit_adhesion import adhesion, no_adhesion
 from contact1d.workflow.scene.fit_friction import no_plane, tangential
 from contact1d.workflow.scene.fit_slide import SLIDING_RULES
+from contact1d.workflow.scene.fit_spacing import automatic_spacing
 from contact1d.workflow.scene.problems import Problem, shown
 from contact1d.workflow.scene.reduction import derived_for_spheres
 from contact1d.workflow.scene.tables import EFFECTS, TIMED, default_method
@@ -172,7 +173,7 @@ def _punch(draft: Draft) -> Iterator[Problem]:
     if draft.get("bodies", "profile", "kind") != "flat_punch":
         return
     radius, spacing = draft.get("bodies", "profile", "radius"), draft.get("bodies", "spacing")
-    if radius is None or spacing is None:
+    if radius is None or spacing in (None, "auto"):
         return
     wanted = 2.0 * (radius / spacing)
     if wanted == math.inf:
@@ -194,16 +195,18 @@ def _punch(draft: Draft) -> Iterator[Problem]:
 def _material(draft: Draft) -> Iterator[Problem]:
     """A material has one elasticity, and one way to the units."""
     automatic, given = _takes_stiffness(draft), draft.has("bodies", "bulk_stiffness")
-    text = shown("auto") if given else None
+    text, of_spacing = shown("auto") if given else None, draft.get("bodies", "spacing") == "auto"
     if not draft.has("material"):
         if automatic:
-            hint = "give the stiffness (FU/LU), or [material] with E and ν of both bodies, from which it follows"
+            hint = "[material] with E and ν of both bodies, from which it follows"
+            hint = f"add {hint}" if of_spacing else f"give the stiffness (FU/LU), or {hint}"
             yield Problem("bodies.bulk_stiffness", "nothing to take it from" if given else "missing", text, hint)
         return
     has = {name: draft.has("material", name) for name in ("upper", "lower", "contact_modulus", *UNIT_KEYS)}
     if not (has["upper"] or has["lower"] or has["contact_modulus"]):
         if automatic:
-            hint = "write material.upper and material.lower, or material.contact_modulus; or give the stiffness"
+            hint = "write material.upper and material.lower, or material.contact_modulus"
+            hint += "" if of_spacing else "; or give the stiffness"
             yield Problem("bodies.bulk_stiffness", "nothing to take it from" if given else "missing", text, hint)
             return
         if has["length_unit"] and has["force_unit"] and not has["surface_energy"]:
@@ -266,6 +269,7 @@ RULES: tuple[Callable[[Draft], Iterator[Problem]], ...] = (
     _lower_body,
     adhesion,
     tangential,
+    automatic_spacing,
     _law,
     _tables_of_experiment,
     _plate_can_slide,

@@ -71,7 +71,7 @@ def _closing(draft: Draft) -> Iterator[Problem]:
         return
     upper = draft.get("bodies", "upper_particles", default=count)
     pitch = draft.get("bodies", "upper_spacing", default=spacing)
-    if None in (count, spacing, upper, pitch) or upper == 1:
+    if None in (count, spacing, upper, pitch) or "auto" in (spacing, pitch) or upper == 1:
         return
     if abs(count * spacing - upper * pitch) <= CLOSED * count * spacing:
         return

@@ -27,6 +27,7 @@ from contact1d.workflow.scene.output import Output
 from contact1d.workflow.scene.profiles import Flat, Parabola, Profile
 from contact1d.workflow.scene.quantities import (
     AnyParticleCount,
+    AutoLength,
     AutoParticleCount,
     AutoStiffness,
     Displacement,
@@ -49,7 +50,11 @@ class Bodies(Table):
     particles: AutoParticleCount = Field(
         description='particles per body, or of the lower one, or "auto": as many as the contact needs'
     )
-    spacing: Length = Field(description="distance of neighbouring particles")
+    given_spacing: AutoLength = Field(
+        alias="spacing",
+        description='distance of neighbouring particles, or on a rigid plane "auto": so near that all results keep '
+        "`accuracy.tolerance`",
+    )
     profile: Profile = Field(description="shape of the upper body")
     reduction: Reduction = Field(default=cast("Reduction", None), description=MEANING)
     bulk_stiffness: AutoStiffness = Field(
@@ -91,6 +96,12 @@ class Bodies(Table):
             count = self.upper_particles or self.particles
             return 0.5 * float(count) * self.own_spacing if count != "auto" else math.inf
         return self.profile.reach
+
+    @property
+    def spacing(self) -> float:
+        """Distance [LU] of neighbouring particles; "auto" is a number once `settings.spacing.with_spacing` chose it."""
+        assert self.given_spacing != "auto", "no spacing was chosen yet"
+        return self.given_spacing
 
     @property
     def own_spacing(self) -> float:

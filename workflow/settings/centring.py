@@ -20,11 +20,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.polynomial import fitting, lowest_minimum
+from contact1d.analysis.pressure import Profile
+from contact1d.analysis.radius import compressive_radius
 from contact1d.workflow.scene import Load, Scene, Tangential
 from contact1d.workflow.settings.cells import expected_of_adhesion, left_by_cells
 from contact1d.workflow.settings.estimate import ContactEstimate
 from contact1d.workflow.settings.settings import Settings
-from contact1d.workflow.settings.sliders import sliders_of, stops
+from contact1d.workflow.settings.sliders import Sliders, sliders_of, stops
 
 Array = NDArray[np.float64]
 OWN, OTHERS = 0.5, (0.25, 0.0)
@@ -61,7 +63,24 @@ def expected(scene: Scene, settings: Settings) -> Mapping[str, float]:
     """By the names of results, what the estimate makes of them [its unit]: what such a change is to be held against."""
     if scene.adheres and scene.adhesion is not None:
         return expected_of_adhesion(scene, settings)
-    return _marks(scene, settings, OWN)
+    sizes = _marks(scene, settings, OWN)
+    if isinstance(scene.experiment, Tangential):
+        chain = _chain(scene, settings, OWN)
+        sizes |= chain.sizes(stops(scene.experiment, chain))
+    return sizes
+
+
+def read_off(scene: Scene, settings: Settings) -> Mapping[str, float]:
+    """By the names of radii, how uncertain they are as they are read off particles [LU]; of an adhesive one nothing."""
+    if scene.bodies.profile.has_edge or scene.adhesion is not None:
+        return {}
+    if isinstance(scene.experiment, Tangential):
+        chain = _chain(scene, settings, OWN)
+        return chain.read_off(stops(scene.experiment, chain))
+    if not isinstance(scene.experiment, Load):
+        return {}
+    row = _Row(settings.estimate, OWN, settings.largest_displacement)
+    return {"contact_radius": compressive_radius(row.profile(row.crossing(scene.experiment.force))).uncertainty}
 
 
 def _marks(scene: Scene, settings: Settings, phase: float) -> dict[str, float]:
@@ -76,13 +95,7 @@ def _marks(scene: Scene, settings: Settings, phase: float) -> dict[str, float]:
     if experiment.motion_is_result:
         return {}
     if isinstance(experiment, Tangential):
-        # Under a small load it is the nearest particles that carry all of it.
-        reach = min(
-            max(estimate.half_width(OVER_DEEPEST * deepest, edge), FEWEST * estimate.spacing), scene.bodies.reach
-        )
-        count = int(reach / estimate.spacing) + 2
-        x = estimate.spacing * (np.arange(-count, count) + phase)
-        chain = sliders_of(scene, x[np.abs(x) <= reach])
+        chain = _chain(scene, settings, phase)
         way = stops(experiment, chain)
         found = chain.at_end(way)
         return found | {"contact_radius": radius(way[-1][0]) if found["normal_force"] > 0.0 else 0.0}
@@ -97,16 +110,28 @@ def _marks(scene: Scene, settings: Settings, phase: float) -> dict[str, float]:
     return {"adhesion_force": tension, "critical_radius": radius(place), "zero_load_radius": radius(zero)}
 
 
+def _chain(scene: Scene, settings: Settings, phase: float) -> Sliders:
+    """The particles with friction of a chain that stands so; under a small load the nearest ones carry all of it."""
+    estimate = settings.estimate
+    edge = float(estimate.gap[int(estimate.force.argmin())])
+    widest = estimate.half_width(OVER_DEEPEST * settings.largest_displacement, edge)
+    reach = min(max(widest, FEWEST * estimate.spacing), scene.bodies.reach)
+    count = int(reach / estimate.spacing) + 2
+    x = estimate.spacing * (np.arange(-count, count) + phase)
+    return sliders_of(scene, x[np.abs(x) <= reach])
+
+
 class _Row:
     """The sum over particles whose apex stands at a phase between two of them."""
 
     def __init__(self, estimate: ContactEstimate, phase: float, deepest: float) -> None:
-        """Keep the heights [LU] of all particles within reach at the deepest displacement, and which is whose."""
+        """Keep places and heights [LU] of particles within reach at the deepest displacement, and which is whose."""
         self.estimate = estimate
         spacing, reach = estimate.spacing, estimate.half_width(deepest, float(estimate.gap[-1]))
         count = int(reach / spacing) + 2
-        x = np.abs(spacing * (np.arange(-count, count + 1) + phase))
-        heights = estimate.rest + estimate.profile.height(np.asarray(x[x <= reach], dtype=np.float64))
+        x = spacing * (np.arange(-count, count + 1) + phase)
+        self.x = np.asarray(x[np.abs(x) <= reach], dtype=np.float64)
+        heights = estimate.rest + estimate.profile.height(np.abs(self.x))
         self.heights, self.own = np.unique(heights, return_inverse=True)
         self.lowest = estimate.rest - float(estimate.gap[-1])
         self.highest = deepest + OVERREACH * (abs(deepest) + spacing)
@@ -115,6 +140,14 @@ class _Row:
         """F(d) [FU] at each of the displacements [LU]."""
         each = np.interp(self.heights[:, None] - displacements, self.estimate.gap, self.estimate.force, right=0.0)
         return np.asarray(np.ascontiguousarray(each.T[:, self.own]).sum(axis=1))
+
+    def profile(self, displacement: float) -> Profile:
+        """Forces [FU] in place of pressures at a displacement [LU], and particles beside the contact."""
+        each = np.interp(self.heights - displacement, self.estimate.gap, self.estimate.force, right=0.0)[self.own]
+        beside = self.estimate.spacing * np.arange(1, 3)
+        x = np.concatenate([self.x[0] - beside[::-1], self.x, self.x[-1] + beside])
+        none = np.zeros_like(x)
+        return Profile(x, none, none, np.pad(each, 2), none)
 
     def force(self, displacement: float) -> float:
         """F(d) [FU] at a displacement [LU]."""

@@ -45,4 +45,6 @@ def advice_at_rest(scene: Scene) -> str:
     """What helps a search for a state at rest, by its method."""
     if scene.method == "dynamic":
         return 'What helps is method = "quasistatic"'
+    if scene.interaction is None:
+        return f"What helps is {FINER_SPACING}"
     return f'What helps is to leave interaction.cutoff and bodies.particles "auto"; for a radius {FINER_SPACING}, too'

@@ -1,0 +1,132 @@
+"""`bodies.spacing = "auto"`: who can have it, what is chosen, and where it is refused in words whose remedies work."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from contact1d import SettingsError, load_run, run, write_deck
+from contact1d.workflow.scene import Scene, SceneError, read_scene, scene_from_dict
+from contact1d.workflow.settings.spacing import MOST, with_spacing
+
+ROUND_OFF = 1e-12
+E_STAR, R, LOAD = 1e9, 1e-3, 1.0
+PATH = {"kind": "path", "displacements": [1e-7]}
+TANGENTIAL = {"kind": "tangential", "normal_force": LOAD, "displacements": [1e-8]}
+PUNCH = {"kind": "flat_punch", "radius": R}
+
+
+def tables(**more: Any) -> dict[str, Any]:
+    """A sphere under a load; `more` is merged into its tables."""
+    scene: dict[str, Any] = {
+        "title": "automatic",
+        "bodies": {
+            "particles": "auto", "spacing": "auto", "lower": "rigid_plane",
+            "profile": {"kind": "parabola", "radius": R},
+        },
+        "material": {"contact_modulus": E_STAR, "length_unit": 1.0, "force_unit": 1.0},
+        "experiment": {"kind": "load", "force": LOAD},
+    }  # fmt: skip
+    for name, table in more.items():
+        scene[name] = scene.get(name, {}) | table if name != "experiment" else table
+    return scene
+
+
+def chosen(**more: Any) -> Scene:
+    """The scene with its spacing."""
+    return with_spacing(scene_from_dict(tables(**more)))
+
+
+def refused(**more: Any) -> list[str]:
+    """What is said of a scene that cannot have it."""
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict(tables(**more))
+    return [str(problem) for problem in caught.value.problems]
+
+
+def test_a_smaller_tolerance_takes_nearer_particles_and_their_stiffness_follows() -> None:
+    coarse, fine = (chosen(accuracy={"tolerance": tolerance}) for tolerance in (1e-3, 1e-5))
+    assert 3.0 < coarse.bodies.spacing / fine.bodies.spacing < 20.0
+    for scene in (coarse, fine):
+        assert scene.bulk_stiffness == pytest.approx(E_STAR * scene.bodies.spacing, rel=ROUND_OFF)
+
+
+def test_a_number_is_left_as_it_is() -> None:
+    scene = scene_from_dict(tables(bodies={"spacing": 1e-6}))
+    assert with_spacing(scene) is scene
+
+
+def test_a_flat_punch_is_a_whole_number_of_particles_wide() -> None:
+    scene = chosen(bodies={"profile": PUNCH})
+    wide = 2.0 * R / scene.bodies.spacing
+    assert wide == pytest.approx(round(wide), rel=ROUND_OFF)
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e-3, 1e6])
+def test_the_unit_of_length_does_not_matter(scale: float) -> None:
+    one = chosen().bodies.spacing
+    other = chosen(
+        bodies={"profile": {"kind": "parabola", "radius": R / scale}},
+        material={"length_unit": scale},
+    ).bodies.spacing
+    assert other * scale == pytest.approx(one, rel=1e-6)  # the same contact, its radius found in steps of another size
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ({"bodies": {"particles": 100}}, 'bodies.particles = 100: must be "auto" with spacing = "auto"'),
+        (
+            {"bodies": {"bulk_stiffness": 1.0}},
+            "the stiffness of a particle is E* times the spacing; write it, and [mat",
+        ),
+        ({"bodies": {"bulk_stiffness_tangential": 1.0}}, "it belongs to one particle; remove it: it follows from ν"),
+        ({"bodies": {"profile": {"kind": "flat"}}}, "must be a length (LU) of a flat body without an edge"),
+        ({"bodies": {"lower": "particles"}}, 'must be a length (LU) with bodies.lower = "particles"'),
+        ({"neighbours": {"stiffness": 1.0}}, "must be a length (LU) with [neighbours]: masses, drags and springs"),
+        ({"experiment": {"kind": "load", "force": 1.0, "method": "dynamic"}, "damping": {}, "plate": {}}, "[damping]"),
+    ],
+)
+def test_who_cannot_have_it_is_told_why(more: dict[str, Any], words: str) -> None:
+    assert any(words in line for line in refused(**more))
+
+
+def test_without_a_material_there_is_nothing_to_take_the_stiffness_from() -> None:
+    scene = {name: table for name, table in tables().items() if name != "material"}
+    with pytest.raises(SceneError, match=r"bodies\.bulk_stiffness: missing; add \[material\] with E"):
+        scene_from_dict(scene)
+
+
+def test_too_many_particles_are_refused_with_a_tolerance_that_works() -> None:
+    along = {"friction": {"coefficient": 0.3}, "experiment": TANGENTIAL}
+    with pytest.raises(SettingsError, match=f"takes {MOST} at most: take an accuracy.tolerance of") as caught:
+        chosen(accuracy={"tolerance": 1e-7}, **along)
+    found = re.search(r"tolerance of (\S+), or", str(caught.value))
+    assert found is not None
+    assert chosen(accuracy={"tolerance": float(found[1])}, **along).bodies.spacing > 0.0
+
+
+def test_where_nothing_touches_there_is_no_spacing_to_choose() -> None:
+    with pytest.raises(SettingsError, match="nothing touches in this experiment"):
+        chosen(experiment={"kind": "path", "displacements": [-1e-6, 0.0]})
+
+
+def test_a_run_keeps_the_number_and_its_folder_repeats_it(tmp_path: Path) -> None:
+    scene = scene_from_dict(tables(experiment=PATH))
+    first = run(scene, tmp_path / "first", figures=False)
+    kept = read_scene(tmp_path / "first" / "scene.toml")
+    assert kept.bodies.given_spacing == first.scene.bodies.given_spacing == with_spacing(scene).bodies.spacing
+    again = run(kept, tmp_path / "again", figures=False)
+    assert again.results == first.results == load_run(tmp_path / "first").results
+    write_deck(scene, tmp_path / "deck")
+    assert (tmp_path / "deck" / "system.data").read_text() == (tmp_path / "first" / "system.data").read_text()
+
+
+def test_a_change_of_the_scene_chooses_anew() -> None:
+    scene = scene_from_dict(tables())
+    finer = scene.with_({"accuracy.tolerance": 1e-6})
+    assert finer.bodies.given_spacing == "auto"
+    assert with_spacing(finer).bodies.spacing < with_spacing(scene).bodies.spacing

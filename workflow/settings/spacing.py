@@ -1,0 +1,123 @@
+"""How many particles stand in a contact on the plane, where nobody said: so many that the lattice keeps the tolerance.
+
+What the places of particles leave open is known before a run, from sums over cells beside JKR's integral, or over
+particles at other places (`workflow.settings.centring`). It falls with the square of the spacing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+
+from contact1d.workflow.scene import FlatPunch, Load, Measured, Path, PullOff, Scene
+from contact1d.workflow.settings.adhesion import estimate_on_plane
+from contact1d.workflow.settings.centring import expected, left_by_centring, read_off
+from contact1d.workflow.settings.settings import SettingsError, settings_for
+from contact1d.workflow.settings.shape import tabulated
+
+FEWEST, MOST = 30, 5000
+"""Particles in the contact radius: at FEWEST F_A and a₀ of JKR are within 3e-3; MOST keep 1e-6."""
+LEFT = 0.9
+"""Part of the tolerance that the lattice may use up."""
+MOST_TRIES = 8
+MOST_AT_ONCE = 16.0
+"""What one try makes of the error's excess at most: a radius that is 0 at one place of the contact's centre has one
+without bound."""
+SAME = 0.01
+"""Difference of a radius at two spacings over it, below which it is the body's."""
+MOST_SIZES = 60
+"""Tries to find a radius: each brings a spacing that is too wide nearer by FEWEST, or doubles one that is too fine."""
+
+
+def with_spacing(scene: Scene) -> Scene:
+    """The scene with a number for its `bodies.spacing`; as it is where it has one.
+
+    Raises:
+        SettingsError: nothing touches, or the tolerance needs more than MOST particles in the contact radius.
+    """
+    if scene.bodies.given_spacing != "auto":
+        return scene
+    radius = _contact_radius(scene)
+    chosen = fine_enough(partial(_spaced, scene, radius))
+    over = left_by_lattice(chosen) / scene.accuracy.tolerance
+    if over > 1.0:
+        needed = radius / chosen.bodies.spacing * math.sqrt(over)
+        raise SettingsError(
+            f"a tolerance of {scene.accuracy.tolerance:g} needs about {needed:.2g} particles in the contact radius of "
+            f'{radius:.4g} LU, and bodies.spacing = "auto" takes {MOST} at most: take an accuracy.tolerance of '
+            f"{_up(over * scene.accuracy.tolerance)}, or give bodies.spacing"
+        )
+    return chosen
+
+
+def fine_enough(scene_of: Callable[[int], Scene]) -> Scene:
+    """The scene with so many particles in the contact radius that its lattice leaves LEFT of its tolerance, or MOST."""
+    count = FEWEST
+    for _ in range(MOST_TRIES):
+        scene = scene_of(count)
+        over = left_by_lattice(scene) / (LEFT * scene.accuracy.tolerance)
+        if over <= 1.0 or count == MOST:
+            break
+        count = min(MOST, math.ceil(count * math.sqrt(min(over, MOST_AT_ONCE))) + 1)
+    return scene
+
+
+def left_by_lattice(scene: Scene) -> float:
+    """The largest share of a result that its lattice leaves open; 0 where no contact can be estimated: the run says so.
+
+    A result that is 0 has no share; a radius that is 0 here and not elsewhere has one without bound.
+    """
+    try:
+        settings = settings_for(scene)
+        sizes, read = dict(expected(scene, settings)), read_off(scene, settings)
+        left = {name: part + read.get(name, 0.0) for name, part in left_by_centring(scene, settings).items()}
+        if isinstance(scene.experiment, Load) and "contact_radius" in left:  # F/πa²
+            left["mean_pressure"], sizes["mean_pressure"] = 2.0 * left["contact_radius"], sizes["contact_radius"]
+    except SettingsError:
+        return 0.0
+    shares = [left[name] / abs(size) for name, size in sizes.items() if name in left and size]
+    appear = any(left.get(name, 0.0) for name, size in sizes.items() if size == 0.0 and name.endswith("radius"))
+    return max([*shares, math.inf if appear else 0.0])
+
+
+def _spaced(scene: Scene, radius: float, count: int) -> Scene:
+    """The scene with so many particles in a contact radius [LU]: a whole number, as a punch needs."""
+    return scene.model_copy(update={"bodies": scene.bodies.model_copy(update={"given_spacing": radius / count})})
+
+
+def _contact_radius(scene: Scene) -> float:
+    """The contact radius [LU] that particles are counted in: under the load, or at F = 0 where it is drawn off.
+
+    Raises:
+        SettingsError: nothing touches.
+    """
+    if isinstance(scene.bodies.profile, FlatPunch):
+        return scene.bodies.profile.radius
+    size = 1.0
+    for _ in range(MOST_SIZES):
+        before, size = size, _half_width(_spaced(scene, size, FEWEST))
+        if abs(size - before) <= SAME * size:
+            return size
+    raise SettingsError(
+        "nothing touches in this experiment, so that there is no contact to choose a spacing for: give bodies.spacing, "
+        "or a displacement above 0"
+    )
+
+
+def _half_width(scene: Scene) -> float:
+    """Half-width [LU] of the contact with this spacing, which is the least that there is."""
+    bodies, experiment = scene.bodies, scene.experiment
+    estimate = estimate_on_plane(
+        scene, tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
+    )
+    load = experiment.compression
+    if scene.adheres and isinstance(experiment, Path | PullOff):
+        load = 0.0
+    return estimate.half_width(max(experiment.places()) if load is None else estimate.displacement_at(load), 0.0)
+
+
+def _up(tolerance: float) -> str:
+    """Two figures of a tolerance that is no smaller."""
+    step = 10.0 ** (math.floor(math.log10(tolerance)) - 1)
+    return f"{math.ceil(tolerance / step * 1.1) * step:.2g}"
