@@ -80,7 +80,7 @@ def tangential(context: RunContext) -> Outcome:
         friction=_columns(drawn),
         spacing_uncertainty={name: quantities[name].uncertainty for name in RADII},
         prescribed=_prescribed(scene, quantities),
-        compared_with={"tangential_force": strongest, "dissipated_energy": _work(drawn)},
+        compared_with={"tangential_force": strongest, "dissipated_energy": _work(rows)},
     )
 
 
@@ -141,9 +141,9 @@ def _prescribed(scene: Scene, quantities: Mapping[str, Quantity]) -> frozenset[s
     return frozenset(given | {name for name in RADII if quantities[name].value == quantities[name].uncertainty == 0.0})
 
 
-def _work(drawn: Sequence[Drawn]) -> float:
-    """∫ |F_x du| [FU·LU]: with what a dissipated energy is compared."""
-    return sum(0.5 * abs(a.force + b.force) * abs(b.place - a.place) for a, b in pairwise(drawn))
+def _work(rows: Sequence[Drawn]) -> float:
+    """∫ |F_x du| [FU·LU] since the load came on: with what a dissipated energy is compared."""
+    return sum(0.5 * abs(a.force + b.force) * abs(b.place - a.place) for a, b in pairwise(rows))
 
 
 def _columns(drawn: Sequence[Drawn]) -> dict[str, tuple[float, ...]]:
