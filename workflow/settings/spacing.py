@@ -21,9 +21,10 @@ FEWEST, MOST = 30, 5000
 LEFT = 0.9
 """Part of the tolerance that the lattice may use up."""
 MOST_TRIES = 8
-MOST_AT_ONCE = 16.0
-"""What one try makes of the error's excess at most: a radius that is 0 at one place of the contact's centre has one
-without bound."""
+APPEARING = 16.0
+"""What an excess without bound counts: that of a radius which is 0 at one place of the contact's centre only."""
+LARGEST = 0.1
+"""The largest tolerance that there is."""
 SAME = 0.01
 """Difference of a radius at two spacings over it, below which it is the body's."""
 MOST_SIZES = 60
@@ -40,13 +41,13 @@ def with_spacing(scene: Scene) -> Scene:
         return scene
     radius = _contact_radius(scene)
     chosen = fine_enough(partial(_spaced, scene, radius))
-    over = left_by_lattice(chosen) / scene.accuracy.tolerance
-    if over > 1.0:
-        needed = radius / chosen.bodies.spacing * math.sqrt(over)
+    left = left_by_lattice(chosen)
+    if scene.accuracy.tolerance < left < math.inf:  # without bound the run says what appears
+        needed = radius / chosen.bodies.spacing * math.sqrt(left / scene.accuracy.tolerance)
+        larger = "" if left > 0.9 * LARGEST else f"take an accuracy.tolerance of {_up(left)}, or "
         raise SettingsError(
             f"a tolerance of {scene.accuracy.tolerance:g} needs about {needed:.2g} particles in the contact radius of "
-            f'{radius:.4g} LU, and bodies.spacing = "auto" takes {MOST} at most: take an accuracy.tolerance of '
-            f"{_up(over * scene.accuracy.tolerance)}, or give bodies.spacing"
+            f'{radius:.4g} LU, and bodies.spacing = "auto" takes {MOST} at most: {larger}give bodies.spacing'
         )
     return chosen
 
@@ -59,7 +60,7 @@ def fine_enough(scene_of: Callable[[int], Scene]) -> Scene:
         over = left_by_lattice(scene) / (LEFT * scene.accuracy.tolerance)
         if over <= 1.0 or count == MOST:
             break
-        count = min(MOST, math.ceil(count * math.sqrt(min(over, MOST_AT_ONCE))) + 1)
+        count = min(MOST, math.ceil(count * math.sqrt(over if over < math.inf else APPEARING)) + 1)
     return scene
 
 
@@ -120,4 +121,4 @@ def _half_width(scene: Scene) -> float:
 def _up(tolerance: float) -> str:
     """Two figures of a tolerance that is no smaller."""
     step = 10.0 ** (math.floor(math.log10(tolerance)) - 1)
-    return f"{math.ceil(tolerance / step * 1.1) * step:.2g}"
+    return f"{math.ceil(1.1 * tolerance / step) * step:.2g}"
