@@ -18,7 +18,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 FAILED = ".failed"
 """File of a copy that the first failing test's name is written to."""
-HANGS = "they take too long"
+HANGS, CRASHES = "they take too long", "they crash"
 QUICK = ("-q", "--assert=plain", "-p", "no:cacheprovider")
 """pytest without what takes time only."""
 LOADED = (

@@ -4,8 +4,10 @@
 
 A mutant changes one operator, comparison or number of one file in a copy of this folder. The tests that call the
 function run there, quick ones that call little else first, up to the first that fails or LONGEST; goldens, which hold
-any number, run last. One that passes them all survives: it is printed, and listed in results/mutants.json, with the
-reason if one was written there by hand (it is kept for the same change of the same line). All files take a night;
+any number, run last. One that passes them is looked at again, by more of the tests that call it, up to LONGEST_AGAIN:
+whole runs of tests/validation and tests/hard among them. One that passes these too survives: it is printed, and listed
+in results/mutants.json, with the reason if one was written there by hand (it is kept for the same change of the same
+line). All files take a night;
 `--part` draws a share of each file's mutants, the same ones for one seed. `--callers` keeps which test calls what. Exit
 code 1 where fewer than ASKED are killed. What is changed, and what is not: `benchmarks/mutating.py`.
 
@@ -21,7 +23,7 @@ import os
 import random
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -31,15 +33,15 @@ from typing import Any
 from benchmarks.callers import WHOLE, Called, callers
 from benchmarks.faulty import ROOT, copy_of_this, first_failure, load
 from benchmarks.mutating import Mutant, mutants
-from benchmarks.patched import Wanted, is_quick, noticed
+from benchmarks.patched import WAITING, Wanted, is_quick, noticed
 
 RESULTS = Path(__file__).parent / "results" / "mutants.json"
 ASKED = 0.9
 """Asked of the share that is killed."""
-LONGEST = 30.0
-"""Time of the tests that look for one mutant, as long as they took when they were traced [s]."""
-PATIENCE, LEAST = 5.0, 300.0
-"""Time after which a mutant counts as killed, over that of its tests, and at least [s]."""
+LONGEST, LONGEST_AGAIN = 30.0, 300.0
+"""Time of the tests that look for one mutant, and of those that look again, as long as they took when traced [s]."""
+PATIENCE, LEAST = 5.0, 30.0
+"""Time of the processor after which a mutant counts as killed, over that of its tests, and at least [s]."""
 ROOMS = {
     "analysis": ("analysis/*.py",),
     "settings": ("workflow/settings/*.py",),
@@ -58,10 +60,10 @@ PROCESSES = ("cost", "sweep", "report", "readme", "benchmarks", "cli", "engine",
 GOLDEN = "tests/decks/test_goldens.py"
 
 
-def tests_of(mutant: Mutant, called: Called) -> list[str]:
+def tests_of(mutant: Mutant, called: Called) -> tuple[list[str], list[str]]:
     """Those that call the mutant's function, quick ones that call little else first, up to LONGEST; goldens last.
 
-    What stands in no function belongs to all functions of its file.
+    And after them those up to LONGEST_AGAIN. What stands in no function belongs to all functions of its file.
     """
     name = f"{mutant.file}:{mutant.function}"
     wanted = name.removesuffix(WHOLE) if mutant.function == WHOLE else name
@@ -70,13 +72,16 @@ def tests_of(mutant: Mutant, called: Called) -> list[str]:
         for test, (taken, functions) in called.items()
         if any(one == wanted or (mutant.function == WHOLE and one.startswith(wanted)) for one in functions)
     }
-    chosen, whole = [], 0.0
+    first: list[str] = []
+    again: list[str] = []
+    whole = 0.0
     for test in sorted(those, key=lambda test: (test.startswith(GOLDEN), those[test][1])):
         whole += those[test][0]
-        if chosen and whole > LONGEST:
-            break
-        chosen.append(test)
-    return chosen
+        if not first or (whole <= LONGEST and not again):
+            first.append(test)
+        elif whole <= LONGEST + LONGEST_AGAIN:
+            again.append(test)
+    return first, again
 
 
 @dataclass
@@ -94,35 +99,55 @@ def looked_for(chosen: Sequence[Mutant], workers: int, kept: Path | None) -> Fou
     with tempfile.TemporaryDirectory() as temporary, ThreadPoolExecutor(workers) as executor:
         copies = [copy_of_this(Path(temporary) / str(number)) for number in range(workers)]
         called = callers(copies[0], test_files(), kept)
+        several = [tests_of(mutant, called) for mutant in chosen]
 
-        def wanted(number: int, mutant: Mutant) -> Wanted:
-            tests = tests_of(mutant, called)
-            return number, mutant, tests, max(LEAST, PATIENCE * sum(called[test][0] for test in tests))
+        def wanted(number: int, again: bool) -> Wanted:
+            tests = several[number][again]
+            patience = max(LEAST, PATIENCE * sum(called[test][0] for test in tests))
+            return number, chosen[number], tests, patience
 
-        every = [wanted(*one) for one in enumerate(chosen)]
-
-        def tell(number: int, by: str) -> None:
-            mutant, tests = every[number][1:3]
+        def tell(number: int, by: str, again: bool) -> None:
+            mutant = chosen[number]
+            if not by and not again and several[number][1]:
+                return
             if not by:
                 found.alive.append(mutant)
             elif by.startswith(GOLDEN):
                 found.golden.append(mutant)
-            word = "killed  " if by else "SURVIVES" if tests else "NO TEST "
+            word = "killed  " if by else "SURVIVES" if several[number][0] else "NO TEST "
             print(f"{word} {mutant.file}:{mutant.line}: {mutant.change}   {by or mutant.text}", flush=True)
 
-        def look(folder: Path, mine: Sequence[Wanted]) -> None:
-            whole = {one.file: (ROOT / one.file).read_text(encoding="utf-8") for _, one, _, _ in mine}
-            quick = [one for one in mine if one[2] and is_quick(one[1], whole[one[1].file])]
-            done = noticed(folder, quick, tell) if quick else set()
-            for number, mutant, tests, patience in mine:
-                if number in done:
-                    continue
-                path = folder / mutant.file
-                path.write_text(mutant.source, encoding="utf-8")
-                tell(number, first_failure(folder, tests, patience) if tests else "")
-                path.write_text(whole[mutant.file], encoding="utf-8")
+        def look(folder: Path, mine: Sequence[int]) -> None:
+            left = [number for number in mine if not several[number][0]]
+            for number in left:
+                tell(number, "", again=True)
+            left = [number for number in mine if several[number][0]]
+            for again in (False, True):
+                by = tried(folder, [wanted(number, again) for number in left], lambda n, by, a=again: tell(n, by, a))
+                left = [number for number in left if not by[number] and several[number][1]]
 
-        list(executor.map(look, copies, [every[number::workers] for number in range(workers)]))
+        list(executor.map(look, copies, [range(number, len(chosen), workers) for number in range(workers)]))
+    return found
+
+
+def tried(folder: Path, wanted: Sequence[Wanted], tell: Callable[[int, str], None]) -> dict[int, str]:
+    """For the numbers of mutants the test that notices, "" for none; each is told as soon as it is known."""
+    found: dict[int, str] = {}
+
+    def note(number: int, by: str) -> None:
+        found[number] = by
+        tell(number, by)
+
+    whole = {one.file: (ROOT / one.file).read_text(encoding="utf-8") for _, one, _, _ in wanted}
+    quick = [one for one in wanted if is_quick(one[1], whole[one[1].file])]
+    if quick:
+        noticed(folder, quick, note)
+    for number, mutant, tests, patience in wanted:
+        if number not in found:
+            path = folder / mutant.file
+            path.write_text(mutant.source, encoding="utf-8")
+            note(number, first_failure(folder, tests, WAITING * patience))
+            path.write_text(whole[mutant.file], encoding="utf-8")
     return found
 
 

@@ -7,9 +7,12 @@ milliseconds in place of seconds. What stands in no function, as a constant of a
 from __future__ import annotations
 
 import ast
+import contextlib
 import functools
 import json
+import math
 import os
+import resource
 import signal
 import sys
 import time
@@ -18,7 +21,7 @@ from pathlib import Path
 from types import CodeType, FunctionType
 from typing import Any
 
-from benchmarks.faulty import FAILED, HANGS, QUICK, in_copy
+from benchmarks.faulty import CRASHES, FAILED, HANGS, QUICK, in_copy
 from benchmarks.mutating import Mutant
 
 TOLD = ".told"
@@ -26,7 +29,9 @@ TOLD = ".told"
 LONGEST_ROOM = 1e6
 """[s], for all mutants of a copy."""
 Wanted = tuple[int, Mutant, list[str], float]
-"""Number of a mutant, the mutant, its tests, and the time after which it counts as killed [s]."""
+"""Number of a mutant, the mutant, its tests, and the time after which it counts as killed, the processor's own [s]."""
+WAITING = 20.0
+"""The same by the clock, over that: for what waits for ever, on a machine that does other things too."""
 
 
 def code_in(source: str, function: str) -> CodeType | None:
@@ -90,6 +95,7 @@ class Patches:
         child = os.fork()
         if child == 0:
             os.setsid()
+            resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(patience), math.ceil(patience)))
             function.__code__ = code
             try:
                 for item, after in zip(items, [*items[1:], None], strict=True):
@@ -100,9 +106,14 @@ class Patches:
                 self._noted.write_text("they do not run", encoding="utf-8")
             finally:
                 os._exit(0)
-        end = time.monotonic() + patience
+        end = time.monotonic() + WAITING * patience
         while time.monotonic() < end:
-            if os.waitpid(child, os.WNOHANG)[0]:
+            done, status = os.waitpid(child, os.WNOHANG)
+            if done and os.WIFSIGNALED(status):
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(child, signal.SIGKILL)  # what it started
+                return HANGS if os.WTERMSIG(status) in (signal.SIGKILL, signal.SIGXCPU) else CRASHES
+            if done:
                 return self._noted.read_text(encoding="utf-8") if self._noted.exists() else ""
             time.sleep(0.005)
         os.killpg(child, signal.SIGKILL)

@@ -145,3 +145,18 @@ def test_what_cells_leave_open_is_their_sum_beside_jkr(particles: int) -> None:
     auto = scene_from_dict(SCENE | {"bodies": bodies | {"particles": "auto"}})
     wider = left_by_cells(auto, settings_for(auto))
     assert all(wider[name] >= 0.999 * value for name, value in left.items() if particles % 2 == 0)
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.25, 0.5])
+def test_the_claim_of_a_contact_of_few_cells_covers_any_place_of_its_apex(phase: float) -> None:
+    """a_cr where the sum over the cells has its largest tension, against JKR's (9π W R²/8E)^(1/3)."""
+    scene = scene_from_dict(SCENE | {"bodies": BODIES | {"spacing": 2.0, "bulk_stiffness": 2.0}})
+    settings = settings_for(scene)
+    found = settings.estimate
+    assert isinstance(found, AdhesiveEstimate)
+    cells = found.cells(2.0 * (np.arange(-50.0, 50.0) + phase), scene.bodies)
+    places = np.linspace(found.fixed_grips[1], found.displacement_at(0.0), 4001)
+    top = places[int(np.argmin(cells.forces(places, 2.0)))]
+    left = left_by_cells(scene, settings)["critical_radius"]
+    assert abs(found.half_width(top, 0.0) - (9.0 * math.pi * W * R**2 / (8.0 * E)) ** (1.0 / 3.0)) <= left
+    assert left < 2.0 * 0.25  # and is not a quarter of the spacing

@@ -1,7 +1,7 @@
 """Claim: settings are made of the scene's own lengths, energies and masses: scaled scenes have scaled settings.
 
 Factors are powers of two, so that products are exact: a spacing or a mass that multiplies where it should divide, and
-is 1 in most scenes, shows here.
+is 1 in most scenes, shows here. In units far from 1 a number that is compared with 1, and should not be, shows as well.
 """
 
 from __future__ import annotations
@@ -13,32 +13,32 @@ from typing import Any
 import pytest
 
 from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.settings.centring import left_by_centring
+from contact1d.workflow.settings.centring import expected, left_by_centring
 from contact1d.workflow.settings.chain import decay_length, reflected
 from contact1d.workflow.settings.inertia import inertia
 from contact1d.workflow.settings.settings import Settings, settings_for
+from contact1d.workflow.settings.size import in_words
 from contact1d.workflow.settings.way import contact_half_width, too_fast
 from tests.scenes import chains
 
-LENGTH, ENERGY, MASS = 4.0, 8.0, 2.0
-FORCE, TIME = ENERGY / LENGTH, LENGTH * math.sqrt(MASS / ENERGY)
-STIFFNESS, DRAG = ENERGY / LENGTH**2, MASS / TIME
+UNITS = {"usual": (4.0, 8.0, 2.0), "tiny": (2.0**-20, 2.0**-44, 2.0**-10), "vast": (2.0**17, 2.0**40, 2.0**22)}
+"""Of length, energy and mass: in the new ones over that in the scene's."""
 EXACT = 1e-9
 """Relative: round-off; an offset of 1e-12 of a grid, searches that end within their own bracket."""
 KEYS = {
-    "spacing": LENGTH, "radius": LENGTH, "range": LENGTH, "amplitude": ENERGY, "bulk_stiffness": STIFFNESS,
-    "bulk_stiffness_tangential": STIFFNESS, "stiffness": STIFFNESS, "mass": MASS, "force": FORCE, "preload": FORCE,
-    "displacements": LENGTH, "temperature": ENERGY, "coefficient": DRAG, "damping": DRAG,
-    "work_of_adhesion": STIFFNESS, "normal_force": FORCE, "velocity": LENGTH / TIME, "distance": LENGTH,
-    "upper_spacing": LENGTH, "upper_offset": LENGTH,
+    "spacing": "length", "radius": "length", "range": "length", "amplitude": "energy", "bulk_stiffness": "stiffness",
+    "bulk_stiffness_tangential": "stiffness", "stiffness": "stiffness", "mass": "mass", "force": "force",
+    "preload": "force", "displacements": "length", "temperature": "energy", "coefficient": "drag", "damping": "drag",
+    "work_of_adhesion": "stiffness", "normal_force": "force", "velocity": "velocity", "distance": "length",
+    "upper_spacing": "length", "upper_offset": "length",
 }  # fmt: skip
 NUMBERS = {
-    "tolerance": 1.0, "particles": 1.0, "rest": LENGTH, "cutoff": LENGTH, "table_from": LENGTH, "closest": LENGTH,
-    "bulk_stiffness": STIFFNESS, "plane_stiffness": STIFFNESS, "far": LENGTH, "force_scale": FORCE,
-    "force_tolerance": FORCE, "displacement_step": LENGTH, "loading_step": LENGTH, "smooth_step": LENGTH,
-    "longest_move": LENGTH, "time_step": TIME, "damping": DRAG, "damped_stiffness": STIFFNESS, "plate_mass": MASS,
-    "plate_damping": DRAG, "settle_time": TIME, "largest_displacement": LENGTH, "calm_damping": DRAG,
-    "calm_step": TIME, "part": 1.0, "beyond": 1.0,
+    "tolerance": "one", "particles": "one", "rest": "length", "cutoff": "length", "table_from": "length",
+    "closest": "length", "bulk_stiffness": "stiffness", "plane_stiffness": "stiffness", "far": "length",
+    "force_scale": "force", "force_tolerance": "force", "displacement_step": "length", "loading_step": "length",
+    "smooth_step": "length", "longest_move": "length", "time_step": "time", "damping": "drag",
+    "damped_stiffness": "stiffness", "plate_mass": "mass", "plate_damping": "drag", "settle_time": "time",
+    "largest_displacement": "length", "calm_damping": "drag", "calm_step": "time", "part": "one", "beyond": "one",
 }  # fmt: skip
 OTHERS = {"law", "table", "estimate", "drive"}
 """Fields that are no numbers."""
@@ -96,6 +96,10 @@ SCENES: dict[str, dict[str, Any]] = {
         "friction": {"coefficient": 0.3},
         "experiment": {"kind": "tangential", "normal_force": 2.0, "displacements": [0.01, 0.05, -0.02]},
     },
+    "friction under a small load": PLANE | {
+        "friction": {"coefficient": 0.3},
+        "experiment": {"kind": "tangential", "normal_force": 0.05, "displacements": [0.001, 0.05, -0.002]},
+    },
     "slide": chains(
         30.0, 2.0, law=(1.0, 0.5, 0.5, 1.0), horizontal={}, damping={"coefficient": "auto"}, plate={"free": ["x", "z"]},
         cantilever={"stiffness": 0.5, "velocity": 0.1}, bodies={"mass": 1.0, "upper_offset": 0.5},
@@ -110,13 +114,22 @@ SCENES: dict[str, dict[str, Any]] = {
 }  # fmt: skip
 
 
-def scaled(table: Any, key: str = "") -> Any:
+def factors(units: str) -> dict[str, float]:
+    length, energy, mass = UNITS[units]
+    time = length * math.sqrt(mass / energy)
+    return {
+        "one": 1.0, "length": length, "energy": energy, "mass": mass, "time": time, "force": energy / length,
+        "stiffness": energy / length**2, "drag": mass / time, "velocity": length / time,
+    }  # fmt: skip
+
+
+def scaled(table: Any, by: dict[str, float], key: str = "") -> Any:
     if isinstance(table, dict):
-        return {name: value if name == "friction" else scaled(value, name) for name, value in table.items()}
+        return {name: value if name == "friction" else scaled(value, by, name) for name, value in table.items()}
     if isinstance(table, list):
-        return [scaled(value, key) for value in table]
+        return [scaled(value, by, key) for value in table]
     numeric = isinstance(table, int | float) and not isinstance(table, bool)
-    return table * KEYS[key] if numeric and key in KEYS else table
+    return table * by[KEYS[key]] if numeric and key in KEYS else table
 
 
 def massive(tables: dict[str, Any]) -> dict[str, Any]:
@@ -127,36 +140,43 @@ def test_every_number_of_the_settings_has_its_dimension_here() -> None:
     assert {field.name for field in fields(Settings)} == set(NUMBERS) | OTHERS
 
 
+@pytest.mark.parametrize("units", UNITS)
 @pytest.mark.parametrize("name", SCENES)
-def test_settings_scale_with_the_scene(name: str) -> None:
-    own, other = (scene_from_dict(massive(tables)) for tables in (SCENES[name], scaled(massive(SCENES[name]))))
+def test_settings_scale_with_the_scene(name: str, units: str) -> None:
+    by = factors(units)
+    length, force = by["length"], by["force"]
+    own, other = (scene_from_dict(tables) for tables in (massive(SCENES[name]), scaled(massive(SCENES[name]), by)))
     first, second = settings_for(own), settings_for(other)
-    for field, factor in NUMBERS.items():
+    for field, unit in NUMBERS.items():
         value = getattr(first, field)
-        assert getattr(second, field) == pytest.approx(value * factor, rel=EXACT, nan_ok=True), field
+        assert getattr(second, field) == pytest.approx(value * by[unit], rel=EXACT, abs=0.0, nan_ok=True), field
     if first.table is not None and second.table is not None:
         assert second.table.points == first.table.points
-        r = first.closest
-        assert second.table.error_beyond(LENGTH * r) == pytest.approx(FORCE * first.table.error_beyond(r), rel=1e-6)
-    assert second.estimate.tooth(40) == pytest.approx(LENGTH * first.estimate.tooth(40), rel=1e-6)
+        error = force * first.table.error_beyond(first.closest)
+        assert second.table.error_beyond(length * first.closest) == pytest.approx(error, rel=1e-6, abs=0.0)
+    assert second.is_toothed == first.is_toothed
+    assert second.estimate.tooth(40) == pytest.approx(length * first.estimate.tooth(40), rel=1e-6, abs=0.0)
     if first.estimate.gap.size > 2:
-        place = first.largest_displacement
-        for d, factor in ((place, STIFFNESS), (0.5 * place, STIFFNESS)):
-            stuck = first.estimate.stuck_stiffness(d)
-            assert second.estimate.stuck_stiffness(LENGTH * d) == pytest.approx(factor * stuck, rel=EXACT)
-    assert decay_length(other) == pytest.approx(LENGTH * decay_length(own), rel=EXACT)
+        for d in (first.largest_displacement, 0.5 * first.largest_displacement):
+            stuck = by["stiffness"] * first.estimate.stuck_stiffness(d)
+            assert second.estimate.stuck_stiffness(length * d) == pytest.approx(stuck, rel=EXACT, abs=0.0)
+    assert decay_length(other) == pytest.approx(length * decay_length(own), rel=EXACT, abs=0.0)
     assert [(leg.rows, leg.steps) for leg in second.drive] == [(leg.rows, leg.steps) for leg in first.drive]
     for leg, its in zip(second.drive, first.drive, strict=True):
-        assert (leg.velocity, leg.time_step) == pytest.approx((its.velocity * LENGTH / TIME, its.time_step * TIME))
-    assert inertia(other, second) == pytest.approx([MASS * mass for mass in inertia(own, first)])
+        assert leg.velocity == pytest.approx(its.velocity * by["velocity"], rel=EXACT, abs=0.0)
+        assert leg.time_step == pytest.approx(its.time_step * by["time"], rel=EXACT, abs=0.0)
+    assert inertia(other, second) == pytest.approx([by["mass"] * mass for mass in inertia(own, first)], abs=0.0)
     assert bool(too_fast(other)) == bool(too_fast(own))
+    assert in_words(other, 30_000, second.cutoff) == in_words(own, 30_000, first.cutoff)
     if first.law is not None:
-        assert contact_half_width(other, second) == pytest.approx(LENGTH * contact_half_width(own, first), rel=1e-6)
+        width = length * contact_half_width(own, first)
+        assert contact_half_width(other, second) == pytest.approx(width, rel=1e-6, abs=0.0)
     most = first.largest_displacement
     back = reflected(own, first.estimate, most, 30)
-    assert reflected(other, second.estimate, LENGTH * most, 30) == pytest.approx(back, rel=EXACT)
-    units = {"force": FORCE, "displacement": LENGTH, "radius": LENGTH, "energy": ENERGY}
-    left, there = left_by_centring(own, first), left_by_centring(other, second)
-    assert set(left) == set(there)
-    for quantity, part in left.items():
-        assert there[quantity] == pytest.approx(units[quantity.split("_")[-1]] * part, rel=1e-6, abs=1e-12), quantity
+    assert reflected(other, second.estimate, length * most, 30) == pytest.approx(back, rel=EXACT)
+    for marks in (left_by_centring, expected):
+        left, there = marks(own, first), marks(other, second)
+        assert set(left) == set(there)
+        for quantity, part in left.items():
+            unit = by[{"displacement": "length", "radius": "length"}.get(last := quantity.split("_")[-1], last)]
+            assert there[quantity] == pytest.approx(unit * part, rel=1e-6, abs=1e-12 * unit), quantity
