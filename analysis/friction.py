@@ -97,6 +97,7 @@ def sampled_mean(time: Array, force: Array, period: float) -> Mean:
     Under heat the random kicks of a bath, ∫ ξ dt ~ √(2γkT t), are no part of the friction, but of the balance that
     gives its integral: samples may know it better. A slip between two is missed by half of the time between at most:
     slips at random times are in the scatter of the blocks, those that come at the same time in each are in their mean.
+    Such a slip is larger than the step between two samples by what the friction rises by in the meantime.
 
     Raises:
         ValueError: see `mean_of`.
@@ -107,7 +108,8 @@ def sampled_mean(time: Array, force: Array, period: float) -> Mean:
     each = max(2, round(period / float(np.median(np.diff(time)))))
     phases = time[-1] - period * count + period / each * np.arange(count * each + 1)
     usual = np.interp(phases, time, force)[:-1].reshape(count, each).mean(axis=0)
-    missed = 0.5 * float(np.max(np.abs(np.diff(usual, append=usual[0])))) / each
+    steps = np.diff(usual, append=usual[0])
+    missed = 0.5 * (float(np.abs(steps).max()) + abs(float(np.median(steps)))) / each
     return Mean(mean.value, mean.error + missed, mean.first)
 
 

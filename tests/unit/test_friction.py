@@ -108,7 +108,13 @@ def test_the_largest_friction_ends_with_the_row_before_one_spacing() -> None:
 
 @pytest.mark.parametrize(
     ("before", "missed"),
-    [([0.0, 2.0, 4.0], 0.25), ([0.0, 7.0, 12.0], 0.625), ([0.0, 1.0, 4.0], 2.0), ([0.0, 3.0], 3.0)],
+    [
+        ([0.0, 2.0, 4.0], 0.25),
+        ([1.0, 3.0, 5.0], 0.25),
+        ([0.0, 7.0, 12.0], 0.625),
+        ([0.0, 1.0, 4.0], 2.0),
+        ([0.0, 3.0], 3.0),
+    ],
 )
 def test_what_a_row_may_miss_of_a_friction_that_rises_to_a_slip(before: list[float], missed: float) -> None:
     """A straight rise: an eighth of it, as of one that falls off; where it grows: by what it grew."""

@@ -62,3 +62,18 @@ def test_a_slip_between_two_samples_is_in_the_error_of_their_mean() -> None:
     sawtooth = (time + 0.99 / 50.0) % 1.0
     found = sampled_mean(time, sawtooth, 1.0)
     assert 0.0 < abs(found.value - 0.5) <= found.error < 0.02
+
+
+@pytest.mark.parametrize("rows", [20, 50, 200])
+@pytest.mark.parametrize("slip", [0.0003, 0.3137, 0.7719])
+def test_a_slip_at_the_same_time_of_every_period_may_be_missed_by_half_the_time_between_samples(
+    rows: int, slip: float
+) -> None:
+    """Without heat nothing else is in the error: half the largest step of the period's own shape over its samples."""
+    period, height = 2.5, 3.0
+    time = np.linspace(-7.0, -7.0 + 17.3 * period, round(17.3 * rows) + 1)
+    run_in = 40.0 * np.exp(-12.0 * (time - time[0]) / period)
+    sawtooth = height * ((time / period - slip) % 1.0) + run_in
+    found = sampled_mean(time, sawtooth, period)
+    assert abs(found.value - 0.5 * height) <= found.error * (1.0 + 1e-9)
+    assert found.error == pytest.approx(0.5 * height / rows, rel=0.1)

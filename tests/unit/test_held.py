@@ -67,3 +67,20 @@ def test_a_share_is_that_of_the_pressure_inside_and_none_where_that_vanishes() -
     assert _share(0.5, [1.0, 1.0, 1.0]) == pytest.approx(0.5)
     assert _share(1.0, [0.25, 0.5, 0.75]) == pytest.approx(1.0)
     assert math.isnan(_share(0.5, [3.0, 2.0, 1.0]))
+
+
+@pytest.mark.parametrize("edge", [3.2, 3.7, 4.2, 4.8, 5.3, 6.6, 7.4])
+def test_the_inside_is_continued_wherever_three_particles_of_each_side_lie_within(edge: float) -> None:
+    """A contact of eight particles is the smallest one; the error of others is the third difference of the pressure."""
+    share = np.clip(edge - np.abs(X) + 0.5, 0.0, 1.0)
+    zero = np.zeros_like(X)
+    inside = np.cosh(0.2 * X) + 0.1 * X
+    held = share > 0.0
+    profile = Profile(X, zero, zero, share * inside, zero)
+    found = whole_cells(profile, held_radius(profile))
+    if held.sum() < 8:
+        assert found == pytest.approx(profile.pressure)
+    else:
+        within = np.abs(X) < edge - 0.2
+        third = 0.2**3 * np.sinh(0.2 * edge)
+        assert found[within] == pytest.approx(inside[within], abs=third)

@@ -140,6 +140,8 @@ def test_particles_below_the_lower_surface_are_found_with_their_depth() -> None:
     assert (found.occurs, found.depth, found.particles) == (True, 0.25, 1)
     apart = interpenetration(x_low, x_low + 0.1, x_low, x_low)
     assert (apart.occurs, apart.depth, apart.particles) == (False, 0.0, 0)
+    touching = interpenetration(x_low, x_low, x_low, x_low)
+    assert (touching.occurs, touching.depth, touching.particles) == (False, 0.0, 0)
     beside = interpenetration([7.0], [-1.0], x_low, np.zeros(5))
     assert (beside.occurs, beside.depth, beside.particles) == (False, 0.0, 0)
 

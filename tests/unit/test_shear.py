@@ -94,3 +94,11 @@ def test_too_few_places_or_places_that_differ_raise() -> None:
         shear_load(lattice(10), np.ones(10), 1.2)
     with pytest.raises(ValueError, match="the same on both sides"):
         shear_load(lattice(10) + 0.1, np.ones(10), 4.0)
+
+
+@pytest.mark.parametrize("count", [46, 47])
+def test_what_differs_between_both_sides_cancels(count: int) -> None:
+    x = lattice(count)
+    even = line(A, x) - line(7.2, x)
+    found = shear_load(x, even + 0.1 * np.tanh(x), A, [7.2]).pressure(R)
+    assert found == pytest.approx(mindlin_shear(R, A, 7.2, MU, PEAK), abs=EXACT * MU * PEAK)
