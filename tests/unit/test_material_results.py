@@ -1,0 +1,135 @@
+"""[material] in a finished run: its files in SI beside model units."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from contact1d import Run, run
+from contact1d.workflow.scene import scene_from_dict
+from tests.materials import JKR, PATH, STEEL, tables
+
+ROUND_OFF = 1e-13
+"""Relative: a few operations each."""
+PLANE = tables(
+    {"upper": STEEL, "lower": STEEL, "length_unit": 2e-9, "force_unit": 3e-6}, PATH, bulk_stiffness="auto",
+    lower="rigid_plane",
+)  # fmt: skip
+STICKY = tables(JKR) | {"accuracy": {"tolerance": 1e-2}}
+PRESSED = {
+    "largest_force", "largest_radius", "mean_pressure", "central_pressure", "peak_pressure", "contact_stiffness",
+}  # fmt: skip
+BARE = tables(None, PATH, lower="rigid_plane", reduction="mdr")
+FRAME = {
+    "theory", "scene", "experiment", "method", "reduction", "effects", "status", "warnings", "timing", "versions",
+    "accuracy",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
+    scenes = {"plane": PLANE, "sticky": STICKY, "bare": BARE}
+    return {
+        name: run(scene_from_dict(data), tmp_path_factory.mktemp(name), figures=False) for name, data in scenes.items()
+    }
+
+
+def document(finished: Run) -> dict[str, Any]:
+    loaded: dict[str, Any] = json.loads((finished.folder / "results.json").read_text(encoding="utf-8"))
+    assert loaded == finished.document
+    return loaded
+
+
+def columns(finished: Run, name: str) -> dict[str, list[str]]:
+    with (finished.folder / name).open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {key: [row[key] for row in rows] for key in rows[0]}
+
+
+def test_each_quantity_stands_in_si_beside_its_model_units(finished: dict[str, Run]) -> None:
+    results = document(finished["plane"])
+    assert set(results) == FRAME | PRESSED | {"units"}
+    force, radius = results["largest_force"], results["largest_radius"]
+    for entry, factor, unit in ((force, 3e-6, "N"), (radius, 2e-9, "m")):
+        assert set(entry) == {"value", "uncertainty", "unit", "si"}
+        assert entry["si"]["unit"] == unit
+        assert entry["si"]["value"] == pytest.approx(factor * entry["value"], rel=ROUND_OFF)
+        assert entry["si"]["uncertainty"] == pytest.approx(factor * entry["uncertainty"], rel=ROUND_OFF)
+    assert results["units"] == {
+        "LU": {"value": 2e-9, "uncertainty": 0.0, "unit": "m"},
+        "FU": {"value": 3e-6, "uncertainty": 0.0, "unit": "N"},
+    }
+    assert results["reduction"] == "mdr"  # with a material it is, unless the scene says otherwise
+
+
+def test_units_by_jkr_stand_in_the_results_with_their_uncertainty(finished: dict[str, Run]) -> None:
+    """γ and E* come back from F_A, a₀ and R in SI."""
+    results = document(finished["sticky"])
+    force, radius = results["adhesion_force"], results["zero_load_radius"]
+    curvature = 100.0 * results["units"]["LU"]["value"]
+    assert force["si"]["value"] / (3.0 * math.pi * curvature) == pytest.approx(1.0, rel=ROUND_OFF)
+    assert 3.0 * force["si"]["value"] * curvature / radius["si"]["value"] ** 3 == pytest.approx(200e9, rel=ROUND_OFF)
+    relative = results["units"]["LU"]["uncertainty"] / results["units"]["LU"]["value"]
+    assert relative == pytest.approx(3.0 * radius["uncertainty"] / radius["value"], rel=ROUND_OFF)
+    for entry in (force, radius, results["critical_radius"], results["preload"]):
+        own = entry["uncertainty"] / entry["value"]
+        assert entry["si"]["uncertainty"] / entry["si"]["value"] > own + 0.9 * relative
+
+
+@pytest.mark.parametrize("name", ["plane", "sticky"])
+def test_si_columns_stand_to_the_right_of_those_in_model_units(finished: dict[str, Run], name: str) -> None:
+    units = document(finished[name])["units"]
+    length, force = units["LU"]["value"], units["FU"]["value"]
+    factors = {"_m": length, "_N": force, "_N_per_m": force / length}
+    expected = {
+        "curve.csv": {"displacement": "_m", "force": "_N", "contact_radius": "_m", "smallest_distance": "_m"},
+        "profile.csv": {"x": "_m", "z_lower": "_m", "z_upper": "_m", "pressure": "_N_per_m", "shear": "_N_per_m"},
+    }
+    for file, endings in expected.items():
+        found = columns(finished[name], file)
+        names = list(found)
+        own = [key for key in names if not key.endswith(tuple(factors))]
+        assert names[: len(own)] == own
+        for key, ending in endings.items():
+            assert key in own
+            for model, si in zip(found[key], found[key + ending], strict=True):
+                if model == "":
+                    assert si == ""
+                else:
+                    assert float(si) == pytest.approx(factors[ending] * float(model), rel=ROUND_OFF)
+
+
+def test_without_a_material_nothing_is_in_si(finished: dict[str, Run]) -> None:
+    results = document(finished["bare"])
+    assert set(results) == FRAME | PRESSED
+    assert set(results["largest_force"]) == {"value", "uncertainty", "unit"}
+    assert results["reduction"] == "mdr"
+    assert "material" not in results["scene"]
+    for file in ("curve.csv", "profile.csv"):
+        assert not [key for key in columns(finished["bare"], file) if key.endswith(("_m", "_N"))]
+
+
+def test_contact_of_one_pair_has_no_units_by_jkr(tmp_path: Path) -> None:
+    """The radius of so sharp a parabola cannot be told from 0."""
+    sharp = tables(JKR, {"kind": "pull_off", "preload": 0.01}, profile={"kind": "parabola", "radius": 0.05})
+    results = run(scene_from_dict(sharp), tmp_path / "run", figures=False).document
+    assert "units" not in results
+    limited, doubt = (warning for warning in results["warnings"] if warning["name"] != "lattice")
+    assert limited["name"] == "tolerance"
+    assert limited["message"].startswith("critical_radius cannot be told from 0")
+    assert doubt["name"] == "no_units"
+    assert doubt["message"].startswith("the run found no zero_load_radius above 0")
+
+
+def test_path_that_finds_no_units_runs_and_has_none(tmp_path: Path) -> None:
+    done = run(scene_from_dict(tables(JKR, PATH) | {"accuracy": {"tolerance": 1e-2}}), tmp_path / "run", figures=False)
+    results = document(done)
+    assert results["status"] == "done"
+    assert "units" not in results
+    assert results["warnings"][-1]["name"] == "no_units"
+    assert not any("si" in entry for entry in results.values() if isinstance(entry, dict))
