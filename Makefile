@@ -46,7 +46,7 @@ validation: $(READY) ## reproduce the paper anew: VALIDATION.md, docs/reproduced
 	@rm -rf reproduced  # runs of an older state of the program would be taken over
 	@$(BIN)/contact1d reproduce --out reproduced
 	@mkdir -p docs/reproduced && cp reproduced/reproduce.json reproduced/*.png docs/reproduced/
-	@WRITE_DOCS=1 $(BIN)/python -m pytest -q tests/unit/test_validation_page.py
+	@WRITE_DOCS=1 $(BIN)/python -m pytest -q tests/unit/test_validation_page.py tests/unit/test_judged_runs.py
 
 clean: ## remove .venv and the caches; runs/ stays
 	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis .benchmarks

@@ -48,7 +48,7 @@ ROOMS = {
     "effects": ("workflow/deck/effects/*.py",),
     "experiments": ("workflow/experiments/*/*.py",),
     "potentials": ("potentials/*.py",),
-    "reproduce": ("workflow/reproduce/*.py", "workflow/judging/*.py"),
+    "reproduce": ("workflow/reproduce/*.py", "workflow/reproduce/*/*.py", "workflow/judging/*.py"),
     "body": ("workflow/body/*.py",),
 }
 """Where faults are looked for."""
@@ -57,7 +57,8 @@ DRAWN = ("plots.py", "figures.py")
 TESTS = ("tests/unit", "tests/decks", "tests/validation", "tests/hard")
 PROCESSES = ("cost", "sweep", "report", "readme", "benchmarks", "cli", "engine", "tutorial", "stability", "browser")
 """In names of test files that run commands in processes of their own, which are not seen, or for minutes."""
-GOLDEN = "tests/decks/test_goldens.py"
+GOLDEN = ("tests/decks/test_goldens.py", "tests/unit/test_judged_runs.py::test_the_")
+"""What was written once, and is the same."""
 
 
 def tests_of(mutant: Mutant, called: Called) -> tuple[list[str], list[str]]:
