@@ -74,7 +74,10 @@ class Pairs:
     def _branches(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
         """(gaps, distances) of both branches, between which Newton's method begins."""
         end = float(self.places[-1] ** 2 / self.radius) + 40.0 * self.law.longest_range
-        inner, outer = np.linspace(0.0, self.folds[0], NODES), self.folds[1] + np.geomspace(1e-6, end, NODES)
+        inner, outer = (
+            np.linspace(0.0, self.folds[0], NODES),
+            self.folds[1] + np.geomspace(1e-6 * self.law.longest_range, end, NODES),
+        )
         return (self.undeformed(inner), inner), (self.undeformed(outer), outer)
 
     @property
@@ -102,12 +105,14 @@ class Pairs:
         d = np.linspace(low, high, points)
         top = int(np.argmin([self.force(x) for x in d]))
         ends = float(d[max(top - 1, 0)]), float(d[min(top + 1, points - 1)])
-        found = minimize_scalar(self.force, bounds=ends, method="bounded", options={"xatol": 1e-12})
+        found = minimize_scalar(
+            self.force, bounds=ends, method="bounded", options={"xatol": 1e-12 * self.law.longest_range}
+        )
         return float(found.x), -float(found.fun)
 
     def displacement(self, force: float, low: float, high: float) -> float:
         """d [LU] of a force [FU] between two displacements [LU]."""
-        return float(brentq(lambda d: self.force(d) - force, low, high, xtol=1e-13))
+        return float(brentq(lambda d: self.force(d) - force, low, high, xtol=1e-13 * self.law.longest_range))
 
     def contact_radius(self, displacement: float) -> float:
         """Place of the largest tension of a pair [LU]: x²/2R = G_m − G₀."""
@@ -146,7 +151,7 @@ class ExactContact(Contact):
         assert self._top is not None
         place, tension = self._top
         if -row.load > tension:
-            return self.state(row.parted - 1e-6, velocity=-AWAY)
+            return self.state(row.parted - 1e-6 * self.pairs.law.longest_range, velocity=-AWAY)
         return self.state(self.pairs.displacement(row.load, place, self.settings.largest_displacement * 1.5))
 
     def state(self, displacement: float, velocity: float = 0.0) -> State:

@@ -1,7 +1,7 @@
 """Claim: an experiment is the same in any units: scaled scenes have scaled schedules, states, results and claims.
 
-A stiffness that multiplies where it should divide has another dimension, and shows here. Factors are powers of two. No
-LAMMPS: states are those of `tests.exact`, so that only what the experiment makes of them is compared.
+A stiffness that multiplies where it should divide has another dimension, and shows here. Factors are powers of two, and
+far from 1. No LAMMPS: states are those of `tests.exact`, so that only what the experiment makes of them is compared.
 """
 
 from __future__ import annotations
@@ -17,33 +17,18 @@ from contact1d.workflow.experiments import KINDS, planned
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
-from tests.exact import exact_context
+from tests.exact import Pairs, exact_context
 from tests.scenes import chains
-from tests.unit.test_settings_similarity import (
-    DRAG,
-    ENERGY,
-    FORCE,
-    KEYS,
-    LENGTH,
-    SCENES,
-    STIFFNESS,
-    TIME,
-    massive,
-    scaled,
-)
+from tests.unit.test_settings_similarity import KEYS, SCENES, factors, massive, scaled
 
-EXACT = 1e-9
-"""Relative: round-off, and searches that end within their own bracket."""
+EXACT, CLAIM = 1e-9, 1e-6
+"""Relative: round-off, and searches that end within their own bracket; of a claim, which is a difference."""
 ROW = {
-    "displacement": LENGTH, "place": LENGTH, "load": FORCE, "spring": STIFFNESS, "end": LENGTH, "damping": DRAG,
-    "drag": DRAG, "rest": FORCE, "parted": LENGTH, "through": LENGTH,
+    "displacement": "length", "place": "length", "load": "force", "spring": "stiffness", "end": "length",
+    "damping": "drag", "drag": "drag", "rest": "force", "parted": "length", "through": "length",
 }  # fmt: skip
 """Of the numbers of a row; steps and starts are none of these."""
-UNITS = {
-    units.FORCE: FORCE, units.LENGTH: LENGTH, units.ENERGY: ENERGY, units.MEAN_PRESSURE: FORCE / LENGTH**2,
-    units.NUMBER: 1.0,
-}  # fmt: skip
-KEYS["loading_rate"] = FORCE / TIME
+KEYS["loading_rate"] = "rate"
 TIMED: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
 HEAT: dict[str, Any] = TIMED | {"noise": {"temperature": 1e-3, "seed": 1}}
 PULL = {"kind": "pull_off", "preload": 0.3}
@@ -89,7 +74,13 @@ RUN = {
 }  # fmt: skip
 
 
-def same_rows(ours: tuple[Phase, ...], theirs: tuple[Phase, ...]) -> None:
+def by(to: str) -> dict[str, float]:
+    """Factors by dimension."""
+    known = factors(to)
+    return known | {"rate": known["force"] / known["time"]}
+
+
+def same_rows(ours: tuple[Phase, ...], theirs: tuple[Phase, ...], to: str) -> None:
     """The second schedule is the first in other units."""
     assert [(one.name, len(one.rows), one.state, one.begin) for one in ours] == [
         (one.name, len(one.rows), one.state, one.begin) for one in theirs
@@ -97,44 +88,52 @@ def same_rows(ours: tuple[Phase, ...], theirs: tuple[Phase, ...]) -> None:
     for first, second in zip(ours, theirs, strict=True):
         for row, other in zip(first.rows, second.rows, strict=True):
             assert type(row) is type(other)
-            expected = {name: value * ROW.get(name, 1.0) for name, value in asdict(row).items()}
-            assert asdict(other) == pytest.approx(expected, rel=EXACT, abs=EXACT), first.name
+            for name, value in asdict(row).items():
+                factor = by(to)[ROW.get(name, "one")]
+                assert getattr(other, name) == pytest.approx(factor * value, rel=EXACT, abs=factor * EXACT), name
 
 
+@pytest.mark.parametrize("to", ["usual", "vast"])
 @pytest.mark.parametrize("name", PLANNED)
-def test_planned_schedules_scale_with_the_scene(name: str) -> None:
-    own, other = (scene_from_dict(massive(tables)) for tables in (PLANNED[name], scaled(massive(PLANNED[name]))))
+def test_planned_schedules_scale_with_the_scene(name: str, to: str) -> None:
+    own, other = (
+        scene_from_dict(massive(tables)) for tables in (PLANNED[name], scaled(massive(PLANNED[name]), by(to)))
+    )
     ours = planned(own, settings_for(own))
     assert all(phase.rows for phase in ours)
-    same_rows(ours, planned(other, settings_for(other)))
+    same_rows(ours, planned(other, settings_for(other)), to)
 
 
 def outcome(tables: dict[str, Any]) -> Outcome:
-    scene = scene_from_dict(massive(tables))
+    scene = scene_from_dict(tables)
     context = exact_context(scene)
     if scene.method == "dynamic":
         settings = context.deck.settings
-        with context.contact() as opened:
-            place, tension = opened.pairs.largest_tension(  # type: ignore[attr-defined]
-                -2.0 * settings.rest, settings.largest_displacement
-            )
-        context.largest_tension = place, tension
+        pairs = Pairs.of(scene, settings)
+        context.largest_tension = pairs.largest_tension(-2.0 * settings.rest, settings.largest_displacement)
     return KINDS[scene.experiment.kind].run[scene.method](context)
 
 
+@pytest.mark.parametrize("to", ["usual", "tiny"])
 @pytest.mark.parametrize("name", RUN)
-def test_results_and_claims_scale_with_the_scene(name: str) -> None:
-    ours, theirs = outcome(RUN[name]), outcome(scaled(massive(RUN[name])))
-    same_rows(ours.phases, theirs.phases)
+def test_results_and_claims_scale_with_the_scene(name: str, to: str) -> None:
+    known = by(to)
+    of = {
+        units.FORCE: known["force"], units.LENGTH: known["length"], units.ENERGY: known["energy"],
+        units.MEAN_PRESSURE: known["force"] / known["length"] ** 2,
+    }  # fmt: skip
+    ours, theirs = outcome(massive(RUN[name])), outcome(scaled(massive(RUN[name]), known))
+    same_rows(ours.phases, theirs.phases, to)
     assert set(ours.warnings) == set(theirs.warnings)
     assert ours.prescribed == theirs.prescribed
     assert set(ours.quantities) == set(theirs.quantities)
     assert len(ours.quantities) > (0 if name.endswith("back") else 1)
-    for key, known in ours.quantities.items():
-        factor, other = UNITS[known.unit], theirs.quantities[key]
-        assert other.value == pytest.approx(factor * known.value, rel=EXACT), key
-        assert other.uncertainty == pytest.approx(factor * known.uncertainty, rel=1e-6, abs=1e-12), key
+    for key, one in ours.quantities.items():
+        factor, other = of[one.unit], theirs.quantities[key]
+        assert other.value == pytest.approx(factor * one.value, rel=EXACT, abs=factor * EXACT), key
+        assert other.uncertainty == pytest.approx(factor * one.uncertainty, rel=CLAIM, abs=factor * EXACT), key
         for parts in ("spacing_uncertainty", "compared_with"):
             if key in getattr(ours, parts):
-                assert getattr(theirs, parts)[key] == pytest.approx(factor * getattr(ours, parts)[key], rel=1e-6), key
-    assert theirs.radii == pytest.approx({k: LENGTH * a for k, a in ours.radii.items()}, rel=EXACT, nan_ok=True)
+                assert getattr(theirs, parts)[key] == pytest.approx(factor * getattr(ours, parts)[key], rel=CLAIM), key
+    radii = {state: known["length"] * a for state, a in ours.radii.items()}
+    assert theirs.radii == pytest.approx(radii, rel=EXACT, nan_ok=True)
