@@ -47,7 +47,7 @@ class Given:
         self.legs: tuple[DriveLeg, ...] = settings.drive
         self.ends = np.cumsum([leg.rows * leg.row_time for leg in self.legs])
         self.fast = 2.0 * np.pi * abs(self.legs[0].velocity) / scene.bodies.spacing  # once each spacing of the drive
-        self.mass, self.heavy = settings.plate_mass, inertia(scene, settings)[0]
+        self.mass, (self.heavy, self.heavy_plate) = settings.plate_mass, inertia(scene, settings)
 
     def drive(self, t: Array) -> Array:
         """Place of the driven end [LU]."""
@@ -89,6 +89,10 @@ class Given:
         """V² of the plate, which also moves up and down [LU²/TU²]."""
         return (self.velocity(t) - self.swing(t, 1)) ** 2 + (0.1 * self.swing(t, 1)) ** 2
 
+    def kinetic_of_plate(self, t: Array) -> Array:
+        """With the mass that LAMMPS gives it [FU·LU]."""
+        return 0.5 * self.heavy_plate * self.speeds(t)
+
     def depth(self, t: Array) -> Array:
         """Displacement [LU]."""
         return 0.3 + 0.1 * self.swing(t)
@@ -117,7 +121,7 @@ def rows_of(given: Given, potential: Any = lambda t: 0.0 * t) -> tuple[State, li
         sums = np.cumsum(values)[counts - 1] + junk * before
         return np.asarray(sums / (counts + before))
 
-    told = [running(of(sampled), 7.0) for of in (given.pull, given.kinetic, given.speeds)]
+    told = [running(of(sampled), 7.0) for of in (given.pull, given.kinetic, given.kinetic_of_plate)]
     states = []
     for i, t in enumerate(ends):
         at = np.asarray([t])
