@@ -103,37 +103,32 @@ def smallest_distance(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike
     """Return min_ij |r_i - r_j| [LU] over upper particles i and lower particles j.
 
     x_upper, z_upper [LU], (n,); x_lower, z_lower [LU], (m,). Raises ValueError where a body has no particle or a
-    position is not finite. Each upper particle looks along the sorted lower body, from the place above which it stands
-    to both sides, as far as the smallest distance found so far: for chains a few looks, whatever their length.
+    position is not finite. The lower particle next to the place above which each upper one stands gives a first
+    distance, and no other pair is looked at but those that are within it along x: for chains a few.
     """
-    upper, lower = _sorted_by_x(x_upper, z_upper), _sorted_by_x(x_lower, z_lower)
-    if not (upper.size and lower.size):
+    upper, (x, z) = _sorted_by_x(x_upper, z_upper), _sorted_by_x(x_lower, z_lower)
+    if not (upper[0].size and x.size):
         raise ValueError("a distance between the bodies needs a particle in each of them")
-    if not (np.isfinite(upper).all() and np.isfinite(lower).all()):
+    if not all(np.isfinite(row).all() for row in (*upper, x, z)):
         raise ValueError("the positions of particles must be finite")
-    above = np.searchsorted(lower[0], upper[0])
-    first = np.minimum(above, lower.shape[1] - 1)
-    least = float(np.min(np.hypot(*(upper - lower[:, first]))))
-    reach = np.maximum(upper[1] - lower[1].max(), lower[1].min() - upper[1])  # no lower particle is nearer than that
-    for step, start in ((1, above), (-1, above - 1)):
-        left, at = upper, start
-        near = reach < least
-        while near.any():
-            left, at = left[:, near], at[near]
-            inside = (at >= 0) & (at < lower.shape[1])
-            left, at = left[:, inside], at[inside]
-            apart = left - lower[:, at]
-            least = min(least, float(np.min(np.hypot(*apart), initial=least)))
-            near = np.abs(apart[0]) < least
-            at = at + step
+    nearest = np.minimum(np.searchsorted(x, upper[0]), x.size - 1)
+    least = float(np.hypot(upper[0] - x[nearest], upper[1] - z[nearest]).min())
+    near = np.maximum(upper[1] - z.max(), z.min() - upper[1]) < least  # of no other one a lower particle is nearer
+    left, height = upper[0][near], upper[1][near]
+    first, end = np.searchsorted(x, left - least), np.searchsorted(x, left + least, side="right")
+    for step in range(int((end - first).max(initial=0))):
+        at = np.minimum(first + step, x.size - 1)
+        least = min(least, float(np.hypot(left - x[at], height - z[at]).min()))
     return least
 
 
-def _sorted_by_x(x: ArrayLike, z: ArrayLike) -> Array:
-    """Rows x and z, shape (2, n), with rising x."""
-    places = np.stack([np.asarray(x, dtype=np.float64), np.asarray(z, dtype=np.float64)])
-    rising: Array = places[:, np.argsort(places[0], kind="stable")]
-    return rising
+def _sorted_by_x(x: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
+    """Both with rising x."""
+    x, z = np.asarray(x, dtype=np.float64), np.asarray(z, dtype=np.float64)
+    if (x[1:] >= x[:-1]).all():
+        return x, z
+    rising = np.argsort(x, kind="stable")
+    return x[rising], z[rising]
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ A field `load` is the LAMMPS variable `row_load`. A phase is a named sequence of
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import astuple, dataclass, fields
+from dataclasses import dataclass, fields
 from typing import ClassVar
 
 from contact1d.workflow.deck.effects.base import number
@@ -34,8 +34,8 @@ class Row:
 
     def texts(self, to_deck: Callable[[float, str], float]) -> tuple[str, ...]:
         """Their values as LAMMPS text; `to_deck` takes a value with its unit to that of the deck."""
-        pairs = zip(fields(self), astuple(self), strict=True)
-        return tuple(str(v) if isinstance(v, int) else number(to_deck(v, UNITS[f.name])) for f, v in pairs)
+        given = {field.name: getattr(self, field.name) for field in fields(self)}
+        return tuple(str(v) if isinstance(v, int) else number(to_deck(v, UNITS[name])) for name, v in given.items())
 
 
 @dataclass(frozen=True)

@@ -85,6 +85,8 @@ def _moduli(scene: Scene) -> Iterator[tuple[str, str]]:
 
 
 def _numbers(scene: Scene, scales: Scales | None) -> Iterator[tuple[str, str]]:
+    if scene.material is None:
+        return  # all numbers are the model's
     for place in places(Scene, scene.model_dump(by_alias=True, exclude_none=True)):
         key = ".".join(map(str, place.keys))
         usual = next((usual for usual in USUAL if re.fullmatch(usual.key, key)), None)
