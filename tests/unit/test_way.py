@@ -1,0 +1,128 @@
+"""Claims of a slide's room: how far its contact is felt, and that an automatic lower chain has room for the way.
+
+References: the force of a row of opposite particles on a particle between two springs, solved for its distance.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from contact1d.workflow.scene import Scene, scene_from_dict
+from contact1d.workflow.settings.chain import SettingsError
+from contact1d.workflow.settings.settings import settings_for
+from contact1d.workflow.settings.way import ShortChainError, contact_half_width, require_way, too_fast
+from tests.scenes import chains
+
+RADIUS, SPRING, SPACING = 30.0, 2.0, 0.8
+LAW = (1.0, 0.5, 0.5, 1.0)
+GRID = 3e-3
+"""Relative: between 4000 distances."""
+
+
+def slide(distance: float = 9.0, tolerance: float = 1e-3, **bodies: Any) -> Scene:
+    own = {"mass": 1.0, "upper_offset": 0.5, "spacing": SPACING} | bodies
+    return scene_from_dict(
+        chains(
+            RADIUS, SPRING, law=LAW, horizontal={}, damping={"coefficient": "auto"}, plate={"free": ["x", "z"]},
+            cantilever={"stiffness": 0.5, "velocity": 0.1}, bodies=own, accuracy={"tolerance": tolerance},
+            experiment={"kind": "slide", "normal_force": 1.0, "distance": distance},
+        )
+    )  # fmt: skip
+
+
+def row(r: float, cutoff: float) -> float:
+    """Force of a straight row of opposite particles on one that stands over one of them at the distance r."""
+    far = int(cutoff / SPACING) + 1
+    distance = np.hypot(r, SPACING * np.arange(-far, far + 1))
+    force = LAW[0] / LAW[1] * np.exp(-distance / LAW[1]) - LAW[2] / LAW[3] * np.exp(-distance / LAW[3])
+    return float(np.sum(np.where(distance <= cutoff, force, 0.0) * r / distance))
+
+
+@pytest.mark.parametrize("tolerance", [1e-1, 1e-2, 1e-3])
+def test_a_contact_reaches_to_where_the_tolerances_share_of_its_largest_force_is_felt(tolerance: float) -> None:
+    of = slide(tolerance=tolerance, particles=200, upper_particles=80)
+    settings = settings_for(of)
+    cutoff, deepest = settings.cutoff, settings.largest_displacement
+
+    def gap(r: float) -> float:
+        return r - 2.0 * row(r, cutoff) / SPRING
+
+    innermost = brentq(lambda r: gap(r) - settings.rest + deepest, 0.05, 3.0)
+    places = np.linspace(innermost, cutoff, 4000)
+    forces = np.abs([row(r, cutoff) for r in places])
+    felt = places[np.flatnonzero(forces > tolerance * forces.max())[-1]]
+    half = math.sqrt(2.0 * RADIUS * (gap(float(felt)) - settings.rest + deepest))
+    assert half < 0.5 * 79 * SPACING
+    assert contact_half_width(of, settings) == pytest.approx(half, rel=GRID)
+
+
+def test_a_chain_is_no_wider_than_its_particles() -> None:
+    of = slide(particles=60, upper_particles=8)
+    assert contact_half_width(of, settings_for(of)) == pytest.approx(0.5 * 7 * SPACING)
+
+
+@pytest.mark.parametrize("distance", [4.0, 9.0, 30.0])
+@pytest.mark.parametrize("offset", [0.0, 0.5, -6.0, 6.0])
+def test_an_automatic_lower_chain_is_long_enough_and_no_longer_than_the_way_asks_for(
+    distance: float, offset: float
+) -> None:
+    of = slide(distance, upper_offset=offset)
+    settings = settings_for(of)
+    require_way(of, settings)
+    longer = settings.lower_particles - settings.particles
+    assert 2.0 * (distance + abs(offset)) / SPACING <= longer < 2.0 * (distance + abs(offset)) / SPACING + 2.0
+
+
+@pytest.mark.parametrize("spacing", [0.5, 1.3])
+def test_a_lower_chain_of_another_spacing_is_as_long_as_the_upper_one_and_the_way(spacing: float) -> None:
+    of = slide(upper_spacing=spacing)
+    settings = settings_for(of)
+    length = settings.particles * spacing + 2.0 * 9.5
+    assert length <= settings.lower_particles * SPACING < length + 4.0 * SPACING
+    require_way(of, settings)
+
+
+def test_no_way_needs_no_more_particles_below() -> None:
+    of = scene_from_dict(chains(RADIUS, experiment={"kind": "load", "force": 0.05}))
+    settings = settings_for(of)
+    assert settings.lower_particles == settings.particles
+    require_way(of, settings)
+    assert too_fast(of) == ""
+
+
+@pytest.mark.parametrize("offset", [0.5, -3.0])
+def test_a_way_that_is_said_to_be_possible_is_and_a_longer_one_is_not(offset: float) -> None:
+    def try_out(distance: float) -> None:
+        of = slide(distance, particles=60, upper_particles=12, upper_offset=offset)
+        require_way(of, settings_for(of))
+
+    with pytest.raises(SettingsError, match="a way of at most") as caught:
+        try_out(60.0)
+    told = re.search(r"a way of at most (\S+) LU", str(caught.value))
+    assert told is not None
+    room = float(told[1])
+    try_out(room * (1.0 - 1e-3))
+    with pytest.raises(SettingsError):
+        try_out(room * (1.0 + 1e-3))
+    cause = caught.value.__cause__
+    assert isinstance(cause, ShortChainError)
+    assert (cause.above, cause.room) == (12, pytest.approx(room, rel=1e-3))
+    of = slide(60.0, particles=cause.needed, upper_particles=12, upper_offset=offset)
+    require_way(of, settings_for(of))
+
+
+def test_a_way_too_short_for_a_mean_is_not_advised() -> None:
+    """Four spacings: a run-in and three periods."""
+    for particles, advised in ((26, True), (20, False)):
+        of = slide(60.0, particles=particles, upper_particles=12)
+        with pytest.raises(SettingsError, match="too short for the way") as caught:
+            require_way(of, settings_for(of))
+        cause = caught.value.__cause__
+        assert isinstance(cause, ShortChainError)
+        assert (cause.room >= 4.0 * SPACING) == advised == ("a way of at most" in str(caught.value))
