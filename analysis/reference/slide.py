@@ -4,9 +4,9 @@ Upper particle i, at p_i = (x_i, z_i), hangs by springs (k_t, k_n) on its place 
 on its own place, or is held there. Opposite particles at a distance r < r_c repel each other with
 f(r) = (A/a) exp(−r/a) − (B/b) exp(−r/b).
 
-    m p″ = F_springs + F_opposite − γ p′,    M X″ = Σ k_t (x_i − a_i − X) + k_c (v t − X) + (N γ + c) v − c X′
+    m p″ = F_springs + F_opposite − γ (p′ − v),    M X″ = Σ k_t (x_i − a_i − X) + k_c (v t − X) − c (X′ − v)
 
-and the same along z with the normal force. (N γ + c) v: the drag is against what moves with the drive.
+and the same along z with the normal force, and no v there. A lower particle's drag is against rest: its v is 0.
 """
 
 from __future__ import annotations
@@ -140,8 +140,8 @@ class Integrator:
         lower = on_lower - stiffness * self.lower + self._neighbours(self.lower)
         if model.rigid:
             lower = np.zeros_like(lower)
-        total = len(self.upper) * model.drag + model.plate_drag
-        along = model.cantilever_stiffness * (drive - self.plate[0]) + total * velocity
+        upper[:, 0] += model.drag * velocity
+        along = model.cantilever_stiffness * (drive - self.plate[0]) + model.plate_drag * velocity
         plate = held.sum(axis=0) + np.asarray([along, -model.normal_force])
         return lower / model.mass, upper / model.mass, plate / model.plate_mass
 

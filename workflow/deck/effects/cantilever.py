@@ -2,7 +2,7 @@
 
 What is drawn along moves at v on the mean, and so does the bath that drags at it: drag is against v, not against rest,
 
-    F_bath = (N γ + c_plate) v  on the plate, beside −γ v_i on its particles and −c_plate V on itself,
+    F_i = −γ (v_i − v)  on each upper particle,    F = −c_plate (V − v)  on the plate,
 
 since the bulk goes with its body. Otherwise the cantilever would pull at a drag that is no friction of the contact.
 """
@@ -22,7 +22,8 @@ def cantilever(scene: Scene, settings: Settings) -> Contribution:
         "cantilever_stiffness": number(scene.cantilever.stiffness),
         "cantilever_velocity": " ".join(map(number, velocities)),
         "cantilever_time_step": " ".join(map(number, clocks)),
-        "cantilever_drag": number(settings.particles * settings.damping + settings.plate_damping),
+        "cantilever_drag": number(settings.damping),
+        "cantilever_plate_drag": number(settings.plate_damping),
     }
     return Contribution(
         "cantilever",

@@ -2,9 +2,9 @@
 
 Energy: the cantilever's far end does the work W = ∫ F_c v dt. The baths take from what moves
 
-    Q = ∫ (γ Σ v_i² + c V²) dt − (N γ + c) v ΔX    [with heat: what the thermostats say]
+    Q = ∫ (γ Σ v_i² + c V²) dt − v (N γ ΔX_p + c ΔX)    [with heat: what the thermostats say]
 
-and what is stored is E = E_pot + E_kin + F_c²/2k − F_N d, d the displacement: W = Q + ΔE.
+with X and X_p the places of the plate and of its particles on the mean, and what is stored is E = E_pot + E_kin + F_c²/2k − F_N d, d the displacement: W = Q + ΔE.
 """
 
 from __future__ import annotations
@@ -97,7 +97,8 @@ def motion_of(scene: Scene, settings: Settings, start: State, states: list[State
     heavy, heavy_plate = inertia(scene, settings)
     squares = 2.0 / heavy_plate * summed_over_rows(3, 0.5 * heavy_plate * speeds)
     momentum = settings.particles * bodies.mass * read("vcm(upper,x)") + mass * read("vcm(plate,x)")
-    lag = velocity * span - np.diff(read("xcm(upper,x)")), velocity * span - np.diff(place)
+    carried, gone = np.diff(read("xcm(upper,x)")), np.diff(place)
+    lag = velocity * span - carried, velocity * span - gone
     lost = 2.0 * settings.damping / heavy * kinetic + c * squares
     told = [name for name in HEAT if name in states[-1].motion]
     if told:
@@ -117,7 +118,7 @@ def motion_of(scene: Scene, settings: Settings, start: State, states: list[State
         impulse=summed(force + drag * lag[0] + c * lag[1]) - (momentum - momentum[0]),
         pulled=summed(force),
         work=summed(velocity * force),
-        dissipated=summed(lost - (drag + c) * velocity * np.diff(place)),
+        dissipated=summed(lost - velocity * (drag * carried + c * gone)),
         stored=energy - energy[0],
         squares=summed(squares),
     )
