@@ -16,8 +16,14 @@ from contact1d.workflow.settings.drive import DriveLeg
 PERIODS, VELOCITY = 12, 0.5
 
 
-SPACED = SimpleNamespace(bodies=SimpleNamespace(spacing=1.0))
+MASS = 2.0
+SPACED = SimpleNamespace(bodies=SimpleNamespace(spacing=1.0, mass=MASS), cantilever=SimpleNamespace(stiffness=0.5))
 """A scene, as far as it is asked."""
+
+
+def weighing(plate: float) -> Any:
+    """Settings, as far as they are asked: of a plate so heavy [MU] and three particles."""
+    return SimpleNamespace(plate_mass=plate, particles=3)
 
 
 def test_a_mean_leaves_the_run_in_out() -> None:
@@ -43,8 +49,17 @@ def moved(place: Any, leg: DriveLeg) -> Motion:
 @pytest.mark.parametrize(("share", "steady"), [(1.0, True), (0.95, True), (0.5, False)])
 def test_a_plate_that_falls_behind_the_drive_does_not_slide_steadily(share: float, steady: bool) -> None:
     leg = DriveLeg(VELOCITY, 40 * PERIODS, 10, 0.005)
-    told = is_steady(SPACED, moved(lambda time: share * VELOCITY * time, leg))
+    told = is_steady(SPACED, weighing(1.0), moved(lambda time: share * VELOCITY * time, leg))
     assert (told == "") == steady
+    assert "swings once" not in told
+
+
+def test_a_plate_that_swings_for_longer_than_the_way_is_named_as_why() -> None:
+    """2π √((M + N m)/k) against 12 periods of 2 TU: the threshold is 0.5 (24/2π)² = 7.295 MU in all."""
+    leg = DriveLeg(VELOCITY, 40 * PERIODS, 10, 0.005)
+    for plate, said in ((1.29, False), (1.30, True)):
+        told = is_steady(SPACED, weighing(plate), moved(lambda time: 0.5 * VELOCITY * time, leg))
+        assert ("lighter plate.mass" in told) == said
 
 
 def test_samples_know_a_friction_under_heat_better_than_the_balance() -> None:

@@ -169,3 +169,27 @@ def test_slide_that_goes_through_as_it_is_loaded_has_more_drag() -> None:
     light = slide_of(damping__coefficient=0.01, plate__damping=0.0)
     drag = found(light, failed(ThroughError("through")), lambda scene: scene.plate is not None).helped[0]
     assert drag == Change({"damping.coefficient": "auto", "plate.damping": "auto"})
+
+
+def test_a_way_of_less_than_some_periods_is_made_one_of_some() -> None:
+    way = found(slide_of(experiment__distance=0.1), failed(UnsteadyError("not yet")), lambda _: True).helped[0]
+    assert way == Change({"experiment.distance": 8.0})
+
+
+def test_a_heavy_plate_is_made_lighter_before_a_slide_is_made_longer() -> None:
+    heavy = slide_of(plate__mass=1e5)
+    assert found(heavy, failed(UnsteadyError("not yet")), lambda _: True).helped[0] == Change({"plate.mass": "auto"})
+
+
+@pytest.mark.parametrize("error", [ThroughError("through"), PartedError("part")])
+def test_heat_that_throws_particles_out_is_lowered_first(error: UntrustedError) -> None:
+    """To a tenth of the depth of a well: 0.0625 FU·LU at a distance of ln 4 LU."""
+    hot = slide_of(noise={"temperature": 10.0, "seed": 1})
+    assert found(hot, failed(error), lambda _: True).helped[0] == Change({"noise.temperature": 0.00625})
+
+
+def test_of_many_changes_in_vain_the_first_are_named() -> None:
+    changes = tuple(Change({"experiment.distance": float(n)}) for n in range(7))
+    said = str(Tried(failed=changes))
+    assert said.endswith("--set experiment.distance=3.0 and 3 more")
+    assert " more" not in str(Tried(failed=changes[:4]))

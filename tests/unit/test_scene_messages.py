@@ -22,6 +22,7 @@ POSITIVE = [
     ("experiment.preload", "FU"),
 ]
 PLATE = ["plate={}", "damping.coefficient=0.3"]
+BACK = "for a way back or a rest give experiment.path = [[velocity, distance], …] in place of a distance"
 SLIDE = [
     'experiment={ kind = "slide", normal_force = 1.0, distance = 5.0 }',
     'plate.free=["x", "z"]',
@@ -101,7 +102,8 @@ ONE_LINE_EACH: list[tuple[list[str], str]] = [
     ([*SLIDE, "noise.seed=0"], "noise.seed = 0: must be a whole number from 1 to 2147483647"),
     ([*SLIDE, "noise.seed=2147483648"], "noise.seed = 2147483648: must be a whole number from 1 to 2147483647"),
     ([*SLIDE, "cantilever.stiffness=0"], "cantilever.stiffness = 0: must be greater than 0 (FU/LU)"),
-    ([*SLIDE, "cantilever.velocity=0"], "cantilever.velocity = 0: must be greater than 0 (LU/TU)"),
+    ([*SLIDE, "cantilever.velocity=0"], f"cantilever.velocity = 0: must be greater than 0 (LU/TU); {BACK}"),
+    ([*SLIDE, "cantilever.velocity=-0.1"], f"cantilever.velocity = -0.1: must be greater than 0 (LU/TU); {BACK}"),
     ([*SLIDE, "experiment.normal_force=true"], "experiment.normal_force = true: must be a number (FU)"),
     ([*SLIDE, "experiment.distance=-1"], "experiment.distance = -1: must be greater than 0 (LU)"),
     (["accuracy.tolerance=1e-8"], "accuracy.tolerance = 1e-08: must be from 1e-07 to 0.1"),

@@ -7,12 +7,17 @@ it is off by as much as f: of a pair, the share f over the largest tension that 
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
+import numpy as np
 import pytest
 
+from contact1d import read_scene
+from contact1d.analysis.pressure import Profile
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.workflow.experiments.running.contact import State
-from contact1d.workflow.experiments.running.trust import UntrustedError, require_trust
+from contact1d.workflow.experiments.running.radii import RadiusRule
+from contact1d.workflow.experiments.running.trust import ThroughError, UntrustedError, require_trust
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import settings_for
 from tests.exact import exact_context
@@ -42,3 +47,17 @@ def test_a_particle_left_with_the_tolerance_of_a_pairs_largest_tension_is_not_at
     require_trust(scene, settings, left_with(scene, CONVERGED * off))
     with pytest.raises(UntrustedError, match="not converged"):
         require_trust(scene, settings, left_with(scene, off))
+
+
+@pytest.mark.parametrize("hot", [False, True])
+def test_what_goes_through_in_a_slide_is_told_what_a_slide_can_change(hot: bool) -> None:
+    """It needs [horizontal]; what is hot can be cooled."""
+    shipped = read_scene(Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "slide.toml")
+    scene = shipped.with_({"noise": {"temperature": 3.0, "seed": 1}}) if hot else shipped
+    empty = np.zeros(0)
+    nothing = Profile(empty, empty, empty, empty, empty)
+    through = State("sliding", 1.0, 1.0, nothing, 0.5, 0.1, 0.0, RadiusRule(scene, 1e-3))
+    with pytest.raises(ThroughError) as caught:
+        require_trust(scene, settings_for(scene), through)
+    assert "[horizontal]" not in str(caught.value)
+    assert ("lower noise.temperature from 3 FU·LU" in str(caught.value)) == hot

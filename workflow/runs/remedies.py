@@ -33,6 +33,7 @@ from contact1d.workflow.runs.sliding import (
     chain_of,
     colder,
     drag_of_slide,
+    lighter_plate,
     longer_lower_chain,
     longer_way,
     no_pull,
@@ -52,6 +53,8 @@ MOST_TRIALS = 12
 """Changes that are tried at most."""
 ENOUGH = 2
 """Changes that help after which no other is tried."""
+TOLD = 4
+"""Changes that did not help which are named, where none did."""
 NARROW = 0.8
 """Range of the repulsion over half of the attraction's below which it counts as short."""
 
@@ -75,7 +78,8 @@ class Tried:
             return f"Tried: {self.helped[0]} gives a result{also}" + (
                 f"; {', '.join(map(str, self.failed))} did not" if self.failed else ""
             )
-        return f"Tried in vain: {', '.join(map(str, self.failed))}" if self.failed else ""
+        more = f" and {len(self.failed) - TOLD} more" if len(self.failed) > TOLD else ""
+        return f"Tried in vain: {', '.join(map(str, self.failed[:TOLD]))}{more}" if self.failed else ""
 
 
 def tried(
@@ -156,11 +160,11 @@ def _kinds(error: Contact1dError) -> tuple[Callable[[Scene], Change | None], ...
     """What is known to help against such an error, what helps most often first."""
     cause = error.__cause__
     if isinstance(cause, EngineError):  # a trial that took too long says little
-        return (_without_horizontal, _softer_core, _weaker_attraction, _smaller_load)
+        return (colder, _without_horizontal, _softer_core, _weaker_attraction, _smaller_load)
     if isinstance(cause, ThroughError):
         return (
-            drag_of_slide, _without_horizontal, _softer_core, _weaker_attraction, _smaller_load, _stronger_core,
-            _shorter_attraction,
+            colder, drag_of_slide, _without_horizontal, _softer_core, _weaker_attraction, _smaller_load,
+            _stronger_core, _shorter_attraction,
         )  # fmt: skip
     if isinstance(cause, ChainEndError):
         return (_longer_chain,)
@@ -169,7 +173,7 @@ def _kinds(error: Contact1dError) -> tuple[Callable[[Scene], Change | None], ...
     if isinstance(cause, ShortChainError):
         return (chain_of(cause.needed, cause.above), way_within(cause.room))
     if isinstance(cause, UnsteadyError):
-        return (longer_way, stiffer_cantilever)
+        return (lighter_plate, longer_way, stiffer_cantilever)
     if isinstance(cause, OffEndError):
         return (longer_lower_chain, shorter_way, automatic_drag)
     if isinstance(cause, PartedError):

@@ -7,8 +7,12 @@ from collections.abc import Callable
 
 from contact1d.workflow.runs.change import STEP, Change, rounded
 from contact1d.workflow.scene import Scene, Slide
+from contact1d.workflow.settings.scales import interaction_law
 from contact1d.workflow.settings.settings import settings_for
 from contact1d.workflow.settings.way import SHORTEST
+
+ENOUGH = 8.0
+"""Way over the spacing of a longer one at least: some periods more than a mean needs."""
 
 
 def chain_of(below: int, above: int) -> Callable[[Scene], Change | None]:
@@ -32,7 +36,7 @@ def longer_way(scene: Scene) -> Change | None:
     experiment = scene.experiment
     if not isinstance(experiment, Slide) or experiment.distance is None:
         return None
-    longer = rounded(STEP * experiment.distance)
+    longer = rounded(max(STEP * experiment.distance, ENOUGH * scene.bodies.spacing))
     chain = {} if scene.bodies.particles == "auto" else _longer_by(scene, longer - experiment.distance)
     return Change({"experiment.distance": longer, **chain})
 
@@ -73,8 +77,21 @@ def drag_of_slide(scene: Scene) -> Change | None:
 
 
 def colder(scene: Scene) -> Change | None:
-    """A tenth of the heat."""
-    return None if scene.noise is None else Change({"noise.temperature": rounded(0.1 * scene.noise.temperature)})
+    """A tenth of the heat, and no more than a tenth of the depth of a pair's well, which is what holds particles."""
+    if scene.noise is None:
+        return None
+    lower, law = 0.1 * scene.noise.temperature, interaction_law(scene)
+    if law is not None and law.attraction is not None:
+        lower = min(lower, -0.1 * float(law.energy(law.force_free_distance())))
+    return Change({"noise.temperature": rounded(lower)})
+
+
+def lighter_plate(scene: Scene) -> Change | None:
+    """One as heavy as its particles, in place of a heavier one, which the cantilever swings for longer than the way."""
+    if scene.plate is None or scene.plate.mass == "auto":
+        return None
+    heavy = scene.plate.mass > settings_for(scene).particles * scene.bodies.mass
+    return Change({"plate.mass": "auto"}) if heavy else None
 
 
 def no_pull(scene: Scene) -> Change | None:

@@ -14,7 +14,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from contact1d.workflow.scene.problems import Problem, as_toml, nearest, path_of, shown
-from contact1d.workflow.scene.quantities import Table, annotation_of, keys_of
+from contact1d.workflow.scene.quantities import OutOfRange, Table, annotation_of, keys_of
 from contact1d.workflow.scene.tables import Scene
 from contact1d.workflow.scene.wording import (
     branches,
@@ -186,6 +186,8 @@ def _problem(data: dict[str, Any], fault: ErrorDetails) -> Problem:
     allowed = statement(spot.annotation)
     if kind.startswith(("greater_than", "less_than")):
         allowed = allowed.removeprefix("a number ").removeprefix("of ")
+        if hints := [mark.hint for mark in unwrapped(spot.annotation)[1] if isinstance(mark, OutOfRange)]:
+            return Problem(path, f"must be {allowed}", shown(given), hints[0])
     if kind == "finite_number":
         allowed = allowed.replace("a number", "a finite number", 1)
     return Problem(path, f"must be {allowed}", shown(given), _hint(spot, given))

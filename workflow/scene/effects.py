@@ -20,6 +20,7 @@ from contact1d.workflow.scene.quantities import (
     Energy,
     Length,
     LineEnergy,
+    OutOfRange,
     RatioOrZero,
     Seed,
     Stiffness,
@@ -131,10 +132,14 @@ class Plate(Effect):
     damping: AutoDampingOrZero = Field(default="auto", description='drag force over velocity of the plate, or "auto"')
 
 
+BACK = "for a way back or a rest give experiment.path = [[velocity, distance], …] in place of a distance"
+"""What a cantilever's velocity is not for: those of legs may be negative or 0."""
+
+
 class Cantilever(Effect):
     """Effect: the plate is pulled along x through a spring whose far end moves steadily."""
 
     timed = True
 
     stiffness: Stiffness = Field(description="stiffness of the spring")
-    velocity: Velocity = Field(description="velocity of the driven end")
+    velocity: Annotated[Velocity, OutOfRange(BACK)] = Field(description="velocity of the driven end")

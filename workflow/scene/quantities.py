@@ -39,6 +39,13 @@ class Unit:
         return {"anyOf": [number, {"type": "string", "pattern": TEXT_PATTERN}]}
 
 
+@dataclass(frozen=True, slots=True)
+class OutOfRange:
+    """What to do about a number that is not in its range, as metadata of its type."""
+
+    hint: str
+
+
 class Table(BaseModel):
     """A table of a scene: immutable, no unknown keys, no conversion between types, finite numbers only."""
 

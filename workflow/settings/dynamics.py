@@ -16,6 +16,8 @@ MOVING_STEP, MOVING_TOLERANCE = 0.2, 1e-3
 
 Measured on 24 random slides: mean friction off by 1e-6 to 9e-5 of itself, by 5e-4 where that is 1e-4 of a particle's.
 """
+SWING = 0.5
+"""Of the swing of a slide's plate on the law and its springs, the time to settle at least: springs may be rigid."""
 DRAG_STEP = 0.2
 """Time step over the time m/γ in which drag stops a particle, or the plate: explicit integration needs it below 1."""
 CALM_STEP = 0.4
@@ -116,6 +118,8 @@ def dynamics_of(
         # A plate that swings as it is loaded goes through the other body, which would carry it at rest.
         # The law is softer than stiff springs: the plate stands on both in series.
         held = min(contact, max(0.0, estimate.stiffness_under(max(scene.experiment.compression or 0.0, 0.0))))
+        if held > 0.0:
+            settle_time = max(settle_time, SWING * 2.0 * math.pi * math.sqrt(moving / held))
         enough = 2.0 * math.sqrt(SOFTENING * held * moving) / particles
         enough = min(enough, CALM_STEP * bodies.mass / step)
         calm, calm_step = damping if enough <= damping <= CREEPING * enough else enough, step

@@ -68,11 +68,11 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
     """
     at = f"at displacement {state.displacement:.4g} LU (phase {state.phase})"
     if state.depth > 0.0:
-        aside = "" if scene.horizontal is None else "leave out [horizontal], which lets particles step aside, "
+        heat = "" if scene.noise is None else " under this heat"
         raise ThroughError(
             f"the bodies went through each other {at}: a particle lies {state.depth:.3g} LU below the opposite "
-            "surface. One layer of particles cannot carry this load",
-            f"{aside}lower the load or the displacement, or take a stronger repulsion",
+            f"surface. One layer of particles cannot carry this load{heat}",
+            f"{_against_passing(scene)}lower the load or the displacement, or take a stronger repulsion",
         )
     if scene.plate is None and scene.noise is None and not is_converged(settings, state):
         limit = RESIDUAL_LIMIT * settings.tolerance * settings.force_scale
@@ -87,6 +87,14 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
             f"the contact reaches the end of the chain {at}",
             f"take {_more_particles(scene, settings)}, or a smaller load",
         )
+
+
+def _against_passing(scene: Scene) -> str:
+    """What else keeps particles from passing each other; "" where there is nothing."""
+    cooler = "" if scene.noise is None else f"lower noise.temperature from {scene.noise.temperature:g} FU·LU, "
+    if scene.horizontal is None or scene.experiment.motion_is_result:  # a slide needs it
+        return cooler
+    return f"{cooler}leave out [horizontal], which lets particles step aside, "
 
 
 def _more_particles(scene: Scene, settings: Settings) -> str:

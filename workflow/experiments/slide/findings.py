@@ -113,7 +113,7 @@ def slips_of(scene: Scene, motion: Motion) -> list[friction.Slip]:
     return found
 
 
-def is_steady(scene: Scene, motion: Motion) -> str:
+def is_steady(scene: Scene, settings: Settings, motion: Motion) -> str:
     """Why a slide of one leg is none, or not yet a steady one; "" where it is. LONGER helps."""
     leg, spacing = motion.legs[0], scene.bodies.spacing
     period = spacing / abs(leg.velocity)
@@ -134,9 +134,22 @@ def is_steady(scene: Scene, motion: Motion) -> str:
     if abs(way - leg.velocity * while_) > max(STEADY * leg.velocity * while_, one):
         return (
             f"no steady sliding yet: over the last {while_:.3g} TU the plate moves at {way / while_:.3g} LU/TU and the "
-            f"drive at {leg.velocity:.3g}"
+            f"drive at {leg.velocity:.3g}{_swing(scene, settings, motion)}"
         )
     return ""
+
+
+def _swing(scene: Scene, settings: Settings, motion: Motion) -> str:
+    """That the plate swings on its cantilever for longer than the whole way took; "" where it does not."""
+    assert scene.cantilever is not None
+    moving = settings.plate_mass + settings.particles * scene.bodies.mass
+    swing = 2.0 * math.pi * math.sqrt(moving / scene.cantilever.stiffness)
+    if swing < motion.time[-1]:
+        return ""
+    return (
+        f". On its cantilever the plate of {settings.plate_mass:.3g} MU swings once in {swing:.3g} TU, and the drive's "
+        f"way takes {motion.time[-1]:.3g} TU: a lighter plate.mass helps, too"
+    )
 
 
 def _first_moving(motion: Motion) -> int | None:

@@ -44,7 +44,7 @@ def slide(context: RunContext) -> Outcome:
                 context.left = outcome_of(context.deck, rested, states, contact.phases)
             raise
     outcome = outcome_of(context.deck, rested, states, contact.phases)
-    if experiment.path is None and (why := is_steady(scene, motion_of(scene, settings, rested, states))):
+    if experiment.path is None and (why := is_steady(scene, settings, motion_of(scene, settings, rested, states))):
         context.left = outcome
         raise UnsteadyError(why, LONGER)
     return outcome
