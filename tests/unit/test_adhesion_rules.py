@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.scene import SceneError, scene_from_dict
 from contact1d.workflow.settings.adhesion import AdhesiveEstimate
-from contact1d.workflow.settings.cells import MARGIN, left_by_cells
+from contact1d.workflow.settings.cells import MARGIN, left_by_cells, pulling_rows
 from contact1d.workflow.settings.settings import SettingsError, settings_for
 
 BODIES = {
@@ -160,3 +160,12 @@ def test_the_claim_of_a_contact_of_few_cells_covers_any_place_of_its_apex(phase:
     left = left_by_cells(scene, settings)["critical_radius"]
     assert abs(found.half_width(top, 0.0) - (9.0 * math.pi * W * R**2 / (8.0 * E)) ** (1.0 / 3.0)) <= left
     assert left < 2.0 * 0.25  # and is not a quarter of the spacing
+
+
+def test_rows_of_a_pull_go_from_zero_force_to_just_before_fixed_grips() -> None:
+    found = estimate()
+    zero, last = found.displacement_at(0.0), found.fixed_grips[1]
+    rows = pulling_rows(zero, last)
+    assert np.diff(rows) == pytest.approx((last - zero) / rows.size, rel=1e-6)
+    assert 0.0 < rows[-1] - last < 1e-6 * (zero - last)
+    assert zero + (last - zero) / rows.size == pytest.approx(rows[0], rel=1e-6)

@@ -34,7 +34,7 @@ def test_the_edge_is_found_in_its_cell(d: float) -> None:
 
 def test_nothing_held_has_no_radius() -> None:
     found = held_radius(row(-1.0))
-    assert (found.value, found.uncertainty) == (0.0, 0.5)
+    assert (found.value, found.uncertainty, found.reaches_end) == (0.0, 0.5, False)
 
 
 def test_a_contact_of_few_particles_is_known_to_half_a_spacing() -> None:
