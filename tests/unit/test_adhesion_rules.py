@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
 
 from contact1d.workflow.scene import SceneError, scene_from_dict
 from contact1d.workflow.settings.adhesion import AdhesiveEstimate
@@ -147,19 +148,31 @@ def test_what_cells_leave_open_is_their_sum_beside_jkr(particles: int) -> None:
     assert all(wider[name] >= 0.999 * value for name, value in left.items() if particles % 2 == 0)
 
 
-@pytest.mark.parametrize("phase", [0.0, 0.25, 0.5])
-def test_the_claim_of_a_contact_of_few_cells_covers_any_place_of_its_apex(phase: float) -> None:
-    """a_cr where the sum over the cells has its largest tension, against JKR's (9π W R²/8E)^(1/3)."""
-    scene = scene_from_dict(SCENE | {"bodies": BODIES | {"spacing": 2.0, "bulk_stiffness": 2.0}})
+@pytest.mark.parametrize(
+    ("spacing", "particles", "phase"),
+    [(2.0, "auto", 0.0), (2.0, "auto", 0.25), (2.0, "auto", 0.5), (0.3, 121, 0.0), (1.0, 121, 0.0), (3.0, 120, 0.5)],
+)
+def test_the_claim_covers_where_the_sum_over_cells_has_its_largest_tension(
+    spacing: float, particles: Any, phase: float
+) -> None:
+    """Wherever the apex of a chain "auto" stands: a_cr beside JKR's (9π W R²/8E)^(1/3), F_A beside 3π W R/2."""
+    bodies = BODIES | {"spacing": spacing, "bulk_stiffness": spacing, "particles": particles}
+    scene = scene_from_dict(SCENE | {"bodies": bodies})
     settings = settings_for(scene)
     found = settings.estimate
     assert isinstance(found, AdhesiveEstimate)
-    cells = found.cells(2.0 * (np.arange(-50.0, 50.0) + phase), scene.bodies)
-    places = np.linspace(found.fixed_grips[1], found.displacement_at(0.0), 4001)
-    top = places[int(np.argmin(cells.forces(places, 2.0)))]
-    left = left_by_cells(scene, settings)["critical_radius"]
-    assert abs(found.half_width(top, 0.0) - (9.0 * math.pi * W * R**2 / (8.0 * E)) ** (1.0 / 3.0)) <= left
-    assert left < 2.0 * 0.25  # and is not a quarter of the spacing
+    cells = found.cells(spacing * (np.arange(-60.0, 61.0) + phase), scene.bodies)
+
+    def force(d: float) -> float:
+        return float(cells.forces(np.asarray([d]), spacing)[0])
+
+    places = np.linspace(found.fixed_grips[1], found.displacement_at(0.0), 2001)
+    near, step = places[int(np.argmin(cells.forces(places, spacing)))], places[1] - places[0]
+    top = minimize_scalar(force, bounds=(near - step, near + step), method="bounded", options={"xatol": 1e-10})
+    left = left_by_cells(scene, settings)
+    error = abs(found.half_width(float(top.x), 0.0) - (9.0 * math.pi * W * R**2 / (8.0 * E)) ** (1.0 / 3.0))
+    assert error <= left["critical_radius"] < 0.25 * spacing
+    assert abs(-top.fun - 1.5 * math.pi * W * R) <= left["adhesion_force"]
 
 
 def test_rows_of_a_pull_go_from_zero_force_to_just_before_fixed_grips() -> None:
