@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from contact1d import SettingsError, load_run, run, write_deck
 from contact1d.workflow.scene import Scene, SceneError, read_scene, scene_from_dict
-from contact1d.workflow.settings.spacing import MOST, with_spacing
+from contact1d.workflow.settings.spacing import FEWEST, MOST, _contact_radius, _up, left_by_lattice, with_spacing
 
 ROUND_OFF = 1e-12
 E_STAR, R, LOAD = 1e9, 1e-3, 1.0
@@ -130,3 +133,68 @@ def test_a_change_of_the_scene_chooses_anew() -> None:
     finer = scene.with_({"accuracy.tolerance": 1e-6})
     assert finer.bodies.given_spacing == "auto"
     assert with_spacing(finer).bodies.spacing < with_spacing(scene).bodies.spacing
+
+
+KINDS: dict[str, dict[str, Any]] = {
+    "load": {},
+    "path": {"experiment": PATH | {"displacements": [0.0, 1e-6, 2e-7]}},
+    "friction": {"friction": {"coefficient": 0.3}, "experiment": TANGENTIAL},
+    "pull-off": {"adhesion": {"work_of_adhesion": 0.5}, "experiment": {"kind": "pull_off", "preload": LOAD}},
+    "tension": {"adhesion": {"work_of_adhesion": 0.5}, "experiment": {"kind": "load", "force": -1e-3}},
+}
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3])
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_lattice_leaves_no_more_than_the_tolerance_and_is_no_finer_than_that_asks_for(
+    kind: str, tolerance: float
+) -> None:
+    scene = chosen(accuracy={"tolerance": tolerance}, **KINDS[kind])
+    count = _contact_radius(scene) / scene.bodies.spacing
+    assert FEWEST * 0.99 <= count <= MOST * 1.01
+    left = left_by_lattice(scene)
+    assert 0.0 < left <= tolerance
+    assert left > 0.02 * tolerance or count < 1.1 * FEWEST
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-5])
+def test_springs_at_any_place_of_the_apex_are_within_the_tolerance_of_hertz(tolerance: float) -> None:
+    """Displacement under the load, F = (4/3) E* √R d^(3/2); springs E* s under x²/R."""
+    scene = chosen(accuracy={"tolerance": tolerance})
+    s = scene.bodies.spacing
+    hertz = (0.75 * LOAD / (E_STAR * math.sqrt(R))) ** (2.0 / 3.0)
+    assert _contact_radius(scene) == pytest.approx(math.sqrt(R * hertz), rel=0.02)
+    half = int(1.1 * math.sqrt(R * hertz) / s) + 2
+    for phase in (0.0, 0.125, 0.25, 0.5):
+        heights = (s * (np.arange(-half, half + 1) + phase)) ** 2 / R
+
+        def over(d: float, heights: Any = heights) -> float:
+            return float(E_STAR * s * np.maximum(d - heights, 0.0).sum()) - LOAD
+
+        assert brentq(over, 0.5 * hertz, 2.0 * hertz, xtol=1e-20, rtol=1e-12) == pytest.approx(hertz, rel=tolerance)
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e-4])
+def test_an_adhesive_contact_has_the_same_spacing_in_any_unit_of_length(scale: float) -> None:
+    pull = {"adhesion": {"work_of_adhesion": 0.5}, "experiment": {"kind": "pull_off", "preload": LOAD}}
+    one = chosen(**pull).bodies.spacing
+    there = {
+        "bodies": {"profile": {"kind": "parabola", "radius": R / scale}}, "material": {"length_unit": scale},
+        "adhesion": {"work_of_adhesion": 0.5 * scale},
+    }  # fmt: skip
+    assert chosen(**pull | there).bodies.spacing * scale == pytest.approx(one, rel=1e-3)
+
+
+def test_a_pull_off_counts_particles_in_its_contact_at_zero_force_and_a_punch_in_its_own_radius() -> None:
+    work = 0.5
+    scene = chosen(adhesion={"work_of_adhesion": work}, experiment={"kind": "pull_off", "preload": LOAD})
+    zero = (4.5 * math.pi * work * R**2 / E_STAR) ** (1.0 / 3.0)
+    assert _contact_radius(scene) == pytest.approx(zero, rel=0.02)
+    assert _contact_radius(chosen(bodies={"profile": PUNCH})) == R
+
+
+@pytest.mark.parametrize("tolerance", [1e-7, 1.01e-6, 1.234e-4, 9.9e-3])
+def test_an_advised_tolerance_has_two_figures_and_is_a_little_larger(tolerance: float) -> None:
+    told = float(_up(tolerance))
+    assert 1.1 * tolerance <= told * (1.0 + 1e-9) <= 1.21 * tolerance
+    assert _up(tolerance) == f"{told:.2g}"

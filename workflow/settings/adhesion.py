@@ -172,8 +172,12 @@ class AdhesiveEstimate(ContactEstimate):
 
     def half_widths(self, displacements: Array, gap: float) -> Array:
         """a(d) [LU] of a contact that is held, at least a spacing; all `gap`s are the edge."""
+        return np.maximum(self.spacing, self.radii(displacements))
+
+    def radii(self, displacements: Array) -> Array:
+        """The same without regard to the spacing: the body's own contact."""
         x, h, _, least = self._grid
-        return np.asarray(np.maximum(self.spacing, np.interp(displacements, h[least:], x[least:])))
+        return np.asarray(np.interp(displacements, h[least:], x[least:]))
 
     @cached_property
     def _rising(self) -> tuple[Array, Array]:
@@ -230,7 +234,7 @@ def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
         known = min(2.0 * known, profile.reach)
     if not bodies.profile.has_edge:
         inside = estimate.fixed_grips[0] < radius and displacement > wanted and force > load
-        widest = estimate.half_width(max(wanted, estimate.displacement_at(load)), 0.0)
+        widest = float(estimate.radii(np.asarray([max(wanted, estimate.displacement_at(load))]))[0])
         limit = min(profile.reach, bodies.profile.curvature_radius or math.inf)
         if not inside or widest > SPANNED * limit:
             raise SettingsError(
