@@ -48,17 +48,25 @@ def record_slow_tests(config: pytest.Config) -> None:
 
 
 def slow_markdown() -> str:
-    """The section of VALIDATION.md about the long tests."""
+    """The section of VALIDATION.md about the long tests: a row for each, with how many of its cases pass."""
     found = slow_results()
     if not found:
         return f"## Long tests\n\n`{COMMAND}` was not run for this record."
     passed = sum(one["outcome"] == "passed" for one in found.values())
-    rows = [
-        (f"`{name}`", one["date"], one["machine"], duration(one["seconds"]), VERDICTS[one["outcome"]])
-        for name, one in found.items()
-    ]
+    cases: dict[str, list[dict[str, Any]]] = {}
+    for name, one in found.items():
+        cases.setdefault(name.partition("[")[0], []).append(one)
     return (
-        f"## Long tests\n\n`{COMMAND}`: **{passed} of {len(found)} pass.** Each with the day on which it was last run, "
-        "and the time that it took beside other work.\n\n"
-        + table(("test", "last run", "machine", "took", "verdict"), rows)
+        f"## Long tests\n\n`{COMMAND}`: **{passed} of {len(found)} cases pass.** Each test with the day on which its "
+        "cases were last run, and the time that they took beside other work.\n\n"
+        + table(("test", "cases", "last run", "machine", "took", "verdict"), [_row(*each) for each in cases.items()])
     )
+
+
+def _row(name: str, cases: list[dict[str, Any]]) -> tuple[str, ...]:
+    """Of a test whose cases ran on several days or machines, the earliest day and every machine."""
+    failed = sum(one["outcome"] == "failed" for one in cases)
+    machines = ", ".join(sorted({one["machine"] for one in cases}))
+    took = duration(sum(one["seconds"] for one in cases))
+    verdict = VERDICTS["failed" if failed else "passed"] + (f" ({failed} of {len(cases)} fail)" if failed else "")
+    return f"`{name}`", str(len(cases)), min(one["date"] for one in cases), machines, took, verdict
