@@ -1,6 +1,7 @@
 """The runs behind docs/reproduced, as far as its judges read them: scenes, results, warnings, the columns of some.
 
-`make validation` writes them. With them a row can be judged again in seconds, without a run.
+`make validation` writes them. With them a row can be judged again in seconds, without a run. Beside them what the
+figures draw, of each line and set of points some numbers.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from contact1d.analysis.curve import Curve
 from contact1d.analysis.pressure import Profile
@@ -72,12 +74,43 @@ def kept(run: Run, name: str) -> dict[str, Any]:
     return entry
 
 
+def drawn(figure: Figure) -> list[list[float]]:
+    """Of each line and set of points: how many, first and last, and the mean of places and squares, of both axes."""
+    told = []
+    for axes in figure.axes:
+        lines = [np.asarray(line.get_xydata(), dtype=float) for line in axes.lines]
+        points = [np.asarray(one.get_offsets(), dtype=float) for one in axes.collections]
+        for xy in (*lines, *points):
+            numbers = xy[np.isfinite(xy).all(axis=1)]
+            if len(numbers):
+                ends = (numbers[0], numbers[-1], numbers.mean(axis=0), (numbers**2).mean(axis=0))
+                told.append([float(len(numbers)), *np.concatenate(ends).tolist()])
+    return told
+
+
+def keep_figures(figures: Mapping[str, list[list[float]]]) -> None:
+    """Write what they draw beside the runs."""
+    found = json.loads(gzip.decompress(KEPT.read_bytes()))
+    _write(found | {"figures": {name: [_rounded(line) for line in lines] for name, lines in figures.items()}})
+
+
+def kept_figures() -> dict[str, list[list[float]]]:
+    """What they draw, by file name."""
+    found: dict[str, list[list[float]]] = json.loads(gzip.decompress(KEPT.read_bytes()))["figures"]
+    return found
+
+
+def _write(found: Mapping[str, Any]) -> None:
+    text = json.dumps(found, ensure_ascii=False, separators=(",", ":"))
+    KEPT.write_bytes(gzip.compress(text.encode(), mtime=0))
+
+
 def keep(runs: Path) -> None:
     """Write what is read of all runs in a folder."""
     found = {folder.name: kept(read_run(folder), folder.name) for folder in sorted(runs.iterdir())
              if (folder / "results.json").is_file()}  # fmt: skip
-    text = json.dumps(found, ensure_ascii=False, separators=(",", ":"))
-    KEPT.write_bytes(gzip.compress(text.encode(), mtime=0))
+    _write({"runs": found, "figures": {}})
+    kept_runs.cache_clear()
 
 
 def _numbers(column: list[float | None]) -> Any:
@@ -105,7 +138,7 @@ def _run(name: str, entry: dict[str, Any]) -> Run:
 @cache
 def kept_runs() -> dict[str, Run]:
     """By name."""
-    found = json.loads(gzip.decompress(KEPT.read_bytes()))
+    found = json.loads(gzip.decompress(KEPT.read_bytes()))["runs"]
     return {name: _run(name, entry) for name, entry in found.items()}
 
 

@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from contact1d.analysis.reference.slide import Trace
 from contact1d.workflow.judging.check import Check
@@ -25,11 +26,13 @@ from contact1d.workflow.reproduce.record import read_record
 from contact1d.workflow.reproduce.studies import NAMES, STUDIES
 from contact1d.workflow.reproduce.study import Findings
 from contact1d.workflow.scene import Scene
-from tests.kept_runs import KEPT, keep, kept_paper, kept_runs, solved_once
+from tests.kept_runs import KEPT, drawn, keep, keep_figures, kept_figures, kept_paper, kept_runs, solved_once
 
 ROOT = Path(__file__).parents[2]
 SAME = 1e-6
 """Relative: the kept numbers have twelve digits, what is found by a search fewer."""
+SAME_PLACE = 1e-4
+"""The same of what a figure draws, which nobody sees finer."""
 SMALL = 1e-9
 """Absolute, of rows whose value is a residue: a sum that is 0 but for round-off."""
 ROUND_OFF = 1e-9
@@ -40,9 +43,16 @@ BY_INTEGRATOR = ("⟨F⟩ of a curved", "largest friction of a curved", "what it
 """Rows whose reference takes minutes, in its place stand the numbers of the run."""
 
 
+FIGURES: dict[str, list[list[float]]] = {}
+"""What the figures of the studies that were judged draw."""
+
+
 def setup_module() -> None:
     if os.environ.get("WRITE_DOCS") and (ROOT / "reproduced" / "runs").is_dir():
         keep(ROOT / "reproduced" / "runs")
+        for name in NAMES:
+            judged(name)
+        keep_figures(FIGURES)
 
 
 def as_the_run(scene: Scene) -> fig9.curved.Integrated:
@@ -53,13 +63,18 @@ def as_the_run(scene: Scene) -> fig9.curved.Integrated:
     return fig9.curved.Integrated(mean, static, Trace(known, known, known, known, known))
 
 
+def look(figure: Figure, path: Path) -> None:
+    """In place of saving it."""
+    FIGURES[path.name] = drawn(figure)
+
+
 @cache
 def judged(name: str) -> Findings:
     """What a study makes of the kept runs."""
     study = next(study for study in STUDIES if study.name == name)
     with pytest.MonkeyPatch.context() as patch, solved_once():
         for module in {one.judge.__module__ for one in STUDIES}:
-            patch.setattr(sys.modules[module], "save", lambda *_: None, raising=False)
+            patch.setattr(sys.modules[module], "save", look, raising=False)
         patch.setattr(fig9.curved, "integrated", as_the_run)
         patch.setattr(fig9.curved, "off_trace", lambda *_: 0.0)
         return study.judge(kept_paper(), kept_runs(), Path("nowhere"))
@@ -92,6 +107,14 @@ def test_the_record_is_what_its_studies_make_of_its_runs(name: str) -> None:
             assert getattr(ours, key) == getattr(known, key), (ours.name, key)
     if name != "fig9":  # it tells of the integrator
         assert judged(name).finding == recorded(name).finding
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_figures_show_what_they_showed(name: str) -> None:
+    known = kept_figures()
+    for figure in judged(name).figures:
+        for ours, theirs in zip(FIGURES[figure], known[figure], strict=True):
+            assert ours == pytest.approx(theirs, rel=SAME_PLACE, abs=SMALL), figure
 
 
 @pytest.mark.parametrize("name", NAMES)
