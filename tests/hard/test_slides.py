@@ -149,3 +149,16 @@ def test_little_drag_throws_no_slide_through_the_other_body_while_it_is_loaded(t
     assert float(drags[0]) > 0.02
     assert float(drags[-1]) == 0.02
     assert found.friction["friction"][0] == pytest.approx(0.0, abs=0.05 * np.abs(found.friction["friction"]).max())
+
+
+def test_a_slide_that_only_rests_is_not_asked_for_periods(tmp_path: Path) -> None:
+    resting = scene_of(experiment={"kind": "slide", "normal_force": 1.0, "path": [[0.0, 1.0]]})
+    found = run(resting, tmp_path / "run", figures=False)
+    assert "unsteady" not in found.warnings
+    assert "mean_friction" not in found.results
+
+
+def test_the_pair_that_is_named_closes_and_has_as_many_particles() -> None:
+    with pytest.raises(SceneError, match="or particles = 5 and upper_particles = 5 with upper_spacing = 1"):
+        read_scene(flat(particles=8, upper_particles=5))
+    assert read_scene(flat(particles=5, upper_particles=5, upper_spacing=1.0)).bodies.upper_particles == 5

@@ -193,3 +193,10 @@ def test_of_many_changes_in_vain_the_first_are_named() -> None:
     said = str(Tried(failed=changes))
     assert said.endswith("--set experiment.distance=3.0 and 3 more")
     assert " more" not in str(Tried(failed=changes[:4]))
+
+
+def test_a_drive_that_is_over_before_the_plate_swings_is_made_slower() -> None:
+    """116 MU on 0.5 FU/LU swing once in 95.7 TU: 8 LU in three of that."""
+    quick = slide_of(cantilever__velocity=50.0)
+    slower = found(quick, failed(UnsteadyError("not yet")), lambda _: True).helped[0]
+    assert slower == Change({"cantilever.velocity": 0.0279})

@@ -38,6 +38,7 @@ from contact1d.workflow.runs.sliding import (
     longer_way,
     no_pull,
     shorter_way,
+    slower_drive,
     stiffer_cantilever,
     stronger_attraction,
     way_within,
@@ -173,7 +174,7 @@ def _kinds(error: Contact1dError) -> tuple[Callable[[Scene], Change | None], ...
     if isinstance(cause, ShortChainError):
         return (chain_of(cause.needed, cause.above), way_within(cause.room))
     if isinstance(cause, UnsteadyError):
-        return (lighter_plate, longer_way, stiffer_cantilever)
+        return (lighter_plate, slower_drive, longer_way, stiffer_cantilever)
     if isinstance(cause, OffEndError):
         return (longer_lower_chain, shorter_way, automatic_drag)
     if isinstance(cause, PartedError):

@@ -9,7 +9,7 @@ from contact1d.workflow.runs.change import STEP, Change, rounded
 from contact1d.workflow.scene import Scene, Slide
 from contact1d.workflow.settings.scales import interaction_law
 from contact1d.workflow.settings.settings import settings_for
-from contact1d.workflow.settings.way import SHORTEST
+from contact1d.workflow.settings.way import SHORTEST, cantilever_swing
 
 ENOUGH = 8.0
 """Way over the spacing of a longer one at least: some periods more than a mean needs."""
@@ -39,6 +39,17 @@ def longer_way(scene: Scene) -> Change | None:
     longer = rounded(max(STEP * experiment.distance, ENOUGH * scene.bodies.spacing))
     chain = {} if scene.bodies.particles == "auto" else _longer_by(scene, longer - experiment.distance)
     return Change({"experiment.distance": longer, **chain})
+
+
+def slower_drive(scene: Scene) -> Change | None:
+    """One whose way takes some swings of the plate on its cantilever; none where it does already, or is too short."""
+    experiment, cantilever = scene.experiment, scene.cantilever
+    if not isinstance(experiment, Slide) or experiment.distance is None or cantilever is None:
+        return None
+    if experiment.distance < SHORTEST * scene.bodies.spacing:
+        return None
+    slower = experiment.distance / (STEP * cantilever_swing(scene, settings_for(scene)))
+    return Change({"cantilever.velocity": rounded(slower)}) if STEP * slower < cantilever.velocity else None
 
 
 def longer_lower_chain(scene: Scene) -> Change | None:

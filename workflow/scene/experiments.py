@@ -171,6 +171,8 @@ class PullOff(Kind):
 class Leg(Table):
     """A part of a slide's path, written [velocity, distance]."""
 
+    as_list: ClassVar[bool] = True
+
     velocity: DriveVelocity = Field(description="velocity of the driven end; negative: back, 0: it rests")
     distance: Length = Field(
         description="way of the driven end; where it rests, it does so as long as cantilever.velocity takes for that"

@@ -79,9 +79,10 @@ def _closing(draft: Draft) -> Iterator[Problem]:
     nearest = count * spacing / upper
     pair = f"upper_spacing = {nearest:.10g} with these numbers of particles"
     if 0 < ratio.numerator <= LONGEST_CELL:
+        cells = max(1, round(upper / ratio.denominator))
         pair += (
-            f", or particles = {ratio.numerator} and upper_particles = {ratio.denominator} with upper_spacing = "
-            f"{ratio.numerator / ratio.denominator * spacing:.10g}"
+            f", or particles = {cells * ratio.numerator} and upper_particles = {cells * ratio.denominator} with "
+            f"upper_spacing = {ratio.numerator / ratio.denominator * spacing:.10g}"
         )
     message = f"do not close: {count} · {spacing:g} LU below and {upper} · {pitch:g} LU above"
     yield Problem("bodies.upper_spacing", f"periodic chains {message}", shown(pitch), f"the nearest that do: {pair}")

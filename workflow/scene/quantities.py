@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from typing import Annotated, Any, Literal, get_type_hints
+from typing import Annotated, Any, ClassVar, Literal, get_type_hints
 
 from annotated_types import Ge, Gt, Le
 from pydantic import BaseModel, ConfigDict, Discriminator, GetJsonSchemaHandler, Tag
@@ -50,6 +50,9 @@ class Table(BaseModel):
     """A table of a scene: immutable, no unknown keys, no conversion between types, finite numbers only."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    as_list: ClassVar[bool] = False
+    """Whether it is written as a list of its values."""
 
 
 Length = Annotated[float, Gt(0), Unit("LU")]

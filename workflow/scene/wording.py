@@ -71,6 +71,8 @@ def statement(annotation: object) -> str:
     if get_origin(inner) is tuple:
         return f"a list, each item {statement(get_args(inner)[0])}"
     if table := table_of(inner):
+        if table.as_list:
+            return f"a list [{', '.join(keys_of(table))}]"
         return f"a table with {', '.join(keys_of(table))}" if table.model_fields else "a table without keys"
     simple = {bool: "true or false", str: "text in quotes", int: "a whole number", float: "a number"}
     return simple[inner] + _range(marks) + _unit(marks)

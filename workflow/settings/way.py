@@ -56,6 +56,13 @@ def require_way(scene: Scene, settings: Settings) -> None:
         ) from ShortChainError(needed, settings.particles, room)
 
 
+def cantilever_swing(scene: Scene, settings: Settings) -> float:
+    """Time [TU] of a swing of plate and particles on the cantilever, 2π √((M + N m)/k)."""
+    assert scene.cantilever is not None
+    moving = settings.plate_mass + settings.particles * scene.bodies.mass
+    return 2.0 * math.pi * math.sqrt(moving / scene.cantilever.stiffness)
+
+
 def too_fast(scene: Scene) -> str:
     """A warning where the drive passes particles quicker than they swing, 2π v/s > √(k/m); else empty."""
     experiment, bodies = scene.experiment, scene.bodies

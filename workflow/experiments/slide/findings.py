@@ -17,7 +17,7 @@ from contact1d.workflow.experiments.slide.motion import Motion, motion_of
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.dynamics import MOVING_TOLERANCE
 from contact1d.workflow.settings.settings import Settings
-from contact1d.workflow.settings.way import too_fast
+from contact1d.workflow.settings.way import cantilever_swing, too_fast
 from contact1d.workflow.units import ENERGY, FORCE, NUMBER, Quantity
 
 STEADY = 0.1
@@ -125,12 +125,13 @@ def is_steady(scene: Scene, settings: Settings, motion: Motion) -> str:
             f"the spacing, and a mean needs {friction.DROPPED + friction.FEWEST_BLOCKS}"
         )
     if motion.place[-1] < spacing:
-        return f"the plate moved by {motion.place[-1]:.3g} LU only, which is no sliding yet"
+        found = f"the plate moved by {motion.place[-1]:.3g} LU only, which is no sliding yet"
+        return found + _swing(scene, settings, motion)
     start = motion.time[-1] - period * (blocks.size - friction.mean_of(blocks).first)
     while_ = motion.time[-1] - start
     way = float(motion.place[-1] - np.interp(start, motion.time, motion.place))
-    found = [slip.size for slip in slips_of(scene, motion) if slip.time > start]
-    one = max(found) if len(found) > 1 else 0.0
+    sizes = [slip.size for slip in slips_of(scene, motion) if slip.time > start]
+    one = max(sizes) if len(sizes) > 1 else 0.0
     if abs(way - leg.velocity * while_) > max(STEADY * leg.velocity * while_, one):
         return (
             f"no steady sliding yet: over the last {while_:.3g} TU the plate moves at {way / while_:.3g} LU/TU and the "
@@ -141,14 +142,12 @@ def is_steady(scene: Scene, settings: Settings, motion: Motion) -> str:
 
 def _swing(scene: Scene, settings: Settings, motion: Motion) -> str:
     """That the plate swings on its cantilever for longer than the whole way took; "" where it does not."""
-    assert scene.cantilever is not None
-    moving = settings.plate_mass + settings.particles * scene.bodies.mass
-    swing = 2.0 * math.pi * math.sqrt(moving / scene.cantilever.stiffness)
+    swing = cantilever_swing(scene, settings)
     if swing < motion.time[-1]:
         return ""
     return (
         f". On its cantilever the plate of {settings.plate_mass:.3g} MU swings once in {swing:.3g} TU, and the drive's "
-        f"way takes {motion.time[-1]:.3g} TU: a lighter plate.mass helps, too"
+        f"way took {motion.time[-1]:.3g} TU: a lower cantilever.velocity or a lighter plate.mass gives it time, too"
     )
 
 
@@ -175,7 +174,8 @@ def _doubts(
     found = doubts(scene, settings, states)
     if fast := too_fast(scene):
         found["fast"] = fast
-    if scene.experiment.kind == "slide" and "mean_friction" not in quantities:
+    moves = any(leg.velocity for leg in motion.legs)
+    if moves and "mean_friction" not in quantities:
         found["unsteady"] = (
             "the last leg on which the drive moves has too few whole periods of the spacing for a mean friction: make "
             f"it longer than {friction.DROPPED + friction.FEWEST_BLOCKS} spacings"
