@@ -31,7 +31,7 @@ SOLVER_ASKED = 1.0
 PEERS_ASKED = {"Hertz": 10.0, "adhesive": 100.0, "JKR": 1000.0}
 """Asked of the other solvers' time over ours."""
 WHOLE_ASKED = 0.025
-"""Asked of the whole run of the quickest Hertz curve, through Python [s]."""
+"""Asked of the whole run of the quickest Hertz curve, through Python, by the clock [s]."""
 OVERHEAD, SCALING = "`python benchmarks/deck_overhead.py`", "`python benchmarks/scaling.py`"
 PEERS = "`python -m benchmarks.peers.compare`"
 SCIPY, PLAIN, OURS = "scipy solver", "plain", "quasistatic"
@@ -123,14 +123,12 @@ def _peers(results: Results) -> Iterator[Row]:
                 reached = reached and ratio >= asked
         yield f"time of a curve over ours: {what}", f"≥ {asked:g}", _held(", ".join(said), reached), PEERS
     hertz = [r for r in results["peers"]["records"] if r["contact"] == "hertz" and r["solver"] == PROGRAM]
-    least = min(float(record["seconds"]) for record in hertz)
-    reached = _held(f"{1e3 * least:.0f} ms", least <= WHOLE_ASKED)
-    yield (
-        "processor time of Hertz's curve, the whole run through Python",
-        f"≤ {1e3 * WHOLE_ASKED:.0f} ms",
-        reached,
-        PEERS,
-    )
+    quickest = min(hertz, key=lambda record: float(record["seconds"]))
+    cpu, wall = f"{1e3 * quickest['seconds']:.0f} ms", quickest["parts"].get("wall")
+    said = f"processor time of all processes {cpu}"
+    said = said if wall is None else f"{_held(f'{1e3 * wall:.0f} ms', wall <= WHOLE_ASKED)}; {said}"
+    what = "wall time of Hertz's curve of 50 rows, the whole run through Python"
+    yield what, f"≤ {1e3 * WHOLE_ASKED:.0f} ms", said, PEERS
 
 
 def _held(said: str, reached: bool) -> str:

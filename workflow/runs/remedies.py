@@ -18,9 +18,11 @@ from contact1d.workflow.engine.failure import EngineError
 from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.experiments.running.trust import (
     ChainEndError,
+    DigitsError,
     OffEndError,
     PartedError,
     RestlessError,
+    TensionError,
     ThroughError,
     UnsteadyError,
     UntrustedError,
@@ -56,6 +58,8 @@ ENOUGH = 2
 """Changes that help after which no other is tried."""
 TOLD = 4
 """Changes that did not help which are named, where none did."""
+HELD = 0.9
+"""Tension that is tried where a larger one was not held, over the largest one."""
 NARROW = 0.8
 """Range of the repulsion over half of the attraction's below which it counts as short."""
 
@@ -169,6 +173,10 @@ def _kinds(error: Contact1dError) -> tuple[Callable[[Scene], Change | None], ...
         )  # fmt: skip
     if isinstance(cause, ChainEndError):
         return (_longer_chain,)
+    if isinstance(cause, TensionError):
+        return (_held(cause.most),)
+    if isinstance(cause, DigitsError):
+        return ()  # how much more force is meant, nobody knows
     if isinstance(cause, NotCarriedError):
         return (_smaller_load, _stronger_core)
     if isinstance(cause, ShortChainError):
@@ -211,6 +219,13 @@ def _smaller_load(scene: Scene) -> Change | None:
     if isinstance(experiment, Slide):
         return Change({"experiment.normal_force": rounded(experiment.normal_force / STEP)})
     return None
+
+
+def _held(most: float) -> Callable[[Scene], Change | None]:
+    """Less than the largest tension [FU]."""
+    return lambda scene: (
+        Change({"experiment.force": rounded(-HELD * most)}) if isinstance(scene.experiment, Load) else None
+    )
 
 
 def _stronger_core(scene: Scene) -> Change | None:

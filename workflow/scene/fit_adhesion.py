@@ -33,6 +33,10 @@ def adhesion(draft: Draft) -> Iterator[Problem]:
         if not given:
             what, hint = "missing", "give W, or with surface_energy γ of one side, half of it"
         yield Problem(f"adhesion.{KEYS[bool(given)]}", what, hint=hint)
+    for key in given:
+        if draft.kind == "pull_off" and draft.get("adhesion", key) == 0.0:
+            hint = 'nothing would hold the bodies together: raise it, or use kind = "load" or "path"'
+            yield Problem(f"adhesion.{key}", "must be greater than 0 (FU/LU) in a pull_off", shown(0.0), hint)
     if draft.lower != "rigid_plane":
         return
     reduction = draft.get("bodies", "reduction", default=Bodies.model_fields["reduction"].default)

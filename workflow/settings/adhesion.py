@@ -227,9 +227,8 @@ def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
             deep, -stiffness * deep, 0.0, profile, bodies.spacing, stiffness, work=work, known=known
         )
         radius, displacement, force = estimate.end
-        if known == profile.reach or (
-            BEYOND * estimate.fixed_grips[0] < radius and displacement > BEYOND * wanted and force > BEYOND * load
-        ):
+        far = displacement > BEYOND * wanted and force > max(BEYOND * load, estimate.pull_off_force())
+        if known == profile.reach or (BEYOND * estimate.fixed_grips[0] < radius and far):
             break
         known = min(2.0 * known, profile.reach)
     if not bodies.profile.has_edge:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import largest_tension
 from contact1d.analysis.polynomial import fitting, lowest_minimum
-from contact1d.workflow.scene import Load, Scene
+from contact1d.workflow.scene import Load, Path, Scene
 from contact1d.workflow.settings.adhesion import AdhesiveEstimate, Cells
 from contact1d.workflow.settings.settings import Settings
 
@@ -47,7 +47,8 @@ def left_by_cells(scene: Scene, settings: Settings) -> dict[str, float]:
         whole = _marks(scene, settings, estimate, None, by_rows)
         for phase in phases:
             sums = _marks(scene, settings, estimate, _cells(scene, settings, estimate, phase), by_rows)
-            left = {name: max(left.get(name, 0.0), MARGIN * abs(sums[name] - value)) for name, value in whole.items()}
+            both = whole.keys() & sums.keys()
+            left |= {name: max(left.get(name, 0.0), MARGIN * abs(sums[name] - whole[name])) for name in both}
     return left
 
 
@@ -89,7 +90,13 @@ def _marks(
     zero = place_of(0.0)
     by = _largest_tension if not by_rows else _read_off if cells else _vertex
     tension, place = by(estimate, forces)
-    return {"adhesion_force": tension, "critical_radius": radius(place), "zero_load_radius": radius(zero)}
+    marks = {"adhesion_force": tension, "critical_radius": radius(place), "zero_load_radius": radius(zero)}
+    if isinstance(scene.experiment, Path):  # which goes no further than it says
+        places = scene.experiment.places()
+        passed = {"zero_load_radius": max(places) >= estimate.displacement_at(0.0)}
+        passed |= dict.fromkeys(("adhesion_force", "critical_radius"), min(places) <= place)
+        marks = {name: value for name, value in marks.items() if passed[name]}
+    return marks
 
 
 def _largest_tension(estimate: AdhesiveEstimate, forces: Callable[[Array], Array]) -> tuple[float, float]:

@@ -100,7 +100,7 @@ class Sliders:
         return profile, work, stick_radius(profile, self.coefficient, direction)
 
     def sizes(self, stops: Sequence[Stop]) -> dict[str, float]:
-        """What errors of a tangential force and of an energy are held against: μ F at most, ∫ |F_x du| over all stops.
+        """What errors are held against: Σ |s_i| of tangential forces at most, and the work of that, Σ |s_i| |Δu|.
 
         Of MOST_SIZED particles at most, each of which stands for its neighbours.
         """
@@ -111,9 +111,9 @@ class Sliders:
             limit, next_limit = (self.coefficient * some.normal_forces(depth) for depth in (old, new))
             pushed: Array = np.where(limit > 0.0, some.tangential * (place - start), 0.0)
             force = slip(force, pushed, limit, next_limit, some.tangential).force
-            after = float(force.sum())
-            work += 0.5 * abs(before + after) * abs(place - start)
-            before, largest = after, max(largest, float(limit.sum()), float(next_limit.sum()))
+            after = float(np.abs(force).sum())
+            work += 0.5 * (before + after) * abs(place - start)
+            before, largest = after, max(largest, after)
         return {"tangential_force": every * largest, "dissipated_energy": every * work}
 
 

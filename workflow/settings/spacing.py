@@ -27,6 +27,8 @@ LARGEST = 0.1
 """The largest tolerance that there is."""
 SAME = 0.01
 """Difference of a radius at two spacings over it, below which it is the body's."""
+WIDEST = 0.5
+"""Radius that is tried first, 1 LU or this share of where a body ends or of its curvature."""
 MOST_SIZES = 60
 """Tries to find a radius: each brings a spacing that is too wide nearer by FEWEST, or doubles one that is too fine."""
 
@@ -43,11 +45,11 @@ def with_spacing(scene: Scene) -> Scene:
     chosen = fine_enough(partial(_spaced, scene, radius))
     left = left_by_lattice(chosen)
     if scene.accuracy.tolerance < left < math.inf:  # without bound the run says what appears
-        needed = radius / chosen.bodies.spacing * math.sqrt(left / scene.accuracy.tolerance)
         larger = "" if left > 0.9 * LARGEST else f"take an accuracy.tolerance of {_up(left)}, or "
         raise SettingsError(
-            f"a tolerance of {scene.accuracy.tolerance:g} needs about {needed:.2g} particles in the contact radius of "
-            f'{radius:.4g} LU, and bodies.spacing = "auto" takes {MOST} at most: {larger}give bodies.spacing'
+            f"a tolerance of {scene.accuracy.tolerance:g} is not kept by {MOST} particles in the contact radius of "
+            f'{radius:.4g} LU, the most that bodies.spacing = "auto" takes: they leave {left:.1e}. '
+            f"{larger[:1].upper()}{larger[1:]}{'give' if larger else 'Give'} bodies.spacing"
         )
     return chosen
 
@@ -93,9 +95,10 @@ def _contact_radius(scene: Scene) -> float:
     Raises:
         SettingsError: nothing touches.
     """
-    if isinstance(scene.bodies.profile, FlatPunch):
-        return scene.bodies.profile.radius
-    size = 1.0
+    profile = scene.bodies.profile
+    if isinstance(profile, FlatPunch):
+        return profile.radius
+    size = WIDEST * min(profile.reach, profile.curvature_radius or math.inf, 1.0 / WIDEST)
     for _ in range(MOST_SIZES):
         before, size = size, _half_width(_spaced(scene, size, FEWEST))
         if abs(size - before) <= SAME * size:

@@ -14,7 +14,7 @@ from contact1d.workflow.experiments.pull_off.smooth import MOST_TRIES, SmoothPas
 from contact1d.workflow.experiments.running.contact import Contact, State
 from contact1d.workflow.experiments.running.prescribing import LOADING_STEPS, approach
 from contact1d.workflow.experiments.running.run_context import RunContext
-from contact1d.workflow.experiments.running.trust import UntrustedError, require_trust
+from contact1d.workflow.experiments.running.trust import DigitsError, UntrustedError, require_trust
 from contact1d.workflow.settings.cells import CLOSER, LAST, PULLING_STEPS, pulling_rows
 
 APART = 1.05
@@ -47,6 +47,13 @@ def stepped_pass(context: RunContext, preload: float, tolerance: float) -> Smoot
         contact.finish()
         phases = contact.phases
     peak = _peak([*unloaded, *pulled])
+    digits = pulled[-1].residual * contact.settings.particles
+    if peak.smooth <= digits:
+        raise DigitsError(
+            f"the largest tension, about {estimate.pull_off_force():.2g} FU, is nothing beside {digits:.2g} FU, which "
+            "the last digits of places make of the contact's force",
+            "take a larger adhesion.work_of_adhesion, or a smaller preload",
+        )
     unloading = [*unloaded, *pulled, *apart]
     return SmoothPass(phases, loading, unloading, unloaded[-1], pulled[-1], peak, abs(peak.smooth - before.smooth))
 

@@ -12,7 +12,7 @@ from contact1d.workflow.deck.steps import Displace, displacements
 from contact1d.workflow.experiments.running.contact import Contact, State
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
-from contact1d.workflow.experiments.running.trust import ThroughError, UntrustedError, require_trust
+from contact1d.workflow.experiments.running.trust import TensionError, ThroughError, UntrustedError, require_trust
 from contact1d.workflow.settings.settings import Settings
 
 MOST_INCREMENTS = 10_000
@@ -119,7 +119,8 @@ def approach(
                 "springs or a longer range, with which particles do not snap"
             )
         if direction < 0 and last.smallest_distance > contact.settings.cutoff:
-            raise UntrustedError(f"{force:.4g} FU is never reached: the largest tension is smaller")
+            most = max(-state.force for state in states)
+            raise TensionError(f"{force:.4g} FU is never reached: the largest tension is about {most:.4g} FU", most)
         if len(states) > MOST_INCREMENTS:
             raise UntrustedError(
                 f"{force:.4g} FU is not reached within {MOST_INCREMENTS} increments, at displacement "
@@ -151,7 +152,8 @@ def _first(contact: Contact, start: float, force: float, direction: int, steps: 
     for state in states:
         require_trust(contact.scene, settings, state)
     if direction < 0 and min(state.carried for state in states) > force:
-        raise UntrustedError(f"{force:.4g} FU is never reached: the largest tension is smaller")
+        most = settings.estimate.pull_off_force()
+        raise TensionError(f"{force:.4g} FU is never reached: the largest tension is about {most:.4g} FU", most)
     return states
 
 

@@ -51,6 +51,19 @@ class RestlessError(UntrustedError):
     """A plate that does not come to rest."""
 
 
+class TensionError(UntrustedError):
+    """A tension that the contact does not hold; `most` is about what it holds [FU]."""
+
+    def __init__(self, message: str, most: float) -> None:
+        """Keep it."""
+        super().__init__(message)
+        self.most = most
+
+
+class DigitsError(UntrustedError):
+    """Forces that are nothing beside the last digits of places."""
+
+
 END_SHARE_LIMIT = 1.0
 """Pressure at a chain's end over the largest one, per unit of tolerance, from which on the chain cuts the contact."""
 INSIDE_SHARE = 0.5
@@ -76,6 +89,12 @@ def require_trust(scene: Scene, settings: Settings, state: State) -> None:
         )
     if scene.plate is None and scene.noise is None and not is_converged(settings, state):
         limit = RESIDUAL_LIMIT * settings.tolerance * settings.force_scale
+        if scene.is_stepped:
+            raise DigitsError(
+                f"the forces are too small to compute with {at}: the last digit of a particle's place is a force of "
+                f"{state.residual:.2g} FU, and a tolerance of {settings.tolerance:g} allows {limit:.2g} FU",
+                "take a larger load or displacement, or a larger [accuracy] tolerance",
+            )
         raise UntrustedError(
             f"not converged {at}: a particle is left with a force of {state.residual:.2g} FU, above the {limit:.2g} FU "
             f"that a tolerance of {settings.tolerance:g} allows. What helps is "

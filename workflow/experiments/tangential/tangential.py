@@ -23,7 +23,7 @@ from contact1d.workflow.units import ENERGY, FORCE, LENGTH, Quantity
 Array = NDArray[np.float64]
 RADII = ("contact_radius", "stick_radius")
 ROUND_OFF = 1e-13
-"""Error of tangential forces over the largest that there can be, for each row: a history is a sum over all of them."""
+"""Error of tangential forces over the largest on the way, for each row: a history is a sum over all of them."""
 AS_PREDICTED = 1e-8
 """How far a particle's tangential force may be from what spring and slider make of the row before, over its limit."""
 
@@ -36,6 +36,7 @@ class Drawn:
         state: as measured.
         place: of the plate along x [LU].
         force: with which the body resists a move to the right [FU].
+        carried: Σ |s_i|, of all particles whichever way they push [FU].
         stick: half-width of the zone that sticks.
         dissipated: energy since the start [FU·LU].
     """
@@ -43,6 +44,7 @@ class Drawn:
     state: State
     place: float
     force: float
+    carried: float
     stick: ContactRadius
     dissipated: float
 
@@ -67,7 +69,7 @@ def tangential(context: RunContext) -> Outcome:
     states = [row.state for row in drawn]
     ends = {"farthest": max(drawn, key=lambda row: abs(row.place)).state, "final": states[-1]}
     radii = {name: state.radius for name, state in ends.items()}
-    strongest = scene.friction.coefficient * max(state.force for state in states) if scene.friction else 0.0
+    strongest = max(row.carried for row in rows)
     error = ROUND_OFF * len(rows) * strongest + moved_too_far(scene, settings)
     quantities = _quantities(scene, drawn[-1], error)
     return Outcome(
@@ -100,7 +102,7 @@ def _drawn(scene: Scene, states: Sequence[State], places: Sequence[float]) -> li
             _require_history(state, force - row.force, largest)
             dissipated += float(row.work.sum())
         stick = _whole(state, coefficient, direction) if flat else stick_radius(state.profile, coefficient, direction)
-        rows.append(Drawn(state, places[i], float(force.sum()), stick, dissipated))
+        rows.append(Drawn(state, places[i], float(force.sum()), float(np.abs(force).sum()), stick, dissipated))
     return rows
 
 
@@ -142,8 +144,8 @@ def _prescribed(scene: Scene, quantities: Mapping[str, Quantity]) -> frozenset[s
 
 
 def _work(rows: Sequence[Drawn]) -> float:
-    """∫ |F_x du| [FU·LU] since the load came on: with what a dissipated energy is compared."""
-    return sum(0.5 * abs(a.force + b.force) * abs(b.place - a.place) for a, b in pairwise(rows))
+    """Σ |s_i| |Δu| [FU·LU] since the load came on: with what a dissipated energy is compared."""
+    return sum(0.5 * (a.carried + b.carried) * abs(b.place - a.place) for a, b in pairwise(rows))
 
 
 def _columns(drawn: Sequence[Drawn]) -> dict[str, tuple[float, ...]]:

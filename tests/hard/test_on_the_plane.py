@@ -1,0 +1,104 @@
+"""Claim: odd scenes on the rigid plane end in a right number or in words whose remedy works, not in a wrong remedy."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from contact1d import RunError, run
+from contact1d.analysis.reference.jkr import Jkr
+from contact1d.workflow.scene import SceneError, scene_from_dict
+
+RADIUS, ENERGY = 1000.0, 0.005
+DIGITS = 1e-9
+"""Round-off of a history of some rows, over its largest force."""
+
+
+def scene(**more: Any) -> dict[str, Any]:
+    """A sphere on springs of E* = 1; `more` are its other tables."""
+    bodies = {
+        "particles": "auto", "spacing": 1.0, "lower": "rigid_plane", "profile": {"kind": "parabola", "radius": RADIUS},
+        "bulk_stiffness": 1.0,
+    }  # fmt: skip
+    return {"title": "odd", "bodies": bodies} | more
+
+
+def steel(**more: Any) -> dict[str, Any]:
+    """A sphere of 10 mm in SI, its spacing left open, 1 LU = 1 m."""
+    elastic = {"youngs_modulus": "210 GPa", "poisson_ratio": 0.3}
+    bodies = {
+        "particles": "auto", "spacing": "auto", "lower": "rigid_plane",
+        "profile": {"kind": "parabola", "radius": "10 mm"},
+    }  # fmt: skip
+    return {"title": "odd", "bodies": bodies, "material": {"upper": elastic, "lower": elastic}} | more
+
+
+def along(force: float, friction: float, *places: float) -> dict[str, Any]:
+    experiment = {"kind": "tangential", "normal_force": force, "displacements": list(places)}
+    return scene(friction={"coefficient": friction}, experiment=experiment)
+
+
+def test_nothing_is_pulled_off_that_nothing_holds() -> None:
+    tables = scene(adhesion={"surface_energy": 0.0}, experiment={"kind": "pull_off", "preload": 1.0})
+    with pytest.raises(SceneError, match=r"adhesion\.surface_energy = 0\.0: must be greater than 0"):
+        scene_from_dict(tables)
+    assert scene_from_dict(tables | {"experiment": {"kind": "load", "force": 1.0}}).adheres is False
+
+
+@pytest.mark.parametrize("work", [1e-300, 1e-30])
+def test_a_hold_below_the_last_digit_is_no_number(work: float, tmp_path: Path) -> None:
+    tables = scene(adhesion={"work_of_adhesion": work}, experiment={"kind": "pull_off", "preload": 1.0})
+    with pytest.raises(RunError, match=r"nothing beside .* last digits of places .*: take a larger adhesion"):
+        run(tables, tmp_path / "run", figures=False)
+
+
+def test_a_load_below_the_last_digit_is_not_told_to_be_smaller(tmp_path: Path) -> None:
+    with pytest.raises(RunError, match="too small to compute with .*: take a larger load") as caught:
+        run(scene(experiment={"kind": "load", "force": 1e-30}), tmp_path / "run", figures=False)
+    assert "smaller load" not in str(caught.value)
+    assert "Tried" not in str(caught.value)
+
+
+def test_a_tension_that_is_not_held_is_told_what_is(tmp_path: Path) -> None:
+    tables = scene(adhesion={"work_of_adhesion": ENERGY}, experiment={"kind": "load", "force": -100.0})
+    with pytest.raises(RunError) as caught:
+        run(tables, tmp_path / "run", figures=False)
+    held = Jkr(RADIUS, 1.0, ENERGY).pull_off_force()
+    assert f"the largest tension is about {held:.4g} FU. Tried: --set experiment.force=" in str(caught.value)
+    assert "gives a result" in str(caught.value)
+
+
+def test_endless_friction_claims_no_more_than_its_springs_carry(tmp_path: Path) -> None:
+    found = run(along(40.0, 1e9, 0.1, -0.1), tmp_path / "run", figures=False)
+    touching = int((found.profiles["final"].pressure > 0.0).sum())
+    assert found.results.tangential_force.value == pytest.approx(-0.1 * touching, rel=DIGITS)
+    assert found.results.dissipated_energy.value == 0.0
+    assert found.results.dissipated_energy.uncertainty < DIGITS
+
+
+def test_a_way_of_nothing_is_not_doubted(tmp_path: Path) -> None:
+    found = run(along(40.0, 0.3, 1e-12), tmp_path / "run", figures=False)
+    assert "dissipated_energy" not in found.warnings.get("tolerance", "")
+
+
+def test_the_energy_of_many_cycles_is_held_against_their_work_whatever_their_rows(tmp_path: Path) -> None:
+    """At turning points F_x is that of opposite directions: their mean says nothing of the work between."""
+    found = run(along(40.0, 0.3, *([0.2, -0.2] * 100)), tmp_path / "run", figures=False)
+    assert "dissipated_energy" not in found.warnings.get("lattice", "")
+
+
+@pytest.mark.parametrize(
+    "experiment",
+    [{"kind": "load", "force": 0.0}, {"kind": "path", "displacements": [0.0]}, {"kind": "pull_off", "preload": "1 mN"}],
+)
+def test_an_adhesive_contact_in_metres_finds_its_own_spacing(experiment: dict[str, Any], tmp_path: Path) -> None:
+    found = run(steel(adhesion={"surface_energy": "50 mJ/m²"}, experiment=experiment), tmp_path / "run", figures=False)
+    modulus = 210e9 / 2.0 / (1.0 - 0.3**2)
+    radius = Jkr(0.01, modulus, 0.1).zero_load_radius()
+    assert 20.0 < radius / found.scene.bodies.spacing < 100.0
+    if experiment["kind"] == "pull_off":
+        force = found.results.adhesion_force
+        assert abs(force.value - 1.5 * math.pi * 0.1 * 0.01) <= force.uncertainty
