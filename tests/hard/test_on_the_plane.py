@@ -56,7 +56,7 @@ def test_a_hold_below_the_last_digit_is_no_number(work: float, tmp_path: Path) -
 
 
 def test_a_load_below_the_last_digit_is_not_told_to_be_smaller(tmp_path: Path) -> None:
-    with pytest.raises(RunError, match="too small to compute with .*: take a larger load") as caught:
+    with pytest.raises(RunError, match=r"too small to compute with .*: take a larger load") as caught:
         run(scene(experiment={"kind": "load", "force": 1e-30}), tmp_path / "run", figures=False)
     assert "smaller load" not in str(caught.value)
     assert "Tried" not in str(caught.value)
