@@ -248,3 +248,13 @@ def test_with_its_own_mass_a_drag_of_half_a_step_before_is_exact_to_second_order
 def test_without_a_drive_and_under_heat_masses_are_the_scenes_own() -> None:
     of = scene(damping={"coefficient": 0.3}, plate={"mass": 7.0}, experiment=LOAD | {"method": "dynamic"})
     assert inertia(of, settings_for(of)) == (1.0, 7.0)
+
+
+@pytest.mark.parametrize(("share", "snaps", "toothed"), [(0.2, False, False), (0.5, False, True), (0.7, True, True)])
+def test_pairs_that_nearly_snap_let_go_one_by_one_and_weak_ones_together(
+    share: float, snaps: bool, toothed: bool
+) -> None:
+    law = (0.18 * share, 0.03, 0.09 * share, 0.06)
+    path = {"kind": "path", "displacements": [0.05]}
+    settings = settings_for(scene_from_dict(chains(10.0, law=law, bodies={"particles": 12}, experiment=path)))
+    assert (settings.snaps, settings.is_toothed, settings.is_smooth) == (snaps, toothed, not snaps)

@@ -126,3 +126,36 @@ def test_a_way_too_short_for_a_mean_is_not_advised() -> None:
         cause = caught.value.__cause__
         assert isinstance(cause, ShortChainError)
         assert (cause.room >= 4.0 * SPACING) == advised == ("a way of at most" in str(caught.value))
+
+
+@pytest.mark.parametrize("displacement", [-0.5, 0.3])
+def test_an_automatic_chain_of_bodies_that_only_repel_ends_where_nothing_is_felt(displacement: float) -> None:
+    """A tenth further, and two particles on each side."""
+    of = scene_from_dict(
+        chains(
+            RADIUS, SPRING, bodies={"spacing": SPACING}, interaction={"repulsion": {"amplitude": 0.2, "range": 0.3}},
+            experiment={"kind": "path", "displacements": [displacement]},
+        )
+    )  # fmt: skip
+    settings = settings_for(of)
+    felt = math.sqrt(2.0 * RADIUS * max(0.0, displacement)) if displacement > 0.0 else 0.0  # rest is the cutoff
+    half = 0.5 * settings.particles * SPACING
+    assert 1.1 * max(felt, SPACING) + 2.0 * SPACING <= half * (1.0 + 1e-6) < 1.1 * max(felt, SPACING) + 3.0 * SPACING
+    assert settings.particles % 2 == 0
+
+
+@pytest.mark.parametrize(("spacing", "particles"), [(0.5, 8), (0.9, 4), (0.7, 6), (0.1, 42)])
+def test_an_automatic_chain_is_no_longer_than_its_body(spacing: float, particles: int) -> None:
+    """Of a circle of 2.1 LU: the outermost particles are on it still, and one more on each side would not be."""
+    body = {"spacing": spacing, "profile": {"kind": "circle", "radius": 2.1}}
+    of = scene_from_dict(chains(1.0, law=LAW, bodies=body, experiment={"kind": "path", "displacements": [0.3]}))
+    found = settings_for(of).particles
+    assert found == particles
+    assert 0.5 * (found - 1) * spacing <= 2.1 < 0.5 * (found + 1) * spacing
+
+
+@pytest.mark.parametrize("spacing", [0.5, 0.8])
+def test_a_punch_is_as_many_particles_wide_as_it_is(spacing: float) -> None:
+    body = {"spacing": spacing, "profile": {"kind": "flat_punch", "radius": 4.0}}
+    of = scene_from_dict(chains(1.0, law=LAW, bodies=body, experiment={"kind": "path", "displacements": [0.3]}))
+    assert settings_for(of).particles == round(8.0 / spacing)
