@@ -103,8 +103,9 @@ def sampled_mean(time: Array, force: Array, period: float) -> Mean:
         ValueError: see `mean_of`.
     """
     integral = np.concatenate([[0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(time))])
-    mean = mean_of(block_means(time, integral, period))
-    count = math.floor((time[-1] - time[0]) / period * (1.0 + 1e-9)) - mean.first
+    blocks = block_means(time, integral, period)
+    mean = mean_of(blocks)
+    count = blocks.size - mean.first
     each = max(2, round(period / float(np.median(np.diff(time)))))
     phases = time[-1] - period * count + period / each * np.arange(count * each + 1)
     usual = np.interp(phases, time, force)[:-1].reshape(count, each).mean(axis=0)
