@@ -213,7 +213,7 @@ def test_what_a_plane_that_gives_way_changes_goes_with_the_springs_beside_it() -
 
 @pytest.mark.parametrize("factor", [1.5, 2.5, 4.0, 12.0, 1 / 5.0, 1 / 12.0, 1 / 16.0, 1 / 25.0])
 def test_a_drag_far_from_critical_is_said_to_take_long(factor: float) -> None:
-    """The slowest decay of M x″ + c x′ + K x = 0, in timesteps; of a drag near critical it is a third less than told."""
+    """The slowest decay of M x″ + c x′ + K x = 0, in timesteps; near critical a third less than is told."""
     experiment = {"kind": "load", "force": 0.3, "method": "dynamic"}
     _, usual = scene_of(**TIMED, experiment=experiment)
     scene, settings = scene_of(
