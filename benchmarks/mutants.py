@@ -3,13 +3,13 @@
     python -m benchmarks.mutants [FILE ...] [--part 0.25] [--seed 1] [--workers 2] [--callers KEPT.json]
 
 A mutant changes one operator, comparison or number of one file in a copy of this folder. The tests that call the
-function run there, quick ones that call little else first, up to the first that fails or LONGEST; goldens, which hold
-any number, run last. One that passes them is looked at again, by more of the tests that call it, up to LONGEST_AGAIN:
-whole runs of tests/validation and tests/hard among them. One that passes these too survives: it is printed, and listed
-in results/mutants.json, with the reason if one was written there by hand (it is kept for the same change of the same
-line). All files take a night;
-`--part` draws a share of each file's mutants, the same ones for one seed. `--callers` keeps which test calls what. Exit
-code 1 where fewer than ASKED are killed. What is changed, and what is not: `benchmarks/mutating.py`.
+function run there, those of files that name its module first, up to the first that fails or LONGEST; goldens, which
+hold any number, run last. One that passes them is looked at again, by more of the tests that call it, up to
+LONGEST_AGAIN: whole runs of tests/validation and tests/hard among them. One that passes these too survives: it is
+printed, and listed in results/mutants.json, with the reason if one was written there by hand (it is kept for the same
+change of the same line). All files take a night; `--part` draws a share of each file's mutants, the same ones for one
+seed. `--callers` keeps which test calls what. Exit code 1 where fewer than ASKED are killed. What is changed, and what
+is not: `benchmarks/mutating.py`.
 
 mutmut and cosmic-ray were not taken: neither follows src/contact1d, whose folders are links, and both start Python
 anew for every mutant (`benchmarks/faulty.py` forks).
@@ -27,6 +27,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -40,7 +41,7 @@ ASKED = 0.9
 """Asked of the share that is killed."""
 LONGEST, LONGEST_AGAIN = 30.0, 300.0
 """Time of the tests that look for one mutant, and of those that look again, as long as they took when traced [s]."""
-PATIENCE, LEAST = 5.0, 30.0
+PATIENCE, LEAST = 2.0, 30.0
 """Time of the processor after which a mutant counts as killed, over that of its tests, and at least [s]."""
 ROOMS = {
     "analysis": ("analysis/*.py",),
@@ -62,10 +63,12 @@ GOLDEN = ("tests/decks/test_goldens.py", "tests/unit/test_judged_runs.py::test_t
 
 
 def tests_of(mutant: Mutant, called: Called) -> tuple[list[str], list[str]]:
-    """Those that call the mutant's function, quick ones that call little else first, up to LONGEST; goldens last.
+    """Those that call the mutant's function up to LONGEST, and after them those up to LONGEST_AGAIN.
 
-    And after them those up to LONGEST_AGAIN. What stands in no function belongs to all functions of its file.
+    First those of files that name its module, quick ones that call little else before others; goldens last. What stands
+    in no function belongs to all functions of its file.
     """
+    module = mutant.file.removesuffix(".py").replace("/", ".")
     name = f"{mutant.file}:{mutant.function}"
     wanted = name.removesuffix(WHOLE) if mutant.function == WHOLE else name
     those = {
@@ -76,13 +79,21 @@ def tests_of(mutant: Mutant, called: Called) -> tuple[list[str], list[str]]:
     first: list[str] = []
     again: list[str] = []
     whole = 0.0
-    for test in sorted(those, key=lambda test: (test.startswith(GOLDEN), those[test][1])):
+    for test in sorted(
+        those, key=lambda t: (t.startswith(GOLDEN), not names(t.partition("::")[0], module), those[t][1])
+    ):
         whole += those[test][0]
         if not first or (whole <= LONGEST and not again):
             first.append(test)
         elif whole <= LONGEST + LONGEST_AGAIN:
             again.append(test)
     return first, again
+
+
+@cache
+def names(test_file: str, module: str) -> bool:
+    """Whether a file of tests has the name of a module in it."""
+    return module in (ROOT / test_file).read_text(encoding="utf-8")
 
 
 @dataclass

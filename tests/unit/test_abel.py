@@ -182,3 +182,5 @@ def test_places_must_be_the_same_on_both_sides_in_any_unit(spacing: float) -> No
     line_load(x + 1e-8 * spacing, np.ones(12))
     with pytest.raises(ValueError, match="the same on both sides"):
         line_load(x + 1e-3 * spacing, np.ones(12))
+    with pytest.raises(ValueError, match="the same on both sides"):
+        line_load(x + np.where(np.arange(12) == 8, 1e-3 * spacing, 0.0), np.ones(12))

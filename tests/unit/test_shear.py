@@ -94,6 +94,9 @@ def test_too_few_places_or_places_that_differ_raise() -> None:
         shear_load(lattice(10), np.ones(10), 1.2)
     with pytest.raises(ValueError, match="the same on both sides"):
         shear_load(lattice(10) + 0.1, np.ones(10), 4.0)
+    one_aside = lattice(10) + np.where(np.arange(10) == 7, 0.2, 0.0)
+    with pytest.raises(ValueError, match="the same on both sides"):
+        shear_load(one_aside, np.ones(10), 4.0)
 
 
 @pytest.mark.parametrize("count", [46, 47])
