@@ -23,7 +23,8 @@ PATIENCE = 1800.0
 """[s]"""
 EFFECTS, SETTINGS = "workflow/deck/effects/", "workflow/settings/"
 LOADS, PULLS, SLIDES, RUNNING = (f"workflow/experiments/{name}/" for name in ("load", "pull_off", "slide", "running"))
-UNIT, COVERAGE, MOTION = "tests/unit/", "tests/unit/test_coverage.py", "tests/decks/test_motion.py"
+UNIT, MOTION = "tests/unit/", "tests/decks/test_motion.py"
+COVERAGE = "tests/unit/test_coverage_tight.py tests/unit/test_coverage.py"
 MEANS = UNIT + "test_friction_means.py"
 RATIOS, SAMPLING, SLIDE = (
     UNIT + "test_ratios.py",

@@ -37,6 +37,8 @@ PATHS = {"adhesion_force": 9.4, "critical_radius": 16.0, "zero_load_radius": 11.
 """… 4.7, 7.9 and 5.8 of paths …"""
 BETWEEN = {20: 5.0, 40: 5.0, 80: 4.6}
 """… and 2.5, 2.5 and 2.3 of what so many rows miss of a largest tension."""
+USED_UP = 0.25
+"""In the worst of these cases so much of the claim is used up at least, 0.28 to 0.99 measured, and never all of it."""
 MOST_ROWS, MOST_HOLDS, MOST_SNAPPING = 45, 10, 400
 """Rows of a smooth search, 37 at most measured, of one in time, 8, and of a last pass over snaps, 334."""
 
@@ -56,7 +58,8 @@ def rms(found: Found, name: str) -> float:
     pairs = [(outcome.quantities[name], known[name]) for _, outcome, known in found if name in outcome.quantities]
     claims = np.array([ours.uncertainty for ours, _ in pairs])
     errors = np.array([ours.value - value for ours, value in pairs])
-    assert (np.abs(errors) <= claims + 1e-9).mean() >= 0.95
+    assert (np.abs(errors) <= claims + 1e-9).all()
+    assert (np.abs(errors) / claims).max() > USED_UP
     return float(np.sqrt(np.mean(claims**2) / np.mean(errors**2)))
 
 
