@@ -12,6 +12,7 @@ import hashlib
 import json
 import os
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -53,9 +54,11 @@ class Trace:
         """Trace the test, its fixtures included."""
         forget()
         self._now, started = set(), time.monotonic()
+        threading.settrace(self._note)
         sys.settrace(self._note)
         yield
         sys.settrace(None)
+        threading.settrace(None)  # type: ignore[arg-type]
         fixtures = getattr(item, "_fixtureinfo").name2fixturedefs.values()  # noqa: B009 (a name of pytest that is not public)
         for definition in (one for several in fixtures for one in several):
             self._now |= self._of_fixture.get(id(definition), set())

@@ -189,6 +189,8 @@ def test_a_tension_that_broke_the_contact_is_tried_again_only_where_momentum_did
     while not search.done:
         tension, tried = search.next(), tried + 1
         assert search.best < tension < (search.broken if past else smallest)
+        if guess <= search.best and search.broken == np.inf and len(search.held) < 3:
+            assert tension <= 1.25 * search.best + 1e-12
         found = answer(tension, search.best, 1.0, past)
         search.learn(found)
         if not found.held:

@@ -20,6 +20,7 @@ from contact1d.workflow.deck.steps import DisplaceInTime, UnderLoad
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.experiments import planned
 from contact1d.workflow.experiments.load.dynamic import _thermal_outcome
+from contact1d.workflow.experiments.path.path import _means
 from contact1d.workflow.experiments.path.schedule import places, schedule
 from contact1d.workflow.experiments.path.thermal import SAMPLES, averaged
 from contact1d.workflow.experiments.pull_off.pulls import BARRIER, GONE, _has_parted, ramp_of
@@ -105,9 +106,25 @@ def test_places_under_heat_are_means_of_what_comes_after_it_forgot() -> None:
         forces = [s.force for s in part[SETTLING_LOOKS:]]
         assert one.force == pytest.approx(np.mean(forces))
         assert one.residual * 40 == pytest.approx(2.0 * standard_error(forces))
+        told = _means(settings, [one])
+        assert told["force_standard_error"] == pytest.approx((standard_error(forces),))
+        assert told["force"] == (one.force,)
         assert one.smallest_distance == pytest.approx(0.2 + 1e-3 * SETTLING_LOOKS)
         assert one.depth == pytest.approx(1e-3 * (looks[0] - 1))
     assert between is states[looks[0] + SETTLING_LOOKS - 1]
+
+
+@pytest.mark.parametrize("drag", [0.013, 0.9, 9.7])
+def test_samples_of_a_path_under_heat_are_half_a_decay_apart_or_more(drag: float) -> None:
+    scene, settings = scene_of(**HEAT | {"plate": None, "damping": {"coefficient": drag}}, experiment={
+        "kind": "path", "displacements": [0.0], "method": "dynamic",
+    })  # fmt: skip
+    slowest = -float(np.roots([scene.bodies.mass, drag, scene.bulk_stiffness]).real.max())
+    (loading,) = schedule(scene, settings)
+    (steps,) = {row.steps for row in loading.rows if isinstance(row, DisplaceInTime)}
+    assert steps >= chunk_steps(settings)
+    assert steps * settings.time_step * slowest >= 0.5 - 1e-9
+    assert steps == chunk_steps(settings) or (steps - 2) * settings.time_step * slowest < 1.0
 
 
 @pytest.mark.parametrize("drag", [0.1, 0.9, 9.0])
@@ -154,6 +171,15 @@ def test_a_held_row_ends_by_time_place_or_rest() -> None:
     tension = -settings.estimate.contact_force(pulled.parted)
     assert tension == pytest.approx(0.6 * settings.estimate.pull_off_force(), rel=0.05)
     assert pressed.parted < pulled.parted < 0.0
+
+
+def test_a_load_comes_to_rest_to_a_share_of_itself_or_of_the_scale_of_forces() -> None:
+    for force in (1e-6, 5.0):
+        scene, settings = scene_of(**TIMED, experiment={"kind": "load", "force": force, "method": "dynamic"})
+        (phase,) = planned(scene, settings)
+        (row,) = phase.rows
+        assert row == hold_row(scene, settings, force, max(force, settings.force_scale), Start.KEPT)
+        assert phase.state
 
 
 def test_a_sample_is_a_quarter_of_a_settling_time_after_the_one_before() -> None:
