@@ -14,7 +14,9 @@ import pytest
 from scipy.optimize import brentq
 
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.chain import SettingsError
+from contact1d.workflow.settings.calibration import CALIBRATION
+from contact1d.workflow.settings.chain import SettingsError, decay_length
+from contact1d.workflow.settings.registry import largest_holding_force
 from contact1d.workflow.settings.settings import settings_for
 from contact1d.workflow.settings.way import ShortChainError, contact_half_width, require_way, too_fast
 from tests.scenes import chains
@@ -159,3 +161,32 @@ def test_a_punch_is_as_many_particles_wide_as_it_is(spacing: float) -> None:
     body = {"spacing": spacing, "profile": {"kind": "flat_punch", "radius": 4.0}}
     of = scene_from_dict(chains(1.0, law=LAW, bodies=body, experiment={"kind": "path", "displacements": [0.3]}))
     assert settings_for(of).particles == round(8.0 / spacing)
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-4])
+@pytest.mark.parametrize("law", [LAW, (0.4, 0.2, 0.2, 0.4), (1.0, 0.3, 0.001, 1.0)])
+def test_a_pair_that_comes_within_reach_changes_neither_the_force_on_it_nor_that_along_x(
+    law: tuple[float, ...], tolerance: float
+) -> None:
+    """At an automatic cutoff it is a tenth of the tolerance of the largest force along x, and no more than at rest."""
+    of = slide(tolerance=tolerance)
+    terms = [{"amplitude": law[i], "range": law[i + 1]} for i in (0, 2)]
+    of = of.with_({"interaction.repulsion": terms[0], "interaction.attraction": terms[1]})
+    settings = settings_for(of)
+    assert settings.law is not None
+    at_cutoff = abs(float(settings.law.force(np.asarray([settings.cutoff]))[0]))
+    along = largest_holding_force(settings.law, SPACING, 0.0)
+    far = law[2] / law[3] * math.exp(-settings.cutoff / law[3])
+    at_rest = law[2] / law[3] * math.exp(-settings.law.force_free_distance() / law[3])
+    share = CALIBRATION.cutoff * tolerance
+    assert at_cutoff <= far <= min(0.1 * tolerance * along, share * at_rest) * (1.0 + 1e-9)
+    assert settings.cutoff == 40.0 * law[3] or far == pytest.approx(min(0.1 * tolerance * along, share * at_rest))
+
+
+def test_without_motion_along_x_only_the_springs_across_hold_a_chain() -> None:
+    """ℓ = s/arcosh(1 + k/2k_n)."""
+    body = {"bulk_stiffness_tangential": 0.1, "spacing": SPACING}
+    of = scene_from_dict(
+        chains(RADIUS, SPRING, bodies=body, neighbours={"stiffness": 3.0}, experiment={"kind": "load", "force": 0.05})
+    )
+    assert decay_length(of) == pytest.approx(SPACING / math.acosh(1.0 + 0.5 * SPRING / 3.0), rel=1e-12)
