@@ -172,3 +172,16 @@ def test_a_slide_is_loaded_with_a_drag_that_lets_its_plate_swing_not_and_creep_n
     if drag == 3e3:  # a particle alone would not come to rest
         assert settings.calm_damping < drag
     assert settings.damping == drag
+
+
+def test_in_smaller_steps_a_chain_without_a_plate_is_stopped_by_drag_and_a_plate_keeps_its_own() -> None:
+    path = {"kind": "path", "method": "dynamic", "displacements": [0.05]}
+    alone = settings_for(scene(damping={"coefficient": "auto"}, experiment=path))
+    held = settings_for(scene(damping={"coefficient": "auto"}, plate={}))
+    for settings, damping in ((alone, alone.calm_damping), (held, held.damping)):
+        smaller = settings.in_smaller_steps(0.25)
+        assert (smaller.damping, smaller.time_step) == (damping, settings.calm_step)
+        for name in ("displacement_step", "loading_step", "smooth_step", "longest_move"):
+            assert getattr(smaller, name) == 0.25 * getattr(settings, name)
+    assert alone.calm_damping > 2.0 * alone.damping
+    assert held.calm_damping > 2.0 * held.damping
