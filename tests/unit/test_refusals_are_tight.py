@@ -217,3 +217,4 @@ def test_a_tabulated_body_is_the_body_down_to_a_fraction_of_its_first_spacing(sp
     body = scene_from_dict(wide(20)).bodies.model_copy(update={"spacing": spacing})
     x = np.geomspace(0.25 * spacing, 20.0, 500)
     assert tabulated(body, spacing).height(x) == pytest.approx(body.height(x), rel=5e-4)
+    assert tabulated(body, spacing).reach == pytest.approx(body.reach, rel=1e-12)

@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 
 from contact1d import SettingsError, load_run, run, write_deck
 from contact1d.workflow.scene import Scene, SceneError, read_scene, scene_from_dict
+from contact1d.workflow.settings.settings import settings_for
 from contact1d.workflow.settings.spacing import FEWEST, MOST, _contact_radius, _up, left_by_lattice, with_spacing
 
 ROUND_OFF = 1e-12
@@ -198,3 +199,12 @@ def test_an_advised_tolerance_has_two_figures_and_is_a_little_larger(tolerance: 
     told = float(_up(tolerance))
     assert 1.1 * tolerance <= told * (1.0 + 1e-9) <= 1.21 * tolerance
     assert _up(tolerance) == f"{told:.2g}"
+
+
+def test_where_nothing_can_be_estimated_the_lattice_is_not_to_blame() -> None:
+    """A contact over the whole of its body: the run says so, whatever the spacing."""
+    circle = {"profile": {"kind": "circle", "radius": R}, "spacing": 1e-5}
+    deep = scene_from_dict(tables(bodies=circle, experiment={"kind": "path", "displacements": [10.0 * R]}))
+    with pytest.raises(SettingsError, match="spread over the whole profile"):
+        settings_for(deep)
+    assert left_by_lattice(deep) == 0.0
