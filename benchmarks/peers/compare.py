@@ -1,6 +1,6 @@
 """The two contacts with every solver, side by side: error over time, a table and a figure.
 
-    python -m benchmarks.peers.compare            # with the extra `peers`; about ten minutes
+    python -m benchmarks.peers.compare            # with the extra `peers`; a quarter of an hour
     python -m benchmarks.peers.compare --table    # only the table again, from benchmarks/results/peers.json
 
 Settings run in turn, round after round; a time is the median over the rounds, of processor
