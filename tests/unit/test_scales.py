@@ -17,6 +17,7 @@ from scipy.optimize import brentq, minimize_scalar
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.calibration import CALIBRATION
 from contact1d.workflow.settings.chain import SettingsError
+from contact1d.workflow.settings.estimate import NotCarriedError
 from contact1d.workflow.settings.inertia import inertia
 from contact1d.workflow.settings.scales import innermost_distance, thermal_motion
 from contact1d.workflow.settings.settings import Settings, settings_for
@@ -258,3 +259,20 @@ def test_pairs_that_nearly_snap_let_go_one_by_one_and_weak_ones_together(
     path = {"kind": "path", "displacements": [0.05]}
     settings = settings_for(scene_from_dict(chains(10.0, law=law, bodies={"particles": 12}, experiment=path)))
     assert (settings.snaps, settings.is_toothed, settings.is_smooth) == (snaps, toothed, not snaps)
+
+
+@pytest.mark.parametrize("profile", [{"kind": "circle", "radius": 4.0}, {"kind": "flat_punch", "radius": 4.0}])
+def test_bodies_that_end_carry_any_load_below_the_one_that_is_named(profile: dict[str, Any]) -> None:
+    estimate = settings_for(scene(bodies={"profile": profile}, experiment=LOAD)).estimate
+    with pytest.raises(NotCarriedError) as caught:
+        estimate.displacement_at(1e9)
+    most = caught.value.most
+    for share in (0.1, 0.5, 0.9, 0.99):
+        assert estimate.contact_force(estimate.displacement_at(share * most)) == pytest.approx(share * most, rel=1e-3)
+    with pytest.raises(NotCarriedError):
+        estimate.displacement_at(1.01 * most)
+
+
+def test_what_never_snaps_lets_go_at_the_end_of_its_forces_and_loses_nothing() -> None:
+    estimate = settings_for(scene()).estimate
+    assert estimate.snap == (float(estimate.gap[-1]), 0.0)
