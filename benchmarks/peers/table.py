@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 ENOUGH = 0.01
 """Error at which solvers are compared."""
-BESIDE_JKR = 0.012
+BESIDE_JKR = 0.0125
 """The same beside JKR itself: no range that boundary elements follow within minutes is short enough for ENOUGH."""
 OURS, ELEMENTS = "contact1d", ("tamaas", "ContactMechanics")
 COLORS = {

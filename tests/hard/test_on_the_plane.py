@@ -102,3 +102,42 @@ def test_an_adhesive_contact_in_metres_finds_its_own_spacing(experiment: dict[st
     if experiment["kind"] == "pull_off":
         force = found.results.adhesion_force
         assert abs(force.value - 1.5 * math.pi * 0.1 * 0.01) <= force.uncertainty
+
+
+def test_a_path_down_and_up_again_has_the_tension_of_its_way_apart(tmp_path: Path) -> None:
+    """On the way together the bodies jump into contact at 8/9 of JKR's largest tension."""
+    span = {"from": "10 nm", "to": "-10 nm", "steps": 200}
+    tables = steel(adhesion={"surface_energy": "50 mJ/m²"}, experiment={"kind": "path", "displacements": span})
+    force = run(tables, tmp_path / "run", figures=False).results.adhesion_force
+    assert abs(force.value - 1.5 * math.pi * 0.1 * 0.01) <= force.uncertainty
+
+
+def test_a_path_that_only_loads_says_that_nothing_was_pulled(tmp_path: Path) -> None:
+    path = {"kind": "path", "displacements": {"from": -1.0, "to": 1.0, "steps": 20, "return": False}}
+    found = run(scene(adhesion={"work_of_adhesion": ENERGY}, experiment=path), tmp_path / "run", figures=False)
+    assert "adhesion_force" not in found.results
+    assert "never draws the bodies apart" in found.warnings["no_peak"]
+
+
+def test_the_finest_tolerance_claims_what_its_particles_leave(tmp_path: Path) -> None:
+    tables = steel(accuracy={"tolerance": 1e-7}, experiment={"kind": "load", "force": "10 N"})
+    found = run(tables, tmp_path / "run", figures=False)
+    modulus = 210e9 / 2.0 / (1.0 - 0.3**2)
+    exact = (0.75 * 10.0 / modulus / math.sqrt(0.01)) ** (2.0 / 3.0)
+    place = found.results.displacement
+    assert abs(place.value - exact) <= place.uncertainty <= 1e-7 * exact
+    assert "tolerance" not in found.warnings
+
+
+def test_an_adhesive_load_keeps_its_tolerance_in_its_mean_pressure_too(tmp_path: Path) -> None:
+    tables = steel(adhesion={"surface_energy": "50 mJ/m²"}, experiment={"kind": "load", "force": "1 N"})
+    assert "tolerance" not in run(tables, tmp_path / "run", figures=False).warnings
+
+
+def test_a_change_that_helps_is_named_once(tmp_path: Path) -> None:
+    timed = {"damping": {"coefficient": "auto"}, "plate": {}}
+    tables = scene(adhesion={"work_of_adhesion": ENERGY}, experiment={"kind": "load", "force": -50.0}, **timed)
+    with pytest.raises(RunError) as caught:
+        run(tables, tmp_path / "run", figures=False)
+    helped = str(caught.value).split("Tried: ")[1].split(";")[0]
+    assert helped.count("experiment.force=") == 1

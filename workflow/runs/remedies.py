@@ -106,7 +106,7 @@ def tried(
     failed: list[Change] = []
     while waiting and len(helped) < ENOUGH and len(helped) + len(failed) < MOST_TRIALS and time.monotonic() < until:
         cost, _, together, change = heappop(waiting)
-        if change in failed or (helped and together > 1):
+        if change in (*failed, *helped) or (helped and together > 1):
             continue  # where one change helps, there is no need for two
         note(f"trying what helps: {change}")
         try:

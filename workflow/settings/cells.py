@@ -12,9 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import largest_tension
+from contact1d.analysis.held import held_radius
 from contact1d.analysis.polynomial import fitting, lowest_minimum
+from contact1d.analysis.pressure import Profile
 from contact1d.workflow.scene import Load, Path, Scene
-from contact1d.workflow.settings.adhesion import AdhesiveEstimate, Cells
+from contact1d.workflow.settings.adhesion import AdhesiveEstimate, Cells, elongation
 from contact1d.workflow.settings.settings import Settings
 
 Array = NDArray[np.float64]
@@ -22,6 +24,8 @@ BESIDE, ASIDE, POINTS = 0.1, 0.3, 61
 """Ways on both sides of JKR's largest tension, and of another force, over the distance from fixed grips, and places."""
 PHASES = (0.25, 0.0)
 """Places of the apex between particles over the spacing, beside 1/2, that of an even chain."""
+EDGES = 8
+"""Places of an edge in its cell, of which nobody knows it beforehand."""
 NEAR, DEGREE = 0.2, 4
 """Such a way for a polynomial of that degree."""
 JUST_HELD = 1e-9
@@ -56,6 +60,24 @@ def expected_of_adhesion(scene: Scene, settings: Settings) -> dict[str, float]:
     """By the names of results, JKR's own [its unit]."""
     assert isinstance(settings.estimate, AdhesiveEstimate)
     return _marks(scene, settings, settings.estimate, None)
+
+
+def read_off_cells(scene: Scene, settings: Settings) -> dict[str, float]:
+    """By the names of radii of a load, how uncertain they are as they are read off particles [LU]."""
+    estimate = settings.estimate
+    assert isinstance(estimate, AdhesiveEstimate)
+    if not isinstance(scene.experiment, Load):
+        return {}
+    spacing, half = scene.bodies.spacing, settings.particles // 2
+    x = np.asarray(spacing * (np.arange(-half, half) + 0.5), dtype=np.float64)
+    cells, none, worst = estimate.cells(x, estimate.profile), np.zeros_like(x), 0.0
+    edge = estimate.half_width(estimate.displacement_at(scene.experiment.force), 0.0)
+    edges = np.asarray(edge - spacing * np.arange(EDGES) / EDGES, dtype=np.float64)
+    places = estimate.profile.height(edges) - elongation(edges, estimate.modulus, estimate.work)
+    for place, share in zip(places, cells.shares(places), strict=True):
+        force = share * (place - cells.heights + cells.fall * (1.0 - share))
+        worst = max(worst, held_radius(Profile(x, none, none, force, none)).uncertainty)
+    return {"contact_radius": worst}
 
 
 def _cells(scene: Scene, settings: Settings, estimate: AdhesiveEstimate, phase: float) -> Cells:

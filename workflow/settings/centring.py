@@ -23,7 +23,7 @@ from contact1d.analysis.polynomial import fitting, lowest_minimum
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import compressive_radius
 from contact1d.workflow.scene import Load, Scene, Tangential
-from contact1d.workflow.settings.cells import expected_of_adhesion, left_by_cells
+from contact1d.workflow.settings.cells import expected_of_adhesion, left_by_cells, read_off_cells
 from contact1d.workflow.settings.estimate import ContactEstimate
 from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.settings.sliders import Sliders, sliders_of, stops
@@ -71,9 +71,11 @@ def expected(scene: Scene, settings: Settings) -> Mapping[str, float]:
 
 
 def read_off(scene: Scene, settings: Settings) -> Mapping[str, float]:
-    """By the names of radii, how uncertain they are as they are read off particles [LU]; of an adhesive one nothing."""
-    if scene.bodies.profile.has_edge or scene.adhesion is not None:
+    """By the names of radii, how uncertain they are as they are read off particles [LU]; of a load and of friction."""
+    if scene.bodies.profile.has_edge:
         return {}
+    if scene.adheres and scene.adhesion is not None:
+        return read_off_cells(scene, settings)
     if isinstance(scene.experiment, Tangential):
         chain = _chain(scene, settings, OWN)
         return chain.read_off(stops(scene.experiment, chain))
@@ -183,4 +185,5 @@ class _Row:
             if below.size == 0:
                 return self.largest_tension()[0]
             low, high = float(places[below[-1]]), float(places[min(below[-1] + 1, points - 1)])
-        return 0.5 * (low + high)
+        ends = self.forces(np.asarray([low, high]))
+        return float(np.interp(force, ends, [low, high]))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from contact1d.analysis.curve_marks import Peak, crossing, largest_tension
 from contact1d.analysis.loop import Loop, loop_of
+from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.path.between_rows import missed_between_rows
 from contact1d.workflow.experiments.path.schedule import places, schedule
 from contact1d.workflow.experiments.path.thermal import CERTAIN, averaged
@@ -18,6 +20,7 @@ from contact1d.workflow.experiments.running.law_error import law_error
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.experiments.running.trust import doubts, is_converged, require_trust
+from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH, Quantity
 
@@ -48,7 +51,8 @@ def path(context: RunContext) -> Outcome:
     states = [state for state, wanted in zip(passed, asked, strict=True) if wanted]
     # Where pairs snap, all rows tell the jumps; else the same places there and back tell what a curve loses.
     rows = passed[asked.index(True) :] if settings.estimate.snaps else states
-    branch = [s for s in rows if s.phase == phases[-1].name]
+    name = _drawn_off(scene, settings, phases)
+    branch = [s for s in rows if s.phase == name]
     quantities, warnings = _adhesion(context, branch) if scene.adheres else (_largest(context, states), {})
     ends = {"deepest": max(states, key=lambda s: s.displacement), "final": states[-1]}
     radii = {name: state.radius for name, state in ends.items()}
@@ -65,6 +69,16 @@ def path(context: RunContext) -> Outcome:
         tables={} if scene.noise is None else {"means": _means(settings, states)},
         compared_with={} if loop is None else {"dissipated_energy": loop.whole},
     )
+
+
+def _drawn_off(scene: Scene, settings: Settings, phases: Sequence[Phase]) -> str:
+    """The last phase in which the bodies are drawn apart; where a smooth curve has none, the last one says the same.
+
+    Where pairs snap, or an edge has no range, the tension on the way down is that at which the bodies jump together.
+    """
+    apart = [phase.name for phase in phases if phase.name.startswith("unloading")]
+    jumps = settings.estimate.snaps or scene.adhesion is not None
+    return apart[-1] if apart else "" if jumps else phases[-1].name
 
 
 def _means(settings: Settings, states: list[State]) -> dict[str, tuple[float, ...]]:
@@ -98,6 +112,9 @@ def _largest(context: RunContext, states: list[State]) -> dict[str, Quantity]:
 
 def _adhesion(context: RunContext, branch: list[State]) -> tuple[dict[str, Quantity], dict[str, str]]:
     settings = context.deck.settings
+    if not branch:
+        never = "the path never draws the bodies apart, so it gives no"
+        return {}, {"no_peak": f"{never} adhesion_force", "no_zero_load": f"{never} zero_load_radius"}
     displacement, force = [s.displacement for s in branch], [s.force for s in branch]
     quantities: dict[str, Quantity] = {}
     warnings: dict[str, str] = {}
@@ -111,14 +128,14 @@ def _adhesion(context: RunContext, branch: list[State]) -> tuple[dict[str, Quant
             quantities["critical_radius"] = critical
     else:
         warnings["no_peak"] = (
-            "the largest tension lies at an end of the last branch, so the path gives no adhesion_force: "
+            "the largest tension lies at an end of the last way apart, so the path gives no adhesion_force: "
             'go further back, or use kind = "pull_off"'
         )
     if context.deck.scene.adhesion is not None:
         quantities |= _fixed_grips(branch)
     zero = _zero_load(branch, displacement, force)
     if zero is None:
-        warnings["no_zero_load"] = "the force does not pass 0 on the last branch, so there is no zero_load_radius"
+        warnings["no_zero_load"] = "the force does not pass 0 on the last way apart, so there is no zero_load_radius"
     else:
         quantities["zero_load_radius"] = zero
     return quantities, warnings
