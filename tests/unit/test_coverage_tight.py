@@ -6,6 +6,7 @@ all. What is stated as measured is twice that in the bound.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -23,7 +24,7 @@ from contact1d.workflow.experiments.running.holding import Held
 from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import settings_for
-from tests.exact import exact_context
+from tests.exact import ExactContact, exact_context
 from tests.unit.test_coverage import exact, log_uniform, pulled, random_case, with_experiment
 from tests.unit.test_dynamic import answer, at
 
@@ -199,3 +200,19 @@ def test_a_tension_that_broke_the_contact_is_tried_again_only_where_momentum_did
         assert search.best == max(-one.load for one in search.held)
         assert tried < 25
     assert search.best <= 1.0 <= search.broken
+
+
+def test_forces_that_particles_are_left_with_add_up_like_chance_over_a_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    """r √N over the whole way there and back: of either sign, and of N particles."""
+    scene, left = random_case(np.random.default_rng(3), 0.3, 40.0, 1e-3), 1e-7
+    long = scene.interaction.attraction.range
+    way = [*np.linspace(0.0, long, 21).tolist(), *np.linspace(long, 0.0, 21)[1:].tolist()]
+    scene = with_experiment(scene, {"kind": "path", "displacements": way})
+    at_rest = path(exact_context(scene)).quantities["dissipated_energy"]
+    state = ExactContact.state
+    monkeypatch.setattr(ExactContact, "state", lambda *given: replace(state(*given), residual=left))
+    restless = path(exact_context(scene)).quantities["dissipated_energy"]
+    count = settings_for(scene).particles
+    assert restless.value == pytest.approx(at_rest.value, abs=1e-12)
+    grown = restless.uncertainty - at_rest.uncertainty
+    assert grown == pytest.approx(2.0 * long * left * float(np.sqrt(count)), rel=1e-6)
