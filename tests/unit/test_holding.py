@@ -1,0 +1,190 @@
+"""Claims of a load that is held in time: when it counts as at rest, as lost, as gone through, and as never to rest.
+
+States are given one after the other; no LAMMPS.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact1d.analysis.pressure import Profile
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.steps import Displace, Hold, Phase
+from contact1d.workflow.experiments.running.contact import MOST_REPEATS, State
+from contact1d.workflow.experiments.running.holding import (
+    FEWEST_STEPS,
+    MOST_HOLDS,
+    Start,
+    _apart,
+    _through,
+    at_rest,
+    damping_under,
+    hold,
+    hold_row,
+    press,
+)
+from contact1d.workflow.experiments.running.trust import RestlessError, ThroughError
+from contact1d.workflow.scene import scene_from_dict
+from contact1d.workflow.settings.settings import settings_for
+from tests.exact import ExactContact
+from tests.scenes import chains
+
+X = np.arange(40) - 19.5
+PROFILE = Profile(
+    X, 0.0 * X, 0.0 * X + 0.1, np.where(np.abs(X) < 8.0, 1.0, np.where(np.abs(X) < 10, -0.5, 0.0)), 0.0 * X
+)
+RULE: Any = None
+SNAPPING = (0.18, 0.03, 0.09, 0.06)
+
+
+class Given:
+    """A contact that has these states, one after the other, the last again and again."""
+
+    def __init__(self, *states: State, law: tuple[float, ...] = (0.018, 0.03, 0.009, 0.06), **changed: Any) -> None:
+        tables = chains(100.0, law=law, bodies={"particles": 40}, damping={"coefficient": "auto"}, plate={},
+                        experiment={"kind": "pull_off", "method": "dynamic", "preload": 0.3})  # fmt: skip
+        self.scene = scene_from_dict(tables)
+        self.settings = replace(settings_for(self.scene), **changed)
+        self.rows: list[Hold] = []
+        self._states = list(states)
+
+    def row(self, row: Hold) -> State:
+        """The next."""
+        self.rows.append(row)
+        return self._states.pop(0) if len(self._states) > 1 else self._states[0]
+
+
+def at(force: float, displacement: float = 0.1, velocity: float = 0.0, pushed: float = 0.0) -> State:
+    state = State("loading", displacement, force, PROFILE, 0.05, 0.0, 0.0, RULE)
+    return replace(state, plate_velocity=velocity, pushed=pushed)
+
+
+LOAD, SCALE = 0.3, 0.5
+
+
+def opened(*states: State, **changed: Any) -> Any:
+    return Given(*states, **changed)
+
+
+def test_a_load_is_held_where_it_is_balanced_and_stays_so() -> None:
+    near = at_rest(opened(at(0.0)).settings, SCALE)
+    assert near == pytest.approx(0.1 * opened(at(0.0)).settings.tolerance * SCALE)
+    for share, rows in ((0.99, 1), (1.01, 2)):
+        for sign in (-1.0, 1.0):
+            contact = opened(at(LOAD + sign * share * near), at(LOAD))
+            held = hold(contact, LOAD, SCALE)
+            assert (held.held, len(held.states), held.load) == (True, rows, LOAD)
+    pushed = opened(at(LOAD + 0.2, pushed=0.2))
+    assert hold(pushed, LOAD, SCALE).unbalance == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_plate_that_moves_is_not_at_rest_and_what_drag_carries_is_in_the_claim() -> None:
+    first = opened(at(LOAD))
+    row = hold_row(first.scene, first.settings, LOAD, SCALE, Start.KEPT)
+    moving = first.settings.plate_mass + first.settings.particles * first.scene.bodies.mass
+    for share, rows in ((0.99, 1), (1.01, 2)):
+        speed = share * row.rest / row.drag
+        contact = opened(at(LOAD, velocity=-speed), at(LOAD))
+        held = hold(contact, LOAD, SCALE)
+        assert len(held.states) == rows
+        if rows == 1:
+            assert held.unbalance == pytest.approx(row.drag * speed * moving / first.settings.plate_mass)
+
+
+def test_rows_go_on_from_where_the_last_ended_and_look_closer_where_the_plate_stood_still() -> None:
+    contact = opened(at(LOAD + 0.1), at(LOAD + 0.1, velocity=1e9), at(LOAD + 0.05), at(LOAD))
+    hold(contact, LOAD, SCALE, Start.BACK)
+    assert [row.start for row in contact.rows] == [Start.BACK, Start.HERE, Start.HERE, Start.HERE]
+    rests = np.array([row.rest for row in contact.rows])
+    assert rests / rests[0] == pytest.approx([1.0, 0.5, 0.5, 0.25])
+
+
+def test_a_contact_is_lost_out_of_reach_or_where_it_moves_off_with_less_than_pulls() -> None:
+    settings = opened(at(0.0)).settings
+    far = replace(at(0.0, -5.0), smallest_distance=1.01 * settings.cutoff)
+    assert not hold(opened(far), -0.2, SCALE).held
+    assert not hold(opened(replace(far, force=0.1)), LOAD, SCALE).held
+    pull = -0.2
+    for share, velocity, lost in ((0.69, -0.1, True), (0.71, -0.1, False), (0.69, 0.1, False)):
+        away = at(share * pull, -5.0, velocity)
+        contact = opened(away, at(pull))
+        held = hold(contact, pull, SCALE)
+        assert held.held == (not lost)
+        assert held.unbalance == pytest.approx(abs(share - 1.0) * 0.2 if lost else 0.0, abs=1e-12)
+        if not lost:  # the next row goes on until nothing can be felt any more
+            assert contact.rows[1].parted == _apart(contact.settings) < contact.rows[0].parted
+    assert len(hold(opened(at(share * pull, 0.0, -0.1), at(pull)), pull, SCALE).states) == 2  # not yet past that place
+
+
+def test_a_plate_beyond_where_it_can_swing_to_has_gone_through() -> None:
+    settings = opened(at(0.0)).settings
+    beyond = _through(settings)
+    way = settings.largest_displacement - settings.rest + settings.cutoff
+    assert beyond == pytest.approx(settings.largest_displacement + 2.0 * max(way, 1.0))
+    with pytest.raises(ThroughError, match="went on to"):
+        hold(opened(at(0.1, 1.001 * beyond)), LOAD, SCALE)
+    assert hold(opened(at(0.1, 0.999 * beyond), at(LOAD)), LOAD, SCALE).held
+
+
+def test_what_never_comes_to_rest_is_said_after_so_many_rows() -> None:
+    contact = opened(at(LOAD + 0.1))
+    with pytest.raises(RestlessError, match=rf"within {MOST_HOLDS * FEWEST_STEPS} timesteps .*0\.1 FU"):
+        replaced = hold_row(contact.scene, contact.settings, LOAD, SCALE, Start.KEPT)
+        contact.settings = replace(contact.settings, settle_time=contact.settings.settle_time * 10 / replaced.steps)
+        hold(contact, LOAD, SCALE)
+    assert len(contact.rows) == MOST_HOLDS
+
+
+@pytest.mark.parametrize(("part", "loads"), [(1.0, [0.3]), (0.25, [0.075, 0.15, 0.225, 0.3])])
+def test_a_load_comes_on_at_once_or_in_as_many_parts_as_a_search_in_smaller_steps_says(
+    part: float, loads: list[float]
+) -> None:
+    contact = opened(*(at(load) for load in loads), part=part)
+    held = press(contact, LOAD, SCALE)
+    assert [row.load for row in contact.rows] == pytest.approx(loads)
+    assert held.held
+    assert [state.force for state in held.states] == pytest.approx(loads)
+    nothing = opened(at(0.0), part=part)
+    assert press(nothing, 0.0, SCALE).held
+    assert len(nothing.rows) == 1
+
+
+def test_automatic_drag_follows_the_contact_down_and_is_not_less_than_critical_while_gentle() -> None:
+    contact = opened(at(0.0))
+    settings = contact.settings
+    assert damping_under(settings, -10.0) < damping_under(settings, -0.01) < damping_under(settings, 0.3)
+    gentle = settings.in_smaller_steps(0.25)
+    if gentle.gentle:
+        assert damping_under(gentle, 0.3) == damping_under(gentle, 0.0) == gentle.calm_damping
+        assert damping_under(gentle, -0.01) == pytest.approx(
+            gentle.damping * damping_under(settings, -0.01) / settings.damping
+        )
+    toothed = opened(at(0.0), law=SNAPPING).settings
+    assert toothed.is_toothed
+    assert damping_under(toothed, -0.01) == damping_under(toothed, 0.3)
+
+
+class Slowly(ExactContact):
+    """A row comes to rest after so many repeats."""
+
+    repeats, seen = 3, 0
+
+    def row(self, row: Any) -> State:
+        """A residual as long as it moves."""
+        self.seen += 1
+        moves = self.seen <= self.repeats
+        return replace(self.state(row.displacement), residual=1.0 if moves else 0.0)
+
+
+@pytest.mark.parametrize(("repeats", "rows"), [(0, 1), (3, 4), (10**6, MOST_REPEATS + 1)])
+def test_a_row_that_does_not_end_at_rest_is_repeated_until_it_does(repeats: int, rows: int) -> None:
+    scene = scene_from_dict(chains(100.0, bodies={"particles": 40}, experiment={"kind": "pull_off", "preload": 0.3}))
+    contact = Slowly(Deck(scene, settings_for(scene)))
+    contact.repeats = repeats
+    (state,) = contact.replay((Phase("loading", (Displace(0.1),)),), at_rest=lambda state: state.residual == 0.0)
+    assert contact.seen == rows
+    assert (state.residual == 0.0) == (repeats < 10**6)
