@@ -29,6 +29,7 @@ from contact1d.workflow.experiments.running.holding import (
 )
 from contact1d.workflow.experiments.running.trust import RestlessError, ThroughError
 from contact1d.workflow.scene import scene_from_dict
+from contact1d.workflow.settings.dynamics import SOFTENING
 from contact1d.workflow.settings.settings import settings_for
 from tests.exact import ExactContact
 from tests.scenes import chains
@@ -163,6 +164,8 @@ def test_automatic_drag_follows_the_contact_down_and_is_not_less_than_critical_w
         assert damping_under(gentle, -0.01) == pytest.approx(
             gentle.damping * damping_under(settings, -0.01) / settings.damping
         )
+    stiffest = replace(settings, damped_stiffness=1e-9 * settings.damped_stiffness)
+    assert damping_under(stiffest, 0.3) == pytest.approx(settings.damping / SOFTENING**0.5)
     toothed = opened(at(0.0), law=SNAPPING).settings
     assert toothed.is_toothed
     assert damping_under(toothed, -0.01) == damping_under(toothed, 0.3)

@@ -85,7 +85,8 @@ def test_the_radius_goes_on_as_it_does_to_the_nearest_row() -> None:
 def test_a_radius_is_looked_at_no_closer_than_tolerance_or_lattice_allow() -> None:
     assert _allowed(at(0.0, 0.0, 5.0, 0.3), 1e-2) == pytest.approx(0.15)
     assert _allowed(at(0.0, 0.0, 50.0, 0.3), 1e-2) == pytest.approx(0.5)
-    states = [at(0.35, -0.9, 6.4), at(0.3, -1.0, 6.2)]  # 4 LU of radius over 1 of displacement
+    # 4 LU of radius over 1 of displacement, and more of it further off
+    states = [at(0.35, -0.9, 6.4), at(0.5, -0.5, 9.0), at(0.3, -1.0, 6.2)]
     for share, near in ((0.99, True), (1.01, False)):
         position = 0.3 + share * 1e-2 * 6.2 / 4.0
         assert _near(states, Peak(1, 1.0, 0.0, 1.0, position, 0.0), 1e-2) == near

@@ -10,7 +10,15 @@ import numpy as np
 import pytest
 
 from contact1d import Run, RunError, load_run
-from contact1d.workflow.experiments.pull_off.pulls import ramp_of
+from contact1d.analysis.pressure import Profile
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.steps import Phase
+from contact1d.workflow.engine.progress import Silent
+from contact1d.workflow.experiments.pull_off import thermal
+from contact1d.workflow.experiments.pull_off.pulls import Detachment, ramp_of
+from contact1d.workflow.experiments.running.contact import State
+from contact1d.workflow.experiments.running.radii import RadiusRule
+from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
@@ -102,3 +110,48 @@ def test_without_a_stiffness_the_spring_is_as_stiff_as_the_contact() -> None:
     scene = scene_of(experiment={"kind": "pull_off", "preload": 0.02, "velocity": 5e-3})
     settings = settings_for(scene)
     assert ramp_of(scene, settings).spring == pytest.approx(settings.estimate.stiffness_under(0.0))
+
+
+@pytest.mark.parametrize("count", [1, 2, 9])
+def test_the_mean_of_pulls_is_as_sure_as_so_many_of_them_make_it(
+    count: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Their scatter and that of a staircase, rise/√12, over √n; the spread itself to 1/√(2(n − 1))."""
+    scene = scene_of(experiment={"kind": "pull_off", "preload": 0.02, "loading_rate": FAST, "repeats": count})
+    settings = settings_for(scene)
+    ramp, rule = ramp_of(scene, settings), RadiusRule(scene, 1e-2)
+    none = np.zeros(3)
+    state = State("pulling", 0.1, -0.2, Profile(none, none, none + 0.2, none, none), 0.2, 0.0, 0.0, rule, step=30.0)
+    forces = 0.4 + 3.0 * ramp.rise * np.sin(np.arange(count))
+    phases = (Phase("pulling", (ramp.row(4),)),)
+    made = [Detachment(5 + i, float(f), 10.0 * f, phases, (state,), 0) for i, f in enumerate(forces)]
+    monkeypatch.setattr(thermal, "pulls", lambda context, n: made[:n])
+    found = thermal.pull_off_thermal(RunContext(Deck(scene, settings), tmp_path, Silent(), 1.0))
+    mean = found.quantities["detachment_force"]
+    assert mean.value == pytest.approx(forces.mean())
+    if count == 1:
+        assert mean.uncertainty == pytest.approx(forces[0])
+        assert "detachment_force_spread" not in found.quantities
+    else:
+        spread = found.quantities["detachment_force_spread"]
+        assert spread.value == pytest.approx(forces.std(ddof=1))
+        assert spread.uncertainty == pytest.approx(spread.value / np.sqrt(2.0 * (count - 1)))
+        assert mean.uncertainty**2 * count == pytest.approx(spread.value**2 + ramp.rise**2 / 12.0)
+    assert found.tables["detachments"]["seed"] == tuple(5.0 + i for i in range(count))
+    assert found.tables["samples"]["load"] == pytest.approx((-4.0 * ramp.rise,))
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.95, False), (1.05, True)])
+def test_drag_is_told_where_it_takes_a_tenth_of_what_holds_the_bodies(share: float, told: bool) -> None:
+    """Γ b Ḟ/F_A² = 0.1, Γ the drag of all, b the longest range."""
+    settings = settings_for(scene_of())
+    assert settings.law is not None
+    drag = settings.particles * settings.damping + settings.plate_damping
+    rate = share * 0.1 * settings.estimate.pull_off_force() ** 2 / (drag * settings.law.longest_range)
+    for drawn in ({"loading_rate": rate}, {"velocity": rate / 0.2, "stiffness": 0.2}):
+        scene = scene_of(experiment={"kind": "pull_off", "preload": 0.02} | drawn)
+        warned = thermal._lagging(scene, settings_for(scene))
+        assert bool(warned) == told
+        if told:
+            below = float(warned["lagging"].split(" of ")[-1].split()[0])
+            assert below == pytest.approx(next(iter(drawn.values())) / share, rel=0.01)
