@@ -154,4 +154,4 @@ def test_drag_is_told_where_it_takes_a_tenth_of_what_holds_the_bodies(share: flo
         assert bool(warned) == told
         if told:
             below = float(warned["lagging"].split(" of ")[-1].split()[0])
-            assert below == pytest.approx(next(iter(drawn.values())) / share, rel=0.01)
+            assert below == pytest.approx(next(iter(drawn.values())) / share, rel=0.05)  # two digits are said
