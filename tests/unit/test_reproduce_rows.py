@@ -13,7 +13,7 @@ import pytest
 
 from contact1d.analysis.reference.solver import ChainSolver
 from contact1d.workflow.judging.check import Check
-from contact1d.workflow.judging.words import agreement, limits, outcome
+from contact1d.workflow.judging.words import agreement, limits, outcome, ratio, worst_deviation
 from contact1d.workflow.reproduce import adhesive, fig6, fig7, table1
 from contact1d.workflow.reproduce.oracles import chain_model, equilibrium_under
 from contact1d.workflow.reproduce.paper import TABLE_1
@@ -83,6 +83,20 @@ def test_the_margin_is_what_is_allowed_over_what_is_reached() -> None:
     assert replace(CHECK, comparison="at most", reference=30.0).margin == pytest.approx(30.0)
     assert replace(CHECK, comparison="at most", reference=30.0).is_wide
     assert not replace(CHECK, reference=1.0).is_wide
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [(1.0, "1"), (1.0 + 2e-7, "1.00000020"), (1.0 + 2e-8, "1"), (0.9876, "0.988"), (1.012, "1.012"), (1.7, "1.7")],
+)
+def test_a_ratio_has_the_places_that_show_how_far_it_is_from_one(value: float, said: str) -> None:
+    assert ratio(replace(CHECK, value=value, reference=1.0)) == said
+
+
+def test_the_worst_deviation_is_from_the_reference_on_either_side() -> None:
+    rows = [replace(CHECK, value=v, reference=2.0) for v in (2.1, 1.8, 2.05)]
+    assert worst_deviation(rows) == pytest.approx(0.1)
+    assert worst_deviation([*rows, replace(CHECK, value=math.nan)]) == math.inf
 
 
 def test_rows_that_repeat_are_counted_apart() -> None:
