@@ -2,12 +2,15 @@
 
 A commensurate chain has the friction of N particles. An incommensurate one is pinned below, and slides freely above,
 the stiffness k_t = max(−U″) of its particles' springs, U being that of a particle on springs at the common height.
+That height is constant without end; a plate of N particles gives way to each slip, and friction is lower: of 13 by
+0.8 % at k_t = 0.03 and 1.3 % at 0.06 FU/LU.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from contact1d.analysis.reference.flat_chain import FlatChain
 from contact1d.analysis.reference.incommensurate import shared_corrugation
 from contact1d.analysis.reference.incommensurate import threshold as law_threshold
 from contact1d.analysis.reference.prandtl_tomlinson import slow_friction
@@ -29,7 +32,7 @@ EDGE = {
 }
 PINNED = 2
 """Of the stiffnesses, the softest, whose slow limit is held against the law."""
-LAW = "each particle alone over the row, all at one height: the energy that its slips lose"
+CHAIN = "as many particles on one plate, at rest at every place: the energy that their slips lose"
 
 
 def load_of(scene: Scene) -> float:
@@ -71,11 +74,14 @@ def flat_checks(row: Rows) -> tuple[list[Check], Panel]:
     }
     limits = [slow_limit(over[k]) for k in springs]
     theory = [slow_friction(shared_corrugation(law, 1.0, load, normal, k), k) for k in springs]
+    below = scene.bodies.particles
+    assert isinstance(below, int)
+    pinned = [FlatChain(law, 1.0, count, below, load, normal, k).friction() for k in springs[:PINNED]]
     checks = [
         row(f"⟨F⟩ of a particle of an incommensurate pair, k_t = {k:g} FU/LU, slow limit", limit.value,
-            limit.uncertainty, "FU", expected, LAW, "closed form", SLOW,
+            limit.uncertainty, "FU", expected, CHAIN, "independent solver", SLOW,
             "the power of v that follows v^{2/3}", on=names[k], despite=EDGE, comparison="uncertainty")
-        for k, limit, expected in list(zip(springs, limits, theory, strict=True))[:PINNED]
+        for k, limit, expected in zip(springs[:PINNED], limits[:PINNED], pinned, strict=True)
     ]  # fmt: skip
     where = threshold(springs, [exponent(over[k]) for k in springs])
     kappa = law_threshold(law, 1.0, load, normal)
