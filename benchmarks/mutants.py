@@ -41,7 +41,7 @@ ASKED = 0.9
 """Asked of the share that is killed."""
 LONGEST, LONGEST_AGAIN = 30.0, 300.0
 """Time of the tests that look for one mutant, and of those that look again, as long as they took when traced [s]."""
-PATIENCE, LEAST = 2.0, 30.0
+PATIENCE, LEAST = 2.0, 120.0
 """Time of the processor after which a mutant counts as killed, over that of its tests, and at least [s]."""
 ROOMS = {
     "analysis": ("analysis/*.py",),
