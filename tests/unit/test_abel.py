@@ -184,3 +184,8 @@ def test_places_must_be_the_same_on_both_sides_in_any_unit(spacing: float) -> No
         line_load(x + 1e-3 * spacing, np.ones(12))
     with pytest.raises(ValueError, match="the same on both sides"):
         line_load(x + np.where(np.arange(12) == 8, 1e-3 * spacing, 0.0), np.ones(12))
+
+
+def test_the_jump_at_the_edge_is_that_of_the_last_piece() -> None:
+    pieces = np.array([[1.0, 0.0, 0.0, 0.0], [2.0, -1.0, 0.0, 0.0], [0.5, 0.5, -0.25, 0.0]]).T
+    assert LineLoad(np.arange(4.0), pieces).at_edge == pytest.approx(0.5 + 1.5 - 2.25)

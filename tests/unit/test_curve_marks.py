@@ -66,6 +66,15 @@ def test_a_maximum_at_an_end_is_as_uncertain_as_it_is_large(force: list[float]) 
     assert peak.uncertainty == peak.tension == 2.0
 
 
+@pytest.mark.parametrize("rows", [(-1, 7), (-7, 1)])
+def test_a_maximum_one_row_from_an_end_is_known_to_what_the_parabola_adds(rows: tuple[int, int]) -> None:
+    """Its place to the way from the row; both are no more than an increment makes of it."""
+    displacement = falling(5.03 + 0.1 * np.arange(rows[0], rows[1] + 1))
+    peak = largest_tension(displacement, [-np.exp(-((d - 5.05) ** 2)) for d in displacement])
+    assert abs(peak.smooth - 1.0) <= peak.uncertainty <= 0.1**2
+    assert abs(peak.position - 5.05) <= peak.misplaced <= 0.05
+
+
 @pytest.mark.parametrize("step", [0.2, 0.1, 0.05])
 def test_the_vertex_of_a_smooth_maximum_is_of_sixth_order_and_its_uncertainty_covers_it(step: float) -> None:
     displacement = falling(0.03 + step * np.arange(-6, 7))

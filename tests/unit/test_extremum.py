@@ -161,3 +161,14 @@ def test_a_contact_of_less_than_three_spacings_is_as_uncertain_as_it_is_small(ra
     left = 1.0 - found.value / (3.0 * SPACING)
     assert 0.0 < left <= 1.0
     assert 1.2 * left * SPACING <= found.uncertainty * (1.0 + 1e-9) < (1.2 * left + 0.6) * SPACING
+
+
+def test_the_edge_of_a_parabolic_pressure_is_exact_between_uneven_places() -> None:
+    random = np.random.default_rng(15)
+    for _ in range(50):
+        x = np.cumsum(random.uniform(0.4, 1.6, size=40)) - 20.0
+        middle = 0.5 * (x[0] + x[-1])
+        half = 0.6 * (x[-1] - middle)
+        pressure = np.maximum(0.0, 1.0 - ((x - middle) / half) ** 2)
+        zero = np.zeros_like(x)
+        assert compressive_radius(Profile(x, zero, zero, pressure, zero)).value == pytest.approx(half, rel=1e-9)

@@ -105,3 +105,10 @@ def test_what_differs_between_both_sides_cancels(count: int) -> None:
     even = line(A, x) - line(7.2, x)
     found = shear_load(x, even + 0.1 * np.tanh(x), A, [7.2]).pressure(R)
     assert found == pytest.approx(mindlin_shear(R, A, 7.2, MU, PEAK), abs=EXACT * MU * PEAK)
+
+
+@pytest.mark.parametrize("scale", [2.0**-20, 2.0**20])
+def test_kinks_are_the_same_in_any_unit_of_length(scale: float) -> None:
+    stick, contact = [3.0, 1.5, 2.5, 0.7, 2.0, 1.0], [4.0, 4.0, 4.0, 2.9, 3.5, 3.5]
+    there = kinks_of([scale * c for c in stick], [scale * a for a in contact])
+    assert there == [[scale * kink for kink in row] for row in kinks_of(stick, contact)]
