@@ -276,3 +276,12 @@ def test_bodies_that_end_carry_any_load_below_the_one_that_is_named(profile: dic
 def test_what_never_snaps_lets_go_at_the_end_of_its_forces_and_loses_nothing() -> None:
     estimate = settings_for(scene()).estimate
     assert estimate.snap == (float(estimate.gap[-1]), 0.0)
+
+
+def test_where_pairs_snap_a_search_moves_by_a_quarter_of_the_smallest_distance() -> None:
+    settings = settings_for(scene_from_dict(chains(10.0, law=(0.36, 0.03, 0.18, 0.06), experiment=LOAD)))
+    assert settings.snaps
+    for distance in (2.0 * settings.closest, 8.0 * settings.closest):
+        near = min(settings.loading_step, max(settings.displacement_step, 0.25 * distance))
+        assert settings.increment(distance) == pytest.approx(near, rel=EXACT)
+    assert settings.increment(1.001 * settings.closest) < settings.loading_step

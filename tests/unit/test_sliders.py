@@ -101,3 +101,13 @@ def test_one_load_or_one_for_each_row_and_first_the_load_comes_on() -> None:
 def test_particles_are_moved_with_their_body_so_that_the_plane_has_their_whole_stiffness() -> None:
     settings = settings_for(scene_of(normal_force=2.0))
     assert (settings.plane_stiffness, settings.bulk_stiffness) == (1.0, 1.0)
+
+
+def test_after_a_turn_all_sticks_again_and_on_the_way_out_only_the_middle() -> None:
+    depth, out = 0.5, 1.0
+    edge = np.sqrt(200.0 * depth)
+    all_slips = chain().at_end([(depth, 0.0), (depth, out)])
+    assert all_slips["stick_radius"] == 0.0
+    assert chain().at_end([(depth, 0.0), (depth, out), (depth, out - 1e-6)])["stick_radius"] > 0.95 * edge
+    part = chain().at_end([(depth, 0.0), (depth, -0.05)])["stick_radius"]
+    assert part == pytest.approx(np.sqrt(edge**2 - 200.0 * TANGENTIAL * 0.05 / (MU * NORMAL)), rel=0.01)
