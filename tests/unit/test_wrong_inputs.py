@@ -96,7 +96,7 @@ WRONG = [
     odd(R, "1O mm", f"{LENGTH}; 1O mm has a unit that is not known, O", "10 mm"),
     odd(R, "1e999 m", f"{LENGTH}; 1e999 m is larger than any number that a computer holds", "10 mm"),
     odd(R, "-10 mm", "must be greater than 0 (LU)", "10 mm"),
-    odd(H, "0 nm", "must be greater than 0 (LU)", "4 µm"),
+    odd(H, "0 nm", 'must be greater than 0 (LU), or "auto"', "4 µm"),
     odd(F, '"10"', 'must be a number (FU); a number stands without quotes, or with its unit: "10 N"', "10 N"),
     odd("bodies.particles", "30 µm", 'must be a whole number from 3 to 10000000, or "auto"; a number stands without '
         "quotes and unit", "300"),
