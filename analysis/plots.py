@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.curve import Curve
 from contact1d.analysis.pressure import Profile
+from contact1d.analysis.radius import moved_centre
 from contact1d.analysis.reference.jkr import FIXED_GRIPS_RADIUS_RATIO, Jkr, jkr_reduced_force
 from contact1d.analysis.reference.line_adhesion import barquins_reduced_force
 from contact1d.analysis.reference.winkler import winkler_force
@@ -54,7 +55,7 @@ def pressure_figure(profiles: Mapping[str, Profile], radii: Mapping[str, float])
         _draw_bars(axis, x, pressure, width)
         axis.axhline(0.0, color="black", linewidth=0.8)
         axis.set_ylabel("line load (FU/LU)")
-        marked = _mark_radius(axis, radii.get(name, math.nan))
+        marked = _mark_radius(axis, radii.get(name, math.nan), moved_centre(profile))
         axis.set_title(f"{name.replace('_', ' ')} state{marked}", loc="left", fontsize=10)
         axis.set_ylim(min(1.15 * float(pressure.min()), 0.0), max(1.15 * float(pressure.max()), 0.0) or 1e-12)
         if not np.any(pressure):
@@ -247,10 +248,10 @@ def _half_width(profile: Profile) -> float:
     return min(1.15 * reach + 2.0 * float(np.median(np.diff(profile.x))), float(np.abs(profile.x).max()) + 1.0)
 
 
-def _mark_radius(axis: Axes, radius: float) -> str:
-    """Draw ±a and return what the title says of it."""
+def _mark_radius(axis: Axes, radius: float, centre: float) -> str:
+    """Draw ±a around the contact's centre and return what the title says of it."""
     if not math.isfinite(radius) or radius <= 0.0:
         return ""
-    for place in (-radius, radius):
+    for place in (centre - radius, centre + radius):
         axis.axvline(place, color="black", linewidth=1.0, linestyle="--")
     return f", contact radius a = {radius:.4g} LU (dashed)"

@@ -64,8 +64,7 @@ def tensile_radius(profile: Profile) -> ContactRadius:
     largest = float(np.max(np.abs(p)))
     if not float(np.min(p)) < -NEGLIGIBLE * largest:
         raise ValueError("no particle carries tension, so there is no radius of maximum tensile stress")
-    weight = np.abs(p) / largest
-    centre = float(np.sum(weight * x) / np.sum(weight))
+    centre = _centre(x, p)
     spacing = spacing_of(x)
     left, right = (_edge(x, p, centre, side * spacing) for side in (-1, 1))
     found = _between(left, right)
@@ -98,6 +97,20 @@ def compressive_radius(profile: Profile, residual: float = 0.0) -> ContactRadius
     right = _zero(x, p, int(loaded[0]), int(loaded[-1]), residual)
     mirrored = _zero(-x[::-1], p[::-1], len(x) - 1 - int(loaded[-1]), len(x) - 1 - int(loaded[0]), residual)
     return _between(Place(-mirrored.position, mirrored.uncertainty, mirrored.at_end), right)
+
+
+def moved_centre(profile: Profile) -> float:
+    """Where a contact that was drawn along x has its centre [LU]; 0 for one that is within a spacing of its place."""
+    if profile.x.size < 2 or not np.any(profile.pressure):
+        return 0.0
+    centre = _centre(profile.x, profile.pressure)
+    return centre if abs(centre) > spacing_of(profile.x) else 0.0
+
+
+def _centre(x: Array, p: Array) -> float:
+    """Mean of x weighted with |p| [LU]."""
+    weight = np.abs(p) / float(np.max(np.abs(p)))
+    return float(np.sum(weight * x) / np.sum(weight))
 
 
 def _edge(x: Array, p: Array, centre: float, outwards: float) -> Place:

@@ -68,6 +68,7 @@ def test_nobody_is_sent_to_a_method_that_his_experiment_refuses() -> None:
     assert "quasistatic" in KINDS["pull_off"].advice(read_scene(SCENES / "pull_off_dynamic.toml"))
     sliding = KINDS["slide"].advice(read_scene(SCENES / "slide.toml"))
     assert "quasistatic" not in sliding
+    assert "not for static_friction" in sliding  # no length gives it more rows
     assert "distance" in sliding
 
 

@@ -59,6 +59,15 @@ def test_every_particle_that_carries_pressure_is_a_bar_of_its_sign() -> None:
     assert axis.get_xlabel() == "x (LU)"
 
 
+def test_a_contact_that_was_drawn_along_is_marked_where_it_is() -> None:
+    drawn = profile(0.05)
+    moved = Profile(drawn.x + 8.5, drawn.z_lower, drawn.z_upper, drawn.pressure, drawn.shear)
+    for one, centre in ((drawn, 0.0), (moved, 8.5)):
+        (axis,) = plots.pressure_figure({"final": one}, {"final": 28.0}).axes
+        marks = sorted(line.get_xdata()[0] for line in axis.get_lines() if line.get_linestyle() == "--")
+        assert marks == pytest.approx([centre - 28.0, centre + 28.0])
+
+
 def test_the_contact_radius_is_marked_on_both_sides_and_named() -> None:
     radii = {"zero_load": 28.25, "critical": 15.5}
     figure = plots.pressure_figure({"zero_load": profile(0.05), "critical": profile(-0.01)}, radii)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from contact1d.analysis.pressure import Profile
+from contact1d.analysis.radius import moved_centre
 from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.units import rounded, scale_of
 
@@ -94,9 +95,10 @@ def pressure_plot(profile: Profile, radius: float, units: Mapping[str, Any] | No
             continue
         reached = pressure > (level - 0.5) * step if level > 0 else pressure < (level + 0.5) * step
         lines.append(f"{level * step * load:>12.3g} " + "".join(BLOCK if r else EMPTY for r in reached))
-    if math.isfinite(radius) and 0.0 < radius < half:
+    ends_of_contact = [moved_centre(profile) + side * radius for side in (-1.0, 1.0)]
+    if math.isfinite(radius) and radius > 0.0 and max(map(abs, ends_of_contact)) < half:
         marks = [EMPTY] * COLUMNS
-        for place in (-radius, radius):
+        for place in ends_of_contact:
             marks[round((place + half) / (2 * half) * (COLUMNS - 1))] = "^"
         lines.append(" " * 13 + "".join(marks) + "  ± a")
     ends = f"x from {-half * length:.1f} to {half * length:.1f} {length_unit}"

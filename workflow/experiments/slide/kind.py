@@ -7,6 +7,7 @@ from contact1d.workflow.experiments.running.kind import ExperimentKind
 from contact1d.workflow.experiments.slide.loading import loading_phase
 from contact1d.workflow.experiments.slide.slide import leg_begin, leg_name, slide
 from contact1d.workflow.scene import Scene, Slide
+from contact1d.workflow.settings.drive import MOST_ROWS
 from contact1d.workflow.settings.settings import Settings
 
 
@@ -29,7 +30,10 @@ def advice(scene: Scene) -> str:
     """A mean is known by the length of what it is taken over."""
     assert isinstance(scene.experiment, Slide)
     way = "experiment.distance" if scene.experiment.path is None else "last leg of experiment.path that moves"
-    return f"What helps is a longer {way}, of more whole periods of the spacing"
+    return (
+        f"What helps is a longer {way}, of more whole periods of the spacing; not for static_friction, which is "
+        f"known to what lies between two of {MOST_ROWS} rows in a spacing"
+    )
 
 
 SLIDE = ExperimentKind(
