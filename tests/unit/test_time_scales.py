@@ -13,7 +13,7 @@ import pytest
 
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.calibration import CALIBRATION
-from contact1d.workflow.settings.dynamics import stiffest_of
+from contact1d.workflow.settings.dynamics import SWING, stiffest_of
 from contact1d.workflow.settings.settings import Settings, settings_for
 from tests.scenes import chains
 
@@ -166,6 +166,10 @@ def test_a_slide_is_loaded_with_a_drag_that_lets_its_plate_swing_not_and_creep_n
     rate = count * settings.calm_damping / moving
     values = np.linalg.eigvals([[0.0, 1.0], [-0.6 * stiffness / moving, -rate]])
     assert settings.calm_step == pytest.approx(settings.time_step, rel=0.3)
+    swing = 2.0 * math.pi * math.sqrt(moving / stiffness)  # of the plate on its contact, by the law and springs
+    own = 2.0 * math.pi * math.sqrt(moving / (2.0 * settings.estimate.stiffness))
+    assert settings.settle_time >= SWING * swing * (1.0 - 1e-6)
+    assert settings.settle_time <= max(SWING * swing, own) * (1.0 + 1e-6)
     assert settings.calm_step * settings.calm_damping / MASS <= 0.4 * 1.3
     if drag == 0.3 and settings.calm_damping != drag:
         assert np.abs(values.imag).max() <= 1e-3 * np.abs(values.real).max()
@@ -185,3 +189,17 @@ def test_in_smaller_steps_a_chain_without_a_plate_is_stopped_by_drag_and_a_plate
             assert getattr(smaller, name) == 0.25 * getattr(settings, name)
     assert alone.calm_damping > 2.0 * alone.damping
     assert held.calm_damping > 2.0 * held.damping
+
+
+@pytest.mark.parametrize("spring", [2.0, 2000.0])
+def test_a_slides_plate_has_time_for_half_a_swing_on_what_holds_it(spring: float) -> None:
+    """On stiff springs that is the law alone, which is softer by far."""
+    of = slide(1e-3, bulk_stiffness=spring, bulk_stiffness_tangential=2.0)
+    settings = settings_for(of)
+    moving = settings.plate_mass + settings.particles * MASS
+    touching = settings.estimate.half_width(settings.largest_displacement, settings.rest) * 2.0
+    contact = max(1.0, touching) * settings.estimate.stiffness
+    held = min(contact, settings.estimate.stiffness_under(1.0))
+    assert (held < 0.1 * contact) == (spring > 2.0)
+    periods = [2.0 * math.pi * math.sqrt(moving / contact), SWING * 2.0 * math.pi * math.sqrt(moving / held)]
+    assert settings.settle_time == pytest.approx(max(periods), rel=1e-6)
