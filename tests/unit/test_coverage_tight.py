@@ -38,6 +38,8 @@ PATHS = {"adhesion_force": 9.4, "critical_radius": 16.0, "zero_load_radius": 11.
 """… 4.7, 7.9 and 5.8 of paths …"""
 BETWEEN = {20: 5.0, 40: 5.0, 80: 4.6}
 """… and 2.5, 2.5 and 2.3 of what so many rows miss of a largest tension."""
+GRID = 3e-4
+"""Share of a largest tension that the grid of the estimate leaves; 1.2e-4 measured."""
 USED_UP = 0.25
 """In the worst of these cases so much of the claim is used up at least, 0.28 to 0.99 measured, and never all of it."""
 MOST_ROWS, MOST_HOLDS, MOST_SNAPPING = 45, 10, 400
@@ -149,7 +151,7 @@ def test_what_rows_miss_of_a_maximum_is_told_by_those_of_the_estimate(rows: int)
         found = largest_tension(way, [pairs.force(d) for d in way]).smooth
         told.append(missed_between_rows(scene, settings_for(scene), way))
         missed.append(abs(found / tension - 1.0))
-    assert np.mean(np.array(told) >= np.array(missed)) >= 0.95
+    assert (np.array(told) >= 1.5 * np.array(missed) - GRID).all()  # these pairs are the estimate's own, on its places
     assert float(np.sqrt(np.mean(np.square(told)) / np.mean(np.square(missed)))) < BETWEEN[rows]
     assert missed_between_rows(scene, settings_for(scene), way[:1]) == 0.0
 
