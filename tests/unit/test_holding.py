@@ -14,6 +14,7 @@ import pytest
 from contact1d.analysis.pressure import Profile
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Displace, Hold, Phase
+from contact1d.workflow.experiments.path.path import path
 from contact1d.workflow.experiments.running.contact import MOST_REPEATS, State
 from contact1d.workflow.experiments.running.holding import (
     FEWEST_STEPS,
@@ -27,11 +28,11 @@ from contact1d.workflow.experiments.running.holding import (
     hold_row,
     press,
 )
-from contact1d.workflow.experiments.running.trust import RestlessError, ThroughError
+from contact1d.workflow.experiments.running.trust import RestlessError, ThroughError, UntrustedError
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.settings.dynamics import SOFTENING
 from contact1d.workflow.settings.settings import settings_for
-from tests.exact import ExactContact
+from tests.exact import ExactContact, exact_context
 from tests.scenes import chains
 
 X = np.arange(40) - 19.5
@@ -176,6 +177,10 @@ class Slowly(ExactContact):
 
     repeats, seen = 3, 0
 
+    def rows(self, rows: Any) -> list[State]:
+        """One after the other."""
+        return [self.row(row) for row in rows]
+
     def row(self, row: Any) -> State:
         """A residual as long as it moves."""
         self.seen += 1
@@ -191,3 +196,14 @@ def test_a_row_that_does_not_end_at_rest_is_repeated_until_it_does(repeats: int,
     (state,) = contact.replay((Phase("loading", (Displace(0.1),)),), at_rest=lambda state: state.residual == 0.0)
     assert contact.seen == rows
     assert (state.residual == 0.0) == (repeats < 10**6)
+
+
+def test_a_path_in_time_waits_for_rest_and_one_at_rest_refuses_what_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tests.exact.ExactContact", Slowly)
+    experiment = {"kind": "path", "displacements": [0.0, 0.1, 0.0]}
+    still = chains(100.0, law=(0.018, 0.03, 0.009, 0.06), bodies={"particles": 40}, experiment=experiment)
+    moving = still | {"damping": {"coefficient": "auto"}, "experiment": experiment | {"method": "dynamic"}}
+    outcome = path(exact_context(scene_from_dict(moving)))
+    assert all(state.residual == 0.0 for state in outcome.states)
+    with pytest.raises(UntrustedError, match="not converged"):
+        path(exact_context(scene_from_dict(still)))

@@ -64,6 +64,13 @@ def test_each_seed_is_the_pull_that_it_is_alone(pulled: Run, tmp_path: Path) -> 
     third = run(once.with_({"noise.seed": 7}), tmp_path / "run", figures=False)
     assert third.detachments["force"].tolist() == pulled.detachments["force"].tolist()[2:3]
     assert third.results["detachment_force"].value == third.results["detachment_force"].uncertainty
+    settings = settings_for(once)
+    table = third.outcome.tables["samples"]
+    load, place = np.asarray(table["load"]), np.asarray(table["displacement"])
+    pulling = load < 0.0
+    last = np.flatnonzero(place[pulling] > settings.estimate.parted(0.99))[-1]  # then it leaves for good
+    tension = -load[pulling][last] + 0.5 * ramp_of(once, settings).rise
+    assert third.detachments["force"] == pytest.approx([tension])
 
 
 def test_the_folder_has_them_all_and_nothing_under_way(pulled: Run) -> None:
