@@ -69,7 +69,7 @@ def test_a_share_is_that_of_the_pressure_inside_and_none_where_that_vanishes() -
     assert math.isnan(_share(0.5, [3.0, 2.0, 1.0]))
 
 
-@pytest.mark.parametrize("edge", [3.2, 3.7, 4.2, 4.8, 5.3, 6.6, 7.4])
+@pytest.mark.parametrize("edge", [1.2, 2.2, 2.7, 3.2, 3.7, 4.2, 4.8, 5.3, 6.6, 7.4])
 def test_the_inside_is_continued_wherever_three_particles_of_each_side_lie_within(edge: float) -> None:
     """A contact of eight particles is the smallest one; the error of others is the third difference of the pressure."""
     share = np.clip(edge - np.abs(X) + 0.5, 0.0, 1.0)
