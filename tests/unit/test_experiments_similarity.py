@@ -101,6 +101,7 @@ def test_planned_schedules_scale_with_the_scene(name: str, to: str) -> None:
     )
     ours = planned(own, settings_for(own))
     assert all(phase.rows for phase in ours)
+    assert ours[-1].state  # where it ends is kept
     same_rows(ours, planned(other, settings_for(other)), to)
 
 
