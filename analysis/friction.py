@@ -17,6 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.analysis.polynomial import lowest_minimum, through, value
+
 Array = NDArray[np.float64]
 
 STUDENT = (12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26)
@@ -32,6 +34,9 @@ MOST_PAIRED = 4
 """Periods that may be one block, if that leaves so many blocks: slips may repeat after several periods only."""
 FASTER = 2.0
 """Velocity of the plate over that of the drive from which on it may slip."""
+BESIDE, EVEN = 2, 2.0
+"""Rows on each side of a smooth top, and the ratio of the largest to the smallest curvature of friction over place
+about it: where a slip begins the rows lie so far apart that it is many times as large."""
 LONG = 0.45
 """Way over the spacing that it makes of it: at the threshold of stick-slip it passes a barrier as fast over 0.33."""
 
@@ -166,10 +171,34 @@ def largest_before(friction: Array, place: Array, spacing: float) -> tuple[float
     """(largest friction [FU] until the plate has moved by one period, what a row may have missed of it [FU]).
 
     The friction rises smoothly up to where the plate slips: what is missed is less than what the row before rose by.
+    Over the top of a barrier that the plate passes without a slip it is a smooth function of the place, and its largest
+    value lies between the rows: on the polynomial through five of them, known to what three make another of it.
     """
     before = place - place[0] < spacing
     top = int(np.argmax(np.where(before, friction, -np.inf)))
+    if (summit := _summit(friction, place, top)) is not None:
+        return summit
     missed = float(friction[top] - friction[top - 1]) if top > 0 else 0.0
     if 0 < top < friction.size - 1:
         missed = min(missed, max(missed - float(friction[top - 1] - friction[max(top - 2, 0)]), 0.125 * missed))
     return float(friction[top]), abs(missed)
+
+
+def _summit(friction: Array, place: Array, top: int) -> tuple[float, float] | None:
+    """(largest value between the rows about a smooth top, its uncertainty); None where the rows show no smooth top."""
+    near = slice(top - BESIDE, top + BESIDE + 1)
+    x, y = place[near], friction[near]
+    if top < BESIDE or x.size < 2 * BESIDE + 1 or not (np.diff(x) > 0.0).all():
+        return None
+    slopes = np.diff(y) / np.diff(x)
+    bends = np.diff(slopes) / (x[2:] - x[:-2])
+    if not (bends < 0.0).all() or bends.min() < EVEN * bends.max():
+        return None
+    t = (x - place[top]) / (x[-1] - x[0])
+    found = []
+    for inner in (slice(None), slice(1, -1)):
+        c = through(t[inner], (y - friction[top])[inner])
+        at, _ = lowest_minimum(-c, float(t[1]), float(t[-2]))
+        found.append(value(c, at))
+    over, other = found
+    return (float(friction[top]) + over, abs(over - other)) if math.isfinite(over + other) else None
