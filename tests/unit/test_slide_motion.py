@@ -280,3 +280,19 @@ def test_what_is_handed_over_is_compared_with_the_largest_of_the_way(given: Give
     assert columns["plate_z"] == pytest.approx([-state.displacement for state in states])
     told = known.work[-1] - known.dissipated[-1] - known.stored[-1]
     assert ("energy" in found.warnings) == (abs(told) > 5e-3 * largest)
+
+
+@pytest.mark.parametrize(("share", "doubted"), [(0.7, False), (1.5, True)])
+def test_an_energy_that_is_missing_is_compared_with_the_largest_of_the_three(
+    given: Given, share: float, doubted: bool
+) -> None:
+    """It is put into what is stored, evenly over the way, and taken to the bound of half a percent."""
+    start, states = rows_of(given)
+    known = motion_of(given.scene, given.settings, start, states)
+    largest = max(np.abs(values).max() for values in (known.work, known.dissipated, known.stored))
+    told = known.work[-1] - known.dissipated[-1] - known.stored[-1]
+    extra = -share * 5e-3 * largest + told
+    for state, part in zip(states, np.linspace(0.0, extra, len(states)), strict=True):
+        state.motion["c_measuring_energy"] += part
+    deck: Any = SimpleNamespace(scene=given.scene, settings=given.settings)
+    assert ("energy" in outcome_of(deck, start, states, ()).warnings) == doubted
