@@ -360,3 +360,29 @@ def test_the_radius_does_not_depend_on_how_far_the_chain_goes_on(seed: int) -> N
     longer = np.concatenate([x[0] - np.arange(far, 0.0, -1.0), x, x[-1] + np.arange(1.0, far + 1.0)])
     padded = np.concatenate([np.zeros(far), pressure, np.zeros(far)])
     assert tensile_radius(profile(longer, padded)) == tensile_radius(profile(x, pressure))
+
+
+@pytest.mark.parametrize("share", [1e-13, 1e-11])
+def test_round_off_of_the_largest_pressure_is_no_tension(share: float) -> None:
+    x = np.arange(-6.0, 7.0)
+    p = np.maximum(9.5 - x**2, 0.0)
+    p[0] = -share * p.max()
+    if share < 1e-12:
+        assert compressive_radius(profile(x, p)).value == pytest.approx(math.sqrt(9.5), abs=1e-6)
+        with pytest.raises(ValueError, match="no particle carries tension"):
+            tensile_radius(profile(x, p))
+    else:
+        with pytest.raises(ValueError, match="carry tension"):
+            compressive_radius(profile(x, p))
+        assert tensile_radius(profile(x, p)).value > 0.0
+
+
+@pytest.mark.parametrize("spacing", [0.1, 1.0, 10.0])
+def test_a_radius_of_few_spacings_is_uncertain_by_a_share_of_them(spacing: float) -> None:
+    """1.2 (s − a/3): its two edges are no more than a spacing or two apart, and neither is told from the other."""
+    x = spacing * np.arange(-8.0, 9.0)
+    for radius in (0.6, 1.5, 2.4):
+        t = x / (radius * spacing)
+        found = tensile_radius(profile(x, (0.5 - t**2) * np.exp(-(t**2))))  # least at t² = 3/2
+        assert found.uncertainty >= 1.2 * (spacing - found.value / 3.0)
+        assert abs(found.value - math.sqrt(1.5) * radius * spacing) <= found.uncertainty

@@ -111,3 +111,17 @@ def test_after_a_turn_all_sticks_again_and_on_the_way_out_only_the_middle() -> N
     assert chain().at_end([(depth, 0.0), (depth, out), (depth, out - 1e-6)])["stick_radius"] > 0.95 * edge
     part = chain().at_end([(depth, 0.0), (depth, -0.05)])["stick_radius"]
     assert part == pytest.approx(np.sqrt(edge**2 - 200.0 * TANGENTIAL * 0.05 / (MU * NORMAL)), rel=0.01)
+
+
+@pytest.mark.parametrize("parts", [1, 2, 5])
+def test_errors_are_held_against_the_force_and_the_work_of_all_that_sticks(parts: int) -> None:
+    """N springs that hold: the force N k u and the work N k u²/2, however many stops the way has; back adds as much."""
+    held = Sliders(chain().x, chain().heights, NORMAL, TANGENTIAL, 1e6)
+    count, way = len(held.x), 0.01
+    there = [(5.0, float(u)) for u in np.linspace(0.0, way, parts + 1)]
+    sizes = held.sizes(there)
+    assert sizes["tangential_force"] == pytest.approx(count * TANGENTIAL * way)
+    assert sizes["dissipated_energy"] == pytest.approx(0.5 * count * TANGENTIAL * way**2)
+    back = held.sizes([*there, (5.0, 0.0)])
+    assert back["tangential_force"] == sizes["tangential_force"]
+    assert back["dissipated_energy"] == pytest.approx(2.0 * sizes["dissipated_energy"])
