@@ -58,7 +58,7 @@ class Trace:
         sys.settrace(self._note)
         yield
         sys.settrace(None)
-        threading.settrace(None)  # type: ignore[arg-type]
+        threading.settrace(None)  # type: ignore[arg-type]  # which ends it, as of sys.settrace
         fixtures = getattr(item, "_fixtureinfo").name2fixturedefs.values()  # noqa: B009 (a name of pytest that is not public)
         for definition in (one for several in fixtures for one in several):
             self._now |= self._of_fixture.get(id(definition), set())

@@ -1,13 +1,10 @@
-"""`contact1d cost`: which knobs a scene has, orders, front, advice, the record, and a study from end to end."""
+"""`contact1d cost`: which knobs a scene has, orders, front, advice and the record."""
 
 from __future__ import annotations
 
 import csv
-import json
 import math
 import os
-import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from io import StringIO
@@ -22,12 +19,10 @@ from contact1d.workflow.cost.advice import TARGETS, advise, choice, combinations
 from contact1d.workflow.cost.change import Change, at_tolerance, base_change
 from contact1d.workflow.cost.errors import judged, main_results
 from contact1d.workflow.cost.knobs import knobs_of, left_out
-from contact1d.workflow.cost.measure import Prepared, measure
 from contact1d.workflow.cost.orders import Order, fit_order, pareto_front
 from contact1d.workflow.cost.per_step import without_effects
 from contact1d.workflow.cost.record import Advice, CostRecord, EffectCost, KnobRecord, VariantRecord, read_record
 from contact1d.workflow.cost.report import COLUMNS, csv_text, effects_markdown, summary, write_report
-from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import settings_for
 from contact1d.workflow.units import Quantity
@@ -37,22 +32,6 @@ ROOT = Path(__file__).parents[2]
 SCENES = ROOT / "lammps_inputs" / "scenes"
 BEGIN, END = "<!-- cost: begin -->\n", "<!-- cost: end -->\n"
 ROUND_OFF = 1e-12
-TINY = """
-title = "tiny"
-[bodies]
-particles = "auto"
-spacing = 1.0
-profile = { kind = "parabola", radius = 100.0 }
-bulk_stiffness = 0.5
-lower = "rigid_plane"
-[neighbours]
-stiffness = 0.1
-[accuracy]
-tolerance = 1e-2
-[experiment]
-kind = "path"
-displacements = { from = 0.0, to = 0.5, steps = 2 }
-"""
 
 
 def names(scene: Scene) -> set[str]:
@@ -300,19 +279,6 @@ def test_a_report_is_three_files_and_a_figure_is_drawn_without_a_failed_variant(
     assert (tmp_path / "cost.png").stat().st_size > 10_000
 
 
-def test_a_variant_that_fails_is_listed_and_does_not_stop_the_others(make_scene: MakeScene, tmp_path: Path) -> None:
-    scene = make_scene(bodies={"particles": "auto"})
-    usual = settings_for(scene)
-    loose = replace(usual, force_tolerance=1e3)
-    ready = [Prepared("loose", scene, loose), Prepared("usual", scene, usual)]
-    done = measure(ready, tmp_path, repeats=2, workers=1, progress=Silent())
-    assert "not converged" in done["loose"].failure
-    assert not done["usual"].failure
-    assert len(done["usual"].cpu_runs) == 2
-    assert done["usual"].cpu_s > 0.0
-    assert not list(tmp_path.iterdir())
-
-
 def test_the_table_of_the_page_is_what_the_kept_record_says() -> None:
     """Renew docs with `contact1d cost lammps_inputs/scenes/pull_off.toml`, then WRITE_DOCS=1 pytest this file."""
     page = ROOT / "docs" / "performance.md"
@@ -325,55 +291,3 @@ def test_the_table_of_the_page_is_what_the_kept_record_says() -> None:
     assert begin
     assert there == kept
     assert (ROOT / "docs" / "cost.png").is_file()
-
-
-def contact1d(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "contact1d.workflow.cli.app", *map(str, arguments)]
-    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=300, check=False)
-
-
-def test_the_command_studies_a_scene_from_end_to_end(tmp_path: Path) -> None:
-    (tmp_path / "tiny.toml").write_text(TINY, encoding="utf-8")
-    done = contact1d("cost", "tiny.toml", "--repeats", "1", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "tolerance 1e-3: " in done.stdout
-    assert "gave no numbers" not in done.stdout  # the shortest chains are too short, which nobody asked for
-    folder = tmp_path / "costs" / "tiny"
-    assert {path.name for path in folder.iterdir()} == {"cost.json", "cost.csv", "cost.png"}
-    found = read_record(folder / "cost.json")
-    assert {knob.name for knob in found.knobs} == {
-        "tolerance",
-        "chain length",
-        "load increment",
-        "method dynamic",
-        "spacing",
-    }
-    assert not [one.label for one in found.variants if one.failure]
-    assert found.pareto
-    assert [one.name for one in found.effect_costs] == ["neighbours"]
-    assert found.effect_costs[0].without_us > 0.0
-    assert json.loads((folder / "cost.json").read_text(encoding="utf-8"))["reference"].startswith("quasistatic")
-
-
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        (["pull_off.toml", "--set", "bodies.spacing=-1"], "bodies.spacing"),
-        (["pull_off.toml", "--without", "interaction"], "interaction"),
-        (["nowhere.toml"], "no such file"),
-    ],
-)
-def test_a_wrong_scene_is_told_and_nothing_is_written(options: list[str], words: str, tmp_path: Path) -> None:
-    name, *more = options
-    done = contact1d("cost", SCENES / name, *more, cwd=tmp_path)
-    assert done.returncode == 2, done.stdout
-    assert words in done.stderr
-    assert "Traceback" not in done.stderr
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_variant_that_its_run_refuses_is_a_row_with_the_reason(tmp_path: Path) -> None:
-    """A lower chain that is too short for the way is found as the run begins."""
-    scene = read_scene(SCENES / "slide.toml", ["bodies.particles=34"])
-    done = measure([Prepared("short", scene, settings_for(scene))], tmp_path, 1, 1, Silent())
-    assert "too short for the way" in done["short"].failure

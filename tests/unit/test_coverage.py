@@ -8,6 +8,7 @@ The share that is covered is counted. Uncertainties three times smaller would fa
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -189,18 +190,29 @@ def test_a_load_beyond_the_largest_tension_is_refused_and_one_by_a_hair_is_doubt
                 assert doubted == (told == "doubted" and method == "dynamic")
 
 
-def test_a_path_claims_no_more_than_its_rows_tell() -> None:
-    """The radius at F = 0 between coarse rows."""
+@cache
+def paths() -> list[tuple[Scene, Outcome, dict[str, float]]]:
+    """Random paths down and apart in coarse rows, and the exact numbers."""
     rng, found = np.random.default_rng(5), []
-    while len(found) < CASES:
+    for _ in range(CASES):
         scene = random_case(rng, rng.uniform(0.05, 0.5), log_uniform(rng, 4.0, 200.0), 1e-3)
         long = scene.interaction.attraction.range
-        pairs, top, _ = exact(scene, -10.0 * long, long, 200)
+        pairs, top, tension = exact(scene, -10.0 * long, long, 200)
         zero = pairs.displacement(0.0, top, 4.0 * long)
         deepest = max(rng.uniform(0.3, 1.0) * long, zero + 0.3 * long)
         way = np.linspace(deepest, top - 2.0 * long, int(rng.integers(8, 60))).tolist()
         scene = with_experiment(scene, {"kind": "path", "displacements": [0.0, *way]})
-        found.append((path(exact_context(scene)), {"zero_load_radius": pairs.contact_radius(zero)}))
+        known = {
+            "zero_load_radius": pairs.contact_radius(zero), "adhesion_force": tension,
+            "critical_radius": pairs.contact_radius(top),
+        }  # fmt: skip
+        found.append((scene, path(exact_context(scene)), known))
+    return found
+
+
+def test_a_path_claims_no_more_than_its_rows_tell() -> None:
+    """The radius at F = 0 between coarse rows."""
+    found = [(outcome, known) for _, outcome, known in paths()]
     assert covered(found, "zero_load_radius") >= COVERED
 
 

@@ -25,7 +25,7 @@ from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import settings_for
 from tests.exact import ExactContact, exact_context
-from tests.unit.test_coverage import exact, log_uniform, pulled, random_case, with_experiment
+from tests.unit.test_coverage import exact, log_uniform, paths, pulled, random_case, with_experiment
 from tests.unit.test_dynamic import answer, at
 
 Found = list[tuple[Scene, Outcome, dict[str, float]]]
@@ -114,25 +114,6 @@ def test_a_pull_off_over_snaps_reports_the_states_that_it_names() -> None:
         assert force.uncertainty <= SCHEDULE_SHARE * scene.accuracy.tolerance * force.value
         assert [phase.state for phase in outcome.phases] == [False, True, True, False]
         assert len(outcome.states) <= MOST_SNAPPING
-
-
-@cache
-def paths() -> Found:
-    rng, found = np.random.default_rng(5), []
-    for _ in range(60):
-        scene = random_case(rng, rng.uniform(0.05, 0.5), log_uniform(rng, 4.0, 200.0), 1e-3)
-        long = scene.interaction.attraction.range
-        pairs, top, tension = exact(scene, -10.0 * long, long, 200)
-        zero = pairs.displacement(0.0, top, 4.0 * long)
-        deepest = max(rng.uniform(0.3, 1.0) * long, zero + 0.3 * long)
-        way = np.linspace(deepest, top - 2.0 * long, int(rng.integers(8, 60))).tolist()
-        scene = with_experiment(scene, {"kind": "path", "displacements": [0.0, *way]})
-        known = {
-            "zero_load_radius": pairs.contact_radius(zero), "adhesion_force": tension,
-            "critical_radius": pairs.contact_radius(top),
-        }  # fmt: skip
-        found.append((scene, path(exact_context(scene)), known))
-    return found
 
 
 @pytest.mark.parametrize("name", PATHS)

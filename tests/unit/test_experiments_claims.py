@@ -18,7 +18,7 @@ from scipy.integrate import quad
 from contact1d.analysis.curve_marks import Peak
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius
-from contact1d.workflow.deck.steps import Displace, Hold
+from contact1d.workflow.deck.steps import Displace, DrawnOff, Hold, UnderLoad
 from contact1d.workflow.experiments import planned
 from contact1d.workflow.experiments.load.quasistatic import load_outcome, load_quasistatic
 from contact1d.workflow.experiments.path.path import _critical_radius, _zero_load, path
@@ -154,10 +154,11 @@ def test_a_ramp_is_as_steep_as_it_says(spring: float) -> None:
         assert ramp.tension(rows, place) >= tension - ROUND_OFF
         assert ramp.tension(rows - 1, place) < tension
     row = ramp.row(7)
-    if spring:
-        assert spring * (-0.3 - row.end) == pytest.approx(ramp.tension(7, -0.3))  # type: ignore[attr-defined]
+    assert isinstance(row, DrawnOff if spring else UnderLoad)
+    if isinstance(row, DrawnOff):
+        assert spring * (-0.3 - row.end) == pytest.approx(ramp.tension(7, -0.3))
     else:
-        assert row.load == pytest.approx(-ramp.tension(7, 0.0))  # type: ignore[attr-defined]
+        assert row.load == pytest.approx(-ramp.tension(7, 0.0))
     work = quad(lambda place: ramp.tension(80, place), -0.9, -0.1)[0]
     assert ramp.work(80, -0.9, -0.1) == pytest.approx(work)
 

@@ -227,9 +227,9 @@ def test_what_a_plane_that_gives_way_changes_goes_with_the_springs_beside_it() -
         tables = SCENES["plane"] | {"neighbours": {"stiffness": neighbours}}
         scene = scene_from_dict(tables)
         settings = settings_for(scene)
-        state = SimpleNamespace(force=-2.5)
+        state: Any = SimpleNamespace(force=-2.5)
         settings = replace(settings, plane_stiffness=stiffer * 1e6)
-        return law_share(scene, settings), law_error(scene, settings, state)  # type: ignore[arg-type]
+        return law_share(scene, settings), law_error(scene, settings, state)
 
     one, error = share(0.3, 1.0)
     assert error == pytest.approx(2.5 * one)

@@ -11,13 +11,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import eigh
 
 from contact1d.analysis.reference.energy import EnergySurface
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.solver import ChainSolver
-from contact1d.workflow.engine.session import EngineError
+from contact1d.workflow.engine.session import EngineError, Session
 from contact1d.workflow.judging.check import Check
 from contact1d.workflow.judging.figures import Series
 from contact1d.workflow.scene import scene_from_dict
@@ -88,19 +89,28 @@ def _stiff(stiffness: float) -> dict[str, Any]:
     return {"neighbours": {"stiffness": stiffness}}
 
 
+def _swung(session: Session) -> NDArray[np.float64]:
+    """Displace free particles by AMPLITUDE, far from the other body; where those of one body begin to swing [LU]."""
+    session.execute(
+        f"unfix damping_viscous\ndisplace_atoms upper_body move 0 0 {APART} units box\nrun 0\n"
+        f"displace_atoms particles move 0 0 {AMPLITUDE} units box\n",
+        phase="swinging",
+    )
+    return _heights(session)
+
+
+def _heights(session: Session) -> NDArray[np.float64]:
+    return session.atoms("x")["x"][:24, 2]
+
+
 def _oscillator(folder: Path, share: float) -> Check:
     omega = math.sqrt(0.83)
     step = 2.0 * share / omega
     with contact_of(TIMED | PATH, folder / f"verlet_{share:g}", time_step=step) as contact:
         session = contact.session
-        session.execute(
-            f"unfix damping_viscous\ndisplace_atoms upper_body move 0 0 {APART} units box\nrun 0\n"
-            f"displace_atoms particles move 0 0 {AMPLITUDE} units box\n",
-            phase="swinging",
-        )
-        start = session.atoms("x")["x"][:24, 2]
+        start = _swung(session)
         session.execute(f"run {STEPS}\n")
-        moved = session.atoms("x")["x"][:24, 2] - start + AMPLITUDE
+        moved = _heights(session) - start + AMPLITUDE
     angle = math.acos(1.0 - 0.5 * (2.0 * share) ** 2)
     off = float(np.max(np.abs(moved / AMPLITUDE - math.cos(STEPS * angle))))
     return at_most(
@@ -120,14 +130,9 @@ def _beyond(folder: Path) -> list[Check]:
     try:
         with contact_of(TIMED | PATH, folder / "verlet_beyond", time_step=step) as contact:
             session = contact.session
-            session.execute(
-                f"unfix damping_viscous\ndisplace_atoms upper_body move 0 0 {APART} units box\nrun 0\n"
-                f"displace_atoms particles move 0 0 {AMPLITUDE} units box\n",
-                phase="swinging",
-            )
-            start = session.atoms("x")["x"][:24, 2]
+            start = _swung(session)
             session.execute(f"run {few}\n")
-            moved = float((session.atoms("x")["x"][:24, 2] - start + AMPLITUDE)[0])
+            moved = float((_heights(session) - start + AMPLITUDE)[0])
             session.execute("run 5000\n")
     except EngineError as error:
         words = str(error)

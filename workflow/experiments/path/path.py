@@ -77,8 +77,10 @@ def _drawn_off(scene: Scene, settings: Settings, phases: Sequence[Phase]) -> str
     Where pairs snap, or an edge has no range, the tension on the way down is that at which the bodies jump together.
     """
     apart = [phase.name for phase in phases if phase.name.startswith("unloading")]
+    if apart:
+        return apart[-1]
     jumps = settings.estimate.snaps or scene.adhesion is not None
-    return apart[-1] if apart else "" if jumps else phases[-1].name
+    return "" if jumps else phases[-1].name
 
 
 def _means(settings: Settings, states: list[State]) -> dict[str, tuple[float, ...]]:

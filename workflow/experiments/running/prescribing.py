@@ -120,7 +120,7 @@ def approach(
             )
         if direction < 0 and last.smallest_distance > contact.settings.cutoff:
             most = max(-state.force for state in states)
-            raise TensionError(f"{force:.4g} FU is never reached: the largest tension is about {most:.4g} FU", most)
+            raise TensionError(force, most)
         if len(states) > MOST_INCREMENTS:
             raise UntrustedError(
                 f"{force:.4g} FU is not reached within {MOST_INCREMENTS} increments, at displacement "
@@ -153,7 +153,7 @@ def _first(contact: Contact, start: float, force: float, direction: int, steps: 
         require_trust(contact.scene, settings, state)
     if direction < 0 and min(state.carried for state in states) > force:
         most = settings.estimate.pull_off_force()
-        raise TensionError(f"{force:.4g} FU is never reached: the largest tension is about {most:.4g} FU", most)
+        raise TensionError(force, most)
     return states
 
 

@@ -54,9 +54,9 @@ class RestlessError(UntrustedError):
 class TensionError(UntrustedError):
     """A tension that the contact does not hold; `most` is about what it holds [FU]."""
 
-    def __init__(self, message: str, most: float) -> None:
-        """Keep it."""
-        super().__init__(message)
+    def __init__(self, force: float, most: float) -> None:
+        """The force [FU] that was asked for, and what is kept."""
+        super().__init__(f"{force:.4g} FU is never reached: the largest tension is about {most:.4g} FU")
         self.most = most
 
 
