@@ -54,7 +54,8 @@ def value(c: Array, t: float) -> float:
 def real_roots(c: Array, low: float, high: float) -> Array:
     """Places between low and high where P is 0.
 
-    They are eigenvalues of the companion matrix; `numpy.polynomial` does the same in twice the time.
+    They are eigenvalues of the companion matrix; `numpy.polynomial` does the same in twice the time. Of the matrix as
+    it stands in books a highest coefficient of mere round-off would take the roots of the others with it.
     """
     while len(c) and c[-1] == 0.0:
         c = c[:-1]
@@ -62,7 +63,7 @@ def real_roots(c: Array, low: float, high: float) -> Array:
         return np.empty(0)
     companion = np.eye(len(c) - 1, k=-1)
     companion[:, -1] -= c[:-1] / c[-1]
-    roots = np.asarray(np.linalg.eigvals(companion), dtype=np.complex128)
+    roots = np.asarray(np.linalg.eigvals(companion[::-1, ::-1]), dtype=np.complex128)
     real = roots.real[np.abs(roots.imag) < IMAGINARY_ROUND_OFF]
     return real[(real >= low) & (real <= high)]
 

@@ -56,3 +56,11 @@ def test_a_level_place_without_a_bend_is_no_minimum() -> None:
 @pytest.mark.parametrize("near", [None, 0.0, 0.1, 0.5])
 def test_a_maximum_or_a_minimum_beyond_the_interval_is_none(near: float | None) -> None:
     assert math.isnan(lowest_minimum(QUARTIC, -0.3, 0.3, near)[0])
+
+
+@pytest.mark.parametrize("lead", [1e-10, 1e-14, -1e-17, 1e-17, 1e-200])
+def test_a_highest_coefficient_of_round_off_leaves_the_roots_of_the_others(lead: float) -> None:
+    """As of a cubic through four points of a parabola: (t − 1/2)(t + 3/4) stays where it is."""
+    known = [-0.75, 0.5]
+    assert np.sort(real_roots(np.asarray([-0.375, 0.25, 1.0, lead]), -5.0, 5.0)) == pytest.approx(known)
+    assert real_roots(np.asarray([-0.25, 2.0, lead]), -5.0, 5.0) == pytest.approx([0.125])

@@ -40,9 +40,7 @@ LONGEST_EXTRAPOLATION = 5.0
 SPREAD = 2.0
 """Uncertainty of the extrapolation over the difference that one state less makes."""
 STRIDE = 0.8
-"""Rise of a tension over what is left to the expected pull-off force, so that the last states lie near it, …"""
-APPROACH_FACTOR = 3.0
-"""… until that is this many times the distance at which both sides are tried."""
+"""Rise of a tension over what is left to the expected pull-off force at most, so that the last states lie near it."""
 EDGES = 2
 """Pairs that let go together, one at each edge of the contact: by so much the tension falls after a snap."""
 GROWTH = 0.25
@@ -92,9 +90,7 @@ class Search:
         low, high, past = self.best, self.broken, self.overshoot(self.best)
         expected = self._expected()
         margin = BRACKET_AIM * self.tolerance * expected
-        gentle = (expected + past * low) / (1.0 + past)
-        if expected - low > APPROACH_FACTOR * margin:
-            gentle = min(gentle, low + STRIDE * (expected - low))
+        gentle = min((expected + past * low) / (1.0 + past), low + STRIDE * (expected - low))
         for tension in (min(expected - margin, gentle), expected + margin):
             if low + 0.1 * margin < tension < self.lost - 0.1 * margin:
                 return tension
