@@ -12,11 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d.workflow.experiments.running.prescribing import (
-    approach,
-)
+from contact1d.workflow.experiments.running.prescribing import _around, _next, approach
 from contact1d.workflow.experiments.running.trust import TensionError, UntrustedError
-from tests.given import Estimate, GivenContact, given_scene
+from tests.given import Estimate, GivenContact, at, given_scene
 
 STEP = {"smooth_step": 0.1, "longest_move": 0.0, "cutoff": 9.0}
 """Increments of a tenth, wherever particles are 0.4 from each other or more; nothing is out of reach."""
@@ -119,6 +117,8 @@ EXPECTED = Estimate(place=lambda force: 0.4 * force, apart=lambda share: -1.0 - 
         (0.5, 0.3, -1, 0.198),
         (-0.5, 0.3, -1, -0.21),
         (-0.5, -0.9, 1, -0.186),
+        (-0.5, 50.0, -1, -0.6),
+        (0.0, 50.0, -1, -1.0),
     ],
 )
 def test_rows_that_need_no_rest_go_past_where_the_force_is_expected(
@@ -143,7 +143,7 @@ def test_rows_begin_one_by_one_where_the_force_is_expected_behind() -> None:
 
 
 def test_a_tension_beyond_what_rows_past_it_have_is_never_reached() -> None:
-    for floor, raises in ((-0.499, True), (-0.501, False)):
+    for floor, raises in ((-0.499, True), (-0.5, False), (-0.501, False)):
         contact: Any = GivenContact(
             lambda d, floor=floor: max(4.0 * d, floor), stepped=True, estimate=EXPECTED, closest=lambda d: 1.0, **STEP
         )  # fmt: skip
@@ -152,3 +152,17 @@ def test_a_tension_beyond_what_rows_past_it_have_is_never_reached() -> None:
                 approach(contact, -0.5, 0.0, -1)
         else:
             assert approach(contact, -0.5, 0.0, -1)[-1].force == pytest.approx(-0.5, abs=1e-4)
+
+
+def test_a_force_that_is_a_rows_own_lies_between_it_and_the_next() -> None:
+    rows = [at(0.25 * i, 0.5 * i) for i in range(4)]
+    assert _around(rows, 0.5, 1) == (rows[1], rows[2])
+    assert _around(rows, 1.25, 1) == (rows[2], rows[3])
+    assert _around(rows[::-1], 0.5, -1) == (rows[1], rows[0])
+    assert _around(rows[:2], 0.25, 1) == (rows[0], rows[1])
+
+
+@pytest.mark.parametrize("part", [-1.0, 0.0, 0.04, 0.06, 0.94, 0.96, 2.0])
+def test_a_secant_stays_a_twentieth_of_the_bracket_off_its_ends(part: float) -> None:
+    place = _next(at(1.0, 2.0), at(3.0, 6.0), [at(1.0, 2.0)], 2.0 + 4.0 * part, 9.0)
+    assert place == pytest.approx(1.0 + 2.0 * min(max(part, 0.05), 0.95))

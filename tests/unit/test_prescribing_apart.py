@@ -87,6 +87,23 @@ def test_a_tension_from_before_counts_and_one_that_was_never_there_does_not_end_
     assert moves == pytest.approx(np.full(6, 0.1))
 
 
+@pytest.mark.parametrize("snaps", [False, True])
+def test_a_tooth_that_presses_or_pulls_with_half_of_the_largest_lets_no_move_grow(snaps: bool) -> None:
+    """Tensions row by row: none while it presses, none at half; growth where a force of 0 or less than half is left."""
+    tension = [0.0, 2.0, -0.1, 1.0, 0.0, 0.9, 0.9]
+    growth = 1.2 if snaps else 1.6
+    contact = falling(snaps, profile=lambda d: held_at(0.05), closest=lambda d: 0.1)
+    row = contact.row
+
+    def given(one: Any) -> Any:
+        state = replace(row(one), force=-tension[len(contact.states) - 1])
+        return replace(state, smallest_distance=0.1 if len(contact.states) < len(tension) else 9.9)
+
+    contact.row = given
+    moves = -np.diff([s.displacement for s in separate(contact, 3.0)])
+    assert moves / 0.1 == pytest.approx([1.0, 1.0, 1.0, 1.0, growth, growth**2])
+
+
 def test_bodies_that_never_part_are_told_after_ten_thousand_rows() -> None:
     contact: Any = GivenContact(lambda d: -1.0, closest=lambda d: 0.1, **STEP)
     with pytest.raises(UntrustedError, match="within 10000 increments"):
@@ -95,7 +112,7 @@ def test_bodies_that_never_part_are_told_after_ten_thousand_rows() -> None:
 
 
 def test_an_unloading_takes_a_thousand_rows_at_most_or_increments_of_a_search() -> None:
-    settings = line(rest=0.3, estimate=Estimate(gap=np.asarray([0.0, 40.0]))).settings
+    settings = line(rest=0.3, estimate=Estimate(gap=np.asarray([0.0, 7.0, 40.0]))).settings
     assert unloading_step(settings, 0.5) == pytest.approx(0.1)
     assert unloading_step(settings, 100.0) == pytest.approx(139.7 / 1000.0)
 
@@ -119,6 +136,7 @@ def test_bodies_are_apart_out_of_reach_or_with_next_to_nothing_left() -> None:
     cases = [
         (0.019, 0.019, 1.0, 0.1, True), (0.021, 0.0, 1.0, 0.1, False), (0.0, 0.021, 1.0, 0.1, False),
         (-0.019, 0.0, 1.0, 0.1, True), (-0.021, 0.0, 1.0, 0.1, False),
+        (0.02, 0.0, 1.0, 0.1, False), (-0.02, 0.0, 1.0, 0.1, False), (5.0, 0.0, 1.0, 4.0, False),
         (0.0, 0.0, 0.0, 0.1, False), (5.0, 5.0, 0.0, 4.1, True), (5.0, 5.0, 1.0, 3.9, False),
         (5.0, 0.0, 1.0, 4.1, True),
     ]  # fmt: skip

@@ -95,7 +95,7 @@ def approach(
     Raises:
         UntrustedError: see `require_trust`; also where the wanted force cannot be held.
     """
-    scale = max(abs(force), contact.settings.force_scale)
+    scale, falls = max(abs(force), contact.settings.force_scale), direction == -1
     near, spacing = FORCE_ACCURACY * contact.settings.tolerance * scale, contact.scene.bodies.spacing
     states = _first(contact, start, force, direction, steps)
     before, beyond = _around(states, force, direction)
@@ -108,7 +108,7 @@ def approach(
         if before is None:
             raise UntrustedError(
                 f"{force:.4g} FU cannot be approached: the force starts at {last.carried:.4g} FU, "
-                f"{'below' if direction < 0 else 'above'} it already. Take a force beyond that, or "
+                f"{'below' if falls else 'above'} it already. Take a force beyond that, or "
                 'kind = "path" to see the curve'
             )
         if beyond is not None and abs(beyond.displacement - before.displacement) < SAME_PLACE * spacing:
@@ -118,7 +118,7 @@ def approach(
                 'way has the force. Take a force outside of the jump, kind = "path" to see all of it, or stiffer '
                 "springs or a longer range, with which particles do not snap"
             )
-        if direction < 0 and last.smallest_distance > contact.settings.cutoff:
+        if falls and last.smallest_distance > contact.settings.cutoff:
             most = max(-state.force for state in states)
             raise TensionError(force, most)
         if len(states) > MOST_INCREMENTS:
@@ -127,7 +127,7 @@ def approach(
                 f"{last.displacement:.4g} LU and {last.carried:.4g} FU: the ranges of the interaction are short beside "
                 "the way. Take a force that is nearer to 0, longer ranges or stiffer springs"
             )
-        step = contact.settings.increment(last.smallest_distance if direction > 0 else math.inf)
+        step = contact.settings.increment(math.inf if falls else last.smallest_distance)
         states.append(measured(contact, _next(before, beyond, states, force, direction * step)))
     return states
 
@@ -151,7 +151,7 @@ def _first(contact: Contact, start: float, force: float, direction: int, steps: 
     states = contact.rows(displacements(np.linspace(start, end, steps + 1).tolist()))
     for state in states:
         require_trust(contact.scene, settings, state)
-    if direction < 0 and min(state.carried for state in states) > force:
+    if direction == -1 and min(state.carried for state in states) > force:
         most = settings.estimate.pull_off_force()
         raise TensionError(force, most)
     return states
@@ -192,7 +192,7 @@ def separate(contact: Contact, start: float, largest: float = 0.0) -> list[State
         state = measured(contact, displacement)
         states.append(state)
         largest = max(largest, -state.force)
-        past = largest > 0.0 and -state.force < GROWTH_SHARE * largest and state.force <= 0.0
+        past = 0.0 <= -state.force < GROWTH_SHARE * largest
         if past and (contact.settings.is_smooth or still_held(contact, state) < largest):
             step *= growth  # longer moves let go of particles early: only where no tooth can be higher any more
         if _apart(contact, state, largest):
@@ -227,7 +227,7 @@ def _apart(contact: Contact, state: State, largest: float) -> bool:
     Where particles snap, the force passes 0 between one that lets go and the next.
     """
     gone = abs(state.force) < SEPARATION_SHARE * largest and still_held(contact, state) < SEPARATION_SHARE * largest
-    return (largest > 0.0 and gone) or state.smallest_distance > contact.settings.cutoff
+    return gone or state.smallest_distance > contact.settings.cutoff
 
 
 def back_to(contact: Contact, last: State, displacement: float) -> list[State]:
