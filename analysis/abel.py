@@ -30,8 +30,8 @@ WHOLE = 0.5 - 1e-6
 cuts that off."""
 SAME = 1e-6
 """Of a spacing: places so alike on both sides of the axis are the same."""
-MOST_AT_ONCE = 100_000
-"""Numbers of a kind that are worked out at once, to bound the memory."""
+AT_ONCE = 100
+"""Distances from the axis that are worked out at once, to bound the memory."""
 FEWEST = 3
 """Places on one side from which a shape can be told."""
 
@@ -73,7 +73,7 @@ class LineLoad:
         inside = at < self.edge
         p = np.zeros_like(at)
         wanted = at[inside]
-        at_once = np.array_split(wanted, 1 + wanted.size * self.breaks.size // MOST_AT_ONCE)
+        at_once = np.array_split(wanted, range(AT_ONCE, wanted.size, AT_ONCE))
         p[inside] = np.concatenate([self._pressure(some[:, None]) for some in at_once])
         return p.reshape(np.shape(r))
 
@@ -110,14 +110,7 @@ def line_load(
     Raises:
         ValueError: fewer than FEWEST places on a side within the edge, or places that are not the same on both sides.
     """
-    places, values = np.asarray(x, dtype=np.float64), np.asarray(load, dtype=np.float64)
-    if places.shape != values.shape or places.ndim != 1:
-        raise ValueError(f"places and loads must be 1-D and equally long, got {places.shape} and {values.shape}")
-    half = places.size // 2
-    right, mean = places[half:], 0.5 * (values[half:] + values[::-1][half:])
-    spacing = spacing_of(places)
-    if places.size < 2 or np.abs(places + places[::-1]).max() > SAME * spacing:
-        raise ValueError("the places must be the same on both sides of 0")
+    right, mean, spacing = of_both_sides(x, load)
     end = float(right[-1]) if edge is None else edge
     inside = right <= end - (NEAR if ends_at_zero else WHOLE) * spacing
     right, mean = right[inside], mean[inside]
@@ -134,6 +127,18 @@ def line_load(
     else:  # the four nearest are not the same on both sides of the axis
         even.coefficients[:, 0] = (mean[0], 0.0, (mean[1] - mean[0]) / right[1] ** 2, 0.0)
     return even
+
+
+def of_both_sides(x: ArrayLike, load: ArrayLike) -> tuple[Array, Array, float]:
+    """Places from the axis on, the mean load of both sides there, and the spacing; ValueError as of `line_load`."""
+    places, values = np.asarray(x, dtype=np.float64), np.asarray(load, dtype=np.float64)
+    if places.shape != values.shape or places.ndim != 1:
+        raise ValueError(f"places and loads must be 1-D and equally long, got {places.shape} and {values.shape}")
+    spacing = spacing_of(places)
+    if not np.allclose(places, -places[::-1], rtol=0.0, atol=SAME * spacing):
+        raise ValueError("the places must be the same on both sides of 0")
+    half = places.size // 2
+    return places[half:], 0.5 * (values + values[::-1])[half:], spacing
 
 
 def _cubics(x: Array, q: Array, end: float) -> LineLoad:

@@ -79,20 +79,22 @@ def lowest_minimum(c: Array, low: float, high: float, near: float | None = None)
     places = real_roots(first, low, high) if near is None else _newton(first, second, low, high, near)
     at_places = places[:, None] ** powers
     bends = at_places[:, :-2] @ second
-    if not (bends > 0.0).any():
+    if not (low_ones := np.flatnonzero(bends > 0.0)).size:
         return math.nan, math.nan
-    lowest = int(np.argmin(np.where(bends > 0.0, at_places @ c, math.inf)))
+    lowest = low_ones[np.argmin(at_places[low_ones] @ c)]
     return float(places[lowest]), float(bends[lowest])
 
 
 def _newton(first: Array, second: Array, low: float, high: float, t: float) -> Array:
     """The root near t of P′, with the coefficients `first`; `second` are those of P″. None where it runs away."""
-    step, exponents = math.inf, np.arange(len(first))
+    exponents = np.arange(len(first))
     for _ in range(NEWTON):
         powers = t**exponents
         slope = float(second @ powers[:-1])
         step = float(first @ powers) / slope if slope > 0.0 else math.nan
         t -= step
-        if not (abs(step) > ROOT and abs(t) < 1.0):
+        if abs(step) <= ROOT:
+            return np.asarray([t] if low <= t <= high else [])
+        if not abs(t) < 1.0:
             break
-    return np.asarray([t] if abs(step) <= ROOT and low <= t <= high else [])
+    return np.empty(0)

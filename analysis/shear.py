@@ -13,8 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contact1d.analysis.abel import FEWEST, LineLoad
-from contact1d.analysis.row import spacing_of
+from contact1d.analysis.abel import FEWEST, LineLoad, of_both_sides
 
 Array = NDArray[np.float64]
 NEAR = 1e-6
@@ -35,9 +34,7 @@ def kinks_of(stick: Sequence[float], contact: Sequence[float]) -> list[list[floa
     kept: list[float] = []
     before, edge = 0.0, 0.0
     for c, a in zip(stick, contact, strict=True):
-        if c > before:
-            kept += [old for old in (before, edge) if 0.0 < old < c]
-        kept = sorted({old for old in kept if old < c})
+        kept = sorted({old for old in (*kept, before, edge) if 0.0 < old < c})
         found.append([*kept, c] if 0.0 < c < a else list(kept))
         before, edge = c, a
     return found
@@ -61,75 +58,58 @@ def shear_load(
     Raises:
         ValueError: fewer than FEWEST places on a side within the edge, or places that are not the same on both sides.
     """
-    places, values = np.asarray(x, dtype=np.float64), np.asarray(shear, dtype=np.float64)
-    half = places.size // 2
-    spacing = spacing_of(places)
-    if places.size < 2 or np.abs(places + places[::-1]).max() > NEAR * spacing:
-        raise ValueError("the places must be the same on both sides of 0")
-    right, mean = places[half:], 0.5 * (values[half:] + values[::-1][half:])
-    inside = right < edge - NEAR * spacing
-    right, mean = right[inside], mean[inside]
-    if right.size < FEWEST:
-        raise ValueError(f"a shear needs {FEWEST} places on each side of the axis, got {right.size}")
-    borders = [edge]
+    right, mean, spacing = of_both_sides(x, shear)
+    near = NEAR * spacing
+    count = int(np.searchsorted(right, edge - near))
+    right, mean = right[:count], mean[:count]
+    if count < FEWEST:
+        raise ValueError(f"a shear needs {FEWEST} places on each side of the axis, got {count}")
+    borders = [(count, count, edge, 0.0)]  # first place that is not within, first one beyond, where, the height there
     for kink in sorted(kinks, reverse=True):
-        beyond, within = (right > kink) & (right < borders[0]), right < kink
-        if kink < borders[0] and beyond.sum() >= FEWEST and within.sum() >= FEWEST:
-            borders.insert(0, kink)
-    low, breaks, coefficients = 0.0, [0.0], []
-    for border, zone in zip(borders, _zones(right, borders, NEAR * spacing), strict=True):
-        ends = [(low, _height(right, mean, low, NEAR * spacing)), (border, 0.0)]
-        if border != edge:
-            ends[1] = (border, _height(right, mean, border, NEAR * spacing))
-        starts, pieces = _spline(right[zone], mean[zone], ends, low == 0.0, apex)
+        within, beyond = (int(i) for i in np.searchsorted(right, [kink - near, kink + near]))
+        if min(within, borders[0][0] - beyond) >= FEWEST:
+            borders.insert(0, (within, beyond, kink, _height(right, mean, within, beyond, kink)))
+    first, low, breaks, coefficients = 0, (0.0, 0.0), [0.0], []
+    for within, beyond, border, height in borders:
+        zone, high = slice(first, within), (border, height)
+        starts, pieces = _spline(right[zone], mean[zone], low, high, first == 0, apex)
         breaks += [*starts[1:], border]
         coefficients.append(pieces)
-        low = border
+        first, low = beyond, high
     return LineLoad(np.asarray(breaks), np.concatenate(coefficients, axis=1))
 
 
-def _zones(places: Array, borders: Sequence[float], near: float) -> list[NDArray[np.bool_]]:
-    """Which places lie in each zone; one on a border lies in none, and one at the axis in the first."""
-    starts = [-np.inf, *borders[:-1]]
-    return [(places > low + near) & (places < high - near) for low, high in zip(starts, borders, strict=True)]
-
-
-def _height(places: Array, values: Array, border: float, near: float) -> float:
-    """The mean of the parabolas through the FEWEST places next to a border, on both sides of it."""
-    found = []
-    for side in (places < border - near, places > border + near):
-        at, there = places[side], values[side]
-        nearest = np.argsort(np.abs(at - border))[:FEWEST]
-        if nearest.size == FEWEST:
-            found.append(np.polynomial.Polynomial.fit(at[nearest], there[nearest], FEWEST - 1)(border))
-    return float(np.mean(found))
+def _height(x: Array, y: Array, within: int, beyond: int, kink: float) -> float:
+    """The mean of the parabolas through the FEWEST places before index `within`, and those from `beyond` on."""
+    sides = [slice(start, start + FEWEST) for start in (within - FEWEST, beyond)]
+    return float(np.mean([np.polynomial.Polynomial.fit(x[side], y[side], FEWEST - 1)(kink) for side in sides]))
 
 
 def _spline(
-    places: Array, values: Array, ends: Sequence[tuple[float, float]], first: bool, apex: bool
+    places: Array, values: Array, low: tuple[float, float], high: tuple[float, float], first: bool, apex: bool
 ) -> tuple[Array, Array]:
     """Where each cubic of a zone begins, and its coefficients in powers of x, shape (4, n).
 
-    The `first` zone is mirrored at the axis, unless the body has an `apex` there.
+    low, high: the zone's borders and the heights there. The `first` zone is mirrored at the axis, unless the body has
+    an `apex` there.
     """
     from scipy.interpolate import CubicSpline
 
-    (low, start), (high, end) = ends
-    x, y = np.append(places, high), np.append(values, end)
+    x, y = np.append(places, high[0]), np.append(values, high[1])
     if not first:
-        x, y = np.insert(x, 0, low), np.insert(y, 0, start)
+        x, y = np.insert(x, 0, low[0]), np.insert(y, 0, low[1])
     elif not apex:
         mirrored = x > 0.0
         x, y = np.append(-x[mirrored][::-1], x), np.append(y[mirrored][::-1], y)
     spline = CubicSpline(x, y)
-    begin = max(int(np.searchsorted(x, low, side="right")) - 1, 0)
+    begin = max(int(np.searchsorted(x, low[0], side="right")) - 1, 0)
     starts, local = x[begin:-1].copy(), spline.c[::-1, begin:]
     shift = -starts
     pieces = np.zeros((4, starts.size))
     for power, coefficients in enumerate(local):
         for k in range(power + 1):  # (x + shift)^power
             pieces[k] += math.comb(power, k) * coefficients * shift ** (power - k)
-    starts[0] = low
+    starts[0] = low[0]
     if first and not apex:
         pieces[1, 0] = 0.0
     return starts, pieces

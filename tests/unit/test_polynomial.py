@@ -64,3 +64,40 @@ def test_a_highest_coefficient_of_round_off_leaves_the_roots_of_the_others(lead:
     known = [-0.75, 0.5]
     assert np.sort(real_roots(np.asarray([-0.375, 0.25, 1.0, lead]), -5.0, 5.0)) == pytest.approx(known)
     assert real_roots(np.asarray([-0.25, 2.0, lead]), -5.0, 5.0) == pytest.approx([0.125])
+
+
+def test_through_many_values_the_matrix_is_as_exact_as_their_polynomial_can_be() -> None:
+    """21 values: 1e-8 of round-off is left; least squares, which cut small singular values off, leave 1e-5."""
+    t = np.linspace(-0.5, 0.5, 21)
+    y = np.random.default_rng(0).normal(size=21)
+    assert t[:, None] ** np.arange(21) @ fitting(t, 20) @ y == pytest.approx(y, abs=1e-7)
+
+
+def test_a_matrix_that_is_kept_for_the_next_state_cannot_be_changed() -> None:
+    with pytest.raises(ValueError, match="read-only"):
+        fitting(PLACES, 2)[0, 0] = 1.0
+
+
+def test_of_two_minima_the_lower_one_counts_wherever_the_maximum_between_them_lies() -> None:
+    """(t² − 1/4)² ± t/20, of any size: its bends are below and above 1."""
+    for scale in (1e-3, 1.0, 1e3):
+        for side in (-1.0, 1.0):
+            law = scale * np.array([0.0625, -0.05 * side, -0.5, 0.0, 1.0])
+            roots = np.polynomial.Polynomial(law).deriv().roots().real
+            lowest = min(roots, key=np.polynomial.Polynomial(law))
+            place, bend = lowest_minimum(law, -1.0, 1.0)
+            assert place == pytest.approx(lowest, abs=ROUND_OFF)
+            assert bend == pytest.approx(scale * (12.0 * lowest**2 - 1.0), rel=10.0 * ROUND_OFF)
+
+
+def test_a_search_that_runs_away_finds_nothing_though_it_might_come_back() -> None:
+    """P″ = (1 − t²)² + 1/100: from 0.7 the first step is 1.9 long, and six steps later it is at 0."""
+    law = np.array([0.0, 0.0, 0.505, 0.0, -1.0 / 6.0, 0.0, 1.0 / 30.0])
+    assert lowest_minimum(law, -1.0, 1.0, near=0.3)[0] == pytest.approx(0.0, abs=ROUND_OFF)
+    assert math.isnan(lowest_minimum(law, -1.0, 1.0, near=0.7)[0])
+    assert math.isnan(lowest_minimum(np.array([0.0, 0.0, 0.0, 0.0, 1.0]), -1.0, 1.0, near=0.0)[0])  # level all around
+
+
+def test_a_minimum_that_is_flat_to_high_order_is_not_found_in_few_steps() -> None:
+    """t⁸: each step of Newton's leaves 6/7 of the way."""
+    assert math.isnan(lowest_minimum(np.array([*np.zeros(8), 1.0]), -1.0, 1.0, near=0.5)[0])
