@@ -32,7 +32,7 @@ class Profile:
     def __post_init__(self) -> None:
         """Check shapes and order."""
         shapes = {array.shape for array in (self.x, self.z_lower, self.z_upper, self.pressure, self.shear)}
-        if len(shapes) != 1 or self.x.ndim != 1:
+        if [len(shape) for shape in shapes] != [1]:
             raise ValueError(f"the arrays of a profile must be 1-D and equally long, got shapes {sorted(shapes)}")
         if np.any(np.diff(self.x) < 0.0):
             raise ValueError("the arrays of a profile must be sorted by x")
@@ -57,7 +57,7 @@ def pressure_profile(
     columns = [np.asarray(column, dtype=np.float64) for column in (x_upper, z_lower, z_upper, force_z, force_x)]
     if not all(np.all(np.isfinite(column)) for column in columns):
         raise ValueError("positions and forces of a profile must be finite")
-    if len({column.shape for column in columns}) != 1 or columns[0].ndim != 1:
+    if [len(shape) for shape in {column.shape for column in columns}] != [1]:
         raise ValueError(f"positions and forces must be 1-D and equally long: {[c.shape for c in columns]}")
     order = np.argsort(columns[0], kind="stable")
     x, lower, upper, normal, tangential = (column[order] for column in columns)
@@ -106,27 +106,25 @@ def smallest_distance(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike
     position is not finite. The lower particle next to the place above which each upper one stands gives a first
     distance, and no other pair is looked at but those that are within it along x: for chains a few.
     """
-    upper, (x, z) = _sorted_by_x(x_upper, z_upper), _sorted_by_x(x_lower, z_lower)
-    if not (upper[0].size and x.size):
+    (across, height), (x, z) = _sorted_by_x(x_upper, z_upper), _sorted_by_x(x_lower, z_lower)
+    if not (across.size and x.size):
         raise ValueError("a distance between the bodies needs a particle in each of them")
-    if not all(np.isfinite(row).all() for row in (*upper, x, z)):
+    if not all(np.isfinite(row).all() for row in (across, height, x, z)):
         raise ValueError("the positions of particles must be finite")
-    nearest = np.minimum(np.searchsorted(x, upper[0]), x.size - 1)
-    least = float(np.hypot(upper[0] - x[nearest], upper[1] - z[nearest]).min())
-    near = np.maximum(upper[1] - z.max(), z.min() - upper[1]) < least  # of no other one a lower particle is nearer
-    left, height = upper[0][near], upper[1][near]
-    first, end = np.searchsorted(x, left - least), np.searchsorted(x, left + least, side="right")
+    nearest = np.minimum(np.searchsorted(x, across), x.size - 1)
+    least = float(np.hypot(across - x[nearest], height - z[nearest]).min())
+    near = np.maximum(height - z.max(), z.min() - height) < least  # of no other one a lower particle is nearer
+    across, height = across[near], height[near]
+    first, end = np.searchsorted(x, across - least), np.searchsorted(x, across + least, side="right")
     for step in range(int((end - first).max(initial=0))):
         at = np.minimum(first + step, x.size - 1)
-        least = min(least, float(np.hypot(left - x[at], height - z[at]).min()))
+        least = min(least, float(np.hypot(across - x[at], height - z[at]).min()))
     return least
 
 
 def _sorted_by_x(x: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
     """Both with rising x."""
     x, z = np.asarray(x, dtype=np.float64), np.asarray(z, dtype=np.float64)
-    if (x[1:] >= x[:-1]).all():
-        return x, z
     rising = np.argsort(x, kind="stable")
     return x[rising], z[rising]
 

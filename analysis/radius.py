@@ -109,8 +109,7 @@ def moved_centre(profile: Profile) -> float:
 
 def _centre(x: Array, p: Array) -> float:
     """Mean of x weighted with |p| [LU]."""
-    weight = np.abs(p) / float(np.max(np.abs(p)))
-    return float(np.sum(weight * x) / np.sum(weight))
+    return float(np.average(x, weights=np.abs(p)))
 
 
 def _edge(x: Array, p: Array, centre: float, outwards: float) -> Place:
@@ -174,11 +173,11 @@ def _parabola_zero(x: Array, p: Array, inner: float, outer: float, residual: flo
     b = slope - a * (second + third)
     c = low - third * (b + a * third)
     square = b**2 - 4.0 * a * c
-    if square <= 0.0 or (b >= 0.0 and a >= 0.0):
+    if square <= 0.0 or min(a, b) >= 0.0:
         return None
     falling = math.sqrt(square)
     q = -0.5 * (b + math.copysign(falling, b))
-    place = float(c / q if b < 0.0 else q / a)
+    place = c / q if b < 0.0 else q / a
     moved = residual / falling  # a pressure that is lost in the residual may have been the outermost
     if not -NEGLIGIBLE - moved <= place <= 1.0 + NEGLIGIBLE + moved:
         return None

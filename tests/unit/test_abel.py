@@ -193,7 +193,7 @@ def test_the_jump_at_the_edge_is_that_of_the_last_piece() -> None:
 
 
 def test_the_pressure_of_any_cubics_is_that_of_quadrature() -> None:
-    """−(1/π) ∫ q′(r cosh t) dt from piece to piece, and the pole of the jump; distances on a break, and 0, among them."""
+    """−(1/π) ∫ q′(r cosh t) dt from piece to piece, and the pole of the jump; also on a break and on the axis."""
     random = np.random.default_rng(2)
     for pieces in (1, 2, 5):
         breaks = np.append(0.0, np.cumsum(random.uniform(0.3, 1.0, pieces)))
@@ -221,7 +221,7 @@ def test_a_long_list_of_distances_has_the_pressures_of_each_of_them() -> None:
 
 
 def four_nearest(x: Array, q: Array, at: Array) -> Array:
-    """The polynomial through two places on each side of the middle between each two, evaluated there; four at an end."""
+    """The polynomial through two places on each side of the middle between each two; through four at an end."""
     found = np.zeros_like(at)
     for i, place in enumerate(at):
         after = int(np.flatnonzero(x >= place)[0]) if place <= x[-1] else x.size
@@ -240,7 +240,7 @@ def four_nearest(x: Array, q: Array, at: Array) -> Array:
 def test_the_load_between_places_is_the_polynomial_through_the_four_nearest(
     count: int, ends_at_zero: bool, apex: bool, scale: float
 ) -> None:
-    """The edge lies anywhere between two places; one nearer to it than 0.3 spacings, or than half of one, is left out."""
+    """The edge lies anywhere between two places; one nearer to it than 0.3 or 0.5 spacings is left out."""
     x = scale * places(count)
     for edge in scale * np.array([10.0, 10.1, 10.25, 10.35, 10.45, 10.55, 10.75, 10.85, 11.0, 3.05, 3.45]):
         q = np.cos(x / (4.0 * scale)) + 0.1 * np.abs(x / scale) ** 1.5 + 0.1 * np.tanh(x / scale)

@@ -39,26 +39,45 @@ def test_the_uncertainty_covers_a_noisy_layer(noise: float) -> None:
     assert covered >= COVERED * CASES
 
 
-def test_the_falling_zero_of_a_parabola_is_the_one_between_two_places() -> None:
-    """Reference: numpy's roots. Parabolas of every shape, the outermost particle at 2 and the next place at 3."""
-    rng = np.random.default_rng(18)
-    places, found, none = np.array([0.0, 1.0, 2.0]), 0, 0
-    for _ in range(600):
-        ends = rng.uniform(1.5, 3.5), rng.uniform(-40.0, 40.0)
+@pytest.mark.parametrize("residual", [0.0, 1e-3])
+@pytest.mark.parametrize("ahead", [0, 1])
+def test_the_falling_zero_of_a_parabola_is_the_one_between_two_places(ahead: int, residual: float) -> None:
+    """Reference: numpy's roots. Any parabola at uneven places; the two are the last of them, or the one after it, on.
+
+    A residual, over the largest pressure, moves the zero by itself over the slope there, out of its place or into it.
+    """
+    rng = np.random.default_rng(18 + ahead)
+    found, none = 0, 0
+    for _ in range(1500):
+        places = np.cumsum(rng.uniform(0.2, 1.8, 5)) + rng.uniform(-4.0, 4.0)
+        inner, outer = places[2 + ahead], places[3 + ahead]
+        ends = rng.uniform(inner - 0.3, outer + 0.3), rng.uniform(-40.0, 40.0)
         law = np.polynomial.Polynomial.fromroots(ends) * rng.choice([-1.0, 1.0])
         if rng.uniform() < 0.2:
             law = np.polynomial.Polynomial([ends[0], -1.0, 0.0])  # a straight line
-        if law(places).min() <= 0.0:
+        pressure = law(places[:3])
+        if pressure.min() <= 0.0:
             continue
-        roots = [r for r in law.roots() if 2.0 <= r <= 3.0 and law.deriv()(r) < 0.0]
-        zero = _parabola_zero(places, law(places), 2.0, 3.0, 0.0)
-        assert (zero is None) == (not roots)
+        roots = [r for r in law.roots() if law.deriv()(r) < 0.0]
+        moved = residual * pressure.max() / abs(law.deriv()(roots[0])) if roots else 0.0
+        inside = bool(roots) and inner - moved <= roots[0] <= outer + moved
+        inside &= min(law.deriv()(inner), law.deriv(2)(inner)) < 0.0  # else it rises all the way
+        zero = _parabola_zero(places[:3], pressure, inner, outer, residual)
+        assert (zero is not None) == inside
         none += zero is None
         if zero is not None:
             found += 1
             assert zero.position == pytest.approx(roots[0], abs=1e-8)
+            least = 1e-12 * (abs(inner) + outer - inner)
+            assert zero.uncertainty == pytest.approx(least + moved, rel=1e-6)
     assert none > 30
     assert found > 30
+
+
+def test_a_parabola_that_only_touches_0_or_rises_has_no_falling_zero() -> None:
+    places = np.array([0.0, 1.0, 2.0])
+    for pressure in ([16.0, 9.0, 4.0], [1.0, 2.0, 4.0], [4.0, 2.0, 1.0], [1.0, 1.0, 1.0], [1.0, 2.0, 3.0]):
+        assert _parabola_zero(places, np.array(pressure), 2.0, 3.0, 0.0) is None
 
 
 def test_what_a_minimiser_leaves_widens_the_uncertainty() -> None:
@@ -102,6 +121,14 @@ def test_a_chain_loaded_to_its_end_says_so() -> None:
     found = compressive_radius(profile(x, layer(x, 30.0)))
     assert found.reaches_end
     assert found.value == 5.0
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_a_contact_at_one_end_of_its_chain_says_so_too(side: float) -> None:
+    x = np.arange(-5.0, 6.0)
+    found = compressive_radius(profile(x, layer(x, 4.5, centre=side * 3.0)))
+    assert found.reaches_end
+    assert (found.right if side > 0.0 else found.left) == side * 5.0
 
 
 def test_tension_has_no_compressive_radius() -> None:

@@ -80,6 +80,12 @@ def test_the_mean_pressure_is_that_of_the_paper() -> None:
     assert mean_pressure(made, 2.0, a) * stress / 1e6 == pytest.approx(784.0, abs=TABLE_DIGITS)
 
 
+@pytest.mark.parametrize("scale", [2.0**-30, 2.0**30])
+def test_a_mean_pressure_is_the_same_in_any_unit_of_length(scale: float) -> None:
+    made = profile(scale * np.arange(4.0), np.array([-1.0, 3.0, 2.0, -1.0]))
+    assert mean_pressure(made, 0.5 * scale, 3.0 * scale) == pytest.approx(1.5 / (9.0 * math.pi * scale))
+
+
 def test_a_contact_without_extent_has_no_mean_pressure() -> None:
     with pytest.raises(ValueError, match="above 0"):
         mean_pressure(profile(np.arange(3.0), np.ones(3)), 1.0, 0.0)
@@ -124,9 +130,18 @@ def test_an_upper_particle_may_stand_beyond_all_lower_ones() -> None:
     )
 
 
-def test_no_distance_to_no_body() -> None:
+def test_the_nearest_particle_may_be_the_last_though_others_stand_nearer_along_x() -> None:
+    """The lower one beside it hangs far down."""
+    for side in (1.0, -1.0):
+        lower_x, lower_z = [side * 0.0, side * 1.0, side * 1.1], [0.0, -50.0, 0.0]
+        found = smallest_distance([side * 0.9, side * -9.0], [0.1, 30.0], lower_x, lower_z)
+        assert found == pytest.approx(math.hypot(0.2, 0.1))
+
+
+@pytest.mark.parametrize("lower", [0, 1])
+def test_no_distance_to_no_body(lower: int) -> None:
     with pytest.raises(ValueError, match="in each"):
-        smallest_distance([0.0], [0.0], [], [])
+        smallest_distance([0.0] * (1 - lower), [0.0] * (1 - lower), [0.0] * lower, [0.0] * lower)
 
 
 def test_no_distance_to_nowhere() -> None:
@@ -151,6 +166,8 @@ def test_the_share_at_the_ends_counts_tension_and_compression() -> None:
     assert end_pressure_share(profile(x, np.array([0.1, -4.0, 2.0, -0.2]))) == pytest.approx(0.05, rel=ROUND_OFF)
     assert end_pressure_share(profile(x, np.array([0.0, 1.0, 2.0, 2.0]))) == 1.0
     assert end_pressure_share(profile(x, np.zeros(4))) == 0.0
+    for scale in (2.0**-60, 2.0**60):
+        assert end_pressure_share(profile(x, scale * np.array([0.25, -4.0, 2.0, -0.125]))) == 0.0625
 
 
 def test_a_profile_is_made_of_rows_of_one_length() -> None:
@@ -160,3 +177,7 @@ def test_a_profile_is_made_of_rows_of_one_length() -> None:
             Profile(*columns)
     with pytest.raises(ValueError, match="sorted by x"):
         Profile(np.array([0.0, 2.0, 1.0]), row, row, row, row)
+    assert Profile(np.array([0.0, 1.0, 1.0]), row, row, row, row).x[2] == 1.0  # two that stand above each other
+    for columns in ([table] * 5, [0.0] * 5, [[0.0], [0.0], [0.0], [0.0], [0.0, 1.0]]):
+        with pytest.raises(ValueError, match="1-D and equally long"):
+            pressure_profile(*columns, 1.0)
