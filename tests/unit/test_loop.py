@@ -93,3 +93,55 @@ def test_rows_that_stay_in_place_add_nothing() -> None:
     assert held.uncertainty == pytest.approx(alone.uncertainty, rel=ROUND_OFF)
     assert (held.area, held.whole, held.length) == pytest.approx((alone.area, alone.whole, alone.length))
     assert loop_of([0.1, 0.1, 0.1], [1.0, 1.0, 1.0]) is None
+
+
+def test_a_path_that_ends_where_it_began_but_for_round_off_is_closed() -> None:
+    """A billionth of its width, and no more; also as the same way back."""
+    for beyond, closed in ((0.0, True), (1e-9, True), (3e-9, False)):
+        loop = loop_of([0.0, 1.0, beyond], [0.0, 1.0, 0.0])
+        assert (loop is not None) == closed
+        if loop is not None:
+            assert (loop.uncertainty, loop.whole, loop.length) == pytest.approx((0.0, 1.0, 2.0), abs=1e-8)
+
+
+def missed(h: np.ndarray, rise: np.ndarray) -> float:
+    """Of a leg: the bend of a smooth curve, h³F″/12, and half an increment of what jumps, row by row."""
+    slopes, total = [r / one for r, one in zip(rise, h, strict=True)], 0.0
+    if len(h) == 1:
+        return float(0.5 * h[0] * abs(rise[0]))
+    for i, one in enumerate(h):
+        last, following = max(i - 1, 0), min(i + 1, len(h) - 1)
+        bend = abs(slopes[following] - slopes[last]) / (one + 0.5 * (h[last] + h[following]))
+        jump = one * abs(slopes[i] - 0.5 * (slopes[last] + slopes[following]))
+        total += one**3 * bend / 12.0 + 0.5 * one * jump
+    return total
+
+
+@pytest.mark.parametrize("scale", [2.0**-30, 1.0, 2.0**30])
+@pytest.mark.parametrize("seed", range(4))
+def test_any_path_is_as_uncertain_as_its_legs_are_and_one_back_over_itself_as_the_difference(
+    seed: int, scale: float
+) -> None:
+    """Legs of one row and of many, with stays, and a force of any form; lengths in any unit."""
+    random = np.random.default_rng(seed)
+    for number in range(25):
+        legs = [random.uniform(0.1, 1.0, random.integers(1, 6)) for _ in range(random.integers(2, 6))]
+        if number % 3 == 0:  # there and back over the same places
+            legs = [legs[0], legs[0][::-1]]
+        steps = np.concatenate([leg * (-1.0) ** i for i, leg in enumerate(legs)])
+        d = np.concatenate([[0.0], np.cumsum(steps)])
+        if number % 3:
+            d = np.append(d, 0.0) if abs(d[-1]) > 0.1 else d - np.linspace(0.0, d[-1], d.size)
+        f = random.normal(size=d.size)
+        h = np.diff(d)
+        turns = [i + 1 for i in range(h.size - 1) if h[i] * h[i + 1] < 0.0]
+        parts = [(abs(h[part]), np.diff(f)[part]) for part in np.split(np.arange(h.size), turns)]
+        if number % 3 == 0:
+            apart = f - f[::-1]
+            parts = [(abs(h[: h.size // 2]), np.diff(apart[: h.size // 2 + 1]))]
+        loop = loop_of(scale * d, f)
+        assert loop is not None
+        assert loop.uncertainty / scale == pytest.approx(sum(missed(*part) for part in parts), rel=1e-9)
+        assert loop.area / scale == pytest.approx(np.trapezoid(f, d), abs=ROUND_OFF * d.size)
+        assert loop.length / scale == pytest.approx(abs(h).sum())
+        assert loop.whole / scale == pytest.approx(sum(abs(f[1:] + f[:-1]) * abs(h)) / 2.0)
