@@ -36,7 +36,7 @@ LEAST_SEPARATION = 1e-5
 WIDEST_REACH = 3
 """Samples on either side of the highest one under the widest polynomial."""
 JUMP_RATIO = 3.0
-"""A fall after the maximum over the rise before it, from which on it is a jump and no curve."""
+"""A fall after the maximum over the rise before it, above which it is a jump and no curve."""
 
 
 def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Peak:
@@ -117,13 +117,12 @@ def rivals(displacement: Sequence[float], force: Sequence[float], peak: Peak) ->
     """
     d, tension = np.asarray(displacement), -np.asarray(force)
     inner = np.arange(1, len(tension) - 1)
-    teeth = inner[(tension[inner] > tension[inner - 1]) & (tension[inner] > tension[inner + 1])]
-    teeth = teeth[np.abs(teeth - peak.index) > 1]
+    teeth = inner[(tension[inner] > tension[inner - 1]) & (tension[inner] >= tension[inner + 1])]
     rise = np.diff(tension) / -np.diff(d)
     found = {}
-    for i in teeth:
+    for i in teeth[teeth != peak.index]:
         top = tension[i] + rise[i - 1] * (d[i] - d[i + 1])
-        if i > 1 and rise[i - 2] > 0.0:
+        if i > 1:
             top = max(top, tension[i - 1] + rise[i - 2] * (d[i - 1] - d[i]))
         found[int(i)] = float(top) - peak.smooth
     return found

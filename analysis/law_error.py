@@ -22,7 +22,8 @@ def left_out(law: DoubleExponential, table: Table, profile: Profile) -> float:
     spacing = spacing_of(x)
     near = np.flatnonzero(upper - lower < reach)
     total = 0.0
-    for offset in range(-math.ceil(reach / spacing), math.ceil(reach / spacing) + 1):
+    farthest = math.ceil(reach / spacing)
+    for offset in range(-farthest, farthest + 1):
         first = near[(near + offset >= 0) & (near + offset < len(x))]
         across, up = x[first + offset] - x[first], upper[first] - lower[first + offset]
         r = np.maximum(np.hypot(across, up), table.core)

@@ -63,7 +63,8 @@ def test_a_maximum_two_rows_from_an_end_is_as_exact_as_any(rows: tuple[int, int]
 @pytest.mark.parametrize("force", [[0.0, -1.0, -2.0], [-2.0, -1.0, 0.0]])
 def test_a_maximum_at_an_end_is_as_uncertain_as_it_is_large(force: list[float]) -> None:
     peak = largest_tension([1.0, 0.5, 0.0], force)
-    assert peak.uncertainty == peak.tension == 2.0
+    assert peak.uncertainty == peak.tension == peak.smooth == 2.0
+    assert (peak.position, peak.misplaced) == (0.0 if force[0] == 0.0 else 1.0, 0.0)
 
 
 @pytest.mark.parametrize("rows", [(-1, 7), (-7, 1)])
@@ -219,13 +220,18 @@ def test_every_tooth_is_a_rival_but_the_highest() -> None:
         assert sorted(found) == [i for i in teeth.tolist() if i != peak.index]
         for i, higher in found.items():
             assert higher >= tension[i] - peak.smooth
-            if i > 1:  # no faster than before: at most the rises go on to the next row
-                steps = np.diff(tension)[i - 2 : i] / -np.diff(d)[i - 2 : i] * -np.diff(d)[i - 1 : i + 1]
-                assert higher + peak.smooth == pytest.approx(
-                    max(tension[i] + steps[1], tension[i - 1] + max(steps[0], 0.0))
-                    if steps[0] > 0.0
-                    else tension[i] + steps[1]
-                )
+            # no faster than before: at most the rises go on to the next row
+            steps = np.diff(tension)[max(0, i - 2) : i] / -np.diff(d)[max(0, i - 2) : i]
+            tops = tension[max(1, i - 1) : i + 1] + steps * -np.diff(d)[max(1, i - 1) : i + 1]
+            assert higher + peak.smooth == pytest.approx(tops.max())
+
+
+def test_a_tooth_with_a_flat_top_is_a_rival_once_and_a_step_on_the_way_up_is_one_at_most() -> None:
+    d = falling(np.arange(12.0))
+    tension = [0.0, 1.0, 1.0, 0.2, 3.0, 3.0, 0.5, 1.5, 1.5, 1.5, 0.1, 9.0]
+    peak = largest_tension(d[:-1], [-t for t in tension[:-1]])
+    assert peak.index == 4
+    assert list(rivals(d[:-1], [-t for t in tension[:-1]], peak)) == [1, 7]
 
 
 def test_a_smooth_crossing_is_exact_on_a_cubic_and_straight_at_both_ends() -> None:

@@ -9,7 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d.analysis.law_error import left_out
+from contact1d.analysis.pressure import Profile
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
+from contact1d.potentials import DoubleExponential
+from contact1d.potentials import Exponential as Term
 from contact1d.potentials.table import Table
 from contact1d.workflow.experiments.running.law_error import COMPLIANCE_FACTOR, law_error, law_share
 from contact1d.workflow.runs.campaign import run
@@ -55,6 +59,31 @@ def test_it_is_the_sum_over_all_pairs(tmp_path: Path, spacing: float) -> None:
     kept = np.where(r <= settings.cutoff, table.force(np.minimum(r, settings.cutoff)), 0.0)
     error = np.sum((np.abs(kept - law.force(r)) * np.abs(up) / r)[felt])
     assert law_error(scene, settings, state) == pytest.approx(COMPLIANCE_FACTOR * error, rel=SUM)
+
+
+@pytest.mark.parametrize("spacing", [0.1, 0.4, 1.0, 3.0])
+@pytest.mark.parametrize("seed", range(3))
+def test_what_is_left_out_is_summed_over_all_pairs_of_any_rows(seed: int, spacing: float) -> None:
+    """Rows at any distance, through each other, and of three particles; pairs that coincide are as far as the core."""
+    random = np.random.default_rng(seed)
+    law = DoubleExponential(Term(2.0, 0.3), Term(1.0, 0.45))
+    table = Table(law, random.uniform(0.5, 2.0), 2000)
+    reach = table.cutoff + 5.0 * 0.45
+    for count, height in ((3, 0.2), (12, 0.0), (12, 0.6), (40, 0.95 * reach), (30, 1.2 * reach)):
+        x = spacing * (np.arange(count) - 0.5 * (count - 1))
+        lower, upper = np.zeros(count), height + 0.05 * reach * random.uniform(-1.0, 1.0, count)
+        if height == 0.0:
+            upper[3] = 0.0  # where its opposite stands
+        found = left_out(law, table, Profile(x, lower, upper, 0.0 * x, 0.0 * x))
+        total = 0.0
+        for across, up in (
+            (xu - xl, zu - zl) for xu, zu in zip(x, upper, strict=True) for xl, zl in zip(x, lower, strict=True)
+        ):
+            r = max(float(np.hypot(across, up)), table.core)
+            if r < reach:
+                kept = float(table.force(r)) if r <= table.cutoff else 0.0
+                total += abs(kept - float(law.force(r))) * abs(up) / r
+        assert found == pytest.approx(total, rel=SUM, abs=1e-300)
 
 
 @pytest.mark.parametrize(("cutoff", "points"), [(1.5, 8000), (2.0, 8000), (4.0, 300), (4.0, 500)])
