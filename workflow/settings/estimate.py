@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -41,12 +41,10 @@ TEETH_POINTS, TOOTH = 2000, 1e-4
 UNRELAXED = 20.0
 """Force under which a pair lets go at rest over the norm at which a relaxation stops; measured: 17 and 18, at
 tolerances of 1e-2 and 1e-3."""
-ROUNDS, FRACTIONS = 12, np.linspace(0.0, 1.0, 33)[:, None]
-"""How often a bracket is cut, and where: one step of a bisection takes as long, and 60 are needed for all digits."""
+ROUNDS, EDGES = 12, 33
+"""How often a bracket is cut, and at how many places: a bisection's step takes as long, and 60 give all digits."""
 DOUBLINGS = 600
 """Of the spacing, up to a width that no body has."""
-MOST_AT_ONCE = 1_000_000
-"""Pairs whose forces are looked up at once, to bound the memory."""
 
 
 class NotCarriedError(ValueError):
@@ -118,12 +116,10 @@ class ContactEstimate:
             raise OverflowError("the body is endlessly wide beside its spacing")
         column = np.arange(len(height))
         for _ in range(ROUNDS):
-            places = inner + (outer - inner) * FRACTIONS
-            places[-1] = outer
+            places = np.linspace(inner, outer, EDGES)
             cell = (self.profile.height(places[1:-1]) < height).sum(axis=0)
             inner, outer = places[cell, column], places[cell + 1, column]
-        whole = reach < np.inf and self.profile.height(np.asarray([reach]))[0] < height
-        return np.where(height <= 0, self.spacing, np.where(whole, reach, outer))
+        return np.where(height <= 0, self.spacing, outer)
 
     def pull_off_force(self) -> float:
         """Largest tension of the estimate [FU]; 0 without attraction."""
@@ -133,7 +129,7 @@ class ContactEstimate:
         """Contact stiffness dF/dd [FU/LU] under a force [FU]; above SOFTEST_SHARE of the largest tension: there."""
         if force > 0.0:
             deepest = self.displacement_at(force)
-            step = DIFFERENCE * (deepest - self.rest + float(self.gap[-1]))
+            step = DIFFERENCE * (deepest - self._apart)
             return (self.contact_force(deepest) - self.contact_force(deepest - step)) / step
         places, forces = self._tensions
         top = int(forces.argmin())
@@ -146,7 +142,7 @@ class ContactEstimate:
 
         Summed over the particles of a chain of so many: where they let go one by one, F(d) has a tooth for each.
         """
-        return lru_cache(maxsize=4)(self._tooth)
+        return cache(self._tooth)
 
     @cached_property
     def displacement_at(self) -> Callable[[float], float]:
@@ -156,30 +152,25 @@ class ContactEstimate:
             NotCarriedError: the particles stand on each other before it does.
             OverflowError: the spacing is too small beside the body.
         """
-        return lru_cache(maxsize=16)(self._displacement_at)
+        return cache(self._displacement_at)
 
     def _tooth(self, particles: int) -> float:
         x: Array = self.spacing * (np.arange(particles, dtype=np.float64) - 0.5 * (particles - 1))
-        apart, zero = self.rest - float(self.gap[-1]), self.displacement_at(0.0)
-        heights = self.rest + self.profile.height(x[x >= -self.spacing / 4])
-        heights = heights[heights - zero < self.gap[-1]]
-        counts = np.full(heights.shape, 2.0)
-        counts[: particles % 2] = 1.0
-        places = np.linspace(zero, apart, TEETH_POINTS)
-        at_once = np.array_split(places, 1 + places.size * heights.size // MOST_AT_ONCE)
-        tension = -np.concatenate([self._tensions_of(heights, some) @ counts for some in at_once])
-        found = tops(tension.tolist(), TOOTH * float(tension.max(initial=0.0)))
-        return math.inf if len(found) < 2 else float(np.min(-np.diff(places[found])))
-
-    def _tensions_of(self, heights: Array, displacements: Array) -> Array:
-        """Forces [FU] of particles at these heights [LU], one row for each displacement [LU]."""
-        forces = np.interp(heights[:, None] - displacements, self.gap, self.force, right=0.0)
-        return np.ascontiguousarray(forces.T)
+        zero = self.displacement_at(0.0)
+        places = np.linspace(zero, self._apart, TEETH_POINTS)
+        tension = np.zeros_like(places)
+        heights, counts = np.unique(self.profile.height(x), return_counts=True)
+        felt = heights < zero - self._apart
+        for height, count in zip(heights[felt].tolist(), counts[felt].tolist(), strict=True):
+            tension -= count * np.interp(self.rest + height - places, self.gap, self.force, right=0.0)
+        found = tops(tension.tolist(), TOOTH * float(tension.max()))
+        return float(np.min(np.abs(np.diff(places[found])), initial=math.inf))
 
     @cached_property
     def snap(self) -> tuple[float, float]:
         """(undeformed gap [LU] at which a pair lets go, tension [FU] that it loses then); the end, 0 if none does."""
-        level = np.flatnonzero(np.diff(self.gap) < FLATNESS * float(np.ptp(self.gap)) / self.gap.size)
+        rises = np.diff(self.gap)
+        level = np.flatnonzero(rises < FLATNESS * rises.mean())
         if level.size == 0:
             return float(self.gap[-1]), 0.0
         return float(self.gap[level[0]]), float(self.force[level[-1] + 1] - self.force[level[0]])
@@ -209,6 +200,11 @@ class ContactEstimate:
         gone = forces[:top] > share * forces[top]
         return float(places[:top][gone][-1]) if gone.any() else float(places[0])
 
+    @property
+    def _apart(self) -> float:
+        """Displacement [LU] up to which nothing is felt."""
+        return self.rest - float(self.gap[-1])
+
     @cached_property
     def _all_the_way(self) -> float:
         """Displacement [LU] at which each particle of a body that ends stands on its opposite one."""
@@ -217,7 +213,7 @@ class ContactEstimate:
     @cached_property
     def _largest_tension(self) -> tuple[float, float]:
         """(displacement [LU], tension [FU]) where the tension is largest, looked for twice, the second time nearby."""
-        low, high = self.rest - float(self.gap[-1]), self.rest
+        low, high = self._apart, self.rest
         for _ in range(2):
             places = np.linspace(low, high, COARSE_POINTS)
             forces = self.contact_forces(places)
@@ -228,7 +224,7 @@ class ContactEstimate:
     @cached_property
     def _tensions(self) -> tuple[Array, Array]:
         """Displacements [LU] from where nothing is felt to F = 0, and forces [FU]."""
-        places = np.linspace(self.rest - float(self.gap[-1]), self.displacement_at(0.0), BRANCH_POINTS)
+        places = np.linspace(self._apart, self.displacement_at(0.0), BRANCH_POINTS)
         return places, self.contact_forces(places)
 
     def _displacement_at(self, force: float) -> float:
