@@ -43,8 +43,6 @@ UNRELAXED = 20.0
 tolerances of 1e-2 and 1e-3."""
 ROUNDS, EDGES = 12, 33
 """How often a bracket is cut, and at how many places: a bisection's step takes as long, and 60 give all digits."""
-DOUBLINGS = 600
-"""Of the spacing, up to a width that no body has."""
 
 
 class NotCarriedError(ValueError):
@@ -108,11 +106,9 @@ class ContactEstimate:
         """
         height, reach = gap - self.rest + displacements, self.profile.reach
         inner, outer = np.zeros_like(height), np.full_like(height, min(self.spacing, reach))
-        for _ in range(DOUBLINGS):
-            if not (short := (outer < reach) & (self.profile.height(outer) < height)).any():
-                break
+        while (short := (outer < reach) & (self.profile.height(outer) < height)).any():
             inner[short], outer[short] = outer[short], np.minimum(2 * outer[short], reach)
-        else:
+        if np.isinf(outer).any():
             raise OverflowError("the body is endlessly wide beside its spacing")
         column = np.arange(len(height))
         for _ in range(ROUNDS):

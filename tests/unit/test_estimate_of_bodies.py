@@ -1,0 +1,177 @@
+"""Claims of the estimate of any body: widths are roots, marks those of a dense scan, folds those of its own grid.
+
+References: scipy's root of the body's height, scans of thousands of displacements, plain loops over a grid.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from contact1d.potentials import DoubleExponential, Exponential
+from contact1d.workflow.scene import scene_from_dict
+from contact1d.workflow.settings.estimate import (
+    ContactEstimate,
+    NotCarriedError,
+    particles_estimate,
+    plane_estimate,
+    row_force,
+)
+from contact1d.workflow.settings.shape import Profile, Tabulated
+from tests.scenes import LAW, chains
+
+Array = NDArray[np.float64]
+WIDTH = 1e-13
+"""Relative: a bracket that is cut to the last digits."""
+SCAN = 1e-4
+"""Relative, of a flat top between places of a scan."""
+SLOPE = 0.04
+"""Relative: a difference on one side, of a sum of straight lines."""
+OFFSET = 2e-8
+"""Relative: what makes a grid rise where a pair snaps, 1e-12 of the cutoff for each of its places."""
+SHAPES: dict[str, dict[str, Any]] = {
+    "parabola": {"kind": "parabola", "radius": 30.0},
+    "cone": {"kind": "cone", "slope": 0.2},
+    "power": {"kind": "power", "exponent": 3.0, "radius": 5.0, "height": 2.0},
+    "circle": {"kind": "circle", "radius": 6.0},
+    "punch": {"kind": "flat_punch", "radius": 6.0},
+}
+PAIR = DoubleExponential(Exponential(LAW[0], LAW[1]), Exponential(LAW[2], LAW[3]))
+CUTOFF, REST, ROW = 4.0, PAIR.force_free_distance(), 0.8
+
+
+def body(shape: str) -> Profile:
+    load = {"kind": "load", "force": 0.1}
+    return scene_from_dict(chains(1.0, bodies={"profile": SHAPES[shape], "spacing": ROW}, experiment=load)).bodies
+
+
+def pairs(shape: str, stiffness: float = 0.7, points: int = 4000) -> ContactEstimate:
+    return particles_estimate(PAIR, body(shape), ROW, stiffness, CUTOFF, REST, points)
+
+
+@pytest.mark.parametrize("spacing", [1e-3, 0.8, 40.0])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_half_widths_are_roots_of_the_height_at_most_the_bodys_own(shape: str, spacing: float) -> None:
+    profile = body(shape)
+    found = ContactEstimate(np.array([-1.0, 0.3]), np.array([1.0, 0.0]), 0.1, profile, spacing, 1.0)
+    displacements = np.array([-0.5, -0.2, -0.2 + 1e-9, -0.1, 0.0, 0.3, 2.0, 5.0, 5.9, 1e3])
+    for d, width in zip(displacements.tolist(), found.half_widths(displacements, 0.3).tolist(), strict=True):
+        height = 0.3 - 0.1 + d
+
+        def over(x: float, height: float = height) -> float:
+            return float(profile.height(np.array([x]))[0]) - height
+
+        end = min(profile.reach, 1e4)
+        if height <= 0.0:
+            assert width == spacing
+        elif over(end) <= 0.0:
+            assert width == profile.reach
+        else:
+            assert width == pytest.approx(brentq(over, 0.0, end, xtol=1e-300, rtol=1e-15, maxiter=5000), rel=WIDTH)
+        assert found.half_width(d, 0.3) == width
+
+
+def test_a_terrace_that_is_just_as_high_is_no_longer_below() -> None:
+    terrace = Tabulated(np.array([0.0, 1.0, 3.0, 4.0]), np.array([0.0, 1.0, 1.0, 2.0]))
+    found = plane_estimate(terrace, 0.7, 1.0)
+    assert found.half_width(1.0, 0.0) == pytest.approx(1.0, rel=WIDTH)
+    assert found.half_width(1.0 + 1e-12, 0.0) == pytest.approx(3.0, rel=1e-9)
+    assert found.half_width(2.0, 0.0) == pytest.approx(4.0, rel=WIDTH)
+
+
+@dataclass(frozen=True)
+class Counted:
+    """A parabola that counts what it is asked."""
+
+    asked: list[int]
+    reach: float = math.inf
+
+    def height(self, x: Array) -> Array:
+        self.asked.append(np.asarray(x).size)
+        return np.asarray(x**2 / 60.0)
+
+    def __hash__(self) -> int:
+        return id(self)
+
+
+def test_a_width_takes_less_than_a_bisection_and_marks_some_thousands_of_places() -> None:
+    """A bisection to all digits asks a body 60 times, and a search for a place of F(d) would some 40 times 400."""
+    profile = Counted([])
+    found = particles_estimate(PAIR, profile, ROW, 0.7, CUTOFF, REST)
+    found.half_width(0.3, CUTOFF)
+    assert len(profile.asked) < 60
+    assert sum(profile.asked) < 1000
+    single = sum(profile.asked) + 401  # of a force, its width and its places
+    for asks, most in ((found.pull_off_force, 100), (lambda: found.displacement_at(1.0), 200)):
+        profile.asked.clear()
+        asks()
+        assert sum(profile.asked) < most * single
+
+
+@pytest.mark.parametrize("stiffness", [0.4, 0.7, 5.0])
+@pytest.mark.parametrize("shape", ["parabola", "cone", "circle", "punch"])
+def test_marks_are_those_of_a_dense_scan(shape: str, stiffness: float) -> None:
+    found = pairs(shape, stiffness)
+    felt = REST - float(found.gap[-1])
+    places = np.linspace(felt, 1.5, 8_001)
+    forces = np.concatenate([found.contact_forces(some) for some in np.array_split(places, 20)])
+    top = int(np.argmin(forces))
+    assert found.pull_off_force() == pytest.approx(-forces[top], rel=SCAN)
+    for force in (0.0, 0.1, 0.6):
+        after = top + int(np.flatnonzero(forces[top:] < force)[-1])
+        place = np.interp(force, forces[after : after + 2], places[after : after + 2])
+        assert found.displacement_at(force) == pytest.approx(place, abs=SCAN * CUTOFF)
+        assert found.contact_force(found.displacement_at(force)) == pytest.approx(force, abs=SCAN)
+        slope = np.gradient(forces, places)[after]
+        assert found.stiffness_under(force) == pytest.approx(slope, rel=SLOPE)
+    for share in (0.1, 0.5, 0.9):
+        before = int(np.flatnonzero(forces[:top] > share * forces[top])[-1])
+        assert found.parted(share) == pytest.approx(places[before], abs=(found.displacement_at(0.0) - felt) / 300.0)
+    assert found.parted(0.0) == felt
+    edge = found.half_width(0.1, float(found.gap[int(np.argmin(found.force))]))
+    together = max(1.0, 2.0 * edge / ROW) * found.stiffness
+    assert found.stuck_stiffness(0.1) == pytest.approx(together, rel=0.1 if found.snaps else WIDTH)
+
+
+def test_one_pair_at_least_is_stuck() -> None:
+    found = pairs("parabola")
+    edge = float(found.gap[int(np.argmin(found.force))])
+    nearly = REST - edge + (0.2 * ROW) ** 2 / 60.0  # a fifth of a spacing to each side
+    assert found.stuck_stiffness(nearly) == found.stiffness == 0.35
+    twice = REST - edge + ROW**2 / 60.0
+    assert found.stuck_stiffness(twice) == pytest.approx(2.0 * found.stiffness, rel=1e-9)
+
+
+@pytest.mark.parametrize("points", [400, 4000])
+@pytest.mark.parametrize("stiffness", [0.03, 0.06, 0.1])
+def test_a_pair_snaps_over_the_fall_of_its_own_grid(stiffness: float, points: int) -> None:
+    """Undeformed gaps G(r) = r − 2 f(r)/k, one after the other: the first that is not exceeded next, and the return."""
+    found = pairs("parabola", stiffness, points)
+    r = [CUTOFF * (i + 1) / points for i in range(points)]
+    force = [float(f) for f in row_force(PAIR, np.array(r), ROW, CUTOFF)]
+    undeformed = [place - 2.0 * f / stiffness for place, f in zip(r, force, strict=True)]
+    off = next(i for i in range(points - 1) if undeformed[i + 1] < undeformed[i])
+    # Behind the fold the gap comes back to where it was.
+    on = next(i for i in range(off + 1, points) if undeformed[i] > undeformed[off]) - 1
+    assert found.snaps
+    assert found.snap == (pytest.approx(undeformed[off], rel=OFFSET), pytest.approx(force[on] - force[off]))
+    second = abs(undeformed[off + 1] - 2.0 * undeformed[off] + undeformed[off - 1]) / (r[1] - r[0]) ** 2
+    assert found.bend == pytest.approx(second, rel=1e-6)
+    assert found.gap[: off + 1] == pytest.approx(undeformed[: off + 1], abs=OFFSET)
+    assert found.gap[on + 1 :] == pytest.approx(undeformed[on + 1 :], abs=OFFSET)
+    assert found.stiffness == 0.5 * stiffness
+
+
+@pytest.mark.parametrize("stiffness", np.geomspace(0.01, 100.0, 24).tolist())
+@pytest.mark.parametrize("shape", ["circle", "punch"])
+def test_a_body_carries_no_more_than_all_its_particles_on_the_opposite_ones(shape: str, stiffness: float) -> None:
+    found = pairs(shape, stiffness)
+    with pytest.raises(NotCarriedError) as caught:
+        found.displacement_at(1e9)
+    assert caught.value.most == pytest.approx(12.0 / ROW * float(found.force[0]), rel=1e-9)
