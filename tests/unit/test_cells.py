@@ -16,12 +16,9 @@ from contact1d.analysis.held import held_radius
 from contact1d.analysis.pressure import Profile
 from contact1d.workflow.settings.adhesion import AdhesiveEstimate
 from contact1d.workflow.settings.cells import (
-    MARGIN,
     _largest_tension,
     _read_off,
     _vertex,
-    left_by_cells,
-    pulling_rows,
     read_off_cells,
 )
 from contact1d.workflow.settings.settings import settings_for

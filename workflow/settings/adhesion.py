@@ -29,13 +29,13 @@ from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.chain import SettingsError
 from contact1d.workflow.settings.estimate import ContactEstimate, plane_estimate
 from contact1d.workflow.settings.shape import Profile
+from contact1d.workflow.settings.size import FARTHEST_RATIO
 
 Array = NDArray[np.float64]
 PLACES = 4000
 """Places between which the estimate is straight."""
 FIRST = 1e-3
 """The first of them over the last."""
-MOST_DOUBLINGS = 200
 BEYOND = 1.2
 """Width of what is known of the contact over what the experiment needs."""
 SPANNED = 0.9
@@ -110,13 +110,10 @@ class AdhesiveEstimate(ContactEstimate):
         g = self.profile.height(x)
         h = g - elongation(x, self.modulus, self.work)
         area = np.concatenate([[0.0], np.cumsum(0.5 * (g[1:] + g[:-1]) * np.diff(x))])
-        force, least = 2.0 * self.modulus * (x * h - area), int(np.argmin(h))
-        if self.known < self.profile.reach:
-            return x, h, force, least
-        # Beyond its end a body is as wide as it is.
-        way = 1e6 * (abs(float(h[least])) + self.spacing)
-        after = float(force[-1]) + 2.0 * self.modulus * self.known * way
-        return np.append(x, x[-1]), np.append(h, h[-1] + way), np.append(force, after), least
+        if self.known == self.profile.reach:  # beyond its end a body is as wide as it is
+            far = h[-1:] + FARTHEST_RATIO * self.spacing
+            x, h, area = np.append(x, x[-1:]), np.append(h, far), np.append(area, area[-1:])
+        return x, h, 2.0 * self.modulus * (x * h - area), int(np.argmin(h))
 
     @property
     def end(self) -> tuple[float, float, float]:
@@ -129,6 +126,12 @@ class AdhesiveEstimate(ContactEstimate):
         """(radius, displacement) [LU] at which fixed grips let go."""
         x, h, _, least = self._grid
         return float(x[least]), float(h[least])
+
+    def is_beyond(self, wanted: float, load: float) -> bool:
+        """Whether it is known well beyond fixed grips, a displacement [LU] and a load [FU], and to its own tension."""
+        radius, displacement, force = self.end
+        apart = radius > BEYOND * self.fixed_grips[0]
+        return apart and displacement > BEYOND * wanted and force > max(BEYOND * load, self.pull_off_force())
 
     def require_one_edge(self) -> None:
         """Refuse a profile whose h falls again beyond its least value.
@@ -216,21 +219,18 @@ def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
         SettingsError: the contact would be as wide as the body, or its edge would jump.
     """
     bodies, stiffness = scene.bodies, scene.bulk_stiffness
+    springs = plane_estimate(profile, bodies.spacing, stiffness)
     if scene.adhesion is None:
-        return plane_estimate(profile, bodies.spacing, stiffness)
-    work = scene.adhesion.work
-    deep = np.asarray([-1e6 * bodies.spacing, 0.0])
+        return springs
     wanted, load = max([0.0, *scene.experiment.places()]), scene.experiment.compression or 0.0
-    known = min(bodies.spacing, profile.reach)
-    for _ in range(MOST_DOUBLINGS):
+    known, work, estimate = bodies.spacing, scene.adhesion.work, None
+    while estimate is None or not (estimate.known == profile.reach or estimate.is_beyond(wanted, load)):
         estimate = AdhesiveEstimate(
-            deep, -stiffness * deep, 0.0, profile, bodies.spacing, stiffness, work=work, known=known
-        )
-        radius, displacement, force = estimate.end
-        far = displacement > BEYOND * wanted and force > max(BEYOND * load, estimate.pull_off_force())
-        if known == profile.reach or (BEYOND * estimate.fixed_grips[0] < radius and far):
-            break
-        known = min(2.0 * known, profile.reach)
+            springs.gap, springs.force, springs.rest, profile, bodies.spacing, stiffness,
+            work=work, known=min(known, profile.reach),
+        )  # fmt: skip
+        known *= 2.0
+    radius, displacement, force = estimate.end
     if not bodies.profile.has_edge:
         inside = estimate.fixed_grips[0] < radius and displacement > wanted and force > load
         widest = float(estimate.radii(np.asarray([max(wanted, estimate.displacement_at(load))]))[0])

@@ -18,12 +18,13 @@ from contact1d.analysis.pressure import Profile
 from contact1d.workflow.scene import Load, Path, Scene
 from contact1d.workflow.settings.adhesion import AdhesiveEstimate, Cells, elongation
 from contact1d.workflow.settings.settings import Settings
+from contact1d.workflow.settings.shape import places_within
 
 Array = NDArray[np.float64]
 BESIDE, ASIDE, POINTS = 0.1, 0.3, 61
 """Ways on both sides of JKR's largest tension, and of another force, over the distance from fixed grips, and places."""
-PHASES = (0.25, 0.0)
-"""Places of the apex between particles over the spacing, beside 1/2, that of an even chain."""
+OWN, PHASES = 0.5, (0.25, 0.0)
+"""Places of the apex between particles over the spacing: of an even chain, and those that it is held against."""
 EDGES = 8
 """Places of an edge in its cell, of which nobody knows it beforehand."""
 NEAR, DEGREE = 0.2, 4
@@ -44,7 +45,7 @@ def left_by_cells(scene: Scene, settings: Settings) -> dict[str, float]:
     """By the names of results, the largest change [its unit]; with given particles that of their own places only."""
     estimate = settings.estimate
     assert isinstance(estimate, AdhesiveEstimate)
-    own = 0.5 if settings.particles % 2 == 0 else 0.0
+    own = OWN if settings.particles % 2 == 0 else 0.0
     phases = (own, *PHASES) if scene.bodies.particles == "auto" and not scene.bodies.profile.has_edge else (own,)
     left: dict[str, float] = {}
     for by_rows in (False, True):
@@ -68,8 +69,8 @@ def read_off_cells(scene: Scene, settings: Settings) -> dict[str, float]:
     assert isinstance(estimate, AdhesiveEstimate)
     if not isinstance(scene.experiment, Load):
         return {}
-    spacing, half = scene.bodies.spacing, settings.particles // 2
-    x = np.asarray(spacing * (np.arange(-half, half) + 0.5), dtype=np.float64)
+    spacing = scene.bodies.spacing
+    x = places_within(spacing * (settings.particles // 2), spacing, OWN)
     cells, none, worst = estimate.cells(x, estimate.profile), np.zeros_like(x), 0.0
     edge = estimate.half_width(estimate.displacement_at(scene.experiment.force), 0.0)
     edges = np.asarray(edge - spacing * np.arange(EDGES) / EDGES, dtype=np.float64)
@@ -81,9 +82,9 @@ def read_off_cells(scene: Scene, settings: Settings) -> dict[str, float]:
 
 
 def _cells(scene: Scene, settings: Settings, estimate: AdhesiveEstimate, phase: float) -> Cells:
-    half = settings.particles // 2
-    x = scene.bodies.spacing * (np.arange(-half, half + 1) + phase)
-    return estimate.cells(np.asarray(x[np.abs(x) <= scene.bodies.reach], dtype=np.float64), estimate.profile)
+    spacing = scene.bodies.spacing
+    reach = min(spacing * (settings.particles // 2), scene.bodies.reach)
+    return estimate.cells(places_within(reach, spacing, phase), estimate.profile)
 
 
 def _marks(

@@ -26,6 +26,7 @@ from contact1d.workflow.scene import Load, Scene, Tangential
 from contact1d.workflow.settings.cells import expected_of_adhesion, left_by_cells, read_off_cells
 from contact1d.workflow.settings.estimate import ContactEstimate
 from contact1d.workflow.settings.settings import Settings
+from contact1d.workflow.settings.shape import places_within
 from contact1d.workflow.settings.sliders import Sliders, sliders_of, stops
 
 Array = NDArray[np.float64]
@@ -118,9 +119,7 @@ def _chain(scene: Scene, settings: Settings, phase: float) -> Sliders:
     edge = float(estimate.gap[int(estimate.force.argmin())])
     widest = estimate.half_width(OVER_DEEPEST * settings.largest_displacement, edge)
     reach = min(max(widest, FEWEST * estimate.spacing), scene.bodies.reach)
-    count = int(reach / estimate.spacing) + 2
-    x = estimate.spacing * (np.arange(-count, count) + phase)
-    return sliders_of(scene, x[np.abs(x) <= reach])
+    return sliders_of(scene, places_within(reach, estimate.spacing, phase))
 
 
 class _Row:
@@ -129,14 +128,12 @@ class _Row:
     def __init__(self, estimate: ContactEstimate, phase: float, deepest: float) -> None:
         """Keep places and heights [LU] of particles within reach at the deepest displacement, and which is whose."""
         self.estimate = estimate
-        spacing, reach = estimate.spacing, estimate.half_width(deepest, float(estimate.gap[-1]))
-        count = int(reach / spacing) + 2
-        x = spacing * (np.arange(-count, count + 1) + phase)
-        self.x = np.asarray(x[np.abs(x) <= reach], dtype=np.float64)
+        reach = estimate.half_width(deepest, float(estimate.gap[-1]))
+        self.x = places_within(reach, estimate.spacing, phase)
         heights = estimate.rest + estimate.profile.height(np.abs(self.x))
         self.heights, self.own = np.unique(heights, return_inverse=True)
         self.lowest = estimate.rest - float(estimate.gap[-1])
-        self.highest = deepest + OVERREACH * (abs(deepest) + spacing)
+        self.highest = deepest + OVERREACH * (abs(deepest) + estimate.spacing)
 
     def forces(self, displacements: Array) -> Array:
         """F(d) [FU] at each of the displacements [LU]."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -11,6 +12,12 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 PLACES, NEAR = 1000, 0.01
 """Places at which a profile is tabulated, and the first one beyond its apex over the spacing."""
+
+
+def places_within(reach: float, spacing: float, phase: float) -> Array:
+    """All x = (i + φ) s with |x| ≤ reach [LU] in order, i a whole number: of particles whose apex is φ s off one."""
+    first, last = math.ceil(-reach / spacing - phase), math.floor(reach / spacing - phase)
+    return np.asarray(spacing * (np.arange(first, last + 1) + phase), dtype=np.float64)
 
 
 class Profile(Protocol):
