@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from contact1d.analysis.held import held_radius
 from contact1d.analysis.pressure import Profile
@@ -19,8 +20,10 @@ from contact1d.workflow.settings.cells import (
     _largest_tension,
     _read_off,
     _vertex,
+    left_by_cells,
     read_off_cells,
 )
+from contact1d.workflow.settings.centring import expected
 from contact1d.workflow.settings.settings import settings_for
 from tests.unit.test_adhesion_estimate import A, E, R, W, estimate, jkr, radius_under, scene
 
@@ -123,3 +126,76 @@ def test_a_radius_is_read_off_no_better_than_at_the_worst_place_of_its_edge(forc
 def test_only_of_a_load_is_a_radius_read_off() -> None:
     of = scene()
     assert read_off_cells(of, settings_for(of)) == {}
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.25, 0.5, 0.9])
+@pytest.mark.parametrize("spacing", [0.2, 1.0, 3.0])
+def test_forces_of_cells_are_those_of_their_formulas(spacing: float, phase: float) -> None:
+    of = scene(spacing)
+    found = estimate(of)
+    x = spacing * (np.arange(-40, 40) + phase)
+    cells = found.cells(x, of.bodies)
+    for a in (2.8, 4.4, 7.77, 12.3):
+        d = jkr(a)[0]
+        forces = held_forces(d, a, x, spacing)
+        told = float(cells.forces(np.asarray([d]), E * spacing)[0])
+        assert told == pytest.approx(forces.sum(), abs=2e-4 * np.abs(forces).sum())  # of a flat least between places
+
+
+def test_cells_without_adhesion_are_springs_that_let_go_at_touch() -> None:
+    of = scene(0.7, adhesion={"work_of_adhesion": 0.0}, experiment={"kind": "load", "force": 3.0})
+    x = 0.7 * np.arange(-30.0, 31.0)
+    cells = estimate(of).cells(x, of.bodies)
+    for d in (-0.2, 1e-6, 0.3, 1.7):
+        springs = E * 0.7 * np.maximum(d - x**2 / R, 0.0).sum()
+        assert float(cells.forces(np.asarray([d]), E * 0.7)[0]) == pytest.approx(springs, rel=EXACT)
+
+
+def test_cells_of_a_punch_let_go_all_at_once() -> None:
+    of = scene(0.5, profile={"kind": "flat_punch", "radius": A})
+    found = estimate(of)
+    x = 0.5 * (np.arange(-10, 10) + 0.5)
+    cells = found.cells(x, of.bodies)
+    last = found.fixed_grips[1]
+    for d, held in ((last * 1.001, 0.0), (last * 0.999, 1.0), (0.3, 1.0)):
+        assert cells.shares(np.asarray([d])).tolist() == [[held] * 20]
+        assert float(cells.forces(np.asarray([d]), 0.5 * E)[0]) == pytest.approx(held * 2.0 * A * E * d, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("displacements", "passed"),
+    [
+        ([0.2], ""), ([0.3], "zero"), ([0.3, -0.09], "zero"), ([0.3, -0.12], "zero tension"), ([0.2, -0.12], "tension"),
+        ([-0.05, 0.3, 0.1], "zero"), ([0.2, -0.12, 0.1], "tension"),
+    ],
+)  # fmt: skip
+def test_of_a_path_only_what_it_passes_is_expected(displacements: list[float], passed: str) -> None:
+    """JKR's own: F = 0 at d = a²/R − √(2πWa/E*) = 0.264, the largest tension at −0.105."""
+    of = scene(experiment={"kind": "path", "displacements": displacements})
+    names = {"zero": {"zero_load_radius"}, "tension": {"adhesion_force", "critical_radius"}}
+    wanted = set().union(*(names[word] for word in passed.split()))
+    settings = settings_for(of)
+    for told in (expected(of, settings), left_by_cells(of, settings)):
+        assert set(told) == wanted
+
+
+def test_a_path_just_to_no_force_passes_it() -> None:
+    zero = estimate(scene()).displacement_at(0.0)
+    of = scene(experiment={"kind": "path", "displacements": [zero]})
+    settings = settings_for(of)
+    assert isinstance(settings.estimate, AdhesiveEstimate)
+    just = of.with_({"experiment.displacements": [settings.estimate.displacement_at(0.0)]})
+    assert set(expected(just, settings)) == {"zero_load_radius"}
+
+
+def test_a_chain_that_is_narrower_than_its_contact_has_no_more_cells_than_particles() -> None:
+    """20 particles of a contact 60 wide: what is left open is the force of all that is missing."""
+    of = scene(0.3, particles=20, experiment={"kind": "load", "force": 4.0})
+    settings = settings_for(of)
+    a = radius_under(4.0)
+    assert 2.0 * a > 0.3 * 40
+    x = 0.3 * (np.arange(20) - 9.5)
+    cells = estimate(of).cells(x, of.bodies)
+    place = brentq(lambda d: float(cells.forces(np.asarray([d]), 0.3 * E)[0]) - 4.0, jkr(a)[0], 10.0)
+    assert place > jkr(a)[0]
+    assert left_by_cells(of, settings)["displacement"] > 0.5 * (place - jkr(a)[0])

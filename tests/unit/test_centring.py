@@ -50,9 +50,7 @@ def test_places_within_a_reach_are_all_there_are(reach: float, phase: float) -> 
 
 @pytest.mark.parametrize("phase", PHASES)
 @pytest.mark.parametrize("law", [STRONG, WEAK])
-def test_a_row_has_the_forces_of_its_particles_and_two_more_on_each_side(
-    law: tuple[float, ...], phase: float
-) -> None:
+def test_a_row_has_the_forces_of_its_particles_and_two_more_on_each_side(law: tuple[float, ...], phase: float) -> None:
     settings = settings_for(pulled(law))
     row = _Row(settings.estimate, phase, settings.largest_displacement)
     for d in (row.lowest, 0.0, 0.5 * settings.largest_displacement, settings.largest_displacement):
@@ -115,9 +113,7 @@ def test_the_radius_of_friction_is_that_at_the_end_and_none_where_nothing_touche
 @pytest.mark.parametrize("force", [1e-4, 0.05, 2.0, 100.0])
 @pytest.mark.parametrize("phase", PHASES)
 def test_friction_counts_the_particles_that_carry_and_some_beside_them(force: float, phase: float) -> None:
-    scene = plane(
-        {"kind": "tangential", "normal_force": force, "displacements": [0.01]}, friction={"coefficient": 0.3}
-    )
+    scene = plane({"kind": "tangential", "normal_force": force, "displacements": [0.01]}, friction={"coefficient": 0.3})
     settings = settings_for(scene)
     chain = _chain(scene, settings, phase)
     deep = chain.displacement_under(force)
