@@ -6,17 +6,20 @@ Kendall's punch of the radius a: F = 2 E* a d down to d = −√(2π a W/E*), wh
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
 
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.adhesion import AdhesiveEstimate
+from contact1d.workflow.settings.adhesion import AdhesiveEstimate, elongation
 from contact1d.workflow.settings.centring import expected
 from contact1d.workflow.settings.settings import SettingsError, settings_for
 
+Array = NDArray[np.float64]
 E, W, R, A = 1.0, 0.005, 100.0, 5.0
 GRID = 1e-5
 """Relative, of what is looked up between 4000 places."""
@@ -171,3 +174,64 @@ def test_what_is_expected_of_a_pull_off_is_jkrs() -> None:
     assert told["adhesion_force"] == pytest.approx(1.5 * math.pi * W * R, rel=GRID)
     assert told["critical_radius"] == pytest.approx((9.0 * math.pi * W * R**2 / (8.0 * E)) ** (1 / 3), rel=CLOSED_FORM)
     assert told["zero_load_radius"] == pytest.approx((4.5 * math.pi * W * R**2 / E) ** (1 / 3), rel=CLOSED_FORM)
+
+
+@pytest.mark.parametrize(
+    "experiment",
+    [
+        {"kind": "path", "displacements": [0.0, 60.0, -0.01]},
+        {"kind": "path", "displacements": [-0.1]},
+        {"kind": "load", "force": 1500.0},
+        {"kind": "load", "force": -2.0},
+        {"kind": "pull_off", "preload": 1e-3},
+        {"kind": "pull_off", "preload": 30.0},
+    ],
+)
+def test_it_is_known_a_fifth_beyond_what_is_needed_and_not_twice_as_far_as_that(experiment: dict[str, Any]) -> None:
+    """Beyond fixed grips, the deepest place, the load, and from where the force is more than the largest tension."""
+    found = estimate(scene(1.0, experiment=experiment))
+    wanted = max([0.0, *experiment.get("displacements", [])])
+    load = experiment.get("force", experiment.get("preload", 0.0))
+
+    def is_enough(a: float) -> bool:
+        (d, force), grips = jkr(a), (math.pi * W * R**2 / (8.0 * E)) ** (1.0 / 3.0)
+        return a > 1.2 * grips and d > 1.2 * wanted and force > max(1.2 * load, 1.5 * math.pi * W * R)
+
+    assert found.end == pytest.approx((found.known, *jkr(found.known)), rel=GRID)
+    assert is_enough(found.known)
+    assert not is_enough(0.5 * found.known)
+    assert found.pull_off_force() == pytest.approx(1.5 * math.pi * W * R, rel=GRID)
+
+
+def test_without_work_it_is_hertz_from_nothing_on() -> None:
+    found = estimate(scene(adhesion={"work_of_adhesion": 0.0}, experiment={"kind": "load", "force": 3.0}))
+    assert found.pull_off_force() == 0.0
+    assert found.fixed_grips == (0.0, 0.0)
+    assert found.contact_force(-1e-3) == found.contact_force(0.0) == 0.0
+    for d in (0.01, 0.1, 0.5):
+        assert found.contact_force(d) == pytest.approx(4.0 / 3.0 * E * math.sqrt(R * d**3), rel=GRID)
+        assert float(found.radii(np.asarray([d]))[0]) == pytest.approx(math.sqrt(R * d), rel=GRID)
+    assert found.half_width(1e-9, 0.0) == 0.2  # a spacing at least
+
+
+@pytest.mark.parametrize("depth", [1.0, 1e4, 1e7])
+def test_beyond_its_end_a_punch_is_as_wide_as_it_is(depth: float) -> None:
+    found = estimate(scene(profile={"kind": "flat_punch", "radius": A}))
+    assert found.half_width(depth, 0.0) == pytest.approx(A, rel=1e-12)
+    assert found.contact_force(depth) == pytest.approx(2.0 * E * A * depth, rel=1e-6)
+
+
+@dataclass(frozen=True)
+class Resting:
+    """A body under which h(x) falls to 3 LU, stays as low up to 6, and rises."""
+
+    reach: float = math.inf
+
+    def height(self, x: Array) -> Array:
+        x = np.asarray(x)
+        return elongation(x, E, W) - 0.2 * np.minimum(x, 3.0) / 3.0 + 0.05 * np.maximum(x - 6.0, 0.0)
+
+
+def test_an_edge_that_rests_anywhere_does_not_jump() -> None:
+    springs = np.asarray([-1.0, 0.0])
+    AdhesiveEstimate(springs, -0.2 * springs, 0.0, Resting(), 0.2, 0.2, work=W, known=20.0).require_one_edge()

@@ -125,3 +125,41 @@ def test_errors_are_held_against_the_force_and_the_work_of_all_that_sticks(parts
     back = held.sizes([*there, (5.0, 0.0)])
     assert back["tangential_force"] == sizes["tangential_force"]
     assert back["dissipated_energy"] == pytest.approx(2.0 * sizes["dissipated_energy"])
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+def test_clear_of_the_plane_is_by_a_share_of_the_bodys_own_height(scale: float) -> None:
+    heights = scale * (3.0 + chain().heights)
+    free = Sliders(scale * chain().x, heights, NORMAL, TANGENTIAL, MU).displacement_under(0.0)
+    assert 1e-10 < (heights.min() - free) / np.ptp(heights) < 1e-8
+    flat = Sliders(scale * chain().x, 0.0 * heights, NORMAL, TANGENTIAL, MU).displacement_under(0.0)
+    assert flat < 0.0
+
+
+@given(way=st.lists(st.tuples(depths, ways), min_size=1, max_size=6))
+def test_sizes_are_those_of_each_particle_one_after_the_other(way: list[tuple[float, float]]) -> None:
+    """Σ|s| at most, and Σ|s||Δu| with the mean of both ends of each stretch; particles stick within μf of its end."""
+    stretch = [(way[0][0], 0.0), *way]
+    shear, before, work, most = [0.0] * 30, 0.0, 0.0, 0.0
+    for (old, start), (new, place) in zip(stretch, stretch[1:], strict=False):
+        for i, height in enumerate(chain().heights.tolist()):
+            first, last = (MU * NORMAL * max(depth - height, 0.0) for depth in (old, new))
+            moved = shear[i] + (TANGENTIAL * (place - start) if first > 0.0 else 0.0)
+            shear[i] = min(max(moved, -last), last)
+        after = sum(abs(one) for one in shear)
+        work += 0.5 * (before + after) * abs(place - start)
+        before, most = after, max(most, after)
+    told = chain().sizes(stretch)
+    assert told["tangential_force"] == pytest.approx(most, abs=1e-9)
+    assert told["dissipated_energy"] == pytest.approx(work, abs=1e-9)
+
+
+@pytest.mark.parametrize("count", [150, 201, 999])
+def test_sizes_of_many_particles_are_told_by_some_hundred_of_them(count: int) -> None:
+    x = np.linspace(-15.0, 15.0, count)
+    many = Sliders(x, x**2 / 200.0, NORMAL, TANGENTIAL, MU)
+    way = [(0.9, 0.0), (0.9, 0.1), (0.9, -0.05)]
+    most = abs(many.at_end(way[:2])["tangential_force"])
+    assert many.sizes(way)["tangential_force"] == pytest.approx(most, rel=0.03)
+    normal = NORMAL * np.maximum(0.9 - x**2 / 200.0, 0.0).sum()
+    assert many.at_end(way)["normal_force"] == pytest.approx(normal, rel=1e-9)

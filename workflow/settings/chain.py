@@ -61,10 +61,11 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
                 f"the contact would spread over the whole profile, which ends at {bodies.reach:.6g} LU: the experiment "
                 f"needs a displacement of about {largest:.4g} LU, at most {deepest:.4g} LU is possible"
             )
-    heights = bodies.height(np.linspace(0.0, half, 2001))
+    places = np.linspace(0.0, half, 2001)
+    heights = bodies.height(places)
     falls = np.diff(heights) < -FALL_SHARE * float(np.ptp(heights))
     if falls.any():
-        at = half * float(np.argmax(falls)) / 2000.0
+        at = float(places[int(np.argmax(falls))])
         raise SettingsError(
             f"the profile, as the reduction {bodies.reduction} has it, falls beyond x = {at:.4g} LU, so that the "
             "contact would not be one piece: smooth it, or end it there"
