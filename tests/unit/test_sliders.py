@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -141,7 +143,7 @@ def test_sizes_are_those_of_each_particle_one_after_the_other(way: list[tuple[fl
     """Σ|s| at most, and Σ|s||Δu| with the mean of both ends of each stretch; particles stick within μf of its end."""
     stretch = [(way[0][0], 0.0), *way]
     shear, before, work, most = [0.0] * 30, 0.0, 0.0, 0.0
-    for (old, start), (new, place) in zip(stretch, stretch[1:], strict=False):
+    for (old, start), (new, place) in pairwise(stretch):
         for i, height in enumerate(chain().heights.tolist()):
             first, last = (MU * NORMAL * max(depth - height, 0.0) for depth in (old, new))
             moved = shear[i] + (TANGENTIAL * (place - start) if first > 0.0 else 0.0)
