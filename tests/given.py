@@ -64,6 +64,7 @@ class Estimate:
     force: Any = field(default_factory=lambda: np.linspace(1.0, -0.2, 11))
     largest: float = 1.0
     teeth: float = math.inf
+    profile: Any = field(default_factory=lambda: SimpleNamespace(height=lambda x: x**2 / 200.0))
     place: Curve = lambda force: 0.5 * force
     apart: Curve = lambda share: -1.0
     stiffness: Curve = lambda load: 2.0
@@ -126,6 +127,7 @@ class GivenContact:
         self.states: list[State] = []
         self.ended: list[str] = []
         self.batches: list[int] = []
+        self.waits: Any = None
 
     @property
     def phases(self) -> tuple[Phase, ...]:
@@ -166,6 +168,18 @@ class GivenContact:
         """One after the other."""
         self.batches.append(len(rows))
         return [self.row(row) for row in rows]
+
+    def replay(self, phases: Sequence[Phase], at_rest: Callable[[State], bool] | None = None) -> list[State]:
+        """A whole schedule; whether it waits for rest is noted."""
+        self.waits = at_rest
+        found = []
+        for phase in phases:
+            self.begin(phase.name, phase.begin)
+            found += self.rows(phase.rows)
+            if phase.state:
+                self.write_state()
+        self.finish()
+        return found
 
     def write_state(self) -> None:
         """Ends the phase."""

@@ -184,10 +184,10 @@ def _zero_load(branch: list[State], displacement: list[float], force: list[float
         index, place = crossing(displacement, force, 0.0)
     except ValueError:
         return None
-    first, second = (branch[i].radius for i in (index, min(index + 1, len(branch) - 1)))
+    first, second = branch[index].radius, branch[index + 1].radius
     if first is None or second is None:
         return None
-    gap = displacement[min(index + 1, len(branch) - 1)] - displacement[index]
+    gap = displacement[index + 1] - displacement[index]
     part = (place - displacement[index]) / gap if gap else 0.0
     value = first.value + part * (second.value - first.value)
     bend = 0.125 * abs(second.value - first.value)

@@ -120,16 +120,14 @@ def _searched(context: RunContext, preload: float, tolerance: float, through: bo
 
 def _to_zero(contact: Contact, loading: list[State], tolerance: float) -> list[State]:
     """Down from F_D to F = 0, in increments of the search; the last state is the mark."""
-    at, step, states = loading[-1].displacement, contact.settings.increment(), [loading[-1]]
+    step, states = contact.settings.increment(), [loading[-1]]
     scale = contact.settings.estimate.pull_off_force()
     while states[-1].force > tolerance * scale:
-        place = _zero([*loading, *states]) if loading[0].force < 0.0 or len(states) > 1 else at - step
-        at = max(place, states[-1].displacement - step) if place < states[-1].displacement else at - step
-        states.append(measured(contact, at))
+        states.append(measured(contact, max(_zero([*loading, *states]), states[-1].displacement - step)))
         if len(states) > MOST_PULLS:
             raise UntrustedError("the force stays compressive: nothing holds the bodies together")
     if len(states) == 1:  # under next to no load the mark is where the loading has ended
-        states.append(measured(contact, at))
+        states.append(measured(contact, states[-1].displacement))
     for _ in range(MOST_TRIES):
         if abs(states[-1].force) <= tolerance * scale:
             return states[1:]
