@@ -5,6 +5,7 @@ Reference: loops over particles and places, with the force between two entries o
 
 from __future__ import annotations
 
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
 
@@ -37,7 +38,7 @@ def missed(particles: int, spacing: float, rows: list[float], between: int = 32)
 
     if len(rows) < 2:
         return 0.0
-    fine = [a + (b - a) * n / between for a, b in zip(rows, rows[1:], strict=False) for n in range(between)]
+    fine = [a + (b - a) * n / between for a, b in pairwise(rows) for n in range(between)]
     fine.append(rows[-1])
     curve = [force(d) for d in fine]
     top = min(range(len(fine)), key=lambda i: curve[i])

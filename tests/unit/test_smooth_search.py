@@ -1,4 +1,4 @@
-"""The search for F = 0 and the largest tension of a smooth curve, over formulas: rows, marks and what it says it missed.
+"""The search for F = 0 and the largest tension of a smooth curve, over formulas: its rows, its marks and its claim.
 
 A parabola is what its polynomials say, so that every row of a search over it can be counted out.
 """
