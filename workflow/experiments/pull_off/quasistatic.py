@@ -145,7 +145,7 @@ def pull_off_quasistatic(context: RunContext) -> Outcome:
         latest = _replay(context, experiment.preload, _refined(before, experiment.preload, window))
         window *= ZOOM_FACTOR
         if _agree(before, latest, experiment.preload, tolerance):
-            missed = abs(latest.peak.smooth - before.peak.smooth) + max(0.0, 0.0, *latest.rivals.values())
+            missed = abs(latest.peak.smooth - before.peak.smooth) + max((0.0, *latest.rivals.values()))
             missed += latest.cut_short
             return _outcome(context, latest, experiment.preload, missed)
     raise UntrustedError(
