@@ -1,4 +1,4 @@
-"""What is added to a claim for the lattice, what is told of it, and which states are refused: each from its bound on."""
+"""What is added to a claim for the lattice, what is told of it, and which states are refused, from a bound on."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ def test_a_contact_reaches_the_end_of_its_chain_where_its_largest_tension_is_the
     settings = settings_for(SCENE)
     state = at(0.0, 1.0, profile=ending(pressure))
     if ends:
-        with pytest.raises(ChainEndError, match="take more bodies.particles than 40"):
+        with pytest.raises(ChainEndError, match=r"take more bodies\.particles than 40"):
             require_trust(SCENE, settings, state)
     else:
         require_trust(SCENE, settings, state)
@@ -165,7 +165,7 @@ def test_on_a_plane_it_does_so_where_its_last_particle_carries(
 
 def test_the_chain_that_is_to_grow_is_the_upper_one_where_it_has_its_own() -> None:
     scene = given_scene(bodies={"particles": 60, "upper_particles": 40}, horizontal={}, cantilever=None)
-    with pytest.raises(ChainEndError, match="more bodies.upper_particles than 40, or leave it out"):
+    with pytest.raises(ChainEndError, match=r"more bodies\.upper_particles than 40, or leave it out"):
         require_trust(scene, settings_for(scene), at(0.0, 1.0, profile=ending({0: -0.4})))
 
 

@@ -1,4 +1,4 @@
-"""What a pull-off at rest claims and which rows its next pass has: each part by a formula, over states that are given."""
+"""What a pull-off at rest claims and which rows its next pass has: each part by a formula, over given states."""
 
 from __future__ import annotations
 
@@ -103,8 +103,8 @@ def test_teeth_that_may_be_higher_widen_the_claim_of_the_critical_radius() -> No
     spread = []
     for missed in (0.0, 0.3):
         found = _outcome(own, known, PRELOAD, missed).quantities["critical_radius"]
-        part = _outcome(own, smooth(peak=known.peak, unloading=known.unloading, zero=known.zero,
-                                    critical=known.critical), PRELOAD, missed).quantities["critical_radius"]  # fmt: skip
+        same = smooth(peak=known.peak, unloading=known.unloading, zero=known.zero, critical=known.critical)
+        part = _outcome(own, same, PRELOAD, missed).quantities["critical_radius"]
         spread.append(found.uncertainty - part.uncertainty)
     assert spread == pytest.approx([0.4, 0.6])
 
@@ -175,8 +175,11 @@ class Passes:
         self.windows: list[float] = []
         self.tolerances: list[float] = []
         self.count, self.agree = 0, agree
-        for name, value in (("_first", self.first), ("_refined", self.refined), ("_replay", self.replay),
-                            ("_agree", self.agreed), ("_outcome", lambda c, found, p, missed: (found, missed))):  # fmt: skip
+        own: dict[str, Any] = {
+            "_first": self.first, "_refined": self.refined, "_replay": self.replay, "_agree": self.agreed,
+            "_outcome": lambda context, found, preload, missed: (found, missed),
+        }  # fmt: skip
+        for name, value in own.items():
             monkeypatch.setattr(quasistatic, name, value)
 
     def one(self) -> Any:
