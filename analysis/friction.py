@@ -33,7 +33,7 @@ DROPPED = 1
 MOST_PAIRED = 4
 """Periods that may be one block, if that leaves so many blocks: slips may repeat after several periods only."""
 FASTER = 2.0
-"""Velocity of the plate over that of the drive from which on it may slip."""
+"""Velocity of the plate over that of the drive above which it may slip."""
 BESIDE, EVEN = 2, 2.0
 """Rows on each side of a smooth top, and the ratio of the largest to the smallest curvature of friction over place
 about it: where a slip begins the rows lie so far apart that it is many times as large."""
@@ -112,8 +112,8 @@ def sampled_mean(time: Array, force: Array, period: float) -> Mean:
     mean = mean_of(blocks)
     count = blocks.size - mean.first
     each = max(2, round(period / float(np.median(np.diff(time)))))
-    phases = time[-1] - period * count + period / each * np.arange(count * each + 1)
-    usual = np.interp(phases, time, force)[:-1].reshape(count, each).mean(axis=0)
+    phases = time[-1] - period * count + period / each * np.arange(count * each)
+    usual = np.interp(phases, time, force).reshape(count, each).mean(axis=0)
     steps = np.diff(usual, append=usual[0])
     missed = 0.5 * (float(np.abs(steps).max()) + abs(float(np.median(steps)))) / each
     return Mean(mean.value, mean.error + missed, mean.first)
@@ -127,7 +127,7 @@ def interval(blocks: Array) -> float:
     found, together = 0.0, 1
     while together == 1 or (together <= MOST_PAIRED and blocks.size // together >= MOST_PAIRED):
         whole = blocks[blocks.size % together :]
-        means = whole.reshape(-1, together).mean(axis=1)
+        means = whole.reshape(whole.size // together, together).mean(axis=1)
         found = max(found, student(means.size - 1) * float(means.std(ddof=1)) / math.sqrt(means.size))
         together *= 2
     half = blocks.size // 2
