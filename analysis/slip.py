@@ -31,8 +31,7 @@ def stick_margin(profile: Profile, coefficient: float, direction: int) -> Array:
     limit = coefficient * np.maximum(profile.pressure, 0.0)
     shear = np.abs(profile.shear) if direction == 0 else -direction * profile.shear
     margin = limit - shear
-    largest = float(np.max(limit, initial=0.0))
-    return np.where(margin > ROUND_OFF * largest, margin, 0.0)
+    return np.where(margin > ROUND_OFF * limit.max(), margin, 0.0)
 
 
 def stick_radius(profile: Profile, coefficient: float, direction: int) -> ContactRadius:

@@ -39,11 +39,8 @@ def states_of(profiles: Sequence[Profile], kept: Sequence[int] | None = None) ->
         profiles: of each row of the curve, all with the same number of particles.
         kept: the rows whose states are wanted, however many they are; None: as many as is sensible.
     """
-    n = len(profiles[0].x)
-    every = -(-n // (MOST_NUMBERS // 2))
-    particles = _spread(n, -(-n // every))
-    most = max(2, MOST_NUMBERS // len(particles))
-    rows = _spread(len(profiles), most) if kept is None else np.asarray(kept, dtype=np.int64)
+    particles = _spread(len(profiles[0].x), MOST_NUMBERS // 2)
+    rows = _spread(len(profiles), MOST_NUMBERS // len(particles)) if kept is None else np.asarray(kept, dtype=np.int64)
     columns = {
         name: np.asarray([getattr(profiles[row], name)[particles] for row in rows], dtype=np.float32)
         for name in ("x", "z_lower", "z_upper", "pressure", "shear")

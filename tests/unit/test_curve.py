@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
 
@@ -79,6 +80,34 @@ def test_long_tables_are_written_in_chunks(tmp_path: Path, monkeypatch: pytest.M
         monkeypatch.setattr(curve_module, "CHUNK", chunk)
         write_columns(tmp_path / "table.csv", columns)
         assert (tmp_path / "table.csv").read_bytes() == (tmp_path / "by_row").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("read", "names"),
+    [
+        (curve_module.read_friction, curve_module.FRICTION_COLUMNS),
+        (curve_module.read_tangential, curve_module.TANGENTIAL_COLUMNS),
+        (curve_module.read_detachments, curve_module.DETACHMENT_COLUMNS),
+        (curve_module.read_samples, curve_module.SAMPLE_COLUMNS),
+    ],
+)
+def test_other_tables_come_back_by_the_names_of_their_columns(
+    read: Callable[[Path], dict[str, np.ndarray]], names: tuple[str, ...], tmp_path: Path
+) -> None:
+    rng = np.random.default_rng(7)
+    columns = {name: awkward(rng, 5) for name in names}
+    columns[names[-1]][3] = math.nan
+    write_columns(tmp_path / "table.csv", {"beside": ["a"] * 5, **columns})
+    back = read(tmp_path / "table.csv")
+    assert tuple(back) == names
+    for name in names:
+        np.testing.assert_array_equal(back[name], columns[name])
+    write_columns(tmp_path / "table.csv", {name: columns[name] for name in names[1:]})
+    with pytest.raises(ValueError, match=f"no column {names[0]}"):
+        read(tmp_path / "table.csv")
+    (tmp_path / "table.csv").write_text("")
+    with pytest.raises(ValueError, match="no rows"):
+        read(tmp_path / "table.csv")
 
 
 def test_an_interrupted_write_leaves_the_old_table(curve: Curve, tmp_path: Path) -> None:

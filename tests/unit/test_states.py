@@ -1,0 +1,69 @@
+"""Profiles that are kept for the eye: how many, which, and what of a file of them is refused."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from contact1d.analysis import states as states_module
+from contact1d.analysis.pressure import Profile
+from contact1d.analysis.states import States, read_states, states_of, write_states
+
+
+def passed(rows: int, particles: int) -> list[Profile]:
+    """Each number tells its row, its column and its particle."""
+    x = np.arange(float(particles))
+    return [Profile(x, *(x + 100.0 * kind + 1e4 * row for kind in range(1, 5))) for row in range(rows)]
+
+
+@pytest.mark.parametrize("most", [10, 40, 41])
+def test_as_many_states_are_kept_as_numbers_fit_evenly_with_both_ends(
+    most: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(states_module, "MOST_NUMBERS", most)
+    for rows in (1, 2, 3, 7, 20):
+        for particles in (1, 2, 3, 5, 19, 20, 21, 50):
+            profiles = passed(rows, particles)
+            found = states_of(profiles)
+            kept = found.x[0].astype(int).tolist()
+            assert found.rows.size == min(rows, most // len(kept))
+            assert len(kept) == min(particles, most // 2)
+            for chosen, count in ((found.rows.tolist(), rows), (kept, particles)):
+                assert chosen[0] == 0
+                assert chosen[-1] == count - 1
+                steps = np.diff(chosen)
+                assert steps.size == 0 or (steps.min() >= 1 and np.ptp(steps) <= 1)
+            for kind, name in enumerate(("z_lower", "z_upper", "pressure", "shear"), start=1):
+                expected = np.array(kept) + 100.0 * kind + 1e4 * found.rows[:, None]
+                assert getattr(found, name) == pytest.approx(expected, rel=1e-6)
+
+
+def test_hundred_states_of_2000_particles_are_kept_and_of_one_more_one_less() -> None:
+    assert states_of(passed(100, 2000)).rows.tolist() == [*range(100)]
+    assert states_of(passed(101, 2000)).rows.size == 100
+
+
+def test_rows_that_are_asked_for_are_kept_however_many(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(states_module, "MOST_NUMBERS", 10)
+    found = states_of(passed(9, 5), [1, 3, 4, 5, 8])
+    assert found.rows.tolist() == [1, 3, 4, 5, 8]
+    assert found.shear[2, 3] == 3.0 + 400.0 + 4e4
+
+
+def test_states_come_back_and_what_holds_objects_or_lacks_a_column_is_refused(tmp_path: Path) -> None:
+    kept, path = states_of(passed(4, 3)), tmp_path / "states.npz"
+    write_states(path, kept)
+    for field in fields(States):
+        np.testing.assert_array_equal(getattr(read_states(path), field.name), getattr(kept, field.name))
+    with pytest.raises(ValueError, match="Object arrays"):
+        write_states(path, replace(kept, x=np.array([None], dtype=object)))
+    columns = {field.name: getattr(kept, field.name) for field in fields(States)}
+    np.savez(path, **{name: column for name, column in columns.items() if name not in ("x", "shear")})
+    with pytest.raises(ValueError, match="no x, shear"):
+        read_states(path)
+    np.savez(path, **columns | {"x": np.array([None], dtype=object)})
+    with pytest.raises(ValueError, match="Object arrays"):
+        read_states(path)
