@@ -90,8 +90,7 @@ def mean_of(blocks: Array) -> Mean:
     """
     if blocks.size < DROPPED + FEWEST_BLOCKS:
         raise ValueError(f"a mean needs {DROPPED + FEWEST_BLOCKS} periods, got {blocks.size}")
-    last = max(DROPPED, min(blocks.size // 2, blocks.size - FEWEST_BLOCKS))
-    errors = [interval(blocks[first:]) for first in range(DROPPED, last + 1)]
+    errors = [interval(blocks[first:]) for first in range(DROPPED, blocks.size // 2 + 1)]
     first = DROPPED + int(np.argmin(errors))
     return Mean(float(blocks[first:].mean()), errors[first - DROPPED], first)
 

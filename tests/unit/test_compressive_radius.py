@@ -74,6 +74,17 @@ def test_the_falling_zero_of_a_parabola_is_the_one_between_two_places(ahead: int
     assert found > 30
 
 
+@pytest.mark.parametrize("pressure", [[3.0, 2.0, 1.0], [6.0, 5.0, 3.0]])
+def test_a_zero_on_one_of_the_two_places_lies_between_them_whatever_round_off_says(pressure: list[float]) -> None:
+    """In rows that lie anywhere, so that some zeros are a last digit beyond their place."""
+    for start in np.linspace(-9.0, 9.0, 61):
+        places, p = start + 0.1 * np.arange(5.0), np.array(pressure)
+        for inner in (2, 3):
+            found = _parabola_zero(places[:3], p, places[inner], places[inner + 1], 0.0)
+            assert found is not None
+            assert found.position == pytest.approx(start + 0.3, abs=1e-9)
+
+
 def test_a_parabola_that_only_touches_0_or_rises_has_no_falling_zero() -> None:
     places = np.array([0.0, 1.0, 2.0])
     for pressure in ([16.0, 9.0, 4.0], [1.0, 2.0, 4.0], [4.0, 2.0, 1.0], [1.0, 1.0, 1.0], [1.0, 2.0, 3.0]):

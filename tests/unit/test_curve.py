@@ -114,8 +114,9 @@ def test_an_interrupted_write_leaves_the_old_table(curve: Curve, tmp_path: Path)
     path = tmp_path / "curve.csv"
     write_columns(path, curve_columns(curve))
     before = path.read_bytes()
-    with pytest.raises(ValueError, match="zip"):
-        write_columns(path, {"displacement": [1.0, 2.0], "force": [1.0]})
+    for force in ([1.0], []):
+        with pytest.raises(ValueError, match="zip"):
+            write_columns(path, {"displacement": [1.0, 2.0], "force": force})
     assert path.read_bytes() == before
 
 
