@@ -1,4 +1,4 @@
-"""What is read off a slide whose motion is given in arrays: means of the right leg, static friction, doubts, steadiness.
+"""What is read off a slide whose motion is given in arrays: means of the right leg, doubts, steadiness.
 
 Means over blocks are those of `analysis.friction`, which has tests of its own; here it counts over what they are taken.
 """

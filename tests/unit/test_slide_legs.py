@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
 
@@ -40,7 +41,7 @@ def test_rows_of_a_leg_begin_where_the_leg_before_ended(given: Given, motion: Mo
     counts = [leg.rows for leg in given.legs]
     ends = np.cumsum([0, *counts])
     assert motion.leg.tolist() == [-1, *(i for i, n in enumerate(counts) for _ in range(n))]
-    for i, (first, last) in enumerate(zip(ends, ends[1:], strict=False)):
+    for i, (first, last) in enumerate(pairwise(ends)):
         rows = motion.of_leg(i)
         assert (rows.start, rows.stop) == (first, last + 1)
         assert motion.time[rows][[0, -1]] == pytest.approx([0.0 if i == 0 else given.ends[i - 1], given.ends[i]])
