@@ -212,7 +212,7 @@ def test_a_phase_goes_one_way_and_the_third_of_a_kind_says_so() -> None:
 
 @pytest.mark.parametrize("way", [0.3, -0.3])
 def test_rows_on_a_slanting_way_are_where_particles_begin_or_end_to_touch(way: float) -> None:
-    """Heights x²/200 of particles at 0.25, 0.75, …; none where only the depth changes, nor where only the place does."""
+    """Heights x²/200 of particles at 0.25, 0.75, …; none where only depth or place changes."""
     depths = [(0.25 + 0.5 * i) ** 2 / 100.0 for i in range(20)]
     low, high = 0.02, 0.1
     between = [depth for depth in depths if low < depth < high]
@@ -230,7 +230,7 @@ def test_rows_on_a_slanting_way_are_where_particles_begin_or_end_to_touch(way: f
 
 
 def test_of_too_many_rows_those_are_kept_that_lie_evenly_and_what_the_others_miss_is_claimed() -> None:
-    """At a tolerance of 0.1 there are ten on a way; each other particle is moved by a tenth of it too far or too less."""
+    """At a tolerance of 0.1 there are ten on a way; other particles are moved by a tenth too much or less."""
     scene = scene_of(
         {"normal_displacement": [0.0, 0.9, 0.9], "displacements": [0.0, 0.3, 0.4]}, accuracy={"tolerance": 0.1}
     )
