@@ -1,4 +1,4 @@
-"""A slide from its load to its end, over states that are given: when it counts as at rest, which rows it has, its ends."""
+"""A slide from its load to its end, over states that are given: at rest, its rows, its ends."""
 
 from __future__ import annotations
 
