@@ -117,6 +117,16 @@ def _edge(estimate: ContactEstimate, largest: float) -> float:
     return estimate.half_width(max(largest, 0.0), float(estimate.gap[int(estimate.force.argmin())]))
 
 
+def felt_up_to(estimate: ContactEstimate, largest: float, share: float) -> float:
+    """Undeformed gap [LU] beyond which no force is more than a share of the largest of a contact; r₀ if none has any.
+
+    `largest`: displacement [LU] of the contact.
+    """
+    force = np.abs(estimate.force)
+    borne = force[estimate.gap > estimate.rest - largest]
+    return float(estimate.gap[force > share * borne.max()][-1]) if borne.any() else estimate.rest
+
+
 def chain_length(scene: Scene, estimate: ContactEstimate, largest: float, share: float) -> int:
     """Particles of an automatic chain: out to where a force, and what a chain's end reflects, is this share at most.
 
@@ -124,10 +134,7 @@ def chain_length(scene: Scene, estimate: ContactEstimate, largest: float, share:
     """
     if scene.bodies.profile.has_edge:
         return round(2.0 * scene.bodies.reach / scene.bodies.own_spacing)
-    force = np.abs(estimate.force)
-    strongest = float(np.max(force[estimate.gap > estimate.rest - largest], initial=0.0))
-    felt = force > share * strongest
-    reach = float(estimate.gap[felt][-1]) if strongest > 0 and felt.any() else estimate.rest
+    reach = felt_up_to(estimate, largest, share)
     if scene.interaction is not None and scene.interaction.attraction is None:
         reach = float(estimate.gap[-1])  # the contact ends where nothing is felt at all
     half = CHAIN_MARGIN * estimate.half_width(max(largest, 0.0), reach)

@@ -117,7 +117,7 @@ def dynamics_of(
     if scene.experiment.motion_is_result:
         # A plate that swings as it is loaded goes through the other body, which would carry it at rest.
         # The law is softer than stiff springs: the plate stands on both in series.
-        held = min(contact, max(0.0, estimate.stiffness_under(max(scene.experiment.compression or 0.0, 0.0))))
+        held = min(contact, max(0.0, estimate.stiffness_under(scene.experiment.compression or 0.0)))
         if held > 0.0:
             settle_time = max(settle_time, SWING * 2.0 * math.pi * math.sqrt(moving / held))
         enough = 2.0 * math.sqrt(SOFTENING * held * moving) / particles

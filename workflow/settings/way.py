@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from contact1d.workflow.scene import Scene, Slide
-from contact1d.workflow.settings.chain import SettingsError
+from contact1d.workflow.settings.chain import SettingsError, felt_up_to
 from contact1d.workflow.settings.settings import Settings
 
 SHORTEST = 4.0
@@ -26,10 +24,7 @@ class ShortChainError(ValueError):
 def contact_half_width(scene: Scene, settings: Settings) -> float:
     """Half-width [LU] in which upper particles feel more than the tolerance's share of the largest force."""
     estimate, largest = settings.estimate, settings.largest_displacement
-    force = np.abs(estimate.force)
-    strongest = float(np.max(force[estimate.gap > estimate.rest - largest], initial=0.0))
-    felt = estimate.gap[force > scene.accuracy.tolerance * strongest]
-    half = estimate.half_width(max(largest, 0.0), float(felt[-1])) if felt.size else 0.0
+    half = estimate.half_width(max(largest, 0.0), felt_up_to(estimate, largest, scene.accuracy.tolerance))
     return min(half, 0.5 * (settings.particles - 1) * scene.bodies.own_spacing)
 
 
