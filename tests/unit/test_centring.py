@@ -87,7 +87,7 @@ def test_marks_of_a_row_are_those_of_a_scan(law: tuple[float, ...], phase: float
             root = brentq(lambda d, f=force: row.force(d) - f, places[last], places[last + 1], xtol=1e-15)
             assert row.crossing(force) == pytest.approx(root, abs=1e-6 * step)
     assert row.crossing(-2.0 * tension) == place  # which none reaches
-    assert row.crossing(1e9) == row.highest
+    assert row.crossing(1e9) == pytest.approx(row.highest, abs=0.01 * (row.highest - row.lowest))
 
 
 def test_what_only_repels_has_its_largest_tension_of_nothing_where_it_begins() -> None:

@@ -149,9 +149,9 @@ def test_teeth_are_as_far_apart_as_the_heights_of_neighbours(particles: int) -> 
 
 
 def test_a_row_pulls_with_all_its_particles() -> None:
-    r = np.array([0.05, 0.3, 0.9])
+    r = np.array([0.05, 0.3, 0.9, 2.0])  # the last at the cutoff itself
     wide = DoubleExponential(Exponential(0.18, 0.13), Exponential(0.09, 0.26))
-    expected = np.zeros(3)
+    expected = np.zeros(4)
     for j in range(-9, 10):
         distance = np.sqrt(r**2 + (0.5 * j) ** 2)
         force = 0.18 / 0.13 * np.exp(-distance / 0.13) - 0.09 / 0.26 * np.exp(-distance / 0.26)
@@ -207,6 +207,7 @@ def test_a_pair_lets_go_where_a_move_carries_it_beyond_its_unstable_place(move: 
     early = brentq(apart, 1e-12, 1e-3)
     assert found.let_go_early(move, 0.0) == pytest.approx(early, rel=0.1)  # the fold's third derivative
     assert found.let_go_early(move, 1e-6) > found.let_go_early(move, 0.0)
+    assert found.let_go_early(0.0, 1e-6) == pytest.approx(20.0 * 2.0 * 1e-6 / stiffness)  # what a relaxation leaves
     assert estimate(0.5).let_go_early(move, 1e-6) == 0.0
 
 

@@ -203,3 +203,27 @@ def test_a_slides_plate_has_time_for_half_a_swing_on_what_holds_it(spring: float
     assert (held < 0.1 * contact) == (spring > 2.0)
     periods = [2.0 * math.pi * math.sqrt(moving / contact), SWING * 2.0 * math.pi * math.sqrt(moving / held)]
     assert settings.settle_time == pytest.approx(max(periods), rel=1e-6)
+
+
+@pytest.mark.parametrize("mass", [1.0, 300.0])
+@pytest.mark.parametrize("drag", [1e-4, 1e-2, 2.0, 30.0, 3e3])
+def test_a_slide_is_loaded_under_its_own_drag_where_that_is_enough_and_no_more_than_ten_times_that(
+    drag: float, mass: float
+) -> None:
+    """Enough is critical for the plate on 0.6 of what holds it, 2√(0.6 K M)/N, and lets steps stop no particle."""
+    of = slide(1e-3).with_({"damping.coefficient": drag, "plate.mass": mass})
+    settings = settings_for(of)
+    moving = mass + settings.particles * MASS
+    touching = settings.estimate.half_width(settings.largest_displacement, settings.rest) * 2.0
+    held = min(max(1.0, touching) * settings.estimate.stiffness, settings.estimate.stiffness_under(1.0))
+    critical = 2.0 * math.sqrt(0.6 * held * moving) / settings.particles
+    within = [0.4 * MASS / (settings.time_step * part) for part in (1.0, 1.3)]  # rows take whole numbers of steps
+    if critical < within[1]:
+        enough = critical
+    else:
+        enough = settings.calm_damping
+        assert within[1] <= enough <= within[0] * (1.0 + EXACT) or drag >= within[1]
+    if enough <= drag <= 10.0 * enough:
+        assert settings.calm_damping == drag
+    else:
+        assert settings.calm_damping == pytest.approx(enough, rel=EXACT)

@@ -156,10 +156,10 @@ class _Row:
         """(displacement [LU], tension [FU]) where the tension is largest."""
         low, high = self.lowest, self.highest
         for points in POINTS:
-            places = np.linspace(low, high, points)
+            places, step = np.linspace(low, high, points, retstep=True)
             forces = self.forces(places)
             top = int(np.argmin(forces))
-            low, high = float(places[max(top - 1, 0)]), float(places[min(top + 1, points - 1)])
+            low, high = float(places[top] - step), float(places[top] + step)
         place, tension = float(places[top]), -float(forces[top])
         return place if self.estimate.snaps else self._vertex(place), tension
 
@@ -177,10 +177,11 @@ class _Row:
         """Largest displacement [LU] at which the force is `force` [FU]; that of the largest tension if none is."""
         low, high = self.lowest, self.highest
         for points in POINTS:
-            places = np.linspace(low, high, points)
+            places, step = np.linspace(low, high, points, retstep=True)
             below = np.flatnonzero(self.forces(places) < force)
             if below.size == 0:
                 return self.largest_tension()[0]
-            low, high = float(places[below[-1]]), float(places[min(below[-1] + 1, points - 1)])
+            low = float(places[below[-1]])
+            high = low + float(step)
         ends = self.forces(np.asarray([low, high]))
         return float(np.interp(force, ends, [low, high]))

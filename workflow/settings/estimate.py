@@ -211,10 +211,10 @@ class ContactEstimate:
         """(displacement [LU], tension [FU]) where the tension is largest, looked for twice, the second time nearby."""
         low, high = self._apart, self.rest
         for _ in range(2):
-            places = np.linspace(low, high, COARSE_POINTS)
+            places, step = np.linspace(low, high, COARSE_POINTS, retstep=True)
             forces = self.contact_forces(places)
             top = int(forces.argmin())
-            low, high = float(places[max(top - 1, 0)]), float(places[min(top + 1, COARSE_POINTS - 1)])
+            low, high = float(places[top] - step), float(places[top] + step)
         return float(places[top]), -float(forces[top])
 
     @cached_property
@@ -268,10 +268,11 @@ def particles_estimate(
     undeformed = r - chains * force / stiffness
     gap = np.maximum.accumulate(undeformed)
     gap += np.arange(points) * 1e-12 * cutoff
-    falls = np.flatnonzero(np.diff(undeformed) < 0.0)
-    bend = abs(float(np.diff(undeformed, 2)[max(falls[0] - 1, 0)])) / (r[1] - r[0]) ** 2 if falls.size else 0.0
+    falls = np.diff(undeformed) < 0.0
+    first = max(int(falls.argmax()) - 1, 0)
+    bend = abs(float(np.diff(undeformed, 2)[first])) / (cutoff / points) ** 2 if falls.any() else 0.0
     gap.flags.writeable = False
-    return ContactEstimate(gap, force, rest, profile, spacing, stiffness / chains, falls.size > 0, bend)
+    return ContactEstimate(gap, force, rest, profile, spacing, stiffness / chains, bool(falls.any()), bend)
 
 
 @lru_cache(maxsize=16)  # a law is mostly that of several bodies
