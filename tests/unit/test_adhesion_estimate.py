@@ -235,3 +235,24 @@ class Resting:
 def test_an_edge_that_rests_anywhere_does_not_jump() -> None:
     springs = np.asarray([-1.0, 0.0])
     AdhesiveEstimate(springs, -0.2 * springs, 0.0, Resting(), 0.2, 0.2, work=W, known=20.0).require_one_edge()
+
+
+@pytest.mark.parametrize("work", [5e-6, 5e-9])
+def test_a_way_that_only_leads_apart_asks_for_no_more_than_the_adhesion_does(work: float) -> None:
+    path = {"kind": "path", "displacements": [-1e-5]}
+    found = estimate(scene(1e-3, adhesion={"work_of_adhesion": work}, experiment=path))
+    grips = (math.pi * work * R**2 / (8.0 * E)) ** (1.0 / 3.0)
+    assert 1.2 * grips < found.known < 20.0 * grips  # F is the largest tension on the other side at 5 times that
+    assert found.pull_off_force() == pytest.approx(1.5 * math.pi * work * R, rel=GRID)
+
+
+def test_cells_at_the_end_of_a_body_have_shares_too() -> None:
+    circle = {"kind": "circle", "radius": 30.0}
+    of = scene(0.5, profile=circle, experiment={"kind": "path", "displacements": [0.1]})
+    found = estimate(of)
+    cells = found.cells(np.asarray([-30.0, -29.9, 29.5, 29.75, 30.0]), of.bodies)
+    shares = cells.shares(np.linspace(-1.0, 1e3, 1001))
+    assert np.isfinite(shares).all()
+    assert shares.min() == 0.0
+    assert shares.max() == 1.0
+    assert (np.diff(shares, axis=0) >= -1e-12).all()

@@ -215,6 +215,6 @@ def test_a_rigid_plane_has_neither_snaps_nor_teeth() -> None:
 @pytest.mark.parametrize("spacing", [0.01, 1.0, 8.0])
 def test_a_tabulated_body_is_the_body_down_to_a_fraction_of_its_first_spacing(spacing: float) -> None:
     body = scene_from_dict(wide(20)).bodies.model_copy(update={"spacing": spacing})
-    x = np.geomspace(0.25 * spacing, 20.0, 500)
+    x = np.geomspace(0.0101 * spacing, 20.0, 500)
     assert tabulated(body, spacing).height(x) == pytest.approx(body.height(x), rel=5e-4)
     assert tabulated(body, spacing).reach == pytest.approx(body.reach, rel=1e-12)

@@ -230,12 +230,10 @@ def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
             work=work, known=min(known, profile.reach),
         )  # fmt: skip
         known *= 2.0
-    radius, displacement, force = estimate.end
     if not bodies.profile.has_edge:
-        inside = estimate.fixed_grips[0] < radius and displacement > wanted and force > load
         widest = float(estimate.radii(np.asarray([max(wanted, estimate.displacement_at(load))]))[0])
         limit = min(profile.reach, bodies.profile.curvature_radius or math.inf)
-        if not inside or widest > SPANNED * limit:
+        if widest > SPANNED * limit:
             raise SettingsError(
                 f"the adhesive contact would spread over the whole body, which ends at {limit:.6g} LU: JKR's theory is "
                 "of a contact that is small beside it. Lower adhesion.work_of_adhesion, the load or the displacement"

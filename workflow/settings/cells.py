@@ -72,7 +72,7 @@ def read_off_cells(scene: Scene, settings: Settings) -> dict[str, float]:
     spacing = scene.bodies.spacing
     x = places_within(spacing * (settings.particles // 2), spacing, OWN)
     cells, none, worst = estimate.cells(x, estimate.profile), np.zeros_like(x), 0.0
-    edge = estimate.half_width(estimate.displacement_at(scene.experiment.force), 0.0)
+    edge = estimate.half_width(estimate.displacement_at(scene.experiment.force), estimate.rest)
     edges = np.asarray(edge - spacing * np.arange(EDGES) / EDGES, dtype=np.float64)
     places = estimate.profile.height(edges) - elongation(edges, estimate.modulus, estimate.work)
     for place, share in zip(places, cells.shares(places), strict=True):
@@ -105,7 +105,7 @@ def _marks(
         return float(np.interp(force, found[top:], places[top:]))
 
     def radius(displacement: float) -> float:
-        return estimate.half_width(displacement, 0.0)
+        return estimate.half_width(displacement, estimate.rest)
 
     if isinstance(scene.experiment, Load):
         place = place_of(scene.experiment.force)

@@ -57,7 +57,7 @@ class Tabulated:
 def tabulated(profile: Profile, spacing: float) -> Tabulated:
     """The profile, which must have an end, at places in a geometric row: those of a parabola within 1e-4 of its height.
 
-    That holds up to a reach of 1e10 spacings [LU]; nearer to the apex than NEAR spacings it is a line.
+    That holds for a reach of 0.1 to 1e10 spacings [LU]; nearer to the apex than NEAR spacings it is a line.
     """
-    places = np.concatenate([[0.0], np.geomspace(min(NEAR * spacing, 0.5 * profile.reach), profile.reach, PLACES)])
+    places = np.concatenate([[0.0], np.geomspace(NEAR * spacing, profile.reach, PLACES)])
     return Tabulated(places, profile.height(places))

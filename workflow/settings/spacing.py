@@ -118,7 +118,8 @@ def _half_width(scene: Scene) -> float:
     load = experiment.compression
     if scene.adheres and isinstance(experiment, Path | PullOff):
         load = 0.0
-    return estimate.half_width(max(experiment.places()) if load is None else estimate.displacement_at(load), 0.0)
+    deepest = max(experiment.places()) if load is None else estimate.displacement_at(load)
+    return estimate.half_width(deepest, estimate.rest)
 
 
 def _up(tolerance: float) -> str:
