@@ -33,6 +33,7 @@ from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.settings.dynamics import SOFTENING
 from contact1d.workflow.settings.settings import settings_for
 from tests.exact import ExactContact, exact_context
+from tests.given import Estimate
 from tests.scenes import chains
 
 X = np.arange(40) - 19.5
@@ -207,3 +208,48 @@ def test_a_path_in_time_waits_for_rest_and_one_at_rest_refuses_what_is_not(monke
     assert all(state.residual == 0.0 for state in outcome.states)
     with pytest.raises(UntrustedError, match="not converged"):
         path(exact_context(scene_from_dict(still)))
+
+
+def test_starts_are_the_numbers_that_the_fragment_knows() -> None:
+    """-1 goes back, 0 goes on, 1 keeps the place: see `fragments/steps/hold.lmp`."""
+    assert (int(Start.BACK), int(Start.HERE), int(Start.KEPT)) == (-1, 0, 1)
+
+
+def test_a_load_that_presses_is_not_lost_within_reach() -> None:
+    """However little it carries for a while; a plate that stands still under a tension is not either."""
+    for load, velocity, force in ((0.3, -0.1, 0.0), (0.0, -0.1, 0.0), (-0.2, 0.0, 0.0)):
+        contact = opened(at(force, -5.0, velocity), at(load))
+        assert hold(contact, load, SCALE).held
+        assert len(contact.rows) == 2
+
+
+def test_a_load_that_never_rests_is_given_fifty_rows() -> None:
+    contact = opened(at(LOAD + 0.1))
+    with pytest.raises(RestlessError):
+        hold(contact, LOAD, SCALE)
+    assert len(contact.rows) == 50
+
+
+def test_drag_follows_the_stiffness_down_to_none_and_up_to_the_stiffest() -> None:
+    """γ √(K/K₀), K/K₀ between 0 and 1/0.6, by an estimate that is given."""
+    known = opened(at(0.0))
+    for stiffness, share in ((0.25, 0.25), (-3.0, 0.0), (1.6, 1.6), (9.0, 1.0 / 0.6)):
+        estimate = Estimate(stiffness=lambda load, stiffness=stiffness: 2.0 * stiffness)
+        settings = replace(known.settings, estimate=estimate, damped_stiffness=2.0, damping=0.7)
+        assert damping_under(settings, 0.3) == pytest.approx(0.7 * share**0.5)
+        gentle = replace(settings, part=0.25, calm_damping=5.0)
+        assert [damping_under(gentle, load) for load in (0.3, 0.0)] == [5.0, 5.0]
+        assert damping_under(gentle, -0.1) == pytest.approx(0.7 * share**0.5)
+        assert damping_under(replace(gentle, damped_stiffness=0.0), 0.3) == 0.7
+
+
+@pytest.mark.parametrize("part", [1.0, 0.6, 0.25])
+def test_parts_of_a_load_that_is_lost_on_the_way_are_kept(part: float) -> None:
+    """In round(1/part) steps: the second of four is lost here."""
+    away = replace(at(0.0, -99.0), smallest_distance=99.0)
+    contact = opened(at(LOAD * part if part < 0.5 else LOAD / round(1.0 / part)), away, part=part)
+    held = press(contact, LOAD, SCALE)
+    count = round(1.0 / part)
+    assert [row.load for row in contact.rows] == pytest.approx([LOAD * (i + 1) / count for i in range(min(count, 2))])
+    assert held.held == (count == 1)
+    assert len(held.states) == min(count, 2)
