@@ -178,8 +178,8 @@ def largest_before(friction: Array, place: Array, spacing: float) -> tuple[float
     if (summit := _summit(friction, place, top)) is not None:
         return summit
     missed = float(friction[top] - friction[top - 1]) if top > 0 else 0.0
-    if 0 < top < friction.size - 1:
-        missed = min(missed, max(missed - float(friction[top - 1] - friction[max(top - 2, 0)]), 0.125 * missed))
+    if 1 < top < friction.size - 1:
+        missed = min(missed, max(missed - float(friction[top - 1] - friction[top - 2]), 0.125 * missed))
     return float(friction[top]), abs(missed)
 
 
@@ -191,13 +191,13 @@ def _summit(friction: Array, place: Array, top: int) -> tuple[float, float] | No
         return None
     slopes = np.diff(y) / np.diff(x)
     bends = np.diff(slopes) / (x[2:] - x[:-2])
-    if not (bends < 0.0).all() or bends.min() < EVEN * bends.max():
+    if bends.min() < EVEN * bends.max():  # or one of them is not below 0
         return None
-    t = (x - place[top]) / (x[-1] - x[0])
+    t = (x - place[top]) / np.ptp(x)
     found = []
     for inner in (slice(None), slice(1, -1)):
         c = through(t[inner], (y - friction[top])[inner])
         at, _ = lowest_minimum(-c, float(t[1]), float(t[-2]))
         found.append(value(c, at))
-    over, other = found
-    return (float(friction[top]) + over, abs(over - other)) if math.isfinite(over + other) else None
+    missed = abs(found[0] - found[1])
+    return (float(friction[top]) + found[0], missed) if math.isfinite(missed) else None

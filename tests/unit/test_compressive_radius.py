@@ -85,6 +85,18 @@ def test_a_zero_on_one_of_the_two_places_lies_between_them_whatever_round_off_sa
             assert found.position == pytest.approx(start + 0.3, abs=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("slope", "zero"), [(0.5, (0.5 + 4.25**0.5) / 2.0), (0.0, 1.0), (-0.5, (4.25**0.5 - 0.5) / 2.0)]
+)
+def test_a_pressure_that_still_rises_at_the_last_particle_may_vanish_before_a_far_one(
+    slope: float, zero: float
+) -> None:
+    u = np.array([-0.5, -0.25, 0.0])
+    found = _parabola_zero(u, 1.0 + slope * u - u**2, 0.0, 2.0, 0.0)
+    assert found is not None
+    assert found.position == pytest.approx(zero, abs=ROUND_OFF)
+
+
 def test_a_parabola_that_only_touches_0_or_rises_has_no_falling_zero() -> None:
     places = np.array([0.0, 1.0, 2.0])
     for pressure in ([16.0, 9.0, 4.0], [1.0, 2.0, 4.0], [4.0, 2.0, 1.0], [1.0, 1.0, 1.0], [1.0, 2.0, 3.0]):

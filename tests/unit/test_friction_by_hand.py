@@ -175,3 +175,24 @@ def test_the_largest_friction_is_that_of_a_smooth_top_or_of_the_row_before_a_sli
         assert found == pytest.approx((0.5 * exact[0], 0.5 * exact[1]), abs=1e-9)
         smooth += exact[0] not in friction
     assert 20 < smooth < 180
+
+
+def test_a_top_is_smooth_from_two_rows_before_it_to_two_rows_after_it() -> None:
+    x = np.arange(5.0)
+    assert largest_before(-((x - 1.7) ** 2), x, 9.0) == pytest.approx((0.0, 0.0), abs=1e-12)
+    for rows in (slice(0, 4), slice(1, 5)):  # the top is the last but one, or the second
+        found, missed = largest_before(-((x - 1.7) ** 2)[rows], x[rows], 9.0)
+        assert found == pytest.approx(-0.09)
+        assert missed > 0.04
+
+
+def test_bends_of_which_one_is_twice_another_are_even_and_a_level_top_has_no_vertex() -> None:
+    x = np.arange(5.0)
+    assert largest_before(np.array([0.0, 2.0, 3.0, 2.0, 0.0]), x, 9.0) == pytest.approx((3.0, 0.0), abs=1e-12)
+    assert largest_before(np.array([-0.25, 2.0, 3.0, 2.0, -0.25]), x, 9.0) == pytest.approx((3.0, 0.0), abs=1e-12)
+    assert largest_before(np.array([0.25, 2.0, 3.0, 2.0, 0.25]), x, 9.0) == pytest.approx((3.0, 0.125), abs=1e-12)
+    assert largest_before(np.ones(5), x, 9.0) == (1.0, 0.0)
+
+
+def test_a_way_of_as_much_as_a_plate_may_make_without_a_slip_is_none() -> None:
+    assert slips(np.array([0.0, 1.0]), np.array([0.0, 0.45]), 1.0, 0.1) == []

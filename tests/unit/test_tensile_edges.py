@@ -34,7 +34,7 @@ def edge(x: np.ndarray, p: np.ndarray, spacing: float, side: int) -> Place:
 @pytest.mark.parametrize("spacing", [2.0**-10, 1.0, 2.0**10])
 @pytest.mark.parametrize("origin", [0.0, 64.0])
 def test_both_edges_are_looked_for_from_just_beyond_the_centre_in_any_unit(spacing: float, origin: float) -> None:
-    """Contacts of up to two spacings, one side lower than the other by nothing, round-off, or much; with jumps too."""
+    """Contacts of up to two spacings, one side lower than the other by nothing, round-off, or much; jumps; noise."""
     random = np.random.default_rng(3)
     spots = 0
     for number in range(150):
@@ -44,7 +44,9 @@ def test_both_edges_are_looked_for_from_just_beyond_the_centre_in_any_unit(spaci
         p = -np.exp(-(((t**2 - half**2) / 6.0) ** 2) - 0.02 * t**2) * (1.0 + tilt * t)
         if number % 3 == 0:
             p = np.where(np.abs(t) > half + 0.7, 0.3 * p, p)
-        found = tensile_radius(profile(spacing * (t + origin), p))
+        elif number % 3 == 1:
+            p = p + random.choice([1e-6, 1e-4]) * random.normal(size=t.size)
+        found = tensile_radius(profile(spacing * (t + origin), 1.5 * p * spacing))
         left, right = (edge(t, p, 1.0, side) for side in (-1, 1))
         near = 1e-9 * (1.0 + origin)
         assert (found.left / spacing - origin, found.right / spacing - origin) == pytest.approx(
@@ -56,7 +58,7 @@ def test_both_edges_are_looked_for_from_just_beyond_the_centre_in_any_unit(spaci
         spots += half < 1e-9
         doubt = max(0.5 * (left.uncertainty + right.uncertainty), 1.2 * (1.0 - half / 3.0))
         assert found.uncertainty / spacing == pytest.approx(doubt, rel=1e-6)
-    assert 10 < spots < 120
+    assert spots > 10
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
