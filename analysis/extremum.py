@@ -204,7 +204,7 @@ def _interpolated(x: Array, y: Array, index: int, noise: float) -> Place:
 
 def _steepness(y: Array, index: int) -> float:
     """Rise from the lowest sample to the higher one beside it over the depth below the lower shoulder, at most 1."""
-    depth = min(float(y[:index].max()), float(y[index + 1 :].max())) - float(y[index])
+    depth = min(float(y[:index].max()), float(y[index:].max())) - float(y[index])
     rise = max(float(y[index - 1]), float(y[index + 1])) - float(y[index])
     return min(1.0, rise / depth) if depth > 0.0 else 1.0
 
@@ -249,7 +249,7 @@ def _minimum(
     Without a minimum there (NaN, NaN); where one is known to be `near`, it is found from there.
     """
     points, values = stencil.of(x), stencil.of(y)
-    origin, width, depth = float(points.sum()) / len(points), float(points[-1] - points[0]), float(np.abs(values).max())
+    origin, width, depth = float(points.sum()) / len(points), float(np.ptp(points)), float(np.abs(values).max())
     matrix = fitting((points - origin) / width, stencil.degree)
     start = None if near is None else (near - origin) / width
     t, bend = lowest_minimum(matrix @ (values / depth), (low - origin) / width, (high - origin) / width, start)

@@ -69,11 +69,11 @@ def shear_load(
         within, beyond = (int(i) for i in np.searchsorted(right, [kink - near, kink + near]))
         if min(within, borders[0][0] - beyond) >= FEWEST:
             borders.insert(0, (within, beyond, kink, _height(right, mean, within, beyond, kink)))
-    first, low, breaks, coefficients = 0, (0.0, 0.0), [0.0], []
+    first, low, breaks, coefficients = 0, (0.0, math.nan), [0.0], []
     for within, beyond, border, height in borders:
         zone, high = slice(first, within), (border, height)
-        starts, pieces = _spline(right[zone], mean[zone], low, high, first == 0, apex)
-        breaks += [*starts[1:], border]
+        inner, pieces = _spline(right[zone], mean[zone], low, high, first == 0, apex)
+        breaks += [*inner, border]
         coefficients.append(pieces)
         first, low = beyond, high
     return LineLoad(np.asarray(breaks), np.concatenate(coefficients, axis=1))
@@ -88,7 +88,7 @@ def _height(x: Array, y: Array, within: int, beyond: int, kink: float) -> float:
 def _spline(
     places: Array, values: Array, low: tuple[float, float], high: tuple[float, float], first: bool, apex: bool
 ) -> tuple[Array, Array]:
-    """Where each cubic of a zone begins, and its coefficients in powers of x, shape (4, n).
+    """Where each cubic of a zone but the first begins, and the coefficients of all in powers of x, shape (4, n).
 
     low, high: the zone's borders and the heights there. The `first` zone is mirrored at the axis, unless the body has
     an `apex` there.
@@ -103,13 +103,12 @@ def _spline(
         x, y = np.append(-x[mirrored][::-1], x), np.append(y[mirrored][::-1], y)
     spline = CubicSpline(x, y)
     begin = max(int(np.searchsorted(x, low[0], side="right")) - 1, 0)
-    starts, local = x[begin:-1].copy(), spline.c[::-1, begin:]
+    starts, local = x[begin:-1], spline.c[::-1, begin:]
     shift = -starts
     pieces = np.zeros((4, starts.size))
     for power, coefficients in enumerate(local):
         for k in range(power + 1):  # (x + shift)^power
             pieces[k] += math.comb(power, k) * coefficients * shift ** (power - k)
-    starts[0] = low[0]
     if first and not apex:
         pieces[1, 0] = 0.0
-    return starts, pieces
+    return starts[1:], pieces

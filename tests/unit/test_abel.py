@@ -236,7 +236,7 @@ def four_nearest(x: Array, q: Array, at: Array) -> Array:
 @pytest.mark.parametrize("apex", [False, True])
 @pytest.mark.parametrize("ends_at_zero", [False, True])
 @pytest.mark.parametrize("count", [24, 25])
-@pytest.mark.parametrize("scale", [2.0**-10, 1.0])
+@pytest.mark.parametrize("scale", [2.0**-40, 1.0, 2.0**20])
 def test_the_load_between_places_is_the_polynomial_through_the_four_nearest(
     count: int, ends_at_zero: bool, apex: bool, scale: float
 ) -> None:

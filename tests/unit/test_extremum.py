@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact1d.analysis.extremum import _median, _noise, _steepness, place_of_minimum
+from contact1d.analysis.extremum import _is_smooth, _median, _noise, _steepness, place_of_minimum
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import compressive_radius, tensile_radius
 
@@ -172,3 +172,13 @@ def test_the_edge_of_a_parabolic_pressure_is_exact_between_uneven_places() -> No
         pressure = np.maximum(0.0, 1.0 - ((x - middle) / half) ** 2)
         zero = np.zeros_like(x)
         assert compressive_radius(Profile(x, zero, zero, pressure, zero)).value == pytest.approx(half, rel=1e-9)
+
+
+@pytest.mark.parametrize("index", [5, 8, 10])
+def test_one_sample_aside_among_the_ten_on_each_side_shows_that_a_row_is_not_smooth(index: int) -> None:
+    """The outermost one of them may go on in any way."""
+    for aside in range(21):
+        y = np.cosh(0.1 * (np.arange(21.0) - 9.0))
+        y[aside] += 1.0
+        for row, at in ((y, index), (y[::-1], 20 - index)):
+            assert _is_smooth(np.arange(21.0), row, at, 0.0) == (aside == 0 or aside >= index + 10)

@@ -158,3 +158,10 @@ def test_an_edge_is_as_uncertain_as_a_straight_line_makes_another_of_it(inner: l
     assert found.uncertainty == pytest.approx(0.25 * abs(share - where(inner, 1, carried)), abs=1e-3)
     three = _edge(x, p, 3, 0.25, False)
     assert (three.position, three.uncertainty, three.at_end) == (1.25, 0.125, False)
+
+
+def test_an_edge_is_never_more_uncertain_than_half_a_spacing() -> None:
+    """A parabola that turns up says 0.4 of a cell, a straight line that falls says 0.95."""
+    x, p = 0.25 * np.arange(6.0), np.array([9.0, 5.5, 3.0, 1.2, 1.0, 0.76])
+    assert abs(_share(0.76, [3.0, 1.2, 1.0]) - _share(0.76, [1.4, 1.2, 1.0])) > 0.52
+    assert _edge(x, p, 5, 0.25, False).uncertainty == 0.125
