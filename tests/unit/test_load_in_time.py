@@ -213,7 +213,8 @@ def test_the_radius_of_a_mean_is_as_sure_as_its_blocks_agree(edges: list[float])
     rule = RadiusRule(scene, one.settings.tolerance)
     states = [at(0.1, 2.0, profile=held(edge)) for edge in edges]
     context: Any = GivenContext(one)
-    found = _thermal_outcome(context, one, tuple(states), states, (2.0, 0.1), 1.0)
+    found = _thermal_outcome(context, one, tuple(states), states, (2.0, 0.1), standard_error([0.1] * 20))
+    assert "statistics" not in found.warnings  # as well as it was to be
     mean = rule.of(replace(PROFILE, pressure=np.mean([s.profile.pressure for s in states], axis=0)))
     if mean is None:
         assert math.isnan(found.radii["final"])

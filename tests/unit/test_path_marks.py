@@ -12,7 +12,7 @@ import pytest
 
 from contact1d.analysis.curve_marks import largest_tension
 from contact1d.analysis.loop import loop_of
-from contact1d.workflow.deck.steps import Phase
+from contact1d.workflow.deck.steps import DisplaceInTime, Phase
 from contact1d.workflow.experiments.path.between_rows import missed_between_rows
 from contact1d.workflow.experiments.path.path import (
     _adhesion,
@@ -259,3 +259,16 @@ def test_a_way_is_walked_in_moves_that_are_no_longer_than_allowed(snaps: bool) -
     far = replace(settings, longest_move=0.5 * drop)
     assert len(places(scene_of(0.0, -1.0), far)) == 1 + (math.ceil(2.0 / drop) if snaps else 1)
     assert places(scene_of(-1.0), settings) == [(-1.0, True)]
+
+
+@pytest.mark.parametrize("drag", [0.05, 3.0])
+def test_rows_in_time_are_as_long_as_fourteen_decays_and_no_timestep_longer(drag: float) -> None:
+    """The slower of 2m/γ and γ/k."""
+    way = {"kind": "path", "displacements": [0.0, 0.1], "method": "dynamic"}
+    scene = given_scene(damping={"coefficient": drag}, experiment=way)
+    settings = replace(contact(scene=scene).settings, time_step=0.037)
+    decay = max(2.0 * scene.bodies.mass / drag, drag / scene.bulk_stiffness)
+    (phase,) = schedule(scene, settings)
+    for row in phase.rows:
+        assert isinstance(row, DisplaceInTime)
+        assert (row.steps - 1) * 0.037 < 14.0 * decay <= row.steps * 0.037

@@ -128,6 +128,14 @@ def test_a_parabola_is_met_at_once_and_looked_at_beside_its_top() -> None:
     assert missed == pytest.approx(0.0, abs=1e-9)
 
 
+def test_the_way_back_to_a_top_is_in_halves_of_the_smallest_distance() -> None:
+    """0.065 LU at a time from the last row, −0.63, to the vertex; what lies beside it is near enough."""
+    one = contact(parabola, closest=lambda d: 0.13)
+    states, _ = _to_largest_tension(one, [at(0.67, 0.0)], 1e-3, through=False)
+    back = [-0.565, -0.5, -0.435, -0.37, -0.33, -0.28, -0.38, -0.33]
+    assert places(states)[13:] == pytest.approx(back)
+
+
 def sharp(d: float) -> float:
     """T = 1/cosh(4(d + 0.33)): as wide as two rows."""
     return -1.0 / math.cosh(4.0 * (d + 0.33))
@@ -147,6 +155,8 @@ def test_a_sharp_top_is_halved_until_polynomials_keep_what_they_promise(slope: f
     widths = [0.1 * 0.5**n for n in range(1, 1 + len(beside))]
     assert beside[::-1] == pytest.approx(widths, abs=2e-3)
     assert slope or tolerance < 1e-3 or len(beside) <= 3
+    radius = 5.0 + slope * states[-1].displacement
+    assert len(beside) > 2 or 2.0 * slope * peak.misplaced <= tolerance * radius
 
 
 def falling(states: list[State]) -> tuple[list[float], list[float]]:
