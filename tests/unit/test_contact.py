@@ -269,3 +269,22 @@ def test_a_state_without_a_radius_is_a_spot() -> None:
     assert none.radius_or_spot.value == 0.0
     assert known.radius_or_spot is known.radius
     assert isinstance(State("a", 0.0, 1.0, PROFILE, 0.1, 0.0, 0.0, none.rule).radius_or_spot.uncertainty, float)
+
+
+def test_in_time_particles_on_a_plane_that_sticks_stand_on_it_where_they_carry() -> None:
+    """A pull as well as a push; they have no motion of their own that could be left unbalanced."""
+    tables = SCENES["JKR on the plane"]
+    scene = scene_from_dict(tables | TIMED | {
+        "bodies": tables["bodies"] | {"particles": 20},
+        "experiment": {"kind": "pull_off", "preload": 0.3, "method": "dynamic"},
+    })  # fmt: skip
+    atoms = atoms_of(scene)
+    upper = np.flatnonzero(atoms["type"] == 2)
+    atoms["v_opposite_z"][upper] = np.where(np.arange(20) < 5, 0.0, np.where(np.arange(20) < 10, 0.25, -2.0))
+    contact, _ = opened(scene, atoms)
+    assert scene.stands
+    state = contact.row(UnderLoad(0.3, 10))
+    assert state.residual == 0.0
+    assert state.profile.z_upper == pytest.approx([*atoms["x"][upper[:5], 2], *[0.0] * 15])
+    assert not state.profile.z_lower.any()
+    assert state.force == pytest.approx(5 * 0.25 - 20.0)

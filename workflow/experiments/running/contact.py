@@ -110,7 +110,7 @@ class Contact:
         self.session = session
         self._phases: list[Phase] = []
         self._unfinished = ""
-        self._written = 0
+        self._written = False
         self._latest: list[State] = []
         self._tells = False
         self.rows_seconds = 0.0  # wall time of the rows in LAMMPS
@@ -161,7 +161,7 @@ class Contact:
         texts = []
         for row in rows:
             texts.append(self._unfinished + self.deck.values(row, not self._written) + self.deck.row(type(row)))
-            self._written += self.deck.keeps
+            self._written = self._written or self.deck.keeps
             self._unfinished = self.deck.row_end + self.deck.forget(type(row))
         names = self._values()
         readings = self.session.measure_rows(texts, tuple(names), tuple(ATOM_UNITS), meanwhile=self._look_back)
@@ -201,7 +201,7 @@ class Contact:
         """Write the state that the last row left to states.lammpstrj; it ends the phase."""
         self._phases[-1] = replace(self._phases[-1], state=True)
         self._unfinished += self.deck.state(first=not self._written)
-        self._written += 1
+        self._written = True
 
     def finish(self) -> None:
         """Run what is left of the last row; what its states were made of is not kept."""
