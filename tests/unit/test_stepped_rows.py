@@ -31,7 +31,7 @@ def scene_of(name: str, spacing: float = 0.5) -> Scene:
 
 def frames(folder: Path, numbers: Any) -> None:
     """Append frames (rows, atoms, columns), with atoms from the last to the first."""
-    rows, atoms, columns = numbers.shape
+    _, atoms, columns = numbers.shape
     with (folder / FRAMES).open("ab") as file:
         for row in numbers:
             ids = np.arange(1.0, atoms + 1.0)
