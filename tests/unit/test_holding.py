@@ -253,3 +253,20 @@ def test_parts_of_a_load_that_is_lost_on_the_way_are_kept(part: float) -> None:
     assert [row.load for row in contact.rows] == pytest.approx([LOAD * (i + 1) / count for i in range(min(count, 2))])
     assert held.held == (count == 1)
     assert len(held.states) == min(count, 2)
+
+
+def test_the_drag_of_a_row_is_that_of_all_particles_and_the_plate() -> None:
+    """Over the inertia that LAMMPS does not count, as the force at rest is; a tension is lost where 60 % are left."""
+    contact = opened(at(0.0), plate_damping=0.7, damping=0.03, damped_stiffness=0.0)
+    settings = replace(contact.settings, estimate=Estimate(apart=lambda share: -7.0 - share), cutoff=2.0, rest=0.4)
+    heavy = 1.0 + 40 * contact.scene.bodies.mass / settings.plate_mass
+    for load, parted in ((0.0, 0.4 - 2.0 - 1.0), (-0.1, -7.6)):
+        row = hold_row(contact.scene, settings, load, 0.5, Start.HERE)
+        assert row.drag == pytest.approx((40 * 0.03 + 0.7) / heavy)
+        assert row.rest == pytest.approx(0.1 * settings.tolerance * 0.5 / heavy)
+        assert row.damping == 0.03
+        assert row.parted == pytest.approx(parted)
+        assert row.load == load
+        assert (row.steps - 1) * settings.time_step < 10.0 * settings.settle_time <= row.steps * settings.time_step
+    short = hold_row(contact.scene, replace(settings, settle_time=1e-9), 0.1, 0.5, Start.HERE)
+    assert short.steps == 20

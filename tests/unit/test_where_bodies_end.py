@@ -79,3 +79,39 @@ def test_a_plate_runs_off_where_the_lower_body_ends_in_any_spacing(spacing: floa
             _require_above(scene, settings, at(side * (last + 0.01 * spacing)))
     with pytest.raises(PartedError):
         _require_above(scene, settings, at(0.0, 1.01 * settings.cutoff))
+
+
+def punch_on(lower: str) -> Scene:
+    """A flat punch that adheres: by a work of adhesion on a plane, by a law between chains."""
+    body = {"particles": "auto", "lower": lower, "profile": {"kind": "flat_punch", "radius": 5.5}}
+    tables = chains(30.0, bodies=body, experiment={"kind": "pull_off", "preload": 1.0})
+    if lower == "rigid_plane":
+        tables |= {"interaction": None, "adhesion": {"work_of_adhesion": 0.01}}
+    return scene_from_dict({name: table for name, table in tables.items() if table is not None})
+
+
+def test_a_punch_that_stands_on_a_plane_is_held_by_it_without_any_force() -> None:
+    scene = punch_on("rigid_plane")
+    standing, away = profile(0.0 * X), profile(0.0 * X)
+    standing.z_upper[:] = 0.5
+    standing.z_upper[3] = 0.0
+    away.z_upper[:] = 0.5
+    found = RadiusRule(scene, 1e-3).of(standing)
+    assert found is not None
+    assert (found.value, found.uncertainty) == (5.5, 0.0)
+    assert RadiusRule(scene, 1e-3).of(away) is None
+    between = RadiusRule(punch_on("particles"), 1e-3)
+    assert between.of(standing) is None
+    pressed = between.of(profile(0.0 * X + 1.0))
+    assert pressed is not None
+    assert (pressed.left, pressed.right) == (-5.5, 5.5)
+
+
+def test_what_presses_only_is_held_on_a_plane_that_adheres() -> None:
+    tables = chains(30.0, bodies={"particles": 12, "lower": "rigid_plane"}, interaction=None,
+                    adhesion={"work_of_adhesion": 0.01}, experiment={"kind": "load", "force": 1.0})  # fmt: skip
+    scene = scene_from_dict(tables)
+    found = RadiusRule(scene, 1e-3).of(profile(PARABOLIC))
+    assert found is not None
+    assert found.value > 2.0
+    assert RadiusRule(scene, 1e-3).of(profile(0.0 * X)) is None
