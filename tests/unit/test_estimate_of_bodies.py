@@ -108,7 +108,9 @@ def test_a_width_takes_less_than_a_bisection_and_marks_some_thousands_of_places(
     assert len(profile.asked) < 60
     assert sum(profile.asked) < 1000
     single = sum(profile.asked) + 401  # of a force, its width and its places
-    for asks, most in ((found.pull_off_force, 100), (lambda: found.displacement_at(1.0), 200)):
+    for asks, most in (
+        (found.pull_off_force, 100), (lambda: found.displacement_at(1.0), 200), (lambda: found.parted(0.5), 600),
+    ):  # fmt: skip
         profile.asked.clear()
         asks()
         assert sum(profile.asked) < most * single
@@ -182,3 +184,11 @@ def test_a_plane_is_felt_as_deep_as_a_body_may_go(depth: float) -> None:
     found = plane_estimate(body("punch"), ROW, 0.5)
     assert found.contact_force(depth) == pytest.approx(12.0 / ROW * 0.5 * depth, rel=1e-6)
     assert found.displacement_at(12.0 / ROW * 0.5 * depth) == pytest.approx(depth, rel=1e-6)
+
+
+@pytest.mark.parametrize("d", [1e-3, 0.3, 20.0])
+def test_springs_on_a_plane_are_as_stiff_as_their_contact_is_wide(d: float) -> None:
+    """dF/dd = 2a k/s; a difference over a thousandth of the way is off by a quarter of that."""
+    found = plane_estimate(body("parabola"), ROW, 0.5)
+    a = found.half_width(d, 0.0)
+    assert found.stiffness_under(found.contact_force(d)) == pytest.approx(2.0 * a / ROW * 0.5, rel=4e-4)

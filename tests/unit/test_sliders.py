@@ -42,6 +42,7 @@ def test_touches_are_heights_passed_on_the_way_in_its_order() -> None:
     assert chain().touches(0.0, 0.1) == [h for h in heights.tolist() if h < 0.1]
     assert chain().touches(0.1, 0.0) == chain().touches(0.0, 0.1)[::-1]
     assert chain().touches(0.05, 0.05) == []
+    assert chain().touches(float(heights[2]), float(heights[6])) == heights[3:6].tolist()
 
 
 depths, ways = st.floats(-0.2, 1.0), st.floats(-2.0, 2.0)

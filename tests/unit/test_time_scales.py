@@ -205,17 +205,20 @@ def test_a_slides_plate_has_time_for_half_a_swing_on_what_holds_it(spring: float
     assert settings.settle_time == pytest.approx(max(periods), rel=1e-6)
 
 
+@pytest.mark.parametrize(("force", "spring"), [(1.0, 2.0), (0.0, 2.0), (0.1, 0.02)])
 @pytest.mark.parametrize("mass", [1.0, 300.0])
 @pytest.mark.parametrize("drag", [1e-4, 1e-2, 2.0, 30.0, 3e3])
 def test_a_slide_is_loaded_under_its_own_drag_where_that_is_enough_and_no_more_than_ten_times_that(
-    drag: float, mass: float
+    drag: float, mass: float, force: float, spring: float
 ) -> None:
     """Enough is critical for the plate on 0.6 of what holds it, 2√(0.6 K M)/N, and lets steps stop no particle."""
-    of = slide(1e-3).with_({"damping.coefficient": drag, "plate.mass": mass})
+    of = slide(1e-3, bulk_stiffness=spring).with_(
+        {"damping.coefficient": drag, "plate.mass": mass, "experiment.normal_force": force}
+    )
     settings = settings_for(of)
     moving = mass + settings.particles * MASS
     touching = settings.estimate.half_width(settings.largest_displacement, settings.rest) * 2.0
-    held = min(max(1.0, touching) * settings.estimate.stiffness, settings.estimate.stiffness_under(1.0))
+    held = min(max(1.0, touching) * settings.estimate.stiffness, settings.estimate.stiffness_under(force))
     critical = 2.0 * math.sqrt(0.6 * held * moving) / settings.particles
     within = [0.4 * MASS / (settings.time_step * part) for part in (1.0, 1.3)]  # rows take whole numbers of steps
     if critical < within[1]:

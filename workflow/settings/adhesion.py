@@ -79,11 +79,14 @@ class Cells:
         q = np.clip((self.hold - heights) / self.width, 0.0, 1.0)
         return np.asarray(q * (1.0 + self.bend * (1.0 - q)))
 
+    def lengths(self, displacements: Array) -> Array:
+        """f/k [LU] of each particle at displacements (m,) [LU] of a contact that is held, (m, n)."""
+        share = self.shares(displacements)
+        return np.asarray(share * (displacements[:, None] - self.heights + self.fall * (1.0 - share)))
+
     def forces(self, displacements: Array, stiffness: float) -> Array:
         """F [FU] at displacements (m,) [LU] of a contact that is held; `stiffness` of a particle [FU/LU]."""
-        share = self.shares(displacements)
-        lengths = share * (displacements[:, None] - self.heights + self.fall * (1.0 - share))
-        return np.asarray(stiffness * lengths.sum(axis=1))
+        return np.asarray(stiffness * self.lengths(displacements).sum(axis=1))
 
 
 @dataclass(frozen=True)

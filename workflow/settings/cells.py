@@ -75,9 +75,8 @@ def read_off_cells(scene: Scene, settings: Settings) -> dict[str, float]:
     edge = estimate.half_width(estimate.displacement_at(scene.experiment.force), estimate.rest)
     edges = np.asarray(edge - spacing * np.arange(EDGES) / EDGES, dtype=np.float64)
     places = estimate.profile.height(edges) - elongation(edges, estimate.modulus, estimate.work)
-    for place, share in zip(places, cells.shares(places), strict=True):
-        force = share * (place - cells.heights + cells.fall * (1.0 - share))
-        worst = max(worst, held_radius(Profile(x, none, none, force, none)).uncertainty)
+    for lengths in cells.lengths(places):  # a radius is the same in any unit of force
+        worst = max(worst, held_radius(Profile(x, none, none, lengths, none)).uncertainty)
     return {"contact_radius": worst}
 
 

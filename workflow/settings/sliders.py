@@ -96,7 +96,8 @@ class Sliders:
             row = slip(force, self.tangential * (place - start) * touched, limit, next_limit, self.tangential)
             force, work = row.force, work + float(row.work.sum())
             direction = int(np.sign(place - start)) or direction
-        profile = Profile(self.x, 0.0 * self.x, 0.0 * self.x, self.normal_forces(stops[-1][0]), -force)
+        none = np.zeros_like(self.x)
+        profile = Profile(self.x, none, none, self.normal_forces(stops[-1][0]), -force)
         return profile, work, stick_radius(profile, self.coefficient, direction)
 
     def sizes(self, stops: Sequence[Stop]) -> dict[str, float]:
