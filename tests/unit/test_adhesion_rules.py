@@ -13,7 +13,7 @@ from scipy.optimize import minimize_scalar
 
 from contact1d.workflow.scene import SceneError, scene_from_dict
 from contact1d.workflow.settings.adhesion import AdhesiveEstimate
-from contact1d.workflow.settings.cells import MARGIN, left_by_cells, pulling_rows
+from contact1d.workflow.settings.cells import left_by_cells, pulling_rows
 from contact1d.workflow.settings.settings import SettingsError, settings_for
 
 BODIES = {
@@ -27,6 +27,8 @@ SCENE: dict[str, Any] = {
     "experiment": {"kind": "pull_off", "preload": 2.0},
 }
 E, W, R = 1.0, 0.005, 100.0
+MARGIN = 1.25
+"""Claim over the difference of the sums."""
 GRID = 1e-6
 """Relative, of what is looked up between 4000 places."""
 

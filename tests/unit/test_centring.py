@@ -90,6 +90,26 @@ def test_marks_of_a_row_are_those_of_a_scan(law: tuple[float, ...], phase: float
     assert row.crossing(1e9) == pytest.approx(row.highest, abs=0.01 * (row.highest - row.lowest))
 
 
+class Counted(_Row):
+    """A row that counts the displacements that it is looked at."""
+
+    looked_at = 0
+
+    def forces(self, displacements: Array) -> Array:
+        self.looked_at += displacements.size
+        return super().forces(displacements)
+
+
+def test_a_mark_takes_a_few_hundred_displacements_and_no_more_than_a_tenth_beyond_the_deepest() -> None:
+    settings = settings_for(pulled(WEAK))
+    deepest = settings.largest_displacement
+    for mark in (_Row.largest_tension, lambda row: row.crossing(0.0)):
+        row = Counted(settings.estimate, 0.5, deepest)
+        mark(row)
+        assert row.looked_at < 500
+    assert 1.01 * deepest < row.highest < 1.2 * deepest + 0.2 * SPACING
+
+
 def test_what_only_repels_has_its_largest_tension_of_nothing_where_it_begins() -> None:
     load = {"kind": "load", "force": 0.5}
     repels = {"repulsion": {"amplitude": 0.18, "range": 0.13}}

@@ -30,7 +30,6 @@ from contact1d.workflow.experiments.running.holding import (
 )
 from contact1d.workflow.experiments.running.trust import RestlessError, ThroughError, UntrustedError
 from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.settings.dynamics import SOFTENING
 from contact1d.workflow.settings.settings import settings_for
 from tests.exact import ExactContact, exact_context
 from tests.given import Estimate
@@ -167,7 +166,7 @@ def test_automatic_drag_follows_the_contact_down_and_is_not_less_than_critical_w
             gentle.damping * damping_under(settings, -0.01) / settings.damping
         )
     stiffest = replace(settings, damped_stiffness=1e-9 * settings.damped_stiffness)
-    assert damping_under(stiffest, 0.3) == pytest.approx(settings.damping / SOFTENING**0.5)
+    assert damping_under(stiffest, 0.3) == pytest.approx(settings.damping / 0.6**0.5)
     toothed = opened(at(0.0), law=SNAPPING).settings
     assert toothed.is_toothed
     assert damping_under(toothed, -0.01) == damping_under(toothed, 0.3)

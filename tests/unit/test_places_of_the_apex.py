@@ -17,7 +17,7 @@ from scipy.signal import find_peaks
 
 from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.centring import MARGIN, expected, left_by_centring
+from contact1d.workflow.settings.centring import expected, left_by_centring
 from contact1d.workflow.settings.estimate import particles_estimate
 from contact1d.workflow.settings.settings import settings_for
 from contact1d.workflow.stability.pairs import ATTRACTION, LAW, REPULSION, STEEPEST
@@ -26,6 +26,8 @@ from tests.scenes import chains
 Array = NDArray[np.float64]
 RADIUS, SPACING, SPRING = 40.0, 0.8, 0.7
 OTHERS = (0.25, 0.0)
+MARGIN = 1.25
+"""Claim over the change."""
 SHARE = 0.02
 """Of a difference between two places of the apex: places are found to a thousandth of a step."""
 

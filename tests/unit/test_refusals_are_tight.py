@@ -11,7 +11,7 @@ import pytest
 
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.chain import SettingsError
-from contact1d.workflow.settings.drive import FEWEST_ROWS, FEWEST_STEPS, MOST_ROWS, drive_steps
+from contact1d.workflow.settings.drive import drive_steps
 from contact1d.workflow.settings.dynamics import _swinging_apart, stiffest_of
 from contact1d.workflow.settings.settings import settings_for
 from contact1d.workflow.settings.shape import tabulated
@@ -21,6 +21,8 @@ from tests.scenes import chains
 
 LOAD = {"kind": "load", "force": 0.05}
 CIRCLE = {"kind": "circle", "radius": 30.0}
+FEWEST_ROWS, MOST_ROWS, FEWEST_STEPS = 20, 50, 5
+"""Rows in a spacing of a drive's way, and timesteps in a row."""
 FIGURES = 1e-3
 """Relative: four figures of a number in a message."""
 

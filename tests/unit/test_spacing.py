@@ -14,9 +14,11 @@ from scipy.optimize import brentq
 from contact1d import SettingsError, load_run, run, write_deck
 from contact1d.workflow.scene import Scene, SceneError, read_scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
-from contact1d.workflow.settings.spacing import FEWEST, MOST, _contact_radius, _up, left_by_lattice, with_spacing
+from contact1d.workflow.settings.spacing import _contact_radius, _up, left_by_lattice, with_spacing
 
 ROUND_OFF = 1e-12
+FEWEST, MOST = 30, 5000
+"""Particles in a contact radius."""
 E_STAR, R, LOAD = 1e9, 1e-3, 1.0
 PATH = {"kind": "path", "displacements": [1e-7]}
 TANGENTIAL = {"kind": "tangential", "normal_force": LOAD, "displacements": [1e-8]}

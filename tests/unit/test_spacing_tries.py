@@ -12,8 +12,8 @@ import pytest
 from contact1d import SettingsError
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings import spacing
-from contact1d.workflow.settings.spacing import FEWEST, MOST, _contact_radius, left_by_lattice, with_spacing
-from tests.unit.test_spacing import E_STAR, LOAD, PATH, R, chosen, tables
+from contact1d.workflow.settings.spacing import _contact_radius, left_by_lattice, with_spacing
+from tests.unit.test_spacing import E_STAR, FEWEST, LOAD, MOST, PATH, R, chosen, tables
 
 
 def counted(monkeypatch: pytest.MonkeyPatch, left: Callable[[int], float]) -> tuple[list[int], int]:

@@ -13,7 +13,7 @@ import pytest
 
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.calibration import CALIBRATION
-from contact1d.workflow.settings.dynamics import SWING, stiffest_of
+from contact1d.workflow.settings.dynamics import stiffest_of
 from contact1d.workflow.settings.settings import Settings, settings_for
 from tests.scenes import chains
 
@@ -21,6 +21,8 @@ RADIUS, SPRING, SPACING, MASS = 200.0, 0.7, 0.5, 3.0
 LOAD = {"kind": "load", "method": "dynamic", "force": 0.5}
 SLIDE = {"kind": "slide", "normal_force": 1.0, "distance": 7.0}
 EXACT = 1e-9
+SWING = 0.5
+"""Of the swing of a slide's plate, the time to settle at least."""
 
 
 def scene(**tables: Any) -> Scene:
