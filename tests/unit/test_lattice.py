@@ -15,8 +15,9 @@ from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import bodies, neighbour_forces, places
 from contact1d.workflow.deck.steps import DisplaceInTime
 from contact1d.workflow.engine.session import Session
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
+from tests.scenes import chains
 
 MakeScene = Callable[..., Scene]
 OpenDeck = Callable[[Scene], tuple[Deck, Session]]
@@ -230,3 +231,19 @@ def test_bodies_at_displacement_zero(make_scene: MakeScene) -> None:
     assert upper.particles[:, 2] - settings.rest == pytest.approx(lower.particles[:, 0] ** 2 / 200.0, abs=1e-14)
     assert np.array_equal(lower.particles[:, 0], upper.particles[:, 0])
     assert bodies(scene, replace(settings, particles=5))[0].particles.shape == (5, 3)
+
+
+@pytest.mark.parametrize("particles", [4, 40, 401])
+@pytest.mark.parametrize("spacing", [1e-3, 1.0])
+def test_anchors_of_a_plate_are_hardly_no_line(particles: int, spacing: float) -> None:
+    """LAMMPS refuses a rigid body whose least moment of inertia is below 1e-7 of the largest; a line's is 0."""
+    load = {"kind": "load", "method": "dynamic", "force": 0.5}
+    law = (0.18, 0.13 * spacing, 0.09, 0.26 * spacing)
+    body = {"particles": particles, "spacing": spacing}
+    scene = scene_from_dict(
+        chains(1e9 * spacing, law=law, bodies=body, plate={}, damping={"coefficient": 0.3}, experiment=load)
+    )
+    anchors = bodies(scene, settings_for(scene))[1].anchors
+    apart = anchors - anchors.mean(axis=0)
+    moments = np.linalg.eigvalsh(np.eye(3) * (apart**2).sum() - apart.T @ apart)
+    assert 1e-6 < moments[0] / moments[-1] < 1e-5

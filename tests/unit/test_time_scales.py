@@ -232,3 +232,9 @@ def test_a_slide_is_loaded_under_its_own_drag_where_that_is_enough_and_no_more_t
         assert settings.calm_damping == drag
     else:
         assert settings.calm_damping == pytest.approx(enough, rel=EXACT)
+
+
+def test_a_relaxation_without_time_has_steps_in_which_nothing_swings_apart() -> None:
+    """Verlet's steps are stable below ω Δt = 2; a fourth of that is left."""
+    of = scene(experiment={"kind": "load", "force": 0.5})
+    assert per_step(of, settings_for(of)) == pytest.approx(0.5, rel=EXACT)
