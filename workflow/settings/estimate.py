@@ -106,8 +106,9 @@ class ContactEstimate:
         """
         height, reach = gap - self.rest + displacements, self.profile.reach
         inner, outer = np.zeros_like(height), np.full_like(height, min(self.spacing, reach))
-        while (short := (outer < reach) & (self.profile.height(outer) < height)).any():
-            inner[short], outer[short] = outer[short], np.minimum(2 * outer[short], reach)
+        with np.errstate(over="ignore"):
+            while (short := (outer < reach) & (self.profile.height(outer) < height)).any():
+                inner[short], outer[short] = outer[short], np.minimum(2 * outer[short], reach)
         if np.isinf(outer).any():
             raise OverflowError("the body is endlessly wide beside its spacing")
         column = np.arange(len(height))
