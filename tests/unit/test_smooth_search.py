@@ -175,6 +175,7 @@ def test_a_top_that_jumps_is_told_after_sixty_looks() -> None:
     one = contact(restless)
     with pytest.raises(UntrustedError, match="the largest tension is not found near"):
         _to_largest_tension(one, [at(0.67, 0.0)], 1e-6, through=False)
+    assert 60 <= len(one.places) <= 30 + 3 * 60
 
 
 def test_rows_beside_a_top_are_held_against_what_was_promised_there() -> None:
