@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from contact1d.analysis.pressure import Profile
@@ -22,7 +20,7 @@ def left_out(law: DoubleExponential, table: Table, profile: Profile) -> float:
     spacing = spacing_of(x)
     near = np.flatnonzero(upper - lower < reach)
     total = 0.0
-    farthest = math.ceil(reach / spacing)
+    farthest = int(reach / spacing)
     for offset in range(-farthest, farthest + 1):
         first = near[(near + offset >= 0) & (near + offset < len(x))]
         across, up = x[first + offset] - x[first], upper[first] - lower[first + offset]

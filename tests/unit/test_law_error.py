@@ -71,9 +71,10 @@ def test_what_is_left_out_is_summed_over_all_pairs_of_any_rows(seed: int, spacin
     reach = table.cutoff + 5.0 * 0.45
     for count, height in ((3, 0.2), (12, 0.0), (12, 0.6), (40, 0.95 * reach), (30, 1.2 * reach)):
         x = spacing * (np.arange(count) - 0.5 * (count - 1))
-        lower, upper = np.zeros(count), height + 0.05 * reach * random.uniform(-1.0, 1.0, count)
+        lower = np.full(count, random.choice([-9.0, 9.0]))
+        upper = lower + height + 0.05 * reach * random.uniform(-1.0, 1.0, count)
         if height == 0.0:
-            upper[3] = 0.0  # where its opposite stands
+            upper[3] = lower[3]  # where its opposite stands
         found = left_out(law, table, Profile(x, lower, upper, 0.0 * x, 0.0 * x))
         total = 0.0
         for across, up in (
