@@ -245,6 +245,7 @@ def test_a_dip_is_where_the_smoothest_samples_say_and_as_uncertain_as_others_dif
     for x, y in rows(seed):
         index = int(random.integers(1, x.size - 1)) if random.uniform() < 0.5 else int(np.argmin(y[1:-1])) + 1
         found = _interpolated(x, y, index, 0.01)
+        assert not found.at_end
         assert (found.position, found.uncertainty) == pytest.approx(interpolated(x, y, index, 0.01), rel=FITS)
 
 
