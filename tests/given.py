@@ -127,6 +127,7 @@ class GivenContact:
         self.states: list[State] = []
         self.ended: list[str] = []
         self.batches: list[int] = []
+        self.expected: list[int | None] = []
         self.waits: Any = None
 
     @property
@@ -141,6 +142,7 @@ class GivenContact:
 
     def begin(self, name: str, fragments: tuple[str, ...] = (), expected_steps: int | None = None) -> None:
         """A phase."""
+        self.expected.append(expected_steps)
         self._phases.append(Phase(name, (), begin=fragments))
 
     def row(self, row: Any) -> State:

@@ -167,7 +167,7 @@ def test_samples_are_taken_until_the_mean_is_known_to_the_tolerance_of_the_way()
     assert len(most.states) == 2040
     assert "statistics" in found.warnings
     assert found.tables[SAMPLE_TABLE]["load"] == (0.3,) * 2040
-    assert chunk_steps(most.settings) > 0
+    assert most.expected == [count * chunk_steps(most.settings) for count in (40, 200)]
 
 
 def test_a_mean_force_may_miss_its_load_by_five_standard_errors() -> None:

@@ -227,3 +227,16 @@ def test_windows_are_a_quarter_of_the_one_before_until_two_passes_agree_eight_at
         assert found[1] == pytest.approx(0.25 ** (agree - 1) - 0.25**agree + 0.0625 + 0.125)
     assert passes.windows == pytest.approx([0.1 * 0.25**n for n in range(min(agree, 8))])
     assert passes.tolerances == pytest.approx([0.3e-2] * min(agree, 8))
+
+
+def test_a_row_inside_of_the_window_gives_way_to_its_finer_ones() -> None:
+    """The window goes from peak + 0.08 to peak − 0.08, wherever another row moves the peak to."""
+    told = set()
+    for place in np.arange(0.2017, 0.45, 0.0031):
+        beside = at(float(place), -0.21)
+        known = saw(unloading=sorted([*saw().unloading, beside], key=lambda s: -s.displacement))
+        rows = [d for phase in _refined(known, PRELOAD, 0.08) for d in rows_of(phase)]
+        inside = abs(beside.displacement - known.peak.position) <= 0.08
+        assert (beside.displacement in rows) == (not inside)
+        told.add(inside)
+    assert told == {True, False}
