@@ -152,7 +152,18 @@ def test_what_cells_leave_open_is_their_sum_beside_jkr(particles: int) -> None:
 
 @pytest.mark.parametrize(
     ("spacing", "particles", "phase"),
-    [(2.0, "auto", 0.0), (2.0, "auto", 0.25), (2.0, "auto", 0.5), (0.3, 121, 0.0), (1.0, 121, 0.0), (3.0, 120, 0.5)],
+    [
+        (1.0, "auto", 0.0),
+        (1.5, "auto", 0.0),
+        (1.5, "auto", 0.25),
+        (3.0, "auto", 0.0),
+        (2.0, "auto", 0.0),
+        (2.0, "auto", 0.25),
+        (2.0, "auto", 0.5),
+        (0.3, 121, 0.0),
+        (1.0, 121, 0.0),
+        (3.0, 120, 0.5),
+    ],
 )
 def test_the_claim_covers_where_the_sum_over_cells_has_its_largest_tension(
     spacing: float, particles: Any, phase: float

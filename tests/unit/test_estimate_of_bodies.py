@@ -182,6 +182,9 @@ def test_a_body_carries_no_more_than_all_its_particles_on_the_opposite_ones(shap
 @pytest.mark.parametrize("depth", [1e-3, 10.0, 5e5])
 def test_a_plane_is_felt_as_deep_as_a_body_may_go(depth: float) -> None:
     found = plane_estimate(body("punch"), ROW, 0.5)
+    assert not found.snaps
+    assert found.let_go_early(1.0, 1.0) == 0.0
+    assert found.snap == (0.0, 0.0)
     assert found.contact_force(depth) == pytest.approx(12.0 / ROW * 0.5 * depth, rel=1e-6)
     assert found.displacement_at(12.0 / ROW * 0.5 * depth) == pytest.approx(depth, rel=1e-6)
 

@@ -98,8 +98,8 @@ class AdhesiveEstimate(ContactEstimate):
         known: the greatest place up to which it is known [LU].
     """
 
-    work: float = 0.0
-    known: float = field(default=0.0)
+    work: float = field(kw_only=True)
+    known: float = field(kw_only=True)
 
     @property
     def modulus(self) -> float:
