@@ -92,12 +92,20 @@ def test_what_rows_of_a_pull_read_off_a_smooth_curve_is_its_vertex() -> None:
     for share in (2.0 / 48.0, 0.3, 0.55, 0.71, 47.0 / 48.0):
         place = zero + share * (last - zero)
 
-        def forces(d: Array, place: float = place) -> Array:
+        asked: list[Array] = []
+
+        def forces(d: Array, place: float = place, asked: list[Array] = asked) -> Array:
             assert d.size < 60  # rows of a pull-off are some tens
+            asked.append(d)
             return np.asarray(-0.3 + ((d - place) / (zero - last)) ** 2)
 
         read = _read_off(found, forces)
         assert read == pytest.approx((0.3, place), rel=1e-7)
+        rows, step = asked[0], (zero - last) / 48.0
+        beside = np.clip(place + step * np.array([-0.5, -0.25, 0.0, 0.25, 0.5]), rows.min(), zero)
+        both = np.concatenate([rows, beside])
+        assert np.abs(asked[1][:, None] - both).min(axis=1) == pytest.approx(0.0, abs=1e-6 * step)
+        assert np.abs(both[:, None] - asked[1]).min(axis=1) == pytest.approx(0.0, abs=1e-6 * step)
     for end in (zero + 1.0, last - 1.0):  # no crest among the rows
         rising = _read_off(found, lambda d, p=end: (d - p) ** 2)
         assert rising == _largest_tension(found, lambda d, p=end: (d - p) ** 2)

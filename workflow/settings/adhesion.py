@@ -132,9 +132,8 @@ class AdhesiveEstimate(ContactEstimate):
 
     def is_beyond(self, wanted: float, load: float) -> bool:
         """Whether it is known well beyond fixed grips, a displacement [LU] and a load [FU], and to its own tension."""
-        radius, displacement, force = self.end
-        apart = radius > BEYOND * self.fixed_grips[0]
-        return apart and displacement > BEYOND * wanted and force > max(BEYOND * load, self.pull_off_force())
+        least = BEYOND * self.fixed_grips[0], BEYOND * wanted, max(BEYOND * load, self.pull_off_force())
+        return all(known > needed for known, needed in zip(self.end, least, strict=True))
 
     def require_one_edge(self) -> None:
         """Refuse a profile whose h falls again beyond its least value.
