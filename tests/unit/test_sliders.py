@@ -132,11 +132,11 @@ def test_errors_are_held_against_the_force_and_the_work_of_all_that_sticks(parts
 
 @pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
 def test_clear_of_the_plane_is_by_a_share_of_the_bodys_own_height(scale: float) -> None:
-    heights = scale * (3.0 + chain().heights)
+    heights = scale * (3.0 + np.arange(-14.0, 16.0) ** 2 / 200.0)  # the last one alone is the highest
     free = Sliders(scale * chain().x, heights, NORMAL, TANGENTIAL, MU).displacement_under(0.0)
-    assert 1e-10 < (heights.min() - free) / np.ptp(heights) < 1e-8
+    assert (heights.min() - free) / np.ptp(heights) == pytest.approx(1e-9, rel=0.01)
     flat = Sliders(scale * chain().x, 0.0 * heights, NORMAL, TANGENTIAL, MU).displacement_under(0.0)
-    assert flat < 0.0
+    assert -1.5e-9 < flat < 0.0
 
 
 @given(way=st.lists(st.tuples(depths, ways), min_size=1, max_size=6))

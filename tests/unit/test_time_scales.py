@@ -60,6 +60,8 @@ def test_a_motion_that_is_the_result_has_steps_that_shrink_with_the_root_of_the_
     """The error of a step goes with its square; rows take whole numbers of steps, so that one may be a little less."""
     of = slide(tolerance)
     assert 0.7 * product < per_step(of, settings_for(of)) <= product * (1.0 + EXACT)
+    slow = of.with_({"cantilever.velocity": 0.003})
+    assert 0.95 * product < per_step(slow, settings_for(slow)) <= product * (1.0 + EXACT)
 
 
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-6])
