@@ -129,7 +129,7 @@ def test_particles_let_go_from_the_edge_inwards_and_the_last_ones_together() -> 
     assert ((shares > 0.0) & (shares < 1.0)).sum(axis=1).max() <= 1
 
 
-@pytest.mark.parametrize("particles", [120, 121])
+@pytest.mark.parametrize("particles", [118, 120, 121])
 def test_what_cells_leave_open_is_their_sum_beside_jkr(particles: int) -> None:
     """F_A of the particles' own places, the largest tension of the sum over their cells, against 3π W R/2."""
     bodies = BODIES | {"particles": particles, "spacing": 0.7, "bulk_stiffness": 0.7}

@@ -209,3 +209,11 @@ def test_a_spacing_whose_square_is_nothing_is_told_at_once() -> None:
         plane_estimate(body("parabola"), 1e-200, 1.0).displacement_at(1.0)
     with pytest.raises(OverflowError, match="endlessly wide"):
         plane_estimate(Flat([]), 1.0, 1.0).half_width(1.0, 0.0)
+
+
+def test_an_estimate_that_scenes_share_is_not_to_be_written_to() -> None:
+    found = pairs("parabola")
+    assert pairs("parabola") is found
+    for shared in (found.gap, found.force):
+        with pytest.raises(ValueError, match="read-only"):
+            shared[0] = 1.0
