@@ -86,9 +86,7 @@ def test_all_numbers_of_a_contact_beside_are_added_and_none_has_any_at_first(con
 PHASES = (Phase("loading", displacements([0.0, 0.1, 0.2])), Phase("unloading", displacements([0.1, 0.0]), state=True))
 
 
-def test_a_way_keeps_what_is_asked_for_and_all_where_nothing_is(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_way_keeps_what_is_asked_for_and_all_where_nothing_is() -> None:
     none, some = given_scene(), given_scene(output={"states": 2})
     assert planned_way(none, PHASES) is PHASES
     kept = planned_way(some, PHASES)

@@ -31,13 +31,12 @@ def scene_of(name: str, spacing: float = 0.5) -> Scene:
 
 def frames(folder: Path, numbers: Any) -> None:
     """Append frames (rows, atoms, columns), with atoms from the last to the first."""
-    _, atoms, columns = numbers.shape
+    atoms = numbers.shape[1]
     with (folder / FRAMES).open("ab") as file:
         for row in numbers:
             ids = np.arange(1.0, atoms + 1.0)
             table = np.column_stack([ids, row])[::-1]
             file.write(b"x" * HEADER + np.ascontiguousarray(table).tobytes())
-    assert columns
 
 
 def opened(folder: Path, scene: Scene) -> tuple[Any, SteppedRows]:
