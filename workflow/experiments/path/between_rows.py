@@ -30,6 +30,8 @@ MOST_PAIRS, MOST_PLACES = 4_000_000, 32
 
 def missed_between_rows(scene: Scene, settings: Settings, displacements: Sequence[float]) -> float:
     """Share of the largest tension that rows at falling displacements [LU] may miss; 0 where the estimate has none."""
+    if len(displacements) < 2:
+        return 0.0
     estimate = settings.estimate
     x = scene.bodies.spacing * (np.arange(settings.particles) - 0.5 * (settings.particles - 1))
     heights, counts = np.unique(estimate.profile.height(np.abs(x)), return_counts=True)
@@ -39,11 +41,12 @@ def missed_between_rows(scene: Scene, settings: Settings, displacements: Sequenc
         gaps = estimate.rest + heights - places[:, None]
         return np.asarray(np.interp(gaps, estimate.gap, estimate.force, right=0.0) @ counts)
 
-    between = int(np.clip(MOST_PAIRS // max(1, rows.size * heights.size), 2, MOST_PLACES))
-    fine = np.interp(np.arange((rows.size - 1) * between + 1) / between, np.arange(rows.size), rows)
+    between = int(np.clip(MOST_PAIRS // (rows.size * heights.size), 2, MOST_PLACES))
+    places = np.linspace(0.0, rows.size - 1.0, (rows.size - 1) * between + 1)
+    fine = np.interp(places, np.arange(rows.size), rows)
     curve = forces(fine)
     top = int(np.argmin(curve))
-    if not curve[top] < 0.0 or rows.size < 2:
+    if not curve[top] < 0.0:
         return 0.0
     increment = abs(float(fine[max(top - between, 0)] - fine[min(top + between, fine.size - 1)])) / 2.0
     read = [largest_tension(rows.tolist(), forces(rows + shift * increment).tolist()).smooth for shift in SHIFTS]
