@@ -104,6 +104,7 @@ def test_a_width_takes_less_than_a_bisection_and_marks_some_thousands_of_places(
     """A bisection to all digits asks a body 60 times, and a search for a place of F(d) would some 40 times 400."""
     profile = Counted([])
     found = particles_estimate(PAIR, profile, ROW, 0.7, CUTOFF, REST)
+    assert 3000 < found.gap.size < 6000
     found.half_width(0.3, CUTOFF)
     assert len(profile.asked) < 60
     assert sum(profile.asked) < 1000
