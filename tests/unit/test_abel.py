@@ -180,7 +180,9 @@ def test_the_slope_on_the_axis_alone_says_to_which_side_the_pressure_grows(side:
 @pytest.mark.parametrize("spacing", [2.0**-20, 1.0, 2.0**20])
 def test_places_must_be_the_same_on_both_sides_in_any_unit(spacing: float) -> None:
     x = places(12, spacing)
-    line_load(x + 1e-8 * spacing, np.ones(12))
+    assert line_load(x + 3e-7 * spacing, np.ones(12)).at_edge == pytest.approx(0.0, abs=POWERS)
+    with pytest.raises(ValueError, match="the same on both sides"):
+        line_load(x + 3e-6 * spacing, np.ones(12))
     with pytest.raises(ValueError, match="the same on both sides"):
         line_load(x + 1e-3 * spacing, np.ones(12))
     with pytest.raises(ValueError, match="the same on both sides"):
