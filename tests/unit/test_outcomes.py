@@ -131,7 +131,7 @@ def ending(pressure: dict[int, float]) -> Profile:
     ("pressure", "ends"),
     [
         ({}, False), ({0: -0.4}, True), ({39: -0.4}, True), ({1: -0.4}, False), ({38: -0.4}, False),
-        ({0: -0.2, 39: -0.2}, False), ({0: 0.6}, True), ({39: 0.6}, True),
+        ({0: -0.2, 39: -0.2}, False), ({0: 0.6}, True), ({39: 0.6}, True), ({0: 0.5}, False),
     ],
 )  # fmt: skip
 def test_a_contact_reaches_the_end_of_its_chain_where_its_largest_tension_is_there(

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,17 +16,14 @@ from contact1d.workflow.experiments.load.kind import planned as planned_load
 from contact1d.workflow.experiments.path.thermal import thermal_rows
 from contact1d.workflow.experiments.pull_off.kind import advice
 from contact1d.workflow.experiments.pull_off.kind import planned as planned_pull_off
-from contact1d.workflow.experiments.running.contact import MOST_REPEATS
 from contact1d.workflow.experiments.running.kind import advice_at_rest
 from contact1d.workflow.experiments.running.law_error import law_error
 from contact1d.workflow.experiments.running.sampling import chunk_steps, sampled_phase, standard_error
-from contact1d.workflow.experiments.slide.motion import EVERY
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import Settings, settings_for
 from tests.given import PULL, at, given_scene
 from tests.unit.test_settings_similarity import SCENES
 
-FRAGMENTS = Path(__file__).parents[2] / "lammps_inputs" / "fragments"
 TIMED: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
 
 
@@ -103,16 +98,6 @@ def test_a_standard_error_is_that_of_twenty_means() -> None:
     middle = sum(means) / 20.0
     variance = sum((mean - middle) ** 2 for mean in means) / 19.0
     assert standard_error(samples.tolist()) == pytest.approx(math.sqrt(variance / 20.0))
-
-
-def test_means_of_a_slide_are_over_the_timesteps_that_the_fragment_says() -> None:
-    text = (FRAGMENTS / "cantilever.lmp").read_text(encoding="utf-8")
-    every = {int(found) for found in re.findall(r"ave/time\s+(\d+)", text)}
-    assert every == {EVERY}
-
-
-def test_a_row_is_repeated_two_hundred_times_at_most() -> None:
-    assert MOST_REPEATS == 200
 
 
 def test_an_equilibrium_is_off_by_twice_what_is_left_out_of_its_forces() -> None:

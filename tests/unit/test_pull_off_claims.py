@@ -163,6 +163,8 @@ def test_the_next_pass_has_the_rows_before_the_window_its_marks_and_those_after(
     expected = sorted({*np.round(outer, 9), *np.round(fine, 9)}, reverse=True)
     assert pull == pytest.approx([d for d in expected if peak - 1e-9 <= d < zero])
     assert apart == pytest.approx([d for d in expected if d < peak - 1e-9])
+    short = _refined(saw(loading=[at(0.0, -0.1), at(0.5, 0.05), at(0.9, 0.29), at(0.95, 0.2995)]), PRELOAD, 0.08)
+    assert rows_of(short[0]) == pytest.approx([0.0, 0.5, 0.9, 0.95 + 0.05 * (0.0005 / 0.0095)])
     none = _refined(saw(loading=[at(0.0, -0.1), at(0.95, 0.1), at(0.85, 0.31)]), PRELOAD, 0.08)
     assert rows_of(none[0])[-1] == max(rows_of(none[0])) == rows_of(none[1])[0]
 

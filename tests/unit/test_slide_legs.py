@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,7 +13,7 @@ import numpy as np
 import pytest
 
 from contact1d.workflow.experiments.slide.findings import outcome_of
-from contact1d.workflow.experiments.slide.motion import Motion, motion_of
+from contact1d.workflow.experiments.slide.motion import EVERY, Motion, motion_of
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 from tests.unit.test_settings_similarity import SCENES
@@ -45,6 +47,12 @@ def test_rows_of_a_leg_begin_where_the_leg_before_ended(given: Given, motion: Mo
         rows = motion.of_leg(i)
         assert (rows.start, rows.stop) == (first, last + 1)
         assert motion.time[rows][[0, -1]] == pytest.approx([0.0 if i == 0 else given.ends[i - 1], given.ends[i]])
+
+
+def test_means_are_over_the_timesteps_that_the_fragment_says(motion: Motion) -> None:
+    fragment = Path(__file__).parents[2] / "lammps_inputs" / "fragments" / "cantilever.lmp"
+    assert {int(found) for found in re.findall(r"ave/time\s+(\d+)", fragment.read_text(encoding="utf-8"))} == {EVERY}
+    assert motion.of_leg(0).start == 0
 
 
 def test_drive_and_sums_go_on_over_all_legs(given: Given, motion: Motion) -> None:

@@ -232,7 +232,9 @@ def test_rows_on_a_slanting_way_are_where_particles_begin_or_end_to_touch(way: f
 def test_of_too_many_rows_those_are_kept_that_lie_evenly_and_what_the_others_miss_is_claimed() -> None:
     """At a tolerance of 0.1 there are ten on a way; other particles are moved by a tenth too much or less."""
     scene = scene_of(
-        {"normal_displacement": [0.0, 0.9, 0.9], "displacements": [0.0, 0.3, 0.4]}, accuracy={"tolerance": 0.1}
+        {"normal_displacement": [0.0, 0.9, 0.9], "displacements": [0.0, 0.3, 0.4]},
+        accuracy={"tolerance": 0.1},
+        bodies={"bulk_stiffness": 0.7},
     )
     settings = settings_for(scene)
     rows = passed(scene, settings)

@@ -78,6 +78,8 @@ def test_what_broke_bounds_what_holds_from_above_by_the_momentum_of_the_plate() 
     for broken, done in ((0.6059, True), (0.6061, False)):
         known.broken = broken
         assert known.done == done
+    exact = Search(2.0**-7, 1.0, lambda tension: 0.0, [held(0.0), held(1.0)], broken=1.0 + 2.0**-7)
+    assert exact.done
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
