@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from contact1d.analysis.polynomial import fitting, lowest_minimum, real_roots, through, value
 
 ROUND_OFF = 1e-12  # of a polynomial of low degree in doubles
+ALL_DIGITS = 1e-14  # some last bits: of a double one is 2e-16
 PLACES = np.array([-1.0, -0.4, 0.1, 0.7, 1.0])
 QUARTIC = np.array([0.0, 0.05, -0.5, 0.0, 1.0])
 """t⁴ − t²/2 + t/20: a minimum on each side of 0, the left one lower."""
@@ -66,11 +68,37 @@ def test_a_highest_coefficient_of_round_off_leaves_the_roots_of_the_others(lead:
     assert real_roots(np.asarray([-0.25, 2.0, lead]), -5.0, 5.0) == pytest.approx([0.125])
 
 
-def test_through_many_values_the_matrix_is_as_exact_as_their_polynomial_can_be() -> None:
-    """21 values: 1e-8 of round-off is left; least squares, which cut small singular values off, leave 1e-5."""
-    t = np.linspace(-0.5, 0.5, 21)
-    y = np.random.default_rng(0).normal(size=21)
-    assert t[:, None] ** np.arange(21) @ fitting(t, 20) @ y == pytest.approx(y, abs=1e-7)
+@pytest.mark.parametrize("count", [2, 3, 7, 21])
+def test_the_matrix_of_values_it_goes_through_keeps_all_digits(count: int) -> None:
+    """Against the inverse of the powers in whole fractions, wherever the places lie and in any order."""
+    random = np.random.default_rng(count)
+    for t in (np.linspace(-0.5, 0.5, count), random.permutation(np.linspace(-0.3, 0.9, count))):
+        exact = inverse_of_powers([Fraction(place) for place in t.tolist()])
+        largest = np.abs(exact).max(axis=1, keepdims=True)
+        assert (np.abs(fitting(t, count - 1) - exact) <= ALL_DIGITS * largest).all()
+
+
+def inverse_of_powers(t: list[Fraction]) -> np.ndarray:
+    """By Gauß and Jordan."""
+    n = len(t)
+    rows = [[*(place**k for k in range(n)), *(Fraction(i == j) for j in range(n))] for i, place in enumerate(t)]
+    for i in range(n):
+        pivot = next(k for k in range(i, n) if rows[k][i])
+        rows[i], rows[pivot] = rows[pivot], rows[i]
+        rows[i] = [number / rows[i][i] for number in rows[i]]
+        rows = [
+            row if k == i else [a - row[i] * b for a, b in zip(row, rows[i], strict=True)] for k, row in enumerate(rows)
+        ]
+    return np.array([[float(number) for number in row[n:]] for row in rows])
+
+
+@pytest.mark.parametrize("far", [[], [30.0], [-1e4], [5.0, -400.0, 2e3, 1e4]])
+def test_roots_far_off_take_no_digits_from_those_at_hand(far: list[float]) -> None:
+    for root in (-0.9, -1e-3, 0.3, 0.8):
+        law = np.polynomial.polynomial.polyfromroots([root])
+        for one in far:
+            law = np.polynomial.polynomial.polymul(law, [1.0, -1.0 / one])
+        assert real_roots(law, -1.0, 1.0) == pytest.approx([root], rel=ALL_DIGITS)
 
 
 def test_a_matrix_that_is_kept_for_the_next_state_cannot_be_changed() -> None:
