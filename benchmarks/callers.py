@@ -109,14 +109,38 @@ def called_in(folder: Path, test_file: str) -> Called:
     return {test: call for test, call in found.items() if test not in failed}
 
 
+def collected(folder: Path, test_files: list[str]) -> dict[str, str]:
+    """The tests of each file, a line each, as pytest finds them in a copy of this folder."""
+
+    class Notes:
+        @staticmethod
+        def pytest_collection_finish(session: Any) -> None:
+            (folder / NOTED).write_text(json.dumps([item.nodeid for item in session.items]), encoding="utf-8")
+
+    def run() -> int:
+        import pytest
+
+        return int(pytest.main([*QUICK, "--collect-only", "--rootdir", str(folder), *test_files], [Notes()]))
+
+    (folder / NOTED).unlink(missing_ok=True)
+    in_copy(folder, run, 3600.0)
+    found: dict[str, str] = {}
+    for test in json.loads((folder / NOTED).read_text(encoding="utf-8")):
+        name = test.partition("::")[0]
+        found[name] = found.get(name, "") + f"{test}\n"
+    return found
+
+
 def callers(folder: Path, test_files: list[str], kept: Path | None) -> Called:
     """All tests of these files; what was looked at before, and `kept`, is taken from there where the file is the same.
 
-    A test whose file is the same may call other functions since: without `kept` all is looked at anew.
+    So must its tests be, which may come from another file. A test that is the same may call other functions since:
+    without `kept` all is looked at anew.
     """
     old = json.loads(kept.read_text(encoding="utf-8")) if kept and kept.exists() else {}
+    there = collected(folder, test_files) if kept else {}
     for name in test_files:
-        mark = hashlib.sha256((ROOT / name).read_bytes()).hexdigest()
+        mark = hashlib.sha256((ROOT / name).read_bytes() + there.get(name, "").encode()).hexdigest()
         if old.get(name, {}).get("mark") != mark:
             old[name] = {"mark": mark, "calls": called_in(folder, name)}
             print(f"{len(old[name]['calls'])} tests of {name}", flush=True)

@@ -111,7 +111,8 @@ def looked_for(chosen: Sequence[Mutant], workers: int, kept: Path | None) -> Fou
     with tempfile.TemporaryDirectory() as temporary, ThreadPoolExecutor(workers) as executor:
         copies = [copy_of_this(Path(temporary) / str(number)) for number in range(workers)]
         called = callers(copies[0], test_files(), kept)
-        several = [tests_of(mutant, called) for mutant in chosen]
+        of_function = {(one.file, one.function): tests_of(one, called) for one in chosen}
+        several = [of_function[mutant.file, mutant.function] for mutant in chosen]
 
         def wanted(number: int, again: bool) -> Wanted:
             tests = several[number][again]
