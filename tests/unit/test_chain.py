@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.chain import SettingsError, chain_length, decay_length, reflected
+from contact1d.workflow.settings.chain import SettingsError, chain_length, decay_length, felt_up_to, reflected
 from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import chains
 from tests.unit.test_estimate import RADIUS, REST, estimate, parabola, scene_of
@@ -53,6 +54,19 @@ def test_what_comes_back_from_a_free_end_is_what_is_said() -> None:
     other = math.exp(-2.0 * (particles - beyond) / decay_length(scene))
     assert short / endless - 1.0 - other == pytest.approx(there, rel=0.2)  # the edge is no particle
     assert reflected(parabola(), found.estimate, found.largest_displacement, particles) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("largest", "share", "place"),
+    [(10.0, 0.1, 5.0), (10.0, 0.6, 1.0), (-3.5, 0.2, 6.0), (-7.0, 0.5, 8.0), (-9.0, 0.5, 0.5)],
+)
+def test_a_contact_is_felt_up_to_the_last_gap_with_more_than_the_share(
+    largest: float, share: float, place: float
+) -> None:
+    """Of the gaps beyond r₀ − d, here 0.5 − d; without a force in any of them it is r₀."""
+    force = np.array([4.0, 3.0, 2.0, -2.0, -1.0, 0.5, 0.3, 0.1, 0.01, 0.0, 0.0])
+    law: Any = SimpleNamespace(gap=np.arange(11.0), force=force, rest=0.5)
+    assert felt_up_to(law, largest, share) == place
 
 
 @pytest.mark.parametrize("share", [1e-2, 1e-4])

@@ -39,6 +39,7 @@ X = np.arange(40) - 19.5
 PROFILE = Profile(
     X, 0.0 * X, 0.0 * X + 0.1, np.where(np.abs(X) < 8.0, 1.0, np.where(np.abs(X) < 10, -0.5, 0.0)), 0.0 * X
 )
+ROUND = {"kind": "parabola", "radius": 100.0}
 RULE: Any = None
 SNAPPING = (0.18, 0.03, 0.09, 0.06)
 
@@ -95,6 +96,24 @@ def test_a_plate_that_moves_is_not_at_rest_and_what_drag_carries_is_in_the_claim
         assert len(held.states) == rows
         if rows == 1:
             assert held.unbalance == pytest.approx(row.drag * speed * moving / first.settings.plate_mass)
+
+
+def test_particles_that_are_part_of_the_plate_are_no_weight_beside_it() -> None:
+    contact = opened(at(LOAD))
+    contact.scene = scene_from_dict({
+        "title": "Adhesion in time",
+        "bodies": {"particles": 40, "spacing": 1.0, "bulk_stiffness": 1.0, "lower": "rigid_plane", "profile": ROUND},
+        "adhesion": {"work_of_adhesion": 0.01},
+        "damping": {"coefficient": "auto"},
+        "plate": {},
+        "experiment": {"kind": "load", "method": "dynamic", "force": LOAD},
+    })  # fmt: skip
+    contact.settings = settings_for(contact.scene)
+    row = hold_row(contact.scene, contact.settings, LOAD, SCALE, Start.KEPT)
+    speed = 0.9 * row.rest / row.drag
+    slow = opened(at(LOAD, velocity=-speed))
+    slow.scene, slow.settings = contact.scene, contact.settings
+    assert hold(slow, LOAD, SCALE).unbalance == pytest.approx(row.drag * speed)
 
 
 def test_rows_go_on_from_where_the_last_ended_and_look_closer_where_the_plate_stood_still() -> None:

@@ -131,12 +131,15 @@ def test_a_table_follows_the_law_from_where_the_coldest_and_the_hottest_particle
     assert pressed.table_from == pytest.approx(0.2 * pressed.closest, rel=EXACT)
 
 
+@pytest.mark.parametrize("in_time", [False, True])
 @pytest.mark.parametrize("neighbours", [None, 0.3, 40.0])
 def test_plane_and_bond_in_series_are_the_scenes_spring_and_neighbours_see_it_but_for_the_tolerance(
-    neighbours: float | None,
+    neighbours: float | None, in_time: bool
 ) -> None:
+    """In time and without neighbours both are alike: 2k each."""
     springs = None if neighbours is None else {"stiffness": neighbours}
-    of = scene(interaction=None, bodies={"lower": "rigid_plane"}, neighbours=springs)
+    timed = {"damping": {"coefficient": 0.3}, "plate": {"mass": 7.0}, "experiment": LOAD | {"method": "dynamic"}}
+    of = scene(interaction=None, bodies={"lower": "rigid_plane"}, neighbours=springs, **timed if in_time else {})
     settings = settings_for(of)
     if of.stands:
         assert (settings.bulk_stiffness, settings.plane_stiffness) == (SPRING, SPRING)
@@ -145,6 +148,8 @@ def test_plane_and_bond_in_series_are_the_scenes_spring_and_neighbours_see_it_bu
         assert series == pytest.approx(SPRING, rel=EXACT)
         softer = (SPRING + 4.0 * (neighbours or 0.0)) / settings.plane_stiffness
         assert softer == pytest.approx(1e-3 if neighbours else 0.5, rel=EXACT)
+        if neighbours is None:
+            assert settings.bulk_stiffness == pytest.approx(2.0 * SPRING, rel=EXACT)
     assert settings_for(scene()).plane_stiffness == 0.0
 
 

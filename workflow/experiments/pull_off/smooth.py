@@ -264,11 +264,8 @@ def radius_rate(states: list[State], critical: State) -> float:
 def _passed(states: list[State]) -> bool:
     """Whether the last rows lie beyond a largest tension."""
     tension = [-s.force for s in states]
-    return (
-        len(tension) > ROWS_BEYOND_PEAK
-        and max(tension) > 0.0
-        and tension.index(max(tension)) < len(tension) - ROWS_BEYOND_PEAK
-    )
+    largest = max(tension)
+    return largest > 0.0 and tension.index(largest) < len(tension) - ROWS_BEYOND_PEAK
 
 
 def _peak(states: list[State]) -> Peak:
