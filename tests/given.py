@@ -18,7 +18,9 @@ import numpy as np
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.deck.steps import Hold, Phase
+from contact1d.workflow.experiments.pull_off.dynamic import Search
 from contact1d.workflow.experiments.running.contact import State
+from contact1d.workflow.experiments.running.holding import Held
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import Settings, settings_for
 from tests.scenes import chains
@@ -51,6 +53,19 @@ def at(displacement: float, force: float, radius: float | None = 1.0, uncertaint
     rule: Any = Radius(radius, uncertainty)
     known = State("unloading", displacement, force, PROFILE, 0.1, 0.0, 0.0, rule)
     return replace(known, **more)
+
+
+def held(tension: float, place: float = 1.0, **more: Any) -> Held:
+    """A pull that holds that tension [FU] at a place [LU]."""
+    return Held(-tension, (at(place, -tension, **more),), True, 0.0)
+
+
+def search(*tensions: float, past: float = 0.0, guess: float = 1.0, **bounds: float) -> Search:
+    """A search to 1e-2 that has tried these tensions [FU], the first of them 0."""
+    found = Search(1e-2, guess, lambda tension: past, [held(0.0), *(held(t) for t in tensions)])
+    for name, value in bounds.items():
+        setattr(found, name, value)
+    return found
 
 
 @dataclass

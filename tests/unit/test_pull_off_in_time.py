@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 from contact1d.workflow.experiments.pull_off.dynamic import (
-    Search,
     _critical_radius,
     _outcome,
     _overshoot,
@@ -24,21 +23,10 @@ from contact1d.workflow.experiments.pull_off.dynamic import (
 )
 from contact1d.workflow.experiments.running.holding import Held, Start, overshoot
 from contact1d.workflow.experiments.running.trust import UntrustedError
-from tests.given import PULL, Estimate, GivenContact, GivenContext, at, given_scene
+from tests.given import PULL, Estimate, GivenContact, GivenContext, at, given_scene, held, search
 
 TIMED: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
 SCENE = given_scene(**TIMED, experiment=PULL | {"method": "dynamic"})
-
-
-def held(tension: float, place: float = 1.0, **more: Any) -> Held:
-    return Held(-tension, (at(place, -tension, **more),), True, 0.0)
-
-
-def search(*tensions: float, past: float = 0.0, guess: float = 1.0, **bounds: float) -> Search:
-    found = Search(1e-2, guess, lambda tension: past, [held(0.0), *(held(t) for t in tensions)])
-    for name, value in bounds.items():
-        setattr(found, name, value)
-    return found
 
 
 def lagrange(places: list[float], place: float) -> np.ndarray:

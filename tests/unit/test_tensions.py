@@ -5,26 +5,13 @@ A share of what is left to the expected one, then both sides of it, then the mid
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
 
 from contact1d.workflow.experiments.pull_off.dynamic import Search, top_of
 from contact1d.workflow.experiments.running.holding import Held
-from tests.given import at
+from tests.given import at, held, search
 
 MARGIN = 0.45 * 1e-2
-
-
-def held(tension: float, place: float = 1.0, **more: Any) -> Held:
-    return Held(-tension, (at(place, -tension, **more),), True, 0.0)
-
-
-def search(*tensions: float, past: float = 0.0, guess: float = 1.0, **bounds: float) -> Search:
-    found = Search(1e-2, guess, lambda tension: past, [held(0.0), *(held(t) for t in tensions)])
-    for name, value in bounds.items():
-        setattr(found, name, value)
-    return found
 
 
 @pytest.mark.parametrize(
