@@ -41,7 +41,7 @@ samples count as smooth: across a jump, and of noise, the ratio is near 1."""
 LEAST_CONVERGENCE = 0.2
 """Least part of a position's change from one polynomial to the next that is believed to be left at the one after."""
 CLAIM_FACTOR = 2.0
-"""Uncertainty of a position over that. The cases without snaps are covered in 98 % without noise, in 99 % with it."""
+"""Uncertainty of a position over that. The cases without snaps are covered in 99 %, with noise or without."""
 STEEPNESS_FACTOR = 2.0
 """Least uncertainty of an interpolated position over the spacing and the steepness of the dip: what the lowest sample's
 higher neighbour has risen, over the depth below the lower shoulder. A dip of one sample may lie anywhere up to the

@@ -17,7 +17,7 @@ BODY_RADIUS = 1000.0  # LU
 CASES = 200
 SMALL_CASES = 300  # of them 0.98 covered, of those without a radius 0.99; 0.9 by interpolation alone
 COVERED = 0.95  # share of cases whose error the uncertainty must cover; 0.96 to 1 measured on 300 cases of each kind
-COVERED_SMOOTH = 0.98  # the share that `analysis.extremum` states for cases without snaps and noise
+COVERED_SMOOTH = 0.99  # the share that `analysis.extremum` states for cases without snaps and noise
 MEDIAN_ERROR = 1e-3  # spacings; 1e-4 measured: the degree of the interpolant limits it
 SNAP_ERROR = 0.1  # spacings; 0.03 measured: a particle's snap is seen on the lattice only
 TYPICAL_ERROR = 0.15  # spacings, 95 % of cases; 0.04 measured: dips of the shortest range are three spacings wide
@@ -103,7 +103,7 @@ def test_the_tensile_radius_is_that_of_the_closed_form_wherever_the_lattice_lies
 
 
 def test_the_uncertainty_covers_as_much_as_is_said_where_nothing_snaps() -> None:
-    """0.99 measured on 600 cases; half of this uncertainty would cover 0.97 of them, a third 0.96."""
+    """0.995 measured on 600 cases; half of this uncertainty would cover 0.987 of them, a third 0.980."""
     cases = [errors(False, 0.0, seed) for seed in (11, 14, 15)]
     assert np.mean(np.concatenate([error <= uncertainty for error, uncertainty in cases])) >= COVERED_SMOOTH
 
