@@ -33,6 +33,9 @@ class Peak:
 
 LEAST_SEPARATION = 1e-5
 """Distance of two places over that of the outermost ones below which no polynomial is put through them."""
+AS_HIGH = 1e-2
+"""Distance from the highest sample over the width of the widest polynomial within which another one is left out: what
+a minimiser leaves of both, ε, would be a slope of ε over their distance, and that over the width 100 ε at least."""
 WIDEST_REACH = 3
 """Samples on either side of the highest one under the widest polynomial."""
 JUMP_RATIO = 3.0
@@ -70,7 +73,7 @@ def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Pe
 def _apart_from(d: Array, tension: Array, i: int) -> tuple[Array, Array, int]:
     """The samples without those that lie as good as on the inner sample i, and its new index; two neighbours stay."""
     width = float(d[max(i - WIDEST_REACH, 0)] - d[min(i + WIDEST_REACH, len(d) - 1)])
-    kept = np.abs(d - d[i]) > LEAST_SEPARATION * width
+    kept = np.abs(d - d[i]) > AS_HIGH * width
     kept[[0, i, -1]] = True
     return d[kept], tension[kept], int(kept[:i].sum())
 

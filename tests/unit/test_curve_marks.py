@@ -170,6 +170,21 @@ def test_the_uncertainty_of_a_top_is_what_two_rows_more_change() -> None:
     assert peak.uncertainty == pytest.approx(abs(tops[1] - tops[0]), abs=1e-10)
 
 
+@pytest.mark.parametrize("apart", [1e-8, 1e-6, 1e-5, 1e-4, 3e-4])
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_what_a_minimiser_leaves_of_rows_that_lie_close_to_the_top_is_no_slope(apart: float, sign: float) -> None:
+    """A search comes back to a top that it knew well: forces are off by 3e-8 of themselves, to either side."""
+    step, left = 0.01, 3e-8
+    d = falling(np.concatenate([step * (np.arange(-4, 5) + 0.3), [1e-9, -apart, 0.0]]))
+    tension = np.array([1.0 - 500.0 * x**2 + 3e3 * x**3 for x in d])
+    close = np.abs(d) < 0.1 * step
+    tension[close] += left * sign * np.where(np.arange(close.sum()) % 2, 1.0, -1.0)
+    peak = largest_tension(d, (-tension).tolist())
+    assert abs(peak.smooth - 1.0) <= 2.0 * left + peak.uncertainty
+    assert peak.uncertainty < 1e-5
+    assert abs(peak.position) < 1e-2 * step
+
+
 def test_rows_that_lie_on_the_top_itself_leave_it_where_it_is() -> None:
     """A search that ends at the maximum: no row beyond it is apart from it."""
     d, tension = [3.0, 2.0, 1.0, 1.0 - 1e-9], [0.0, 1.0, 1.5, 1.5 - 1e-9]

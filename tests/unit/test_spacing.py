@@ -100,6 +100,16 @@ def test_who_cannot_have_it_is_told_why(more: dict[str, Any], words: str) -> Non
     assert any(words in line for line in refused(**more))
 
 
+@pytest.mark.parametrize("wrong", [None, "lots", 2])
+def test_particles_that_are_missing_or_wrong_are_told_once(wrong: Any) -> None:
+    scene = tables()
+    scene["bodies"] = {key: value for key, value in scene["bodies"].items() if key != "particles"}
+    scene["bodies"] |= {} if wrong is None else {"particles": wrong}
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict(scene)
+    assert [problem.path for problem in caught.value.problems] == ["bodies.particles"]
+
+
 def test_without_a_material_there_is_nothing_to_take_the_stiffness_from() -> None:
     scene = {name: table for name, table in tables().items() if name != "material"}
     with pytest.raises(SceneError, match=r"bodies\.bulk_stiffness: missing; add \[material\] with E"):

@@ -22,11 +22,11 @@ def automatic_spacing(draft: Draft) -> Iterator[Problem]:
         yield Problem("bodies.spacing", must, shown("auto"), hint)
         return
     count = draft.get("bodies", "particles", default="auto")
-    if count != "auto":
+    if count not in (None, "auto"):
         must = 'must be "auto" with spacing = "auto"'
         yield Problem("bodies.particles", must, shown(count), f"write it, or {give} for bodies.spacing")
     stiffness = draft.get("bodies", "bulk_stiffness", default="auto")
-    if stiffness != "auto":
+    if stiffness not in (None, "auto"):
         must = 'must be "auto" with spacing = "auto": the stiffness of a particle is E* times the spacing'
         hint = f"write it, and [material] with E and ν of both bodies or contact_modulus, or {give} for bodies.spacing"
         yield Problem("bodies.bulk_stiffness", must, shown(stiffness), hint)
