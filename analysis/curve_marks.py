@@ -33,9 +33,9 @@ class Peak:
 
 LEAST_SEPARATION = 1e-5
 """Distance of two places over that of the outermost ones below which no polynomial is put through them."""
-AS_HIGH = 1e-2
+AS_HIGH = 1e-3
 """Distance from the highest sample over the width of the widest polynomial within which another one is left out: what
-a minimiser leaves of both, ε, would be a slope of ε over their distance, and that over the width 100 ε at least."""
+a minimiser leaves of both, ε, would be a slope of ε over their distance, and that over the width 1000 ε at least."""
 WIDEST_REACH = 3
 """Samples on either side of the highest one under the widest polynomial."""
 JUMP_RATIO = 3.0

@@ -37,7 +37,7 @@ def slowly(d: list[float], tension: list[float]) -> tuple[float, float, float, f
     if after > 3.0 * (before + abs(bend)):
         return top, before * (d[i] - d[i + 1]), d[i], 0.0
     width = d[max(i - 3, 0)] - d[min(i + 3, len(d) - 1)]
-    kept = [k for k in range(len(d)) if k in (0, i, len(d) - 1) or abs(d[k] - d[i]) > 1e-2 * width]
+    kept = [k for k in range(len(d)) if k in (0, i, len(d) - 1) or abs(d[k] - d[i]) > 1e-3 * width]
     d, tension, i = [d[k] for k in kept], [tension[k] for k in kept], kept.index(i)
     room = min(i, len(d) - 1 - i)
     places, values = zip(*(vertex(d, tension, i, beside) for beside in range(1, min(room, 3) + 1)), strict=True)
@@ -63,7 +63,7 @@ def test_the_largest_tension_is_what_the_polynomials_through_three_five_and_seve
         if number % 4 == 0 and 0 < i < d.size - 1:
             width = d[max(i - 3, 0)] - d[min(i + 3, d.size - 1)]
             side = int(random.choice([0, 1]))
-            apart = (1 - 2 * side) * random.choice([0.3, 0.9, 1.1, 3.0]) * 1e-2 * width
+            apart = (1 - 2 * side) * random.choice([0.3, 0.9, 1.1, 3.0]) * 1e-3 * width
             d, tension = np.insert(d, i + side, d[i] + apart), np.insert(tension, i + side, tension[i] - 1e-9)
         peak = largest_tension((scale * d).tolist(), (-tension).tolist())
         smooth, doubt, place, misplaced = slowly(d.tolist(), tension.tolist())
