@@ -223,3 +223,8 @@ class GivenContext:
     def contact(self, purpose: str = "", meanwhile: Callable[[Settings], object] | None = None) -> Iterator[Any]:
         """The next."""
         yield self._left.pop(0)
+
+
+def given_context(*contacts: GivenContact) -> Any:
+    """A context with these contacts, as any that an experiment asks for."""
+    return GivenContext(*contacts)

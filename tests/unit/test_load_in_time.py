@@ -22,7 +22,7 @@ from contact1d.workflow.experiments.running.law_error import law_error
 from contact1d.workflow.experiments.running.radii import RadiusRule
 from contact1d.workflow.experiments.running.sampling import chunk_steps, standard_error
 from contact1d.workflow.experiments.running.trust import ThroughError, UntrustedError
-from tests.given import PROFILE, Estimate, GivenContact, GivenContext, X, at, given_scene
+from tests.given import PROFILE, Estimate, GivenContact, X, at, given_context, given_scene
 
 TIMED: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
 LARGEST = 2.0
@@ -53,7 +53,7 @@ def contact(force: float, past: float = 0.0, most: float = LARGEST, **more: Any)
 
 
 def loads_of(one: Any, load: float) -> list[float]:
-    found: Any = _settled(GivenContext(one), one, load)  # type: ignore[arg-type]
+    found: Any = _settled(given_context(one), one, load)
     assert found[1].load == load
     assert [s.force for s in found[0]] == pytest.approx([row.load for row in one.holds])
     return [row.load for row in one.holds]
@@ -100,7 +100,7 @@ def test_a_tension_near_the_largest_is_doubted_where_no_more_is_held(share: floa
     """Twice the tolerance more is tried first, from nine tenths of the largest tension on."""
     load = -share * LARGEST
     first, second = contact(load, most=most), contact(load)
-    context: Any = GivenContext(first, second) if most else GivenContext(second)
+    context: Any = given_context(first, second) if most else given_context(second)
     found = load_dynamic(context)
     assert ("near_pull_off" in found.warnings) == told
     if most:
@@ -117,7 +117,7 @@ def test_a_tension_near_the_largest_is_doubted_where_no_more_is_held(share: floa
 def test_bodies_that_go_through_while_more_is_tried_are_told_so() -> None:
     first = contact(-1.9)
     first.row = lambda row: at(1.0, row.load, depth=1e-6)
-    context: Any = GivenContext(first, contact(-1.9))
+    context: Any = given_context(first, contact(-1.9))
     with pytest.raises(ThroughError):
         load_dynamic(context)
 
@@ -145,7 +145,7 @@ def sampled(swing: float, missed: float = 0.0) -> tuple[Swinging, Any]:
     swings = np.random.default_rng(5).standard_normal(200)
     one.swings = swing * (swings - swings.mean())
     one.missed = missed
-    context: Any = GivenContext(one)
+    context: Any = given_context(one)
     return one, load_dynamic(context)
 
 
@@ -212,7 +212,7 @@ def test_the_radius_of_a_mean_is_as_sure_as_its_blocks_agree(edges: list[float])
     one: Any = GivenContact(lambda d: 0.0, scene=scene)
     rule = RadiusRule(scene, one.settings.tolerance)
     states = [at(0.1, 2.0, profile=held(edge)) for edge in edges]
-    context: Any = GivenContext(one)
+    context: Any = given_context(one)
     found = _thermal_outcome(context, one, tuple(states), states, (2.0, 0.1), standard_error([0.1] * 20))
     assert "statistics" not in found.warnings  # as well as it was to be
     mean = rule.of(replace(PROFILE, pressure=np.mean([s.profile.pressure for s in states], axis=0)))

@@ -29,7 +29,7 @@ from contact1d.workflow.experiments.path.schedule import places, schedule
 from contact1d.workflow.experiments.running.law_error import law_error
 from contact1d.workflow.experiments.running.trust import UntrustedError
 from contact1d.workflow.units import LENGTH, Quantity
-from tests.given import Estimate, GivenContact, GivenContext, at, given_scene
+from tests.given import Estimate, GivenContact, at, given_context, given_scene
 
 
 def scene_of(*displacements: float, **tables: Any) -> Any:
@@ -44,7 +44,7 @@ def contact(force: Any = lambda d: d, scene: Any = SCENE, **more: Any) -> Any:
 
 
 def context(**more: Any) -> Any:
-    return GivenContext(contact(**more))
+    return given_context(contact(**more))
 
 
 def read(tension: list[float], **more: Any) -> Any:
@@ -89,8 +89,8 @@ def test_the_larger_of_what_rows_and_estimate_miss_counts() -> None:
     found = []
     for force in ([0.0, -0.2, 0.0], [1.0, 0.5, 0.1]):
         estimate = Estimate(gap=np.asarray([0.0, 0.05, 0.1]), force=np.asarray(force))
-        own = GivenContext(contact(estimate=estimate))
-        quantities, _ = _adhesion(own, rows)  # type: ignore[arg-type]
+        own = given_context(contact(estimate=estimate))
+        quantities, _ = _adhesion(own, rows)
         share = missed_between_rows(own.deck.scene, own.deck.settings, [s.displacement for s in rows])
         error = quantities["adhesion_force"].uncertainty - law_error(own.deck.scene, own.deck.settings, rows[2])
         found.append((share * peak.smooth > peak.uncertainty, error - _cut_short(own.deck.settings, rows, 2)))
@@ -196,7 +196,7 @@ def test_a_path_hands_over_what_was_asked_for() -> None:
             lambda d: d + 0.1 * math.sin(20.0 * d), scene, estimate=Estimate(snaps=snaps), longest_move=0.11,
             radius=lambda d: 4.0 + d, tolerance=1e-2,
         )  # fmt: skip
-        found = path(GivenContext(one))  # type: ignore[arg-type]
+        found = path(given_context(one))
         way = [d for d, _ in places(scene, one.settings)]
         assert one.places == way
         assert one.waits is None
@@ -216,18 +216,18 @@ def test_a_path_in_time_waits_until_particles_are_at_rest_and_heat_has_no_rest()
     timed = {"damping": {"coefficient": "auto"}}
     way = {"kind": "path", "displacements": [0.0, 0.1], "method": "dynamic"}
     one = contact(scene=given_scene(**timed, experiment=way))
-    path(GivenContext(one))  # type: ignore[arg-type]
+    path(given_context(one))
     limit = 0.1 * one.settings.tolerance * one.settings.force_scale
     assert [one.waits(at(0.0, 0.0, residual=share * limit)) for share in (0.99, 1.01)] == [True, False]
     hot = contact(scene=given_scene(**timed, noise={"temperature": 1e-6, "seed": 1}, experiment=way))
-    found = path(GivenContext(hot))  # type: ignore[arg-type]
+    found = path(given_context(hot))
     assert hot.waits is None
     assert len(found.states) == 2
     assert found.tables["means"]["displacement"] == (0.0, 0.1)
     through = contact(scene=SCENE, profile=lambda d: replace(at(0.0, 0.0).profile))
     through.row = lambda row: at(row.displacement, 0.0, depth=1e-6 if row.displacement < -0.1 else 0.0)
     with pytest.raises(UntrustedError):
-        path(GivenContext(through))  # type: ignore[arg-type]
+        path(given_context(through))
 
 
 def test_stretches_are_numbered_and_the_first_row_stands_in_the_first_that_has_any() -> None:

@@ -16,7 +16,7 @@ from contact1d.workflow.experiments.pull_off.quasistatic import Pass, _outcome, 
 from contact1d.workflow.experiments.pull_off.smooth import SmoothPass
 from contact1d.workflow.experiments.running.law_error import law_error
 from contact1d.workflow.experiments.running.trust import UntrustedError
-from tests.given import Estimate, GivenContact, GivenContext, at, given_scene
+from tests.given import Estimate, GivenContact, at, given_context, given_scene
 
 PRELOAD = 0.3
 ZERO = at(0.5, -0.01, 6.0, 0.2)
@@ -33,7 +33,7 @@ def smooth(**changed: Any) -> SmoothPass:
 
 
 def contact(**more: Any) -> Any:
-    return GivenContext(GivenContact(lambda d: d, **more))
+    return given_context(GivenContact(lambda d: d, **more))
 
 
 @pytest.mark.parametrize("missed", [0.001, 0.02])

@@ -23,7 +23,7 @@ from contact1d.workflow.experiments.pull_off.dynamic import (
 )
 from contact1d.workflow.experiments.running.holding import Held, Start, overshoot
 from contact1d.workflow.experiments.running.trust import UntrustedError
-from tests.given import PULL, Estimate, GivenContact, GivenContext, at, given_scene, held, search
+from tests.given import PULL, Estimate, GivenContact, at, given_context, given_scene, held, search
 
 TIMED: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
 SCENE = given_scene(**TIMED, experiment=PULL | {"method": "dynamic"})
@@ -76,7 +76,7 @@ def contact(largest: float = 1.0, tops: float | None = None, **more: Any) -> Any
 @pytest.mark.parametrize("guess", [0.6, 0.97, 1.0, 1.5])
 def test_a_pull_off_is_bracketed_and_its_radius_is_that_at_no_stiffness(guess: float) -> None:
     one = contact(estimate=Estimate(largest=guess))
-    found = pull_off_dynamic(GivenContext(one))  # type: ignore[arg-type]
+    found = pull_off_dynamic(given_context(one))
     known = found.quantities
     force = known["adhesion_force"]
     assert abs(force.value - 1.0) <= force.uncertainty <= 0.006
@@ -106,14 +106,14 @@ def test_a_pull_off_is_bracketed_and_its_radius_is_that_at_no_stiffness(guess: f
 def test_rest_is_judged_by_the_larger_of_preload_and_pull_off(preload: float) -> None:
     scene = given_scene(**TIMED, experiment=PULL | {"method": "dynamic", "preload": preload})
     one = contact(scene=scene)
-    pull_off_dynamic(GivenContext(one))  # type: ignore[arg-type]
+    pull_off_dynamic(given_context(one))
     rests = [row.rest for row in one.holds]
     assert np.asarray(rests) / rests[-1] == pytest.approx([max(preload, 1.0)] * 2 + [1.0] * (len(rests) - 2))
 
 
 def test_bodies_that_do_not_stick_or_swing_are_no_result() -> None:
     with pytest.raises(UntrustedError, match="the bodies do not stick"):
-        pull_off_dynamic(GivenContext(contact(tops=-0.1)))  # type: ignore[arg-type]
+        pull_off_dynamic(given_context(contact(tops=-0.1)))
     seen = set[float]()
     swinging = contact()
     place = swinging._place
@@ -125,7 +125,7 @@ def test_bodies_that_do_not_stick_or_swing_are_no_result() -> None:
 
     swinging._place = once
     with pytest.raises(UntrustedError, match=r"held 0\.9.* FU once and not again"):
-        pull_off_dynamic(GivenContext(swinging))  # type: ignore[arg-type]
+        pull_off_dynamic(given_context(swinging))
 
 
 def test_a_bracket_that_never_closes_ends_after_sixty_tensions() -> None:
@@ -173,7 +173,7 @@ def test_a_swing_past_a_tooth_misses_a_pair_at_each_edge() -> None:
 
 def test_between_teeth_a_radius_is_known_to_a_particle_and_what_the_bracket_leaves() -> None:
     scene = given_scene(**TIMED, bodies={"particles": 40, "spacing": 0.5}, experiment=PULL | {"method": "dynamic"})
-    one: Any = GivenContext(contact(scene=scene))
+    one: Any = given_context(contact(scene=scene))
     found, spread = _radius_between_snaps(one, at(0.0, -1.0, 4.0, 0.1), 6.5, 0.02)
     assert spread == pytest.approx(0.6)
     assert (found.value, found.uncertainty) == pytest.approx((4.0, 0.6 + 2.5 * 0.2))
@@ -189,7 +189,7 @@ def outcome(one: Any, unbalance: float = 0.0, zero_force: float = 0.0) -> Any:
     last = known.held[-1]
     loaded = Held(0.3, (at(1.2, 0.35, 7.0),), True, 0.07)
     critical = Held(last.load, last.states, True, unbalance)
-    return known, _outcome(GivenContext(one), known, loaded, critical, ())  # type: ignore[arg-type]
+    return known, _outcome(given_context(one), known, loaded, critical, ())
 
 
 def test_the_claims_of_a_pull_off_are_its_bracket_and_what_was_not_at_rest() -> None:

@@ -63,7 +63,8 @@ def test_times_and_steps_of_contacts_one_after_the_other_add_up(context: RunCont
         raise RuntimeError
     assert sums(context) == (3.0, 4.0, 6.0, 14)
     assert (context.phase, context.timestep) == ("phase 2", 20)
-    assert context.progress.notes == ["again"]  # type: ignore[attr-defined]
+    told: Any = context.progress
+    assert told.notes == ["again"]
 
 
 def test_a_contact_that_does_not_begin_has_no_rows(context: RunContext, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -123,8 +123,8 @@ def test_the_temperature_is_that_of_the_last_leg(free: tuple[str, ...]) -> None:
     assert squares.size == 20
     blocks = 3.0 * (squares - speeds.mean() ** 2) / len(free)
     assert (found.value, found.uncertainty) == pytest.approx((blocks.mean(), friction.interval(blocks)))
-    still = SimpleNamespace(noise=object(), plate=None)
-    assert temperature(still, SETTINGS, motion) == {}  # type: ignore[arg-type]
+    still: Any = SimpleNamespace(noise=object(), plate=None)
+    assert temperature(still, SETTINGS, motion) == {}
 
 
 def test_energies_are_those_of_the_end_and_claim_what_is_missing() -> None:

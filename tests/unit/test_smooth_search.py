@@ -24,7 +24,7 @@ from contact1d.workflow.experiments.pull_off.smooth import (
 )
 from contact1d.workflow.experiments.running.contact import State
 from contact1d.workflow.experiments.running.trust import UntrustedError
-from tests.given import PROFILE, Estimate, GivenContact, GivenContext, at
+from tests.given import PROFILE, Estimate, GivenContact, at, given_context
 
 STEP = {"smooth_step": 0.1, "longest_move": 0.0, "cutoff": 9.0, "tolerance": 1e-3, "force_scale": 0.5}
 """Increments of a tenth everywhere."""
@@ -236,7 +236,7 @@ def single(d: float) -> float:
 def test_a_schedule_goes_down_to_no_load_to_the_top_and_apart() -> None:
     """Apart it goes on from the lowest row so far; moves grow where less than half of the largest tension is left."""
     one = contact(single, profile=lambda d: pulling(-sharp(d)), force_scale=1.0)
-    found, before = _searched(GivenContext(one), 0.6, 1e-3, through=False)  # type: ignore[arg-type]
+    found, before = _searched(given_context(one), 0.6, 1e-3, through=False)
     assert [(p.name, p.state) for p in found.phases] == [
         ("loading", False), ("unloading", True), ("pulling", True), ("separating", False),
     ]  # fmt: skip
@@ -269,15 +269,15 @@ def test_a_tension_that_rises_again_is_gone_through_once_more_and_then_told() ->
         )  # fmt: skip
 
     for held, found in ((2.0, True), (0.5, False)):
-        contacts = GivenContext(one(held), one(held))
+        contacts = given_context(one(held), one(held))
         if found:
-            result = smooth_pass(contacts, 0.3, 1e-3)  # type: ignore[arg-type]
+            result = smooth_pass(contacts, 0.3, 1e-3)
             assert result.peak.smooth == pytest.approx(1.3, abs=0.1)
             assert result.peak.position == pytest.approx(-2.0, abs=0.02)
         else:
             with pytest.raises(UntrustedError, match="the tension rises again to 1"):
-                smooth_pass(contacts, 0.3, 1e-3)  # type: ignore[arg-type]
+                smooth_pass(contacts, 0.3, 1e-3)
         assert len(contacts.notes) == 2 - found
-    alone = GivenContext(contact(single, profile=lambda d: pulling(-sharp(d))))
-    smooth_pass(alone, 0.6, 1e-3)  # type: ignore[arg-type]
+    alone = given_context(contact(single, profile=lambda d: pulling(-sharp(d))))
+    smooth_pass(alone, 0.6, 1e-3)
     assert alone.notes == []

