@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.potentials import DoubleExponential
-from contact1d.workflow.experiments.running.outcome import Outcome
+from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.estimate import row_force
 from contact1d.workflow.settings.settings import Settings
@@ -56,7 +56,7 @@ FORMULAS = {
 def with_implied(scene: Scene, settings: Settings, outcome: Outcome) -> Outcome:
     """The outcome of a run, and what its interaction implies; that counts as prescribed, as the interaction is."""
     found = implied(scene, settings, outcome.quantities)
-    return replace(outcome, quantities={**outcome.quantities, **found}, prescribed=outcome.prescribed | found.keys())
+    return replace(outcome, derived={**outcome.derived, **found})
 
 
 def implied(scene: Scene, settings: Settings, found: Mapping[str, Quantity]) -> dict[str, Quantity]:

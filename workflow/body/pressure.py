@@ -20,8 +20,8 @@ from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.body.closed_form import Case
 from contact1d.workflow.body.reading import stands_for_spheres
-from contact1d.workflow.experiments.running.outcome import Outcome
-from contact1d.workflow.experiments.running.radii import RadiusRule
+from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.continuation.state import RadiusRule
 from contact1d.workflow.scene import Scene, Slide
 from contact1d.workflow.scene.reduction import WIDER_THAN_SPHERES
 from contact1d.workflow.units import ENERGY, LINE_PRESSURE, MEAN_PRESSURE, Quantity
@@ -164,4 +164,4 @@ def with_body(scene: Scene, outcome: Outcome) -> Outcome:
             2.0 * (width.value * line.uncertainty + width.uncertainty * line.value),
             ENERGY,
         )
-    return replace(outcome, quantities={**found, **made}, prescribed=outcome.prescribed | made.keys())
+    return replace(outcome, derived={**outcome.derived, **made})

@@ -34,7 +34,7 @@ def cost(
         from contact1d.workflow.cost.study import cost_of
         from contact1d.workflow.runs.cores import cores
         from contact1d.workflow.settings.settings import settings_for
-        from contact1d.workflow.settings.spacing import with_spacing
+        from contact1d.workflow.experiments.spacing import with_spacing
 
         checked = with_spacing(asked)
         settings_for(checked)

@@ -14,7 +14,7 @@ from contact1d.workflow.deck.fragments import DeckError
 from contact1d.workflow.engine.process import stop_idle
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.errors import FolderError, RunError
-from contact1d.workflow.experiments.running.outcome import unmet
+from contact1d.workflow.runs.report import open_results
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.pool import pool
 from contact1d.workflow.scene import Scene
@@ -106,7 +106,7 @@ def run_once(variant: Prepared, folder: Path, fresh: bool) -> Measured:
         shutil.rmtree(folder, ignore_errors=True)
     timing, outcome = finished.timing, finished.outcome
     assert outcome is not None
-    open_ = unmet(variant.scene, outcome)
+    open_ = open_results(variant.scene, outcome)
     return Measured(
         outcome.quantities,
         (timing["lammps_cpu_s"],),

@@ -1,33 +1,33 @@
-"""Experiments: each kind is a folder with its record; a sequence of phases on one deck."""
+"""Experiments: each a script over the continuation and a reader of what it leaves."""
 
+from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.continuation.trust import slowness
 from contact1d.workflow.deck.steps import Phase
-from contact1d.workflow.experiments.load import LOAD
-from contact1d.workflow.experiments.path import PATH
-from contact1d.workflow.experiments.pull_off import PULL_OFF
-from contact1d.workflow.experiments.running.kind import ExperimentKind
-from contact1d.workflow.experiments.running.outcome import Outcome
-from contact1d.workflow.experiments.running.run_context import RunContext
-from contact1d.workflow.experiments.running.slowness import slowness
-from contact1d.workflow.experiments.running.way import kept_way, planned_way
-from contact1d.workflow.experiments.slide import SLIDE
-from contact1d.workflow.experiments.tangential import TANGENTIAL
+from contact1d.workflow.experiments.experiment import Experiment, in_smaller_steps
+from contact1d.workflow.experiments.keeping import kept_way, planned_way
+from contact1d.workflow.experiments.load import LoadExperiment
+from contact1d.workflow.experiments.path import PathExperiment
+from contact1d.workflow.experiments.pull_off import PullOffExperiment
+from contact1d.workflow.experiments.slide import SlideExperiment
+from contact1d.workflow.experiments.tangential import TangentialExperiment
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings
 
 __all__ = ["KINDS", "kind_of", "perform", "planned"]
 
-KINDS: dict[str, ExperimentKind] = {
-    "load": LOAD,
-    "path": PATH,
-    "pull_off": PULL_OFF,
-    "slide": SLIDE,
-    "tangential": TANGENTIAL,
+KINDS: dict[str, Experiment] = {
+    "load": LoadExperiment(),
+    "path": PathExperiment(),
+    "pull_off": PullOffExperiment(),
+    "slide": SlideExperiment(),
+    "tangential": TangentialExperiment(),
 }
 """By the word that a scene has for it."""
 
 
-def kind_of(scene: Scene) -> ExperimentKind:
-    """The record of the scene's experiment."""
+def kind_of(scene: Scene) -> Experiment:
+    """The scene's experiment."""
     return KINDS[scene.experiment.kind]
 
 
@@ -46,4 +46,7 @@ def perform(context: RunContext) -> Outcome:
     scene = context.deck.scene
     if slow := slowness(scene, context.deck.settings):
         context.progress.note(slow)
-    return kept_way(context, kind_of(scene).run[scene.method](context))
+    run = kind_of(scene).run
+    if not scene.experiment.motion_is_result and not scene.experiment.goes_along:
+        run = in_smaller_steps(run)
+    return kept_way(context, run(context))

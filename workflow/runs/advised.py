@@ -7,9 +7,10 @@ import time
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, RunError
-from contact1d.workflow.experiments.running.trust import UntrustedError
+from contact1d.workflow.experiments.spacing import with_spacing
 from contact1d.workflow.runs import campaign
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.runs.remedies import Attempt, Reader, Tried, tried
@@ -17,7 +18,6 @@ from contact1d.workflow.runs.report import RESULTS, write_results
 from contact1d.workflow.scene import AnyScene, Scene, SceneError, read_scene
 from contact1d.workflow.scene.problems import Problem
 from contact1d.workflow.settings.settings import Settings, SettingsError, settings_for
-from contact1d.workflow.settings.spacing import with_spacing
 
 TRIAL, PATIENCE = 60.0, 90.0
 """Wall time [s] of LAMMPS in one trial, and of all trials: at least, and never less than the run that failed took, or

@@ -16,6 +16,9 @@ from contact1d.analysis.curve import DETACHMENTS, Curve
 from contact1d.files import PART, write_whole
 from contact1d.workflow.body.implied import formulas, with_implied
 from contact1d.workflow.body.pressure import with_body
+from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.failure import NO_MEMORY, TOO_LONG, TOO_WIDE
@@ -23,9 +26,7 @@ from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.engine.session import EngineError
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments import perform, planned
-from contact1d.workflow.experiments.running.outcome import Outcome, anywhere_between
-from contact1d.workflow.experiments.running.run_context import RunContext
-from contact1d.workflow.experiments.running.trust import UntrustedError
+from contact1d.workflow.experiments.spacing import with_spacing
 from contact1d.workflow.runs.cores import cores
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.runs.plausibility import implausible
@@ -36,7 +37,6 @@ from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import AnyScene, Scene, read_scene, scene_to_toml
 from contact1d.workflow.settings.settings import Settings, settings_for
 from contact1d.workflow.settings.size import MIX_UP, in_words, require_steps
-from contact1d.workflow.settings.spacing import with_spacing
 from contact1d.workflow.settings.way import require_way
 
 AnyPath = str | PathLike[str]
@@ -117,12 +117,12 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
         write_results(folder, failure(scene, facts, timing()))
         where = f" [phase {context.phase}, step {context.timestep}]"
         raise RunError(f"{facts['message']}{_hint(str(facts['message']))}{where}", folder) from error
-    outcome = with_implied(scene, last.deck.settings, anywhere_between(scene, last.deck.settings, last.outcome))
+    outcome = with_implied(scene, last.deck.settings, last.outcome)
     outcome = with_body(scene, outcome)
     write_whole(folder / "in.lammps", last.deck.text(outcome.phases))
     curve = curve_of(last.deck.scene, outcome)
     write_tables(folder, scene, outcome, curve)
-    friction = {name: np.asarray(column) for name, column in outcome.friction.items()}
+    friction = _friction(outcome)
     _draw(folder, scene, outcome, curve, figures)
     document = results(scene, outcome, timing()) | formulas(scene, outcome.quantities)
     write_results(folder, document)
@@ -132,7 +132,7 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
 
 def _write_what_is_left(outcome: Outcome, scene: Scene, folder: Path, figures: bool | str) -> None:
     """Tables and figures of a run that gives no numbers, to see why."""
-    left, curve = replace(outcome, quantities={}), curve_of(scene, outcome)
+    left, curve = replace(outcome, results={}), curve_of(scene, outcome)
     write_tables(folder, scene, left, curve)
     _draw(folder, scene, left, curve, figures)
 
@@ -145,12 +145,16 @@ def _draw(folder: Path, scene: Scene, outcome: Outcome, curve: Curve, figures: b
 
     form = figures if isinstance(figures, str) else FORMATS[0]
     values = {name: quantity.value for name, quantity in outcome.quantities.items()}
-    friction, detachments = (
-        {name: np.asarray(column) for name, column in columns.items()}
-        for columns in (outcome.friction, outcome.tables.get(DETACHMENTS, {}))
-    )
+    friction = _friction(outcome)
+    detachments = {name: np.asarray(column) for name, column in outcome.tables.get(DETACHMENTS, {}).items()}
     scales = scales_of(scene, outcome.quantities)
     draw(folder, scene, values, curve, outcome.profiles, friction, detachments, scales, form)
+
+
+def _friction(outcome: Outcome) -> dict[str, np.ndarray]:
+    """Columns of friction.csv, or of curve.csv beside the curve."""
+    columns = outcome.columns or outcome.tables.get("friction", {})
+    return {name: np.asarray(column) for name, column in columns.items()}
 
 
 def _scene(scene: AnyScene) -> Scene:

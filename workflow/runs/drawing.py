@@ -21,7 +21,7 @@ from contact1d.workflow.body.closed_form import Case
 from contact1d.workflow.body.pressure import REPORTED, body_pressures
 from contact1d.workflow.body.shear import body_shears, row_of
 from contact1d.workflow.body.theory import applying
-from contact1d.workflow.experiments.running.radii import RadiusRule
+from contact1d.workflow.continuation.state import RadiusRule
 from contact1d.workflow.scene import Scene, Tangential
 from contact1d.workflow.units import Quantity, Scales
 

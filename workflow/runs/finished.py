@@ -26,8 +26,8 @@ from contact1d.analysis.curve import (
 from contact1d.analysis.pressure import Profile
 from contact1d.workflow.body.pressure import BodyPressure, body_pressures
 from contact1d.workflow.body.shear import BodyShear, body_shears
+from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.errors import FolderError, RunError
-from contact1d.workflow.experiments.running.outcome import Outcome
 from contact1d.workflow.runs.report import RESULTS
 from contact1d.workflow.scene import PullOff, Scene, SceneError, Slide, Tangential, scene_from_dict
 from contact1d.workflow.units import FORCE, LENGTH, MASS, Quantity, Scales, scale_of

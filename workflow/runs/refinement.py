@@ -10,15 +10,14 @@ import os
 import shutil
 from dataclasses import dataclass, replace
 
+from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Refinement, in_words, unmet
+from contact1d.workflow.continuation.trust import UntrustedError, doubts
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import EngineError
 from contact1d.workflow.experiments import perform
-from contact1d.workflow.experiments.running.outcome import Outcome, Refinement, in_words, left_open_by_spacing, unmet
-from contact1d.workflow.experiments.running.run_context import RunContext
-from contact1d.workflow.experiments.running.trust import UntrustedError, doubts
 from contact1d.workflow.settings.settings import SettingsError, settings_for
-from contact1d.workflow.units import Quantity
 
 TOLERANCE_RATIO = 5.0
 """Tolerance of a pass over that of the next one."""
@@ -47,10 +46,11 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
     scene, deck = context.deck.scene, context.deck
     if scene.noise is not None or scene.experiment.way_is_given:
         return Refined(deck, outcome)
-    tolerance, count, ended = scene.accuracy.tolerance, 0, ""
-    while open_ := unmet(scene, outcome):
-        out_of_reach = left_open_by_spacing(scene, outcome, open_)
-        left = {name: share for name, share in open_.items() if name not in out_of_reach}
+    wanted, count, ended = scene.accuracy.tolerance, 0, ""
+    tolerance = wanted
+    while open_ := unmet(outcome.results, wanted, (LATTICE,)):
+        results = outcome.results
+        left = {name: share for name, share in open_.items() if results[name].read <= wanted * abs(results[name].value)}
         if not left:
             ended = "; ".join(filter(None, (ended, "the spacing alone leaves that open")))
             break
@@ -66,7 +66,7 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
         tolerance, count = tolerance / TOLERANCE_RATIO, count + 1
         before, deck, outcome = outcome, finer_deck, nested(outcome, finer)
         ended = _after(count)
-        if unmet(scene, outcome) and not _helped(left, before, outcome):
+        if unmet(outcome.results, wanted, (LATTICE,)) and not _helped(left, before, outcome):
             ended += ", the last of which did not help"
             break
     # What a pass doubts by its own tolerance is no doubt of a run that was asked for less.
@@ -78,13 +78,13 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
 
 def nested(coarse: Outcome, fine: Outcome) -> Outcome:
     """The finer outcome; where |fine − coarse| exceeds what both claim, its claim is raised by the same factor."""
-    quantities = {}
-    for name, quantity in fine.quantities.items():
-        before = coarse.quantities.get(name, quantity)
-        claimed = before.uncertainty + quantity.uncertainty
-        factor = max(1.0, abs(quantity.value - before.value) / claimed) if claimed > 0.0 else 1.0
-        quantities[name] = Quantity(quantity.value, factor * quantity.uncertainty, quantity.unit)
-    return replace(fine, quantities=quantities)
+    results = {}
+    for name, one in fine.results.items():
+        before = coarse.results.get(name, one)
+        stated = before.uncertainty + one.uncertainty
+        factor = max(1.0, abs(one.value - before.value) / stated) if stated > 0.0 else 1.0
+        results[name] = replace(one, errors={source: factor * error for source, error in one.errors.items()})
+    return replace(fine, results=results)
 
 
 def _after(count: int) -> str:
@@ -94,8 +94,7 @@ def _after(count: int) -> str:
 def _helped(names: dict[str, float], before: Outcome, after: Outcome) -> bool:
     """Whether one of the named results is known clearly better."""
     return any(
-        name in after.quantities
-        and after.quantities[name].uncertainty < HELP_RATIO * before.quantities[name].uncertainty
+        name in after.results and after.results[name].uncertainty < HELP_RATIO * before.results[name].uncertainty
         for name in names
     )
 

@@ -14,9 +14,7 @@ from dataclasses import dataclass
 from heapq import heappop, heappush
 from itertools import count
 
-from contact1d.workflow.engine.failure import EngineError
-from contact1d.workflow.errors import Contact1dError
-from contact1d.workflow.experiments.running.trust import (
+from contact1d.workflow.continuation.trust import (
     ChainEndError,
     DigitsError,
     OffEndError,
@@ -27,6 +25,8 @@ from contact1d.workflow.experiments.running.trust import (
     UnsteadyError,
     UntrustedError,
 )
+from contact1d.workflow.engine.failure import EngineError
+from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.runs.change import STEP, rounded
 from contact1d.workflow.runs.change import Change as Change
 from contact1d.workflow.runs.scales import scales_of

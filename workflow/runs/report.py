@@ -20,10 +20,10 @@ from contact1d.workflow.body.pressure import BodyPressure, body_pressures
 from contact1d.workflow.body.reading import doubt_of_the_image, of_the_body
 from contact1d.workflow.body.shear import BodyShear, body_shears
 from contact1d.workflow.body.theory import theory
+from contact1d.workflow.continuation.outcome import LATTICE, Outcome, in_words, unmet
 from contact1d.workflow.experiments import kind_of
-from contact1d.workflow.experiments.running.kind import FINER_SPACING
-from contact1d.workflow.experiments.running.outcome import Outcome, in_words, left_open_by_spacing, unmet
-from contact1d.workflow.experiments.running.way import kept_states
+from contact1d.workflow.experiments.experiment import FINER_SPACING
+from contact1d.workflow.experiments.keeping import kept_states
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.scales import scales_of, unfound
 from contact1d.workflow.scene import Scene, Tangential
@@ -59,7 +59,7 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
             unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE, MASS, TIME) if scales.know(unit)
         }
     doubts = dict(outcome.warnings) | doubt_of_the_image(scene) | implausible(scene, scales, found)
-    if coarse := unmet(scene, outcome):
+    if coarse := open_results(scene, outcome):
         ended = "" if outcome.refinement is None else f" ({outcome.refinement.ended})"
         doubts["tolerance"] = (
             f"{in_words(coarse)}, which is more than the tolerance of {scene.accuracy.tolerance:g} that was asked for"
@@ -79,9 +79,15 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
     return quantities | beside | {"accuracy": accuracy} | _frame(scene, "done", _warnings(doubts), timing)
 
 
+def open_results(scene: Scene, outcome: Outcome) -> dict[str, float]:
+    """Results that are known less well than the tolerance, on the very lattice that ran; under noise none is."""
+    return {} if scene.noise is not None else unmet(outcome.results, scene.accuracy.tolerance, (LATTICE,))
+
+
 def _what_helps(scene: Scene, outcome: Outcome, coarse: Iterable[str]) -> str:
     """Against results that are known less well than asked for, by what limits them."""
-    if left_open_by_spacing(scene, outcome, coarse):
+    tolerance = scene.accuracy.tolerance
+    if any(outcome.results[name].read > tolerance * outcome.results[name].size for name in coarse):
         return f"A radius is known no better than the spacing lets it: take {FINER_SPACING}"
     return kind_of(scene).advice(scene)
 
@@ -157,12 +163,10 @@ def write_tables(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> 
         "profile.csv": profile_columns(outcome.profiles),
     }
     if isinstance(scene.experiment, Tangential):
-        tables["curve.csv"] |= outcome.friction
-        along = {name: np.asarray(column) for name, column in outcome.friction.items()}
+        tables["curve.csv"] |= outcome.columns
+        along = {name: np.asarray(column) for name, column in outcome.columns.items()}
         if shears := body_shears(scene, outcome.profiles, along, curve.contact_radius):
             tables["shear_3d.csv"] = _shear_columns(shears)
-    elif outcome.friction:
-        tables["friction.csv"] = dict(outcome.friction)
     if pressures := body_pressures(scene, outcome.profiles):
         tables["pressure_3d.csv"] = _body_columns(pressures)
     way = states_of([state.profile for state in outcome.states], kept_states(scene, outcome))

@@ -67,6 +67,7 @@ class ContactEstimate:
         stiffness: contact stiffness of one particle [FU/LU], both springs in series.
         snaps: whether pairs snap: G(r) falls somewhere, so that loading and unloading differ.
         bend: |d²G/dr²| where a joined pair lets go [1/LU]; 0 where none snaps.
+        outer: where pairs snap, the gap made monotone from outside [LU]: on it a pair comes near.
     """
 
     gap: Array
@@ -77,6 +78,7 @@ class ContactEstimate:
     stiffness: float
     snaps: bool = False
     bend: float = 0.0
+    outer: Array | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         """What goes to another process: not what was found before, which keeps functions."""
@@ -171,6 +173,19 @@ class ContactEstimate:
         if level.size == 0:
             return float(self.gap[-1]), 0.0
         return float(self.gap[level[0]]), float(self.force[level[-1] + 1] - self.force[level[0]])
+
+    @property
+    def joins(self) -> float:
+        """Undeformed gap [LU] below which a pair that comes near has snapped together; where none snaps, any gap."""
+        if self.outer is None:
+            return float(self.gap[-1])
+        level = np.flatnonzero(np.diff(self.outer) < FLATNESS * np.diff(self.outer).mean())
+        return float(self.outer[level[0]]) if level.size else float(self.gap[-1])
+
+    @property
+    def felt(self) -> float:
+        """Undeformed gap [LU] beyond which nothing is felt."""
+        return float(self.gap[-1])
 
     def let_go_early(self, move: float, force: float) -> float:
         """How far [LU] before its time a pair lets go of a body that is drawn away by `move` [LU] at a time.
@@ -267,13 +282,14 @@ def particles_estimate(
     """
     r, force = _row_over(law, row or spacing, cutoff, points)
     undeformed = r - chains * force / stiffness
-    gap = np.maximum.accumulate(undeformed)
-    gap += np.arange(points) * 1e-12 * cutoff
+    rising = np.arange(points) * 1e-12 * cutoff
+    gap = np.maximum.accumulate(undeformed) + rising
     falls = np.diff(undeformed) < 0.0
+    outer = np.minimum.accumulate(undeformed[::-1])[::-1] + rising if falls.any() else None
     first = max(int(falls.argmax()) - 1, 0)
     bend = abs(float(np.diff(undeformed, 2)[first])) / (cutoff / points) ** 2 if falls.any() else 0.0
     gap.flags.writeable = False
-    return ContactEstimate(gap, force, rest, profile, spacing, stiffness / chains, bool(falls.any()), bend)
+    return ContactEstimate(gap, force, rest, profile, spacing, stiffness / chains, bool(falls.any()), bend, outer)
 
 
 @lru_cache(maxsize=16)  # a law is mostly that of several bodies

@@ -1,0 +1,598 @@
+"""A connected branch of states under displacement control: visit, reach a force, find the largest tension.
+
+How it may be refined follows from what the particles remember:
+
+    reversible       the state at a displacement does not depend on the path: a position is visited whenever it is wanted
+    irreversible     pairs snap: the whole schedule is run again from the start, with the wanted positions in their order
+
+Rows on a rigid plane are steps of one run and cost next to nothing; the reduced model of such a contact is the deck's own
+law, so that its limit points and forces are known beforehand.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from dataclasses import replace
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.analysis.curve_marks import Peak, largest_tension, promised, rivals, smooth_crossing
+from contact1d.workflow.continuation.contact import Contact
+from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.state import State
+from contact1d.workflow.continuation.trace import Trace, of_states
+from contact1d.workflow.continuation.trust import DigitsError, TensionError, UntrustedError
+from contact1d.workflow.deck.steps import Displace, Phase, displacements
+from contact1d.workflow.settings.reduced import Reduced, reduced
+
+Array = NDArray[np.float64]
+MOST_INCREMENTS = 10_000
+"""Rows of one stretch of a search; a search that needs more has no end in sight."""
+MOST_ROUNDS = 60
+"""Refinements of a largest tension, each of which may halve the increment beside it: a sharp one needs some."""
+MOST_REPLAYS = 8
+SEPARATION_ROWS = 1_000.0
+"""Rows in which an unloading comes from any displacement to where nothing is felt any more."""
+FORCE_ACCURACY = 1e-3
+"""How near to a wanted force a search must come, over the tolerance."""
+SEARCH_SHARE = 0.3
+"""Part of the tolerance that a search may use up."""
+SEPARATION_SHARE = 0.02
+"""Tension over the largest one at which bodies that move apart count as separated."""
+GROWTH_SHARE = 0.5
+"""Tension over the largest one below which increments may grow."""
+GROWTH, SMOOTH_GROWTH = 1.2, 1.6
+OVERSHOOT = 1.02
+"""Secant steps aim a little beyond, so that a bracket forms instead of a slow approach from one side."""
+RETURN_SHARE = 0.5
+"""Move of a search that comes back to where the bodies have been, over their particles' smallest distance."""
+SAME = 1e-12
+"""Displacements nearer than this over the spacing are the same: a force that still differs has jumped."""
+LOADING_STEPS = 24
+"""Rows on the way to a force that is known beforehand."""
+CURVE_STEPS, CURVE_NUMBERS = 100, 200_000
+"""Increments of a load where rows are steps of one run, for the sake of its curve: they cost some tens of microseconds
+each. Of long chains there are so many that positions times rows stay below the second."""
+PULLING_STEPS = 48
+"""Rows from F = 0 to the limit point, where it is known."""
+LAST = 1e-9
+"""How much of that is left before it."""
+BEYOND_LIMIT = 1.05
+"""End of the way over the limit point."""
+ROWS_BEYOND_PEAK = 3
+"""Rows beyond the largest tension that its polynomials need."""
+HALVINGS_AT_PEAK = 2
+"""Halvings of the increment beside the largest tension for the sake of the contact radius there."""
+PLACE_FACTOR = 2.0
+"""Error of the position of the largest tension over the distance between those of two polynomials."""
+PER_TOOTH, MOST_TEETH = 4.0, 400.0
+"""Rows to a tooth of the tension, and teeth that rows can tell apart; denser ones are a small part of it each."""
+MOST_RIVALS = 200
+"""Looks at teeth that may be higher than the highest row."""
+READ_SHARE = 0.5
+"""Part of a radius's uncertainty below which it is looked at no closer: reading between particles limits it."""
+WINDOW_ROWS, ZOOM_FACTOR, RIVAL_SHARE = 8, 0.25, 0.05
+"""Of a schedule that is run again: rows on either side of the largest tension, width of that window over the one before,
+and teeth within this share of the largest that are all looked at in the first one."""
+
+JUMPS = (
+    'the force jumps there, as particles snap or slip. Use kind = "path" to see it, or stiffer springs or a longer '
+    "range, with which particles do not snap"
+)
+
+
+class Branch:
+    """States of one contact, from its approach on.
+
+    Attributes:
+        context: where contacts are opened.
+        contact: the one that runs.
+        loading, falling: states of rising, and then of falling displacement, as they were measured.
+        marked: states that are reported, by name.
+        missed: how far the search may be off the largest tension [FU].
+    """
+
+    def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
+        """Open a contact."""
+        self.context, self._meanwhile = context, meanwhile
+        self.scene, self.settings = context.deck.scene, context.deck.settings
+        self.model: Reduced = reduced(self.scene, self.settings)
+        self.tolerance = SEARCH_SHARE * self.settings.tolerance
+        self.loading: list[State] = []
+        self.falling: list[State] = []
+        self.marked: dict[str, State] = {}
+        self.missed = 0.0
+        self._targets: dict[str, float] = {}
+        self._open = ExitStack()
+        self._finished = False
+
+    def __enter__(self) -> Self:
+        """Begin."""
+        self.contact: Contact = self._open.enter_context(self.context.contact(meanwhile=self._meanwhile))
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        """Close the contact."""
+        self._open.__exit__(*error)  # type: ignore[arg-type]
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """The schedule so far."""
+        return self.contact.phases
+
+    @property
+    def states(self) -> list[State]:
+        """All states, in order."""
+        return [*self.loading, *self.falling]
+
+    @property
+    def reversible(self) -> bool:
+        """Whether a state does not depend on the path."""
+        return not self.settings.snaps
+
+    @property
+    def scale(self) -> float:
+        """The largest tension that is expected [FU]."""
+        return self.settings.estimate.pull_off_force()
+
+    def trace(self) -> Trace:
+        """What a reader sees."""
+        limit = self.model.apart if self.contact.deck.stepped and self.scene.adheres else -math.inf
+        doubt = {}
+        if "critical" in self.marked:
+            doubt["sampling"] = self.missed
+            if not self.reversible:
+                doubt["instability"] = self.cut_short()
+        return replace(of_states(self.states, limit=limit), doubt=doubt)
+
+    def begin(self, name: str) -> None:
+        """Begin a phase; of a finished schedule nothing is left to do."""
+        if not self._finished:
+            self.contact.begin(name)
+
+    def mark(self, name: str) -> None:
+        """Report the last state."""
+        if not self._finished:
+            self.marked[name] = self._last
+            self.contact.write_state()
+
+    def finish(self) -> None:
+        """End the schedule."""
+        if not self._finished:
+            self.contact.finish()
+
+    def visit(self, positions: Sequence[float] | Array, phases: str = "falling") -> list[State]:
+        """Rows at displacements [LU] that are known beforehand."""
+        states = self.contact.rows(displacements([float(position) for position in positions]))
+        (self.loading if phases == "loading" else self.falling).extend(states)
+        return states
+
+    # --- a force
+
+    def reach(self, force: float, scale: float) -> None:
+        """Go on until the contact carries a force [FU], within FORCE_ACCURACY of the tolerance of `scale` [FU].
+
+        Raises:
+            UntrustedError: see `require_trust`; also where the force cannot be held.
+        """
+        if self._finished:
+            return
+        falls = bool(self.loading)
+        direction, states = (-1, self.falling) if falls else (1, self.loading)
+        self._targets["zero" if falls else "deepest"] = force
+        near = FORCE_ACCURACY * self.settings.tolerance * scale
+        self._first_rows(force, direction)
+        before: State | None = None
+        beyond: State | None = None
+        while abs(states[-1].carried - force) > near:
+            last = states[-1]
+            if direction * (last.carried - force) > 0:
+                beyond = last
+            else:
+                before = last
+            before = before or next((s for s in states[::-1] if direction * (s.carried - force) <= 0), None)
+            if before is None:
+                raise UntrustedError(
+                    f"{force:.4g} FU cannot be approached: the force starts at {last.carried:.4g} FU, "
+                    f"{'below' if falls else 'above'} it already. Take a force beyond that, or "
+                    'kind = "path" to see the curve'
+                )
+            self._require_within_reach(force, falls, before, beyond)
+            step = self.settings.increment(math.inf if falls else last.smallest_distance)
+            states.append(self._at(_secant(before, beyond, states, force, direction * step)))
+
+    def _first_rows(self, force: float, direction: int) -> None:
+        """The first rows of a stretch: where they cost next to nothing, up to where the model has the force.
+
+        Raises:
+            TensionError: no contact holds the force.
+        """
+        start = self.loading[-1].displacement if direction < 0 else 0.0
+        states = self.loading if direction > 0 else self.falling
+        if not self.contact.deck.stepped:
+            states.append(self._at(start))
+            return
+        end = self.model.displacement_at(force)
+        held = float(self.model.held(np.asarray([end]))[0])
+        if force < 0.0 and held > (1.0 - self.settings.tolerance) * force:
+            raise TensionError(force, self.scale)
+        if direction * (end - start) <= 0.0:
+            states.append(self._at(start))
+            return
+        one_load = not self.scene.adheres
+        steps = (
+            max(LOADING_STEPS, min(CURVE_STEPS, CURVE_NUMBERS // self.settings.particles))
+            if one_load
+            else LOADING_STEPS
+        )
+        rows = np.linspace(start, end, steps + 1)
+        self.visit(rows if direction > 0 else rows[1:], "loading" if direction > 0 else "falling")
+
+    def _require_within_reach(self, force: float, falls: bool, before: State, beyond: State | None) -> None:
+        """Refuse a force that the branch jumps past, never comes to, or comes to in no time."""
+        states = self.falling if falls else self.loading
+        if beyond is not None and abs(beyond.displacement - before.displacement) < SAME * self.scene.bodies.spacing:
+            raise UntrustedError(
+                f"the force jumps past {force:.4g} FU at displacement {before.displacement:.6g} LU, from "
+                f"{before.carried:.4g} to {beyond.carried:.4g} FU: particles snap or slip there, and no state on this "
+                'way has the force. Take a force outside of the jump, kind = "path" to see all of it, or stiffer '
+                "springs or a longer range, with which particles do not snap"
+            )
+        if falls and states[-1].smallest_distance > self.settings.cutoff:
+            raise TensionError(force, max(-state.force for state in states))
+        if len(states) > MOST_INCREMENTS:
+            raise UntrustedError(
+                f"{force:.4g} FU is not reached within {MOST_INCREMENTS} increments, at displacement "
+                f"{states[-1].displacement:.4g} LU and {states[-1].carried:.4g} FU: the ranges of the interaction are "
+                "short beside the way. Take a force that is nearer to 0, longer ranges or stiffer springs"
+            )
+
+    # --- the largest tension
+
+    def maximum(self) -> None:
+        """Find the largest tension on the way apart; the last state is then at it.
+
+        Raises:
+            UntrustedError: see `require_trust`; it is not found.
+        """
+        if self.contact.deck.stepped:
+            self._maximum_above_limit()
+        elif self.reversible:
+            self._maximum_by_visits()
+        else:
+            self._maximum_by_replays()
+
+    def open(self) -> None:
+        """Pull the bodies apart.
+
+        Raises:
+            UntrustedError: a larger tension comes after the one that was found.
+        """
+        if self._finished:
+            return
+        before = self.peak()
+        if self.contact.deck.stepped:
+            self.visit(np.linspace(self._last.displacement, BEYOND_LIMIT * self.model.apart, LOADING_STEPS + 1)[1:])
+            return
+        # On from where the bodies have been, yet no longer a way at once than the search for a maximum goes past it.
+        nearest = self._last.displacement - (ROWS_BEYOND_PEAK + 1) * self.settings.increment()
+        self._separate(max(nearest, min(s.displacement for s in self.falling)))
+        after = self.peak()
+        if abs(after.smooth - before.smooth) > self.tolerance * after.smooth:
+            raise SecondMaximumError(
+                f"the tension rises again to {after.tension:.6g} FU after its largest maximum was {before.smooth:.6g} "
+                'FU: use kind = "path" through all of it'
+            )
+
+    def peak(self) -> Peak:
+        """The largest tension by all states that were held on the way apart."""
+        d, force = _curve(self.falling)
+        if self.contact.deck.stepped:
+            held = d >= self.model.apart
+            d, force = d[held], force[held]
+            found = largest_tension(d.tolist(), force.tolist())
+            if found.index == len(d) - 1:  # at the limit point the tension is what it is
+                return Peak(found.index, found.tension, LAST * found.tension, found.tension, found.position, 0.0)
+            return found
+        return largest_tension(d.tolist(), force.tolist())
+
+    def _maximum_above_limit(self) -> None:
+        """Rows from F = 0 to just before the limit point, then about the largest tension."""
+        zero, last = self._last.displacement, self.model.apart
+        end = zero + (1.0 - LAST) * (last - zero)
+        self.visit(np.linspace(zero, end, PULLING_STEPS + 1)[1:])
+        before = self.peak()
+        step = (zero - last) / PULLING_STEPS
+        self.visit(np.clip(before.position + step * np.asarray((0.5, -0.5, 0.25, -0.25)), end, zero))
+        self.visit([min(max(self.peak().position, end), zero)])
+        self.missed = abs(self.peak().smooth - before.smooth)
+        digits = self._last.residual * self.settings.particles
+        if self.peak().smooth <= digits:
+            raise DigitsError(
+                f"the largest tension, about {self.scale:.2g} FU, is nothing beside {digits:.2g} FU, which "
+                "the last digits of positions make of the contact's force",
+                "take a larger adhesion.work_of_adhesion, or a smaller preload",
+            )
+
+    def _maximum_by_visits(self) -> None:
+        """Rows past the largest tension, back to it, and at half the distance beside it until they change nothing.
+
+        Just below snapping F(d) has a tooth for each pair that is lost: every one that may be the highest is looked at.
+        """
+        beside = self._pass_maximum()
+        expected, cuts, changed = self.peak(), 0, math.inf
+        for _ in range(MOST_ROUNDS):
+            self._back_to(expected.position)
+            found = self.peak()
+            missed, allowed = abs(found.smooth - expected.smooth), self.tolerance * found.smooth
+            if missed > allowed or not self._is_at(found):
+                expected = found
+                continue
+            known = changed <= allowed and found.uncertainty <= allowed
+            if known and (cuts > HALVINGS_AT_PEAK or self._is_placed(found)):
+                before, left = len(self.falling), self._look_at_rivals(allowed)
+                if len(self.falling) == before:
+                    self.missed = max(missed, changed, left, abs(found.smooth + self._last.force))
+                    return
+                expected = self.peak()
+                changed = max(changed, abs(expected.smooth - found.smooth))
+                continue
+            beside, cuts = 0.5 * beside, cuts + 1
+            surprise = self._halve((found.position + beside, found.position - beside))
+            expected = self.peak()
+            changed = max(surprise, abs(expected.smooth - found.smooth))
+        raise UntrustedError(f"the largest tension is not found near {expected.position:.6g} LU: {JUMPS}")
+
+    def _pass_maximum(self) -> float:
+        """Rows down until the largest tension is passed; where there are teeth, all that may exceed it.
+
+        Returns the increment [LU].
+        """
+        estimate, zero = self.settings.estimate, self._last
+        tooth = estimate.tooth(self.settings.particles)
+        densest = (zero.displacement - estimate.rest + float(estimate.gap[-1])) / MOST_TEETH
+        step = min(self.settings.increment(), max(tooth, densest) / PER_TOOTH)
+        through = tooth < math.inf or self.context.through
+        rows = [zero]
+        while not _is_passed(rows) or (through and -min(s.force for s in rows) <= self._still_held(rows[-1])):
+            rows.append(self._at(zero.displacement - len(rows) * step))
+            self.falling.append(rows[-1])
+            if len(rows) > MOST_INCREMENTS:
+                raise UntrustedError("the largest tension is never passed")
+        return step
+
+    def _halve(self, positions: tuple[float, float]) -> float:
+        """Visit positions [LU] beside the largest tension; by how much they are not what was promised there [FU]."""
+        d, force = _curve(self.falling)
+        expected = promised(d.tolist(), force.tolist(), positions)
+        surprise = 0.0
+        for position, tension in zip(positions, expected, strict=True):
+            self._back_to(position)
+            surprise = max(surprise, math.inf if math.isnan(tension) else abs(float(tension) + self._last.force))
+        return surprise
+
+    def _look_at_rivals(self, allowed: float) -> float:
+        """Visit positions beside teeth that may be higher than the highest row by more than `allowed` [FU].
+
+        Returns by how much one still may [FU].
+        """
+        excess = 0.0
+        for _ in range(MOST_RIVALS):
+            d, force = _curve(self.falling)
+            teeth = rivals(d.tolist(), force.tolist(), self.peak())
+            highest = max(teeth, key=lambda i: teeth[i], default=0)
+            excess = max(0.0, teeth.get(highest, 0.0))
+            if excess <= allowed:
+                break
+            for other in (d[highest - 1], d[highest + 1]):
+                self._back_to(0.5 * float(d[highest] + other))
+        return excess
+
+    def _is_at(self, peak: Peak) -> bool:
+        """Whether the contact radius of the last state is that of the maximum."""
+        return abs(self._rate() * (peak.position - self._last.displacement)) <= self._radius_allowed()
+
+    def _is_placed(self, peak: Peak) -> bool:
+        """Whether the maximum itself is placed so well that the contact radius there is known."""
+        return PLACE_FACTOR * abs(self._rate()) * peak.misplaced <= self._radius_allowed()
+
+    def _rate(self) -> float:
+        """da/dd at the last state, from the nearest other one."""
+        last = self._last
+        others = [s for s in self.falling if s.displacement != last.displacement]
+        near = min(others, key=lambda s: abs(s.displacement - last.displacement))
+        change = near.radius_or_spot.value - last.radius_or_spot.value
+        return change / (near.displacement - last.displacement)
+
+    def _radius_allowed(self) -> float:
+        radius = self._last.radius_or_spot
+        return max(self.tolerance * radius.value, READ_SHARE * radius.uncertainty)
+
+    # --- where pairs snap
+
+    def _maximum_by_replays(self) -> None:
+        """Pull the bodies apart, then run the schedule again and again, each time finer about the largest tension.
+
+        The numbers are those of the last schedule, which holds the positions of F_D, F = 0 and the largest tension; it
+        ends when two of them agree.
+        """
+        self._separate(self._last.displacement)
+        window = self._unloading_step(self.loading[-1].displacement)
+        for number in range(MOST_REPLAYS):
+            before = self.peak()
+            self._replay(window, first=number == 0)
+            window *= ZOOM_FACTOR
+            if self._agrees(before):
+                teeth = rivals(*(values.tolist() for values in _curve(self.falling)), self.peak())
+                self.missed = abs(self.peak().smooth - before.smooth) + max((0.0, *teeth.values()))
+                self._finished = True
+                return
+        raise UntrustedError(
+            f"the pull-off force still changes from {before.tension:.6g} to {self.peak().tension:.6g} FU after "
+            f"{MOST_REPLAYS} refinements of the path, by more than a tolerance of {self.settings.tolerance:g} allows: "
+            "take a larger [accuracy] tolerance, or stiffer springs or a longer range, with which particles do not snap"
+        )
+
+    def _replay(self, window: float, first: bool) -> None:
+        """Run the schedule again from the start, with the marks of the one before and a window about its peak [LU]."""
+        deepest = _displacement_of(self.loading, self._targets["deepest"])
+        d, force = _curve(self.falling)
+        same = 1e-9 * (deepest - d[-1])
+        climbed = sorted({s.displacement for s in self.loading[:-1] if s.force < self._targets["deepest"]})
+        zero, peak = smooth_crossing(d.tolist(), force.tolist(), self._targets["zero"]), self.peak()
+        half, step = max(window, self.lost_early()), window / WINDOW_ROWS
+        high, low = peak.position + half, peak.position - half
+        if first:  # which tooth is the highest can't be told from coarse rows
+            close = d[-force >= (1.0 - RIVAL_SHARE) * peak.tension]
+            high, low = max(high, float(close.max())), min(low, float(close.min()))
+        fine = high - step * np.arange(round((high - low) / step) + 1)
+        fine = fine[fine < zero - same]
+        rows = {deepest, zero, peak.position, *d[(d > fine[0]) | (d < fine[-1])].tolist(), *fine.tolist()}
+        falling = sorted((row for row in rows if row <= deepest), reverse=True)
+        parts = {
+            "unloading": [row for row in falling if row >= zero],
+            "pulling": [row for row in falling if peak.position <= row < zero],
+            "separating": [row for row in falling if row < peak.position],
+        }
+        loading = [row for row in climbed if row < deepest - same] + [deepest]
+        phases = [Phase("loading", displacements(loading))]
+        phases += [Phase(name, displacements(rows), state=name != "separating") for name, rows in parts.items()]
+        self._open.close()
+        purpose = "the whole path again, finer at the largest tension"
+        self.contact = self._open.enter_context(self.context.contact(purpose))
+        states = self.contact.replay(phases)
+        self.loading, self.falling = states[: len(loading)], states[len(loading) :]
+        held = len(parts["unloading"])
+        marks = (self.falling[held - 1], self.falling[held + len(parts["pulling"]) - 1])
+        self.marked = dict(zip(("zero_load", "critical"), marks, strict=True))
+
+    def _agrees(self, before: Peak) -> bool:
+        """Whether two schedules give the same results, and the marks of the latest one are where they belong."""
+        peak, critical = self.peak(), self.marked["critical"]
+        allowed, radius = self.tolerance * peak.smooth, critical.radius_or_spot
+        near = min((s for s in self.falling if s.displacement != critical.displacement),
+                   key=lambda s: abs(s.displacement - critical.displacement))  # fmt: skip
+        rate = (near.radius_or_spot.value - radius.value) / (near.displacement - critical.displacement)
+        preload = self._targets["deepest"]
+        return (
+            abs(peak.smooth - before.smooth) <= allowed
+            and peak.uncertainty + self.cut_short() <= allowed
+            and abs(self.loading[-1].force - preload) <= self.tolerance * preload
+            and abs(self.marked["zero_load"].force) <= allowed
+            and peak.smooth + critical.force <= allowed
+            and abs(rate * (peak.position - critical.displacement))
+            <= max(self.tolerance * radius.value, READ_SHARE * radius.uncertainty)
+        )
+
+    def lost_early(self) -> float:
+        """How far [LU] before its limit the largest tension may have been lost, in the move after it."""
+        d, _ = _curve(self.falling)
+        i = self.peak().index
+        return self.settings.let_go_early(float(d[i] - d[min(i + 1, len(d) - 1)]))
+
+    def cut_short(self) -> float:
+        """Tension [FU] that is missed by that: it would have gone on to rise as it did."""
+        d, force = _curve(self.falling)
+        i = self.peak().index
+        if not 0 < i < len(d) - 1:
+            return 0.0
+        return max(0.0, float((force[i - 1] - force[i]) / (d[i - 1] - d[i]))) * self.lost_early()
+
+    # --- moves
+
+    @property
+    def _last(self) -> State:
+        return self.falling[-1] if self.falling else self.loading[-1]
+
+    def _at(self, displacement: float) -> State:
+        """One row at a displacement [LU]."""
+        return self.contact.row(Displace(displacement))
+
+    def _back_to(self, displacement: float) -> None:
+        """Visit a displacement [LU]; bodies come nearer by RETURN_SHARE of their particles' distance at a time."""
+        while displacement - self._last.displacement > (longest := RETURN_SHARE * self._last.smallest_distance):
+            longest = max(longest, self.settings.longest_move)
+            self.falling.append(self._at(min(self._last.displacement + longest, displacement)))
+        self.falling.append(self._at(displacement))
+
+    def _separate(self, start: float) -> None:
+        """Rows of falling displacement from `start` [LU] until the tension has passed its largest value and is gone."""
+        largest = max((-s.force for s in self.falling), default=0.0)
+        smooth = self.reversible
+        self.falling.append(self._at(start))
+        displacement, step = start, self._unloading_step(start)
+        for _ in range(MOST_INCREMENTS):
+            displacement -= step
+            state = self._at(displacement)
+            self.falling.append(state)
+            largest = max(largest, -state.force)
+            past = 0.0 <= -state.force < GROWTH_SHARE * largest
+            if past and (smooth or self._still_held(state) < largest):
+                # Longer moves lose particles early: only where no tooth can be higher any more.
+                step *= SMOOTH_GROWTH if smooth else GROWTH
+            gone = abs(state.force) < SEPARATION_SHARE * largest
+            if (gone and self._still_held(state) < SEPARATION_SHARE * largest) or (
+                state.smallest_distance > self.settings.cutoff
+            ):
+                return
+        raise UntrustedError(f"the bodies did not separate within {MOST_INCREMENTS} increments of the displacement")
+
+    def _unloading_step(self, start: float) -> float:
+        """First increment [LU] of an unloading: soft springs follow the attraction far beyond what they were pressed."""
+        way = start - self.settings.rest + float(self.settings.estimate.gap[-1])
+        return max(self.settings.increment(), way / SEPARATION_ROWS)
+
+    def _still_held(self, state: State) -> float:
+        """Tension [FU] that bodies which move apart can have at most from this state on.
+
+        A particle that has passed the largest tension of its law only loses what it has; any other, wherever it is, may
+        come to hold that.
+        """
+        profile, (distance, largest) = state.profile, self.settings.strongest
+        held = self.scene.bodies.spacing * np.maximum(0.0, -profile.pressure)
+        near = profile.z_upper - profile.z_lower < distance
+        return float(np.sum(np.where(near, np.maximum(held, largest), held)))
+
+
+class SecondMaximumError(UntrustedError):
+    """The tension rises again after its first maximum: rows through all of it tell."""
+
+
+def _secant(before: State, beyond: State | None, states: Sequence[State], force: float, step: float) -> float:
+    """The secant's displacement, kept inside the bracket or within one step [LU]."""
+    if beyond is not None:
+        part = (force - before.carried) / (beyond.carried - before.carried)
+        return before.displacement + min(max(part, 0.05), 0.95) * (beyond.displacement - before.displacement)
+    ahead = 1.0
+    if len(states) > 1 and states[-1].carried != states[-2].carried:
+        slope = (states[-1].carried - states[-2].carried) / (states[-1].displacement - states[-2].displacement)
+        needed = OVERSHOOT * (force - before.carried) / slope / step
+        ahead = min(1.0, needed) if needed > 0 else 1.0
+    return before.displacement + ahead * step
+
+
+def _curve(states: Sequence[State]) -> tuple[Array, Array]:
+    """Displacements [LU], falling, each once, and forces [FU]."""
+    known = {state.displacement: state.force for state in states}
+    d = np.asarray(sorted(known, reverse=True))
+    return d, np.asarray([known[at] for at in d.tolist()])
+
+
+def _is_passed(states: Sequence[State]) -> bool:
+    """Whether the last rows lie beyond a largest tension."""
+    tension = [-s.force for s in states]
+    largest = max(tension)
+    return largest > 0.0 and tension.index(largest) < len(tension) - ROWS_BEYOND_PEAK
+
+
+def _displacement_of(states: Sequence[State], force: float) -> float:
+    """Displacement [LU] of a force [FU] on a rising branch, through its two nearest rows."""
+    near = sorted(states, key=lambda s: abs(s.force - force))[:2]
+    if len(near) < 2 or near[0].force == near[1].force:
+        return near[0].displacement
+    part = (force - near[0].force) / (near[1].force - near[0].force)
+    return near[0].displacement + part * (near[1].displacement - near[0].displacement)

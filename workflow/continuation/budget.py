@@ -1,0 +1,249 @@
+"""The error budget: how far each result may be off, by source, found by perturbing the one reader of the results.
+
+    solver           the reader on forces ± ε, and on forces tilted by ± ε over the range of the interaction: ε is what a
+                     minimiser or a motion leaves, and what table, cutoff or a plane that is not quite rigid change
+    sampling         what the reader's polynomials and the search leave; where the scene gives the steps, the reader on
+                     the model with these steps beside the model with dense ones
+    discretisation   the reader on the model with its apex elsewhere between particles, and with two and four times as many;
+                     and on radii changed by what reading between particles leaves
+    instability      what particles that are lost early, and other teeth of the force, may change (the reader's own)
+
+Nothing here knows an experiment: whatever a script passes and a reader reads has all of these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.workflow.continuation.model_branch import ModelBranch
+from contact1d.workflow.continuation.outcome import LATTICE, Result, in_words
+from contact1d.workflow.continuation.state import State
+from contact1d.workflow.continuation.trace import Trace
+from contact1d.workflow.continuation.trust import law_error
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.reduced import Reduced, reduced
+from contact1d.workflow.settings.settings import Settings
+
+Array = NDArray[np.float64]
+MARGIN = 1.25
+"""Error over the change of the model with the lattice: it knows no neighbours; measured on chains of both parities: 1.01."""
+PATH_MARGIN = 1.5
+"""The same of the steps of a path, where the model's maximum lies elsewhere."""
+PHASES = (0.25, 0.0)
+"""Positions of the apex between particles, over the spacing, that an even chain is compared with."""
+MORE_PHASES = (0.375, 0.25, 0.125, 0.0)
+"""Such positions where friction makes several edges, the errors of which may cancel at two positions."""
+SHIFTS = (0.0, 0.25, 0.5, 0.75)
+"""Shifts of a path's steps over their width, of which the worst counts where the model is no copy of the deck."""
+DENSE = 16
+"""Positions of the model in one step of a path."""
+SLOWEST = 0.9
+"""Ratio of two differences of three spacings above which they do not shrink."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A value that was read, and what its reader knows of its errors, by source.
+
+    Attributes:
+        value: in `unit`.
+        unit: of the model.
+        errors: by source.
+        scale: what the uncertainty is compared with, where that is not the value itself.
+        prescribed: whether the scene prescribes it.
+    """
+
+    value: float
+    unit: str
+    errors: Mapping[str, float] = field(default_factory=dict)
+    scale: float | None = None
+    prescribed: bool = False
+
+
+Script = Callable[[ModelBranch], object]
+Reader = Callable[[Trace], Mapping[str, Reading]]
+Values = dict[str, float]
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """How a scene's results go with the lattice of the model: script and reader of its experiment."""
+
+    scene: Scene
+    settings: Settings
+    script: Script
+    read: Reader
+
+    def values(self, model: Reduced, dense: int = 1, shift: float = 0.0) -> Values:
+        """The results of the model; `shift` of the displacements that the scene gives [LU]."""
+        return _values(self.read(self.trace(model, dense, shift)))
+
+    def trace(self, model: Reduced, dense: int = 1, shift: float = 0.0) -> Trace:
+        """What the script leaves of the model."""
+        branch = ModelBranch(self.scene, self.settings, model, dense, shift)
+        self.script(branch)
+        return branch.trace()
+
+    @property
+    def on_lattice(self) -> bool:
+        """Whether the particles' positions are the program's choice, and not the body that was asked for."""
+        bodies = self.scene.bodies
+        return bodies.particles == "auto" and not bodies.profile.has_edge
+
+    @property
+    def is_quadrature(self) -> bool:
+        """Whether the particles stand for a body that is continuous: on a rigid plane."""
+        bodies = self.scene.bodies
+        return bodies.lower == "rigid_plane" and (bodies.particles == "auto" or self.scene.adhesion is not None)
+
+
+def lattice_errors(case: Reduction) -> Values:
+    """By name of a result, what the lattice leaves open; infinite where it does not come nearer with finer spacings."""
+    if not (case.on_lattice or (case.is_quadrature and case.scene.adheres)):
+        return {}
+    model = reduced(case.scene, case.settings)
+    own = case.values(model)
+    found = dict.fromkeys(own, 0.0)
+    if case.on_lattice:
+        for phase in MORE_PHASES if case.scene.friction is not None else PHASES:
+            other = case.values(model.shifted(phase))
+            found = {
+                name: max(error, MARGIN * abs(other.get(name, own[name]) - own[name])) for name, error in found.items()
+            }
+    if case.is_quadrature and case.scene.adheres:
+        finer = [case.values(model.finer()), case.values(model.finer().finer())]
+        for name in found:
+            values = (own[name], *(one.get(name, own[name]) for one in finer))
+            found[name] = max(found[name], _extrapolated(*values))
+    return found
+
+
+def _extrapolated(coarse: float, fine: float, finest: float) -> float:
+    """|v_h − v_{h/2}|/(1 − 2⁻ᵖ) with the observed order p of three spacings; what the finest leaves is added."""
+    first, second = abs(coarse - fine), abs(fine - finest)
+    if first == 0.0:
+        return second
+    return first / (1.0 - min(second / first, SLOWEST))
+
+
+def sampling_errors(case: Reduction, trace: Trace) -> Values:
+    """By name of a result, what the steps that a scene gives miss of it, by the model with the same and dense steps."""
+    model, found = reduced(case.scene, case.settings), dict[str, float]()
+    step = float(np.median(np.abs(np.diff(trace.displacement)))) if len(trace) > 1 else 0.0
+    is_copy = case.scene.is_stepped
+    for share in SHIFTS[:1] if is_copy else SHIFTS:
+        dense, same = (case.values(model, between, share * step) for between in (DENSE, 1))
+        for name in same.keys() & dense.keys():
+            missed = (1.0 if is_copy else PATH_MARGIN) * abs(same[name] - dense[name])
+            found[name] = max(found.get(name, 0.0), missed)
+    return found
+
+
+@dataclass(frozen=True)
+class ForceErrors:
+    """How far the forces of states may be off, (m,) [FU].
+
+    Attributes:
+        common: alike at neighbouring states: what residual forces add up to at most, table, cutoff, a plane not rigid.
+        turning: what a path back may have otherwise than the path there: residual forces are of either sign.
+    """
+
+    common: Array
+    turning: Array
+
+
+def force_errors(
+    scene: Scene, settings: Settings, states: Sequence[State], marked: Collection[State], left: float | None = None
+) -> ForceErrors:
+    """Of states, the law's part between `marked` ones by their displacement; `left`: in place of residual forces [FU]."""
+    law = {state.displacement: law_error(scene, settings, state) for state in marked}
+    positions = sorted(law)
+    displacement = np.asarray([state.displacement for state in states])
+    residual = np.asarray([state.residual for state in states])
+    count = float(settings.particles)
+    bound = residual * count if left is None else np.full_like(residual, left)
+    several = count if scene.noise is not None else np.sqrt(count)
+    common = bound + np.interp(displacement, positions, [law[position] for position in positions])
+    return ForceErrors(common, residual * several)
+
+
+def budgeted(
+    case: Reduction,
+    trace: Trace,
+    force_error: ForceErrors,
+    lattice: Values,
+    sampled: bool = False,
+    length: float = 0.0,
+) -> dict[str, Result]:
+    """The results with their errors.
+
+    Args:
+        case: scene, settings, script and reader.
+        trace: what was measured.
+        force_error: ε of each state.
+        lattice: of `lattice_errors`.
+        sampled: whether the scene gives the steps.
+        length: over which a tilt of the force is ε [LU]; 0 for none.
+    """
+    readings = case.read(trace)
+    values = _values(readings)
+    shapes = [force_error.common]
+    if length > 0.0:
+        shapes.append(force_error.common * (trace.displacement - trace.displacement[-1]) / length)
+    if sampled:
+        shapes.append(force_error.turning * np.sign(np.gradient(trace.displacement)))
+    solver = _changes(case.read, values, [trace.perturbed(sign * shape) for shape in shapes for sign in (1.0, -1.0)])
+    read = _changes(case.read, values, [trace.perturbed(radius_shift=sign) for sign in (1.0, -1.0)])
+    between = sampling_errors(case, trace) if sampled else {}
+    found = {}
+    for name, one in readings.items():
+        errors = {"solver": solver[name], LATTICE: lattice.get(name, 0.0) + read[name]} | dict(one.errors)
+        if name in between:
+            errors["sampling"] = max(errors.get("sampling", 0.0), between[name])
+        found[name] = Result(one.value, one.unit, errors, one.scale, one.prescribed, read[name])
+    return found
+
+
+def _changes(read: Reader, values: Values, perturbed: list[Trace]) -> Values:
+    """The largest change of each value."""
+    found = dict.fromkeys(values, 0.0)
+    for trace in perturbed:
+        others = _values(read(trace))
+        found = {
+            name: max(change, abs(others.get(name, values[name]) - values[name])) for name, change in found.items()
+        }
+    return found
+
+
+def _values(readings: Mapping[str, Reading]) -> Values:
+    return {name: one.value for name, one in readings.items()}
+
+
+def lattice_warning(scene: Scene, results: Mapping[str, Result]) -> dict[str, str]:
+    """The warning `lattice`: results that the positions of the particles leave less certain than the tolerance."""
+    shares = {}
+    for name, one in results.items():
+        left = one.errors.get(LATTICE, 0.0) - one.read
+        if left and (one.size or name.endswith("radius")):
+            shares[name] = left / one.size if one.size else inf
+    shares = {name: share for name, share in shares.items() if share > scene.accuracy.tolerance}
+    if not shares:
+        return {}
+    spacing = scene.bodies.spacing * np.sqrt(0.5 * scene.accuracy.tolerance / min(1.0, max(shares.values())))
+    limits = f"{in_words(shares)} only, more than the tolerance of {scene.accuracy.tolerance:g}, because "
+    return {
+        "lattice": limits
+        + (
+            f"the edge of the contact moves through cells: take a bodies.spacing of {spacing:.2g} LU at "
+            "the same stiffness per length"
+            if scene.adheres and scene.adhesion is not None
+            else "the contact's centre may lie on a particle or anywhere between two of this chain: take a smaller "
+            "bodies.spacing at the same stiffness and energy per length, or give bodies.particles where these very "
+            "particles are meant"
+        )
+    }

@@ -1,0 +1,273 @@
+"""A contact in LAMMPS: rows of a schedule go there, and each comes back as a measured state that can be trusted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.analysis.pressure import Profile, interpenetration, pressure_profile, smallest_distance
+from contact1d.workflow.continuation.state import RadiusRule, State
+from contact1d.workflow.continuation.trust import is_converged, require_trust
+from contact1d.workflow.deck.datafile import PARTICLES
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.lattice import bodies, period
+from contact1d.workflow.deck.parts import PLANE_DEPTH
+from contact1d.workflow.deck.steps import Displace, Draw, Phase, Row
+from contact1d.workflow.engine.failure import NOT_FINITE
+from contact1d.workflow.engine.frames import last_frames
+from contact1d.workflow.engine.session import EngineError, Session
+
+Array = NDArray[np.float64]
+ATOM_UNITS = {"x": "LU", "f": "FU", "v_opposite_x": "FU", "v_opposite_z": "FU"}
+"""What is measured of every atom, and its unit."""
+BATCH = 8
+"""Rows that go to LAMMPS at a time where they are known beforehand: waking two processes takes as long as a row."""
+HEAT = ("heat_particles", "heat_plate")
+"""Energy that the heat baths of particles and plate took in a row [FU·LU]."""
+MOTION = {
+    "f_cantilever_means[1]": "FU", "f_cantilever_means[2]": "FU·LU", "f_cantilever_means[3]": "FU·LU",
+    "c_measuring_energy": "FU·LU", "cantilever_kinetic": "FU·LU", "vcm(plate,x)": "LU/TU", "vcm(plate,z)": "LU/TU",
+    "vcm(upper,x)": "LU/TU", "xcm(upper,x)": "LU",
+}  # fmt: skip
+"""Of a slide: means since the start over every fifth step of the cantilever's force and of the kinetic energies of
+particles and plate; energies; velocities and positions."""
+MOST_REPEATS = 200
+"""Repeats of a row after which it counts as never relaxed: near an instability the motion is slower without end."""
+TOLD = "steps/told"
+"""The fragment from which on a heat bath reports what energy it takes."""
+FRAMES = "rows.bin"
+"""Where rows that are steps of one run leave a frame each: id, z, force along z, and along x where that is prescribed."""
+MOST_NUMBERS = 1_000_000
+"""Of the frames that are read at once, to bound the memory."""
+
+
+class Contact:
+    """A deck that is being run. It keeps its schedule: `phases` is what in.lammps must hold to repeat it."""
+
+    def __init__(self, deck: Deck, session: Session, meanwhile: Callable[[], object] | None = None) -> None:
+        """Run the deck's head: bodies, effects, method. What `meanwhile` does costs no time: LAMMPS reads the bodies."""
+        self.deck, self.scene, self.settings, self.session = deck, deck.scene, deck.settings, session
+        self.rows_seconds = 0.0  # wall time of the rows in LAMMPS
+        self._phases: list[Phase] = []
+        self._unfinished = ""
+        self._written = self._heat_is_reported = False
+        self._latest: list[State] = []
+        self._rule = RadiusRule(deck.scene, deck.settings.tolerance)
+        self._pushes = tuple(part.pushes for part in deck.parts if part.pushes)
+        session.execute(deck.head, phase="setting up", meanwhile=meanwhile)
+        if deck.stepped:
+            self._x = bodies(deck.scene, deck.settings)[0].particles[:, 0]
+            self._nothing = np.zeros_like(self._x)
+            self._read = 0  # bytes of the frames' file
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """The schedule so far."""
+        return tuple(self._phases)
+
+    def begin(self, name: str, fragments: tuple[str, ...] = (), expected_steps: int | None = None) -> None:
+        """Begin a phase."""
+        end = "variable        row_phase delete\n" if self._phases else ""
+        self._phases.append(Phase(name, (), begin=fragments))
+        self._unfinished += end + self.deck.begin(name, fragments)
+        self._heat_is_reported = self._heat_is_reported or TOLD in fragments
+        self.session.execute("", phase=name, expected_steps=expected_steps)
+
+    def row(self, row: Row, trusted: bool = True) -> State:
+        """Run one row of the current phase and measure; see `rows`."""
+        return self.rows((row,), trusted)[0]
+
+    def rows(self, rows: Sequence[Row], trusted: bool = True) -> list[State]:
+        """Run rows of the current phase, which are known beforehand, and measure each.
+
+        Args:
+            rows: of one kind.
+            trusted: whether each state is a result; one on the way to equilibrium is not.
+
+        Raises:
+            EngineError: LAMMPS failed, or lost particles.
+            UntrustedError: see `require_trust`.
+        """
+        found: list[State] = []
+        size = BATCH
+        if self.deck.stepped:
+            rows = [self.deck.as_listed(row) for row in rows]
+            size = max(1, MOST_NUMBERS // len(self._x))
+        before = self.session.lammps_seconds
+        for start in range(0, len(rows), size):
+            batch = rows[start : start + size]
+            first = sum(len(phase.rows) for phase in self._phases)
+            self._phases[-1] = replace(self._phases[-1], rows=(*self._phases[-1].rows, *batch))
+            self._latest = (self._steps if self.deck.stepped else self._measured)(batch, first)
+            for state in self._latest if trusted else ():
+                require_trust(self.scene, self.settings, state)
+            found += self._latest
+        self.rows_seconds += self.session.lammps_seconds - before
+        return found
+
+    def write_state(self) -> None:
+        """Write the state that the last row left to states.lammpstrj; it ends the phase."""
+        self._phases[-1] = replace(self._phases[-1], state=True)
+        self._unfinished += self.deck.state(first=not self._written)
+        self._written = True
+
+    def finish(self) -> None:
+        """Run what is left of the last row; what its states were made of is not kept."""
+        self.session.execute(self._unfinished, phase=self._phases[-1].name)
+        self._unfinished = ""
+        (self.session.folder / FRAMES).unlink(missing_ok=True)
+
+    def replay(self, phases: Sequence[Phase], relaxed: bool = False) -> list[State]:
+        """Run a whole schedule; one state for each row. `relaxed`: a row in time is repeated until it is at rest."""
+        states: list[State] = []
+        trusted = self.scene.noise is None
+        for phase in phases:
+            steps = sum(getattr(row, "steps", 0) for row in phase.rows)
+            self.begin(phase.name, phase.begin, steps or None)
+            if relaxed:
+                states += [self._relaxed(row) for row in phase.rows]
+            else:
+                states += self.rows(phase.rows, trusted)
+            if phase.state:
+                self.write_state()
+        self.finish()
+        return states
+
+    def _relaxed(self, row: Row) -> State:
+        state, repeats = self.row(row, trusted=False), 0
+        while not is_converged(self.settings, state) and repeats < MOST_REPEATS:
+            state, repeats = self.row(row, trusted=False), repeats + 1
+        require_trust(self.scene, self.settings, state)
+        return state
+
+    def _measured(self, rows: Sequence[Row], first: int) -> list[State]:
+        texts = []
+        for row in rows:
+            texts.append(self._unfinished + self.deck.values(row, not self._written) + self.deck.row(type(row)))
+            self._written = self._written or self.deck.keeps
+            self._unfinished = self.deck.row_end + self.deck.forget(type(row))
+        names = self._values()
+        readings = self.session.measure_rows(texts, tuple(names), tuple(ATOM_UNITS), meanwhile=self._look_back)
+        units, phase, states = self.deck.units, self._phases[-1].name, []
+        for number, reading in enumerate(readings, first):
+            numbers = {name: units.from_deck(v, names[name]) for name, v in zip(names, reading.values, strict=True)}
+            atoms = {n: units.from_deck(rows, ATOM_UNITS.get(n, "1")) for n, rows in reading.atoms.items()}
+            states.append(self._state(phase, numbers, atoms, number))
+        return states
+
+    def _steps(self, rows: Sequence[Row], first: int) -> list[State]:
+        """Rows that are steps of one run: nothing has to relax."""
+        began = self.session.timestep
+        self.session.measure(self._unfinished + self.deck.in_one_run(rows), meanwhile=self._look_back)
+        self._unfinished = ""
+        spacing, phase, settings = self.scene.bodies.spacing, self._phases[-1].name, self.settings
+        # The wall's force is a difference of distances from far below.
+        depth = PLANE_DEPTH * max(settings.largest_displacement, spacing)
+        round_off = float(np.finfo(np.float64).eps) * depth * settings.plane_stiffness
+        states = []
+        for i, (row, profile) in enumerate(zip(rows, self._profiles(len(rows)), strict=True)):
+            assert isinstance(row, Displace | Draw)
+            force, closest = spacing * float(profile.pressure.sum()), float(profile.z_upper.min())
+            along = row.place if isinstance(row, Draw) else 0.0
+            states.append(
+                State(phase, row.displacement, force, profile, self._rule, closest, 0.0, round_off, plate_x=along,
+                      step=float(began + i + 1), number=first + i)
+            )  # fmt: skip
+        return states
+
+    def _profiles(self, count: int) -> list[Profile]:
+        """Profiles of the last rows in order, over x from the body's middle. A particle that carries is on the plane.
+
+        Raises:
+            EngineError: particles were lost, or a number is not finite.
+        """
+        path, columns = self.session.folder / FRAMES, 4 if self.scene.experiment.goes_along else 3
+        try:
+            frames, self._read = last_frames(path, count, len(self._x), columns, self._read)
+        except ValueError:
+            raise self._lost("atoms are missing", self.session.timestep) from None
+        if not np.isfinite(frames).all():
+            raise self._lost(NOT_FINITE, self.session.timestep)
+        units, spacing, none = self.deck.units, self.scene.bodies.spacing, self._nothing
+        heights = units.from_deck(frames[:, :, 0], "LU")
+        pressures = units.from_deck(frames[:, :, 1], "FU") / spacing
+        surfaces = np.where(pressures != 0.0, 0.0, heights)
+        if columns == 3:
+            return [Profile(self._x, none, z, p, none) for z, p in zip(surfaces, pressures, strict=True)]
+        shears = units.from_deck(frames[:, :, 2], "FU") / spacing
+        return [Profile(self._x, none, z, p, q) for z, p, q in zip(surfaces, pressures, shears, strict=True)]
+
+    def _look_back(self) -> None:
+        """Work out the radii of the rows before, which their states keep: LAMMPS is busy with the next ones."""
+        for state in self._latest:
+            with suppress(ValueError):  # reported where the radius is asked for
+                _ = state.radius
+
+    def _values(self) -> dict[str, str]:
+        """What is measured beside the atoms, and its unit."""
+        names = {"plate_displacement": "LU", "step": "1"}
+        if self.scene.plate is not None:
+            names["plate_velocity"] = "LU/TU"
+        if self.scene.cantilever is not None:
+            names |= {"cantilever_plate": "LU", "cantilever_force": "FU"} | MOTION
+            if self.scene.noise is not None and self._heat_is_reported:
+                names |= dict.fromkeys(HEAT if self.settings.plate_damping > 0.0 else HEAT[:1], "FU·LU")
+        return names | dict.fromkeys(self._pushes, "FU")
+
+    def _lost(self, message: str, step: int) -> EngineError:
+        return EngineError(message, self._phases[-1].name, step, self.session.folder, "")
+
+    def _state(self, phase: str, numbers: dict[str, float], atoms: dict[str, Array], number: int) -> State:
+        upper, lower = (atoms["type"] == PARTICLES[body] for body in ("upper", "lower"))
+        here = int(upper.sum() + lower.sum())
+        opposite = 0 if self.scene.bodies.lower == "rigid_plane" else self.settings.lower_particles
+        if here < self.settings.particles + opposite:
+            # LAMMPS looks for lost atoms when it makes a new neighbour list, and a row may end before.
+            raise self._lost(f"atoms are missing: only {here} particles are left in the box", int(numbers["step"]))
+        position, force = atoms["x"], atoms["f"]
+        x, z = position[upper, 0], position[upper, 2]
+        if lower.any():
+            x_low, z_low = self._surface(position[lower, 0], position[lower, 2])
+            closest = smallest_distance(x, z, x_low, z_low)
+            depth = interpenetration(x, z, x_low, z_low).depth
+            z_below = np.interp(x, x_low, z_low)
+        else:
+            # The plane's own softness lets a particle dip into it: the surface is where the particle is.
+            closest, depth = float(max(z.min(), 0.0)), 0.0
+            if self.scene.stands:
+                z = np.where(atoms["v_opposite_z"][upper] != 0.0, 0.0, z)
+                force = np.zeros_like(force)  # of its own a particle has no motion
+            z_below = np.minimum(z, 0.0)
+        profile = pressure_profile(
+            x, z, z_below, atoms["v_opposite_x"][upper], atoms["v_opposite_z"][upper], self.scene.bodies.own_spacing
+        )
+        free = [0, 2] if self.scene.horizontal is not None else [2]
+        moving = upper if self.scene.bodies.lower == "rigid_chain" else upper | lower
+        return State(
+            phase=phase,
+            displacement=numbers["plate_displacement"],
+            force=float(atoms["v_opposite_z"][upper].sum()),
+            profile=profile,
+            rule=self._rule,
+            smallest_distance=closest,
+            depth=depth,
+            residual=float(np.abs(force[moving][:, free]).max()),
+            pushed=float(sum(numbers[name] for name in self._pushes)),
+            plate_velocity=-numbers.get("plate_velocity", 0.0),
+            plate_x=numbers.get("cantilever_plate", 0.0),
+            cantilever_force=numbers.get("cantilever_force", 0.0),
+            step=numbers["step"],
+            motion={name: numbers[name] for name in (*MOTION, *HEAT) if name in numbers},
+            number=number,
+        )
+
+    def _surface(self, x: Array, z: Array) -> tuple[Array, Array]:
+        """Positions of the lower particles, of a periodic chain with what follows on both sides."""
+        if not self.scene.bodies.periodic:
+            return x, z
+        length = period(self.scene, self.settings)
+        return np.concatenate([x - length, x, x + length]), np.tile(z, 3)

@@ -1,0 +1,80 @@
+"""Where contacts are opened: one deck, one run folder, the LAMMPS process, and the time spent in it."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from contact1d.workflow.continuation.contact import Contact
+from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.engine.progress import Progress
+from contact1d.workflow.engine.session import Engine
+
+
+@dataclass
+class RunContext:
+    """Opens contacts of one deck, one after the other, in one folder.
+
+    Attributes:
+        deck: what is run.
+        folder: the run folder; system.data and the table are in it.
+        progress: told of phases and steps.
+        time_limit: for each contact [s].
+        retries: whether a search in which bodies went through each other begins anew in smaller steps.
+        workers: contacts that an experiment may have open at a time.
+        ranks: of MPI, for each of them.
+        lammps_seconds, lammps_cpu_seconds, steps: summed over all contacts so far.
+        rows_seconds: of the first, what rows took: without the deck's head and the files of states.
+        phase, timestep: where the latest contact is or ended.
+        through: whether a search goes through all of the tension: it rises again after its first maximum.
+        left: what a run that failed had so far, if that is worth looking at; its quantities are no results.
+    """
+
+    deck: Deck
+    folder: Path
+    progress: Progress
+    time_limit: float
+    retries: bool = True
+    workers: int = 1
+    ranks: int = 1
+    lammps_seconds: float = field(default=0.0, init=False)
+    lammps_cpu_seconds: float = field(default=0.0, init=False)
+    rows_seconds: float = field(default=0.0, init=False)
+    steps: int = field(default=0, init=False)
+    phase: str = field(default="start", init=False)
+    timestep: int = field(default=0, init=False)
+    left: Outcome | None = field(default=None, init=False)
+    through: bool = field(default=False, init=False)
+    _lock: threading.Lock = field(default_factory=threading.Lock, init=False, repr=False)
+
+    @contextmanager
+    def contact(self, purpose: str = "", meanwhile: Callable[[], object] | None = None) -> Iterator[Contact]:
+        """A fresh contact at displacement 0, in a LAMMPS instance of its own; `purpose` is told to the user.
+
+        What `meanwhile` does costs no time: LAMMPS reads the bodies then.
+        """
+        if purpose:
+            self.progress.note(purpose)
+        with Engine.session(self.folder, self.time_limit, self.progress, self.ranks) as session:
+            contact: Contact | None = None
+            try:
+                contact = Contact(self.deck, session, meanwhile)
+                yield contact
+            finally:
+                self.rows_seconds += contact.rows_seconds if contact else 0.0
+                self.lammps_seconds += session.lammps_seconds
+                self.lammps_cpu_seconds += session.lammps_cpu_seconds
+                self.steps += session.steps
+                self.phase, self.timestep = session.phase, session.timestep
+
+    def add_time_of(self, other: RunContext) -> None:
+        """Add what a context beside this one, maybe in another thread, has used."""
+        with self._lock:
+            self.lammps_seconds += other.lammps_seconds
+            self.lammps_cpu_seconds += other.lammps_cpu_seconds
+            self.rows_seconds += other.rows_seconds
+            self.steps += other.steps

@@ -1,0 +1,292 @@
+"""A branch of states under load control, in time, as the paper has it: loads, each held until rest or separation.
+
+A tension that breaks the contact is undone: the next one begins where it began. The first tensions are chosen by the
+model, which is mostly within a tolerance of the pull-off force; what counts is the bracket of a tension that held and one
+that did not. The rows of the search are the schedule: nothing is run twice.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.analysis.curve_marks import are_apart
+from contact1d.analysis.polynomial import lowest_minimum, through, value
+from contact1d.workflow.continuation.contact import Contact
+from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.holding import Held, Start, hold, overshoot, press
+from contact1d.workflow.continuation.state import State
+from contact1d.workflow.continuation.trace import Trace, of_states
+from contact1d.workflow.continuation.trust import ThroughError, UntrustedError
+from contact1d.workflow.deck.steps import Phase
+from contact1d.workflow.settings.reduced import Reduced, reduced
+
+Array = NDArray[np.float64]
+MOST_LEVELS = 60
+BRACKET = 1.0
+"""Width of the final bracket of the tension over the tolerance."""
+BRACKET_AIM = 0.45
+"""Distance from the expected pull-off force at which both sides are tried, over the tolerance."""
+FEWEST_HELD = 4
+"""States at rest from which the critical radius is extrapolated."""
+LONGEST_EXTRAPOLATION = 5.0
+"""Farthest extrapolation over the width of the states that it starts from."""
+SPREAD = 2.0
+"""Uncertainty of the extrapolation over the difference that one state less makes."""
+STRIDE = 0.8
+"""Rise of a tension over what is left to the expected pull-off force at most, so that the last states lie near it."""
+EDGES = 2
+"""Pairs that let go together, one at each edge of the contact: by so much the tension falls after a snap."""
+GROWTH = 0.25
+"""Rise of a tension over the one that held, where nothing better is known."""
+FIRST_RISE = 2.0
+"""Rise of the tension that is tried first over the tolerance: rest, table and cutoff use up to one of it themselves."""
+DOUBTFUL_SHARE = 0.9
+"""Tension over the expected largest one from which on it may be the pull-off force."""
+LEAST_STEP = 1e-3
+"""Steps towards a tension, over the largest one that is expected, below which the tension itself is tried."""
+
+
+@dataclass
+class Search:
+    """Tensions tried so far.
+
+    Attributes:
+        tolerance: of the pull-off force, relative.
+        guess: what is expected [FU].
+        overshoot: of the plate from a tension that held (see `holding.overshoot`).
+        held: the tensions that held, rising, the first of them F = 0.
+        lost: the smallest tension that broke the contact [FU].
+        broken: no larger tension holds [FU]; above `lost` by the momentum of the plate that it set going.
+    """
+
+    tolerance: float
+    guess: float
+    overshoot: Callable[[float], float]
+    held: list[Held]
+    lost: float = math.inf
+    broken: float = math.inf
+
+    @property
+    def best(self) -> float:
+        """The largest tension that held [FU]."""
+        return -self.held[-1].load
+
+    @property
+    def done(self) -> bool:
+        """Whether the bracket is narrow enough."""
+        return self.broken - self.best <= BRACKET * self.tolerance * self.best
+
+    def learn(self, result: Held) -> None:
+        """Take in what the latest tension led to."""
+        if result.held:
+            self.held.append(result)
+            return
+        self.lost = min(self.lost, -result.load)
+        self.broken = min(self.broken, -result.load + self.overshoot(self.best) * (-result.load - self.best))
+
+    def next(self) -> float:
+        """The tension to try next [FU]; the plate's momentum is not to carry it beyond the expected pull-off force."""
+        low, high, past = self.best, self.broken, self.overshoot(self.best)
+        expected = self._expected()
+        margin = BRACKET_AIM * self.tolerance * expected
+        gentle = min((expected + past * low) / (1.0 + past), low + STRIDE * (expected - low))
+        for tension in (min(expected - margin, gentle), expected + margin):
+            if low + 0.1 * margin < tension < self.lost - 0.1 * margin:
+                return tension
+        return low + 0.5 * (high - low) / (1.0 + past) if high < math.inf else (1.0 + GROWTH) * low
+
+    def _expected(self) -> float:
+        """The guess while nothing speaks against it, then the top of a parabola through the last three held states."""
+        if len(self.held) < 3 or self.best < self.guess < self.broken:
+            return self.guess
+        last = [h.last for h in self.held[-3:]]
+        top = top_of(*(np.asarray([getattr(s, name) for s in last]) for name in ("displacement", "force")))
+        return self.guess if top is None else top[1]
+
+
+class LoadBranch:
+    """States at rest under loads; what `Branch` does by displacement is done here by force.
+
+    Attributes:
+        context: where contacts are opened.
+        contact: the one that runs.
+        loading, falling: states at rest under compression, and from F = 0 on.
+        marked: states that are reported, by name.
+        unbalance: force [FU] that the last state leaves unbalanced.
+        search: of the largest tension, once there was one.
+    """
+
+    def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
+        """Open a contact."""
+        self.context, self._meanwhile = context, meanwhile
+        self.scene, self.settings = context.deck.scene, context.deck.settings
+        self.model: Reduced = reduced(self.scene, self.settings)
+        self.loading: list[State] = []
+        self.falling: list[State] = []
+        self.marked: dict[str, State] = {}
+        self.search: Search | None = None
+        self.unbalance = 0.0
+        self._held: Held | None = None
+        self._open = ExitStack()
+
+    def __enter__(self) -> Self:
+        """Begin."""
+        self.contact: Contact = self._open.enter_context(self.context.contact(meanwhile=self._meanwhile))
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        """Close the contact."""
+        self._open.__exit__(*error)  # type: ignore[arg-type]
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """The schedule so far."""
+        return self.contact.phases
+
+    @property
+    def states(self) -> list[State]:
+        """All states, in order."""
+        return [*self.loading, *self.falling]
+
+    @property
+    def scale(self) -> float:
+        """The largest tension that is expected [FU]."""
+        return self.settings.estimate.pull_off_force()
+
+    def trace(self) -> Trace:
+        """What a reader sees."""
+        bracket, doubt = None, {}
+        if self.search is not None:
+            bracket, doubt = (self.search.best, self.search.broken), {"instability": self.missed_teeth()}
+        return replace(of_states(self.states), bracket=bracket, doubt=doubt)
+
+    def begin(self, name: str) -> None:
+        """Begin a phase."""
+        self.contact.begin(name)
+
+    def mark(self, name: str) -> None:
+        """Report the last state."""
+        self.marked[name] = self.states[-1]
+        self.contact.write_state()
+
+    def finish(self) -> None:
+        """End the schedule."""
+        self.contact.finish()
+
+    def reach(self, force: float, scale: float) -> None:
+        """Hold a force [FU] to a share of the tolerance of `scale` [FU]; a tension is approached from F = 0, so gently that the plate's momentum breaks nothing.
+
+        Raises:
+            UntrustedError: see `hold`; the contact can't hold the force.
+        """
+        first = self._held is None
+        if self._held is None:
+            self._take(press(self.contact, max(force, 0.0), scale), self.loading)
+        elif force >= 0.0:
+            self._take(hold(self.contact, force, scale), self.falling)
+        if first and force < 0.0:
+            self.contact.begin("unloading")
+        while (held := self._last).held and held.load > force:
+            past = overshoot(self.settings, self.scene.bodies.mass, held.load, -self.scale)
+            gentle = (past * held.load - self.scale) / (1.0 + past)
+            close = gentle >= held.load - LEAST_STEP * self.scale
+            self._take(hold(self.contact, force if close else max(force, gentle), scale), self.falling)
+        if not self._last.held:
+            raise UntrustedError(f"the contact cannot hold {self._last.load:.4g} FU: the bodies part")
+
+    def holds_more(self, force: float) -> bool:
+        """Whether a tension that is larger by FIRST_RISE tolerances is held, too, tried with a contact of its own.
+
+        A contact at rest balances its load within a share of the tolerance, and near the limit point it creeps: on which
+        side of it a load is can't be told nearer than that.
+        """
+        if force > -DOUBTFUL_SHARE * self.scale:
+            return True
+        try:
+            with LoadBranch(self.context) as other:
+                other.begin("loading")
+                larger = force * (1.0 + FIRST_RISE * self.settings.tolerance)
+                other.reach(larger, max(-larger, self.settings.force_scale))
+        except ThroughError:
+            raise
+        except UntrustedError:
+            return False
+        return True
+
+    def maximum(self) -> None:
+        """Try tensions until the bracket of the largest one is narrow enough, then hold the largest that was held.
+
+        Raises:
+            UntrustedError: see `hold`; the largest tension is not bracketed, or not held again.
+        """
+        zero = self._last
+        past = partial(_overshoot, self)
+        self.search = search = Search(self.settings.tolerance, self.scale, past, [zero])
+        start = Start.KEPT
+        for _ in range(MOST_LEVELS):
+            result = hold(self.contact, -search.next(), search.guess, start)
+            start = Start.KEPT if result.held else Start.BACK
+            if result.held:
+                self.falling.append(result.last)
+            search.learn(result)
+            if search.done:
+                break
+        else:
+            raise UntrustedError(
+                f"the pull-off force was not bracketed within {MOST_LEVELS} tensions: it is above {search.best:.6g} FU"
+            )
+        self.contact.begin("critical")
+        critical = hold(self.contact, -search.best, search.guess, Start.BACK)
+        if not critical.held:
+            raise UntrustedError(
+                f"the contact held {search.best:.6g} FU once and not again: a plate that still swings decides there. "
+                'Leave [damping] coefficient and [plate] damping "auto" or give more of them, or take method = '
+                '"quasistatic"'
+            )
+        self.falling[-1] = critical.last
+        self._held, self.unbalance = critical, critical.unbalance
+
+    def open(self) -> None:
+        """Nothing: a tension that was not held has parted the bodies."""
+
+    def missed_teeth(self) -> float:
+        """Tension [FU] that a plate may miss which swings past a tooth of it, where pairs are lost one by one."""
+        settings = self.settings
+        lost = (settings.estimate.snap[1] or settings.strongest[1]) if settings.is_toothed else 0.0
+        assert self.search is not None
+        return EDGES * lost * self.search.overshoot(self.search.best)
+
+    @property
+    def _last(self) -> Held:
+        assert self._held is not None
+        return self._held
+
+    def _take(self, held: Held, states: list[State]) -> None:
+        self._held, self.unbalance = held, held.unbalance
+        states.append(held.last)
+
+
+def _overshoot(branch: LoadBranch, tension: float) -> float:
+    return overshoot(branch.settings, branch.scene.bodies.mass, -tension, -branch.scale)
+
+
+def top_of(displacement: Array, force: Array) -> tuple[float, float] | None:
+    """(displacement [LU], tension [FU]) of the largest tension of the polynomial through states at rest.
+
+    None where it has none within LONGEST_EXTRAPOLATION of the states. Their own forces count, not the loads that
+    they balance within a threshold.
+    """
+    if not are_apart(displacement):
+        return None
+    width = float(np.ptp(displacement))
+    loss = through((displacement - displacement[-1]) / width, force)
+    top, _ = lowest_minimum(loss, -LONGEST_EXTRAPOLATION, LONGEST_EXTRAPOLATION)
+    return None if math.isnan(top) else (float(displacement[-1]) + width * top, -value(loss, top))

@@ -1,0 +1,135 @@
+"""What an experiment hands over: results with their error budgets, the curve, profiles, the schedule, and warnings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from math import inf, nan
+
+from contact1d.analysis.pressure import Profile
+from contact1d.workflow.continuation.state import State
+from contact1d.workflow.deck.steps import Phase
+from contact1d.workflow.units import Quantity
+
+SOURCES = ("solver", "sampling", "discretisation", "instability", "statistics", "input")
+"""What an error may come from."""
+LATTICE = "discretisation"
+
+
+@dataclass(frozen=True)
+class Result:
+    """A number with its errors by source; the uncertainty is their sum, at a coverage of 95 % at least.
+
+    Attributes:
+        value: in `unit`.
+        unit: of the model.
+        errors: by the names of SOURCES, in `unit`.
+        scale: what the uncertainty is compared with, where that is not the value itself.
+        prescribed: whether the scene prescribes it: no result.
+        read: part of the discretisation error that is left by reading between particles, whatever the settings.
+    """
+
+    value: float
+    unit: str
+    errors: Mapping[str, float]
+    scale: float | None = None
+    prescribed: bool = False
+    read: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse a number without a budget."""
+        if not self.errors or set(self.errors) - set(SOURCES):
+            raise ValueError(f"a result needs errors by source ({', '.join(SOURCES)}), got {dict(self.errors)}")
+
+    @property
+    def uncertainty(self) -> float:
+        """Sum of the errors."""
+        return float(sum(self.errors.values()))
+
+    @property
+    def size(self) -> float:
+        """What the uncertainty is compared with."""
+        return abs(self.value) if self.scale is None else self.scale
+
+    @property
+    def share(self) -> float:
+        """Uncertainty over the size; infinite for a length that may be 0."""
+        return self.uncertainty / self.size if self.size else inf
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """How a run was refined: the tolerance of its settings in the end, how often that was lowered, why not further."""
+
+    tolerance: float
+    count: int
+    ended: str
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The outcome of one experiment.
+
+    Attributes:
+        results: by the names of the contract.
+        states: every state that is reported, in order.
+        marked: the states that are reported with their profiles, by name.
+        phases: the schedule.
+        warnings: by name, what limits the trust in the numbers.
+        columns: further columns of curve.csv.
+        tables: columns of further files, by the names of these.
+        refinement: None where the settings were given, or are not refined.
+        derived: what follows from the results, of the body of three dimensions or the interaction.
+    """
+
+    results: Mapping[str, Result]
+    states: tuple[State, ...]
+    marked: Mapping[str, State]
+    phases: tuple[Phase, ...]
+    warnings: Mapping[str, str] = field(default_factory=dict)
+    columns: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    tables: Mapping[str, Mapping[str, tuple[float, ...]]] = field(default_factory=dict)
+    refinement: Refinement | None = None
+    derived: Mapping[str, Quantity] = field(default_factory=dict)
+
+    @property
+    def quantities(self) -> dict[str, Quantity]:
+        """Results and what follows from them, each with its uncertainty and unit."""
+        own = {name: Quantity(one.value, one.uncertainty, one.unit) for name, one in self.results.items()}
+        return own | dict(self.derived)
+
+    @property
+    def profiles(self) -> dict[str, Profile]:
+        """Profiles of the marked states."""
+        return {name: state.profile for name, state in self.marked.items()}
+
+    @property
+    def radii(self) -> dict[str, float]:
+        """Contact radius of each marked state [LU]; NaN where there is none."""
+        return {name: nan if state.radius is None else state.radius.value for name, state in self.marked.items()}
+
+
+def in_words(shares: Mapping[str, float]) -> str:
+    """Relative uncertainties: "critical_radius has an uncertainty of 3.1e-04"."""
+    return ", ".join(
+        f"{name} is known to {share:.1e}" if share < 1.0 else f"{name} cannot be told from 0 and is known to 1 or worse"
+        for name, share in shares.items()
+    )
+
+
+def unmet(results: Mapping[str, Result], tolerance: float, without: Iterable[str] = ()) -> dict[str, float]:
+    """Relative uncertainties of the results that are known less well than the tolerance, by name.
+
+    Args:
+        results: what the scene prescribes is none of them.
+        tolerance: relative.
+        without: sources that are left out.
+    """
+    found = {}
+    for name, one in results.items():
+        kept = sum(error for source, error in one.errors.items() if source not in without)
+        if LATTICE in without:
+            kept += one.read
+        if not one.prescribed and (one.size or name.endswith("radius")) and kept > tolerance * one.size:
+            found[name] = kept / one.size if one.size else inf
+    return found

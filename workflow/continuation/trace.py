@@ -1,0 +1,151 @@
+"""What a reader of results sees of a run: displacements, forces and radii along a path, measured or of the model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.analysis.pressure import Profile
+from contact1d.analysis.radius import ContactRadius
+from contact1d.workflow.continuation.state import RadiusRule, State
+from contact1d.workflow.settings.reduced import Followed
+
+Array = NDArray[np.float64]
+BESIDE = 2
+"""Particles beside a contact that carry nothing: a radius is read between the last that carries and the next."""
+
+
+@dataclass(frozen=True)
+class Trace:
+    """States in order; arrays (m,).
+
+    Attributes:
+        phase: name of each state's phase.
+        displacement, force: [LU], [FU].
+        asked: whether the scene asks for the state; the others are on the way there.
+        along: position along x [LU].
+        profile: pressure and shear of a state, by its number.
+        contact: radius of a state as it is read off its profile; None where the bodies do not touch.
+        rule: what a contact radius is.
+        radius_shift: how many of its own uncertainties a radius is taken too large.
+        limit: displacement [LU] below which no contact is held; −inf where none is known.
+        doubt: by source, how far the search may be off the largest tension [FU].
+        bracket: under load control, the largest tension that was held and the smallest that was not [FU].
+    """
+
+    phase: tuple[str, ...]
+    displacement: Array
+    force: Array
+    asked: NDArray[np.bool_]
+    along: Array
+    profile: Callable[[int], Profile] = field(repr=False)
+    contact: Callable[[int], ContactRadius | None] = field(repr=False)
+    rule: RadiusRule = field(repr=False)
+    radius_shift: float = 0.0
+    limit: float = -np.inf
+    doubt: Mapping[str, float] = field(default_factory=dict)
+    bracket: tuple[float, float] | None = None
+
+    def __len__(self) -> int:
+        """How many states."""
+        return len(self.displacement)
+
+    def radius(self, state: int) -> float | None:
+        """Contact radius [LU]; None where the bodies do not touch."""
+        found = self.contact(state)
+        return None if found is None else max(0.0, found.value + self.radius_shift * found.uncertainty)
+
+    def radius_or_spot(self, state: int) -> float:
+        """The same; 0 where no particle is in tension."""
+        found = self.contact(state) or self.rule.or_spot(self.profile(state))
+        return max(0.0, found.value + self.radius_shift * found.uncertainty)
+
+    def read_error(self, state: int) -> float:
+        """Uncertainty [LU] of a radius that is read between particles."""
+        return (self.contact(state) or self.rule.or_spot(self.profile(state))).uncertainty
+
+    def phases(self, *names: str) -> Trace:
+        """The states of these phases, "unloading_2" being one of "unloading"."""
+        return self.chosen(np.flatnonzero([name.partition("_")[0] in names for name in self.phase]))
+
+    def falling(self) -> Trace:
+        """The states that are held, by falling displacement, each once, the last that was measured there."""
+        _, last = np.unique(self.displacement[::-1], return_index=True)
+        falling = (len(self) - 1 - last)[::-1]
+        return self.chosen(falling[self.displacement[falling] >= self.limit])
+
+    def chosen(self, states: Sequence[int] | NDArray[np.intp]) -> Trace:
+        """The states of these numbers, in this order."""
+        at = np.asarray(states, dtype=np.intp)
+        return replace(
+            self,
+            phase=tuple(self.phase[i] for i in at),
+            displacement=self.displacement[at],
+            force=self.force[at],
+            asked=self.asked[at],
+            along=self.along[at],
+            profile=lambda i: self.profile(int(at[i])),
+            contact=lambda i: self.contact(int(at[i])),
+        )
+
+    def perturbed(self, force: Array | float = 0.0, radius_shift: float = 0.0) -> Trace:
+        """With forces changed [FU], and radii by so many of their own uncertainties."""
+        changed = self.force + force
+        bracket = self.bracket
+        if bracket is not None:  # of tensions, that the last state is the largest of
+            shift = float(changed[-1] - self.force[-1])
+            bracket = (bracket[0] - shift, bracket[1] - shift)
+        return replace(self, force=changed, radius_shift=radius_shift, bracket=bracket)
+
+
+def of_states(states: Sequence[State], asked: Sequence[bool] | None = None, limit: float = -np.inf) -> Trace:
+    """The trace of measured states; their radii are kept with them."""
+    return Trace(
+        tuple(state.phase for state in states),
+        np.asarray([state.displacement for state in states]),
+        np.asarray([state.force for state in states]),
+        np.ones(len(states), dtype=bool) if asked is None else np.asarray(asked, dtype=bool),
+        np.asarray([state.plate_x for state in states]),
+        lambda i: states[i].profile,
+        lambda i: states[i].radius,
+        states[0].rule,
+        limit=limit,
+    )
+
+
+def of_model(
+    phase: Sequence[str],
+    displacement: Array,
+    along: Array,
+    asked: Sequence[bool],
+    followed: Followed,
+    rule: RadiusRule,
+    spacing: float,
+    limit: float,
+) -> Trace:
+    """The trace of what the reduced model followed, with particles that carry nothing beside the contact."""
+    beside = spacing * np.arange(1, BESIDE + 1)
+    x = np.concatenate([followed.x[0] - beside[::-1], followed.x, followed.x[-1] + beside])
+    none = np.zeros_like(x)
+
+    def profile(state: int) -> Profile:
+        pressure = np.pad(followed.force[state], BESIDE) / spacing
+        shear = none if followed.shear is None else np.pad(followed.shear[state], BESIDE) / spacing
+        return Profile(x, none, none, pressure, shear)
+
+    force = followed.force.sum(axis=1)
+    return Trace(
+        tuple(phase),
+        displacement,
+        force,
+        np.asarray(asked, dtype=bool),
+        along,
+        profile,
+        cache(lambda state: rule.of(profile(state))),
+        rule,
+        limit=limit,
+    )

@@ -1,0 +1,268 @@
+"""Which states are no result, and what limits those that are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from contact1d.analysis.law_error import left_out
+from contact1d.analysis.pressure import Profile, end_pressure_share
+from contact1d.workflow.continuation.state import State
+from contact1d.workflow.scene import Damping, Plate, Scene
+from contact1d.workflow.settings.chain import decay_length, reflected
+from contact1d.workflow.settings.settings import Settings, settings_for
+
+END_SHARE_LIMIT = 1.0
+"""Pressure at a chain's end over the largest one, per unit of tolerance, from which on the chain cuts the contact."""
+INSIDE_SHARE = 0.5
+"""The same from which on the end of the chain is inside the contact."""
+RESIDUAL_LIMIT = 0.1
+"""Largest residual force of a particle over the force scale, per unit of tolerance, for a converged state."""
+TAIL = 10.0
+"""Force of the tail beyond the cutoff, summed over particles, over the force at the cutoff times a particle's share."""
+COMPLIANCE_FACTOR = 2.0
+"""Error of an equilibrium over that of the force on particles held in place: they follow it, and a table's error, here
+at the distances that happen to be there, is half of what it is between two entries on average."""
+SLOWNESS_RATIO = 10.0
+"""Timesteps to settle over those with automatic values from which on it is told: seconds become minutes."""
+
+
+class UntrustedError(RuntimeError):
+    """The run ended, but its result can't be trusted: why, and what to do where nothing was found by trying it."""
+
+    def __init__(self, message: str, advice: str = "") -> None:
+        """Keep both; `advice` may stand in the message itself."""
+        super().__init__(message, advice)
+        self.message, self.advice = message, advice
+
+    def __str__(self) -> str:
+        """Return both, one behind the other."""
+        return f"{self.message}: {self.advice}" if self.advice else self.message
+
+
+class ThroughError(UntrustedError):
+    """The bodies went through each other, which may be the way there and not the load (`in_smaller_steps`)."""
+
+
+class ChainEndError(UntrustedError):
+    """The contact is wider than its chain."""
+
+
+class UnsteadyError(UntrustedError):
+    """A slide that is none, or none yet: its way is too short beside what the cantilever is drawn by."""
+
+
+class OffEndError(UntrustedError):
+    """A plate that slid off the lower body."""
+
+
+class PartedError(UntrustedError):
+    """Bodies that do not hold the force that draws them apart."""
+
+
+class RestlessError(UntrustedError):
+    """A plate that does not come to rest."""
+
+
+class TensionError(UntrustedError):
+    """A tension that the contact does not hold; `most` is about what it holds [FU]."""
+
+    def __init__(self, force: float, most: float) -> None:
+        """The force [FU] that was asked for, and what is kept."""
+        super().__init__(f"{force:.4g} FU is never reached: the largest tension is about {most:.4g} FU")
+        self.most = most
+
+
+class DigitsError(UntrustedError):
+    """Forces that are nothing beside the last digits of places."""
+
+
+def require_trust(scene: Scene, settings: Settings, state: State) -> None:
+    """Refuse a state that is no result.
+
+    Raises:
+        UntrustedError: bodies that went through each other, particles not at rest, a contact that reaches the end of
+            a chain.
+    """
+    at = f"at displacement {state.displacement:.4g} LU (phase {state.phase})"
+    if state.depth > 0.0:
+        heat = "" if scene.noise is None else " under this heat"
+        raise ThroughError(
+            f"the bodies went through each other {at}: a particle lies {state.depth:.3g} LU below the opposite "
+            f"surface. One layer of particles cannot carry this load{heat}",
+            f"{_against_passing(scene)}lower the load or the displacement, or take a stronger repulsion",
+        )
+    if scene.plate is None and scene.noise is None and not is_converged(settings, state):
+        limit = RESIDUAL_LIMIT * settings.tolerance * settings.force_scale
+        if scene.is_stepped:
+            raise DigitsError(
+                f"the forces are too small to compute with {at}: the last digit of a particle's place is a force of "
+                f"{state.residual:.2g} FU, and a tolerance of {settings.tolerance:g} allows {limit:.2g} FU",
+                "take a larger load or displacement, or a larger [accuracy] tolerance",
+            )
+        raise UntrustedError(
+            f"not converged {at}: a particle is left with a force of {state.residual:.2g} FU, above the {limit:.2g} FU "
+            f"that a tolerance of {settings.tolerance:g} allows. What helps is "
+            + ("more [damping]" if scene.method == "dynamic" else "a smaller load or smaller displacements")
+            + ", or a larger [accuracy] tolerance"
+        )
+    if _reaches_end(scene, state.profile):
+        raise ChainEndError(
+            f"the contact reaches the end of the chain {at}",
+            f"take {_more_particles(scene, settings)}, or a smaller load",
+        )
+
+
+def _against_passing(scene: Scene) -> str:
+    """What else keeps particles from passing each other; "" where there is nothing."""
+    cooler = "" if scene.noise is None else f"lower noise.temperature from {scene.noise.temperature:g} FU·LU, "
+    if scene.horizontal is None or scene.experiment.motion_is_result:  # a slide needs it
+        return cooler
+    return f"{cooler}leave out [horizontal], which lets particles step aside, "
+
+
+def _more_particles(scene: Scene, settings: Settings) -> str:
+    """Which number is to grow: of the upper chain, where it has its own."""
+    if scene.bodies.upper_particles is not None:
+        return f"more bodies.upper_particles than {settings.particles}, or leave it out"
+    return f'more bodies.particles than {settings.particles} (or "auto")'
+
+
+def is_converged(settings: Settings, state: State) -> bool:
+    """Whether what is left of a force on a particle is below RESIDUAL_LIMIT."""
+    return state.residual <= RESIDUAL_LIMIT * settings.tolerance * settings.force_scale
+
+
+def require_no_contradiction(settings: Settings, tension: float, uncertainty: float, states: Iterable[State]) -> None:
+    """Refuse a largest tension [FU] that a state of the run's own curve exceeds by more than its uncertainty [FU].
+
+    Raises:
+        UntrustedError: names the state.
+    """
+    for state in states:
+        if -state.force > tension + uncertainty + state.residual * settings.particles:
+            raise UntrustedError(
+                f"the largest tension was found as {tension:.6g} FU, and the run's own curve has "
+                f"{-state.force:.6g} FU at displacement {state.displacement:.6g} LU (phase {state.phase}): the search "
+                'was misled. Use kind = "path" through all of the tension, or a smaller [accuracy] tolerance'
+            )
+
+
+def _reaches_end(scene: Scene, profile: Profile) -> bool:
+    """Whether the contact's edge, the largest tension or else the last loaded particle, is a chain's last particle.
+
+    That of a flat punch is meant to be.
+    """
+    if scene.bodies.profile.has_edge:
+        return False
+    pressure = profile.pressure
+    if scene.adheres and scene.adhesion is None:
+        largest = float(pressure.min())
+        inside = end_pressure_share(profile) > INSIDE_SHARE  # the chain is shorter than the compressed middle
+        return inside or (largest < 0.0 and largest in (pressure[0], pressure[-1]))
+    return bool(max(abs(pressure[0]), abs(pressure[-1])) > 0.0)
+
+
+def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:
+    """Named warnings about states that are results, but limited ones."""
+    found = {}
+    share = max(end_pressure_share(state.profile) for state in states)
+    if not scene.bodies.profile.has_edge and share > END_SHARE_LIMIT * settings.tolerance:
+        found["chain_end"] = (
+            f"the outermost particles carry up to {share:.2g} of the largest pressure, so the chain of "
+            f"{settings.particles} particles cuts the contact: take {_more_particles(scene, settings)}"
+        )
+    ends = reflected(scene, settings.estimate, settings.largest_displacement, settings.particles)
+    if not scene.bodies.profile.has_edge and ends > settings.tolerance:
+        found["chain_end"] = (
+            f"neighbour springs spread the load over {decay_length(scene):.3g} LU to each side, and the chain of "
+            f"{settings.particles} particles ends so near to the contact that up to {ends:.1g} of that comes back from "
+            f"there: take {_more_particles(scene, settings)}"
+        )
+    share = law_share(scene, settings)
+    if share > settings.tolerance:
+        found["cutoff"] = (
+            f"what is left out of the law (beyond a cutoff of {settings.cutoff:.3g} LU, by a table of particles that "
+            f"all but stand on each other, or of a plane not quite rigid) changes a force by a share of up to "
+            f'{share:.1g}, and the radii with it: take a longer interaction.cutoff, or "auto", or a smaller load'
+        )
+    if slow := slowness(scene, settings):
+        found["slow"] = slow
+    if settings.estimate.snaps and not scene.experiment.way_is_given:
+        found["snaps"] = (
+            "the attraction of a pair of particles is steeper than its springs are stiff, so that pairs can snap "
+            "together and apart: there are several equilibria under one load, and which one is reached depends on the "
+            "way there. The uncertainties are those of this way; another preload or method may end in another "
+            "equilibrium, a few particles wider or narrower. Stiffer springs or a longer range of the interaction "
+            "leave one equilibrium only"
+        )
+    closest = min(state.smallest_distance for state in states)
+    if settings.table is not None and closest < settings.table_from:
+        error = settings.table.error_beyond(max(closest, settings.table.core))
+        found["table_core"] = (
+            f"opposite particles came as close as {closest:.3g} LU; the table was chosen for {settings.table_from:.3g} "
+            f"LU and follows the law within {error:.1e} FU there"
+        )
+    return found
+
+
+def law_share(scene: Scene, settings: Settings) -> float:
+    """Relative error of a force that table and cutoff, or a plane that is not quite rigid, may cause, before a run."""
+    if settings.table is None or settings.law is None:
+        return _plane_share(scene, settings)
+    tail = TAIL * abs(float(settings.law.force(settings.cutoff)))
+    return (tail + settings.table.error_beyond(settings.table_from)) / settings.force_scale
+
+
+def law_error(scene: Scene, settings: Settings, state: State) -> float:
+    """Error of the force of a measured state that table and cutoff, or the plane, cause [FU].
+
+    COMPLIANCE_FACTOR Σ |F_table(r) - f(r)| |z|/r over the pairs of opposite particles, F_table = 0 beyond the cutoff.
+    """
+    if settings.table is None or settings.law is None:
+        return _plane_share(scene, settings) * abs(state.force)
+    return COMPLIANCE_FACTOR * left_out(settings.law, settings.table, state.profile)
+
+
+def _plane_share(scene: Scene, settings: Settings) -> float:
+    neighbours = 0.0 if scene.neighbours is None else scene.neighbours.stiffness
+    return 4.0 * neighbours / settings.plane_stiffness
+
+
+def slowness(scene: Scene, settings: Settings) -> str:
+    """What makes the scene slow, in words; empty where nothing does, or where time is what is looked at (a slide)."""
+    if scene.method != "dynamic" or scene.damping is None or scene.experiment.motion_is_result:
+        return ""
+    plate = None if scene.plate is None else Plate(free=scene.plate.free)
+    same = scene.model_copy(update={"damping": Damping(coefficient="auto"), "plate": plate})
+    if same == scene:
+        return ""
+    automatic = settings_for(same, settings.tolerance)
+    times = _steps(scene, settings) / _steps(same, automatic)
+    if times < SLOWNESS_RATIO:
+        return ""
+    drag, usual = (_drag(s, c) for s, c in ((scene, settings), (same, automatic)))
+    return (
+        f"a drag of {drag:.3g} FU·TU/LU in all on {_mass(scene, settings):.3g} MU, in place of the automatic "
+        f"{usual:.3g} FU·TU/LU on {_mass(same, automatic):.3g} MU, makes a load take about {times:.0f} times as long "
+        'to settle: give "auto" for [damping] coefficient and [plate] mass and damping, unless the motion itself is '
+        "what you look at"
+    )
+
+
+def _mass(scene: Scene, settings: Settings) -> float:
+    """What moves [MU]: plate and upper particles, or without a plate each particle by itself."""
+    alone = scene.bodies.mass
+    return alone if scene.plate is None else settings.plate_mass + settings.particles * alone
+
+
+def _drag(scene: Scene, settings: Settings) -> float:
+    """Drag on that [FU·TU/LU]."""
+    return settings.damping if scene.plate is None else settings.particles * settings.damping + settings.plate_damping
+
+
+def _steps(scene: Scene, settings: Settings) -> float:
+    """Timesteps of T; the settling time is 2π √(M/K)."""
+    mass, drag = _mass(scene, settings), _drag(scene, settings)
+    stiffness = mass * (2.0 * math.pi / settings.settle_time) ** 2
+    return max(2.0 * mass / drag, drag / stiffness) / settings.time_step

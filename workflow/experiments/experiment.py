@@ -1,0 +1,160 @@
+"""What an experiment is: a script that moves a contact, and a reader of what it leaves; both run on the reduced model, too."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any, ClassVar
+
+from contact1d.workflow.continuation.branch import Branch, SecondMaximumError
+from contact1d.workflow.continuation.budget import (
+    Reading,
+    Reduction,
+    Values,
+    budgeted,
+    force_errors,
+    lattice_errors,
+    lattice_warning,
+)
+from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.load_control import LoadBranch
+from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.continuation.trace import Trace
+from contact1d.workflow.continuation.trust import ThroughError, doubts
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.steps import Phase
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.settings import Settings
+
+FINER_SPACING = "a smaller bodies.spacing at the same stiffness and energy per length"
+"""What every radius gains from."""
+RETRY_SHARES = (1 / 4, 1 / 16)
+"""Parts of the increments that are tried where bodies went through each other: a body that moves by much of its
+particles' distance from the opposite ones, or by which their force changes much, lets the minimiser put one beyond.
+Where pairs snap together a minimiser moves particles by more than their distance whatever the increment: a relaxation
+then goes downhill in short moves. In time it is a load applied at once that drives a plate past its equilibrium, and what
+a snap sets free that drives a particle through its opposite: loads then come in such parts, and drag takes it up."""
+
+
+class Experiment(ABC):
+    """One kind of experiment.
+
+    Attributes:
+        main_results: names of the results that an error is judged by, as far as a scene has them.
+        branches: phases whose branch of the curve has another name than they.
+    """
+
+    main_results: ClassVar[tuple[str, ...]]
+    branches: ClassVar[Mapping[str, str]] = {}
+
+    @abstractmethod
+    def script(self, branch: Any, scene: Scene) -> None:
+        """Move a contact: a `Branch`, a `LoadBranch` or a `ModelBranch`."""
+
+    @abstractmethod
+    def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
+        """Results of what the script has passed."""
+
+    @abstractmethod
+    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+        """The schedule of a deck that is written and not run: known for a path, expected where a run would search."""
+
+    def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
+        """What the experiment adds to its outcome, or refuses of it."""
+        return outcome
+
+    def run(self, context: RunContext) -> Outcome:
+        """Run it.
+
+        Raises:
+            UntrustedError: the result can't be trusted.
+            EngineError: LAMMPS failed.
+        """
+        scene, settings = context.deck.scene, context.deck.settings
+        case = self.reduction(scene, settings)
+        lattice: Values = {}
+        with branch_of(context, lambda: lattice.update(lattice_errors(case))) as branch:
+            self.script(branch, scene)
+            branch.finish()
+        trace = branch.trace()
+        length = settings.law.longest_range if settings.law is not None else 0.0
+        left = branch.unbalance if isinstance(branch, LoadBranch) else None
+        errors = force_errors(scene, settings, branch.states, branch.marked.values(), left)
+        results = budgeted(case, trace, errors, lattice, length=length)
+        warnings = doubts(scene, settings, tuple(branch.states)) | lattice_warning(scene, results)
+        outcome = Outcome(results, tuple(branch.states), branch.marked, branch.phases, warnings)
+        return self.finish(outcome, scene, settings)
+
+    def reduction(self, scene: Scene, settings: Settings) -> Reduction:
+        """Script and reader on the reduced model of a scene."""
+        return Reduction(
+            scene, settings, partial(self.script, scene=scene), partial(self.read, scene=scene, settings=settings)
+        )
+
+    def advice(self, scene: Scene) -> str:
+        """What makes a result that is known too little known better."""
+        if scene.method == "dynamic":
+            return 'What helps is method = "quasistatic"'
+        if scene.interaction is None:
+            return f"What helps is {FINER_SPACING}"
+        return (
+            f'What helps is to leave interaction.cutoff and bodies.particles "auto"; for a radius {FINER_SPACING}, too'
+        )
+
+    def branch(self, phase: str) -> str:
+        """The branch of the curve that a phase belongs to."""
+        name = phase.partition("_")[0]
+        return self.branches.get(name, name)
+
+
+def branch_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | LoadBranch:
+    """A new contact, under displacement control or in time under load control."""
+    scene = context.deck.scene
+    in_time = scene.method == "dynamic" and scene.experiment.compression is not None
+    return (LoadBranch if in_time else Branch)(context, meanwhile)
+
+
+def in_smaller_steps(run: Callable[[RunContext], Outcome]) -> Callable[[RunContext], Outcome]:
+    """The same run, which begins anew in smaller steps where the bodies went through each other.
+
+    The context's deck is then the one with these steps: it is what in.lammps must hold.
+
+    Raises:
+        ThroughError: they do so in the smallest steps, too, so that it is the load and not the path.
+    """
+
+    def tried(context: RunContext) -> Outcome:
+        try:
+            return run(context)
+        except SecondMaximumError:
+            context.progress.note("the tension rises again after its first maximum: once more, through all of it")
+            context.through = True
+            return run(context)
+
+    def searched(context: RunContext) -> Outcome:
+        deck = context.deck
+        try:
+            return tried(context)
+        except ThroughError as error:
+            if deck.scene.noise is not None or not context.retries:  # it is the noise that drives particles through
+                raise
+            latest = error
+        for part in RETRY_SHARES:
+            context.progress.note(f"the bodies went through each other: again from the start in steps of {part:g}")
+            context.deck = Deck(deck.scene, deck.settings.in_smaller_steps(part))
+            try:
+                return tried(context)
+            except ThroughError as error:
+                latest = error
+        context.deck = deck
+        smaller = f"Steps {1 / RETRY_SHARES[-1]:g} times smaller did not help"
+        raise ThroughError(f"{latest.message}. {smaller}", latest.advice)
+
+    return searched
+
+
+def marked_only(outcome: Outcome, **marked: Any) -> Outcome:
+    """The outcome with other reported states."""
+    return replace(outcome, marked=marked)

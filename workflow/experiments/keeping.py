@@ -1,0 +1,39 @@
+"""The states of a whole way that `[output] states` keeps: those that are wanted of all that a run has written."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.deck.keeping import chosen, keeping, leave_out, marked_rows
+from contact1d.workflow.deck.steps import Phase
+from contact1d.workflow.scene import Scene
+
+
+def planned_way(scene: Scene, phases: tuple[Phase, ...]) -> tuple[Phase, ...]:
+    """A planned schedule that keeps what the scene asks for, of all its rows."""
+    if scene.output is None:
+        return phases
+    rows = range(sum(len(phase.rows) for phase in phases))
+    return keeping(phases, chosen(rows, scene.output.states, marked_rows(phases)))
+
+
+def kept_way(context: RunContext, outcome: Outcome) -> Outcome:
+    """The outcome whose schedule keeps what the scene asks for, of its measured states; so does the file then."""
+    scene = context.deck.scene
+    if scene.output is None:
+        return outcome
+    rows = sorted({state.number for state in outcome.states})
+    phases = keeping(outcome.phases, chosen(rows, scene.output.states, marked_rows(outcome.phases)))
+    leave_out(context.folder, phases, context.deck.stepped)
+    return replace(outcome, phases=phases)
+
+
+def kept_states(scene: Scene, outcome: Outcome) -> Sequence[int] | None:
+    """Which of the outcome's states are kept; None where the scene does not say."""
+    if scene.output is None:
+        return None
+    kept = [keep for phase in outcome.phases for keep in phase.kept or (True,) * len(phase.rows)]
+    return [i for i, state in enumerate(outcome.states) if kept[state.number]]

@@ -1,0 +1,99 @@
+"""Load: equilibrium under a normal force."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from contact1d.workflow.continuation.branch import LOADING_STEPS
+from contact1d.workflow.continuation.budget import Reading
+from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.holding import held_phase, stiffness_under
+from contact1d.workflow.continuation.load_control import FIRST_RISE, LoadBranch
+from contact1d.workflow.continuation.marks import BRANCH_DISTANCE, displacement_under, radius_rate
+from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.continuation.trace import Trace
+from contact1d.workflow.deck.steps import Phase, displacements
+from contact1d.workflow.experiments.experiment import Experiment
+from contact1d.workflow.experiments.thermal import planned_samples, thermal_load
+from contact1d.workflow.scene import Load, Scene
+from contact1d.workflow.settings.settings import Settings
+from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
+
+
+class LoadExperiment(Experiment):
+    """d, F, a and F/(πa²) under a force. A tension is approached from F = 0, as an experiment would."""
+
+    main_results = ("displacement", "force", "contact_radius")
+
+    def run(self, context: RunContext) -> Outcome:
+        """With noise an average over samples; in time with a warning where a tension is only just held, or not."""
+        scene, settings = context.deck.scene, context.deck.settings
+        if scene.noise is not None:
+            return thermal_load(context)
+        assert isinstance(scene.experiment, Load)
+        load = scene.experiment.force
+        surely = scene.method != "dynamic" or LoadBranch(context).holds_more(load)
+        outcome = super().run(context)
+        if surely:
+            return outcome
+        doubt = (
+            f"the contact does not hold a tension that is larger by {FIRST_RISE * settings.tolerance:g}: {-load:.6g} FU "
+            f"is the pull-off force as nearly as a tolerance of {settings.tolerance:g} can tell, and whether it is held "
+            'for good can\'t be told. A smaller tolerance tells more, kind = "pull_off" gives the force itself'
+        )
+        return replace(outcome, warnings={"near_pull_off": doubt, **outcome.warnings})
+
+    def script(self, branch: Any, scene: Scene) -> None:
+        """Press to the force, or pull to it from F = 0."""
+        assert isinstance(scene.experiment, Load)
+        force = scene.experiment.force
+        scale = max(abs(force), branch.settings.force_scale)
+        branch.begin("loading")
+        branch.reach(max(force, 0.0), scale)
+        if force < 0.0:
+            branch.begin("unloading")
+            branch.reach(force, scale)
+        branch.mark("final")
+
+    def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
+        """Results at the last state."""
+        assert isinstance(scene.experiment, Load)
+        force, last = scene.experiment.force, len(trace) - 1
+        own = float(trace.displacement[last])
+        displacement = displacement_under(trace, last, force, stiffness_under(settings, force))
+        carried = float(trace.force[last])
+        found = {
+            "displacement": Reading(displacement, LENGTH),
+            "force": Reading(carried, FORCE, prescribed=force == 0.0),
+        }
+        if trace.radius(last):
+            radius = trace.radius_or_spot(last) + radius_rate(trace, last, BRANCH_DISTANCE) * (displacement - own)
+            found["contact_radius"] = Reading(radius, LENGTH)
+            if radius > 0.0:
+                pressure = carried / (math.pi * radius**2)
+                found["mean_pressure"] = Reading(pressure, MEAN_PRESSURE, prescribed=force == 0.0)
+        return found
+
+    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+        """The schedule by the model."""
+        assert isinstance(scene.experiment, Load)
+        force = scene.experiment.force
+        if scene.noise is not None:
+            return planned_samples(settings, force)
+        if scene.method == "dynamic":
+            scale = max(abs(force), settings.force_scale)
+            return (held_phase("loading", scene, settings, (force,), scale, state=True),)
+        rows = displacements(np.linspace(0.0, settings.largest_displacement, LOADING_STEPS + 1).tolist())
+        return (Phase("loading", rows, state=True),)
+
+    def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
+        """A warning where nothing touches."""
+        if "contact_radius" in outcome.results:
+            return outcome
+        missing = {"no_radius": "the bodies do not touch over a width, so there is no contact radius"}
+        return replace(outcome, warnings={**outcome.warnings, **missing})

@@ -1,0 +1,282 @@
+"""Path: prescribed displacement, there and back; the curve F(d), its largest tension and its load-free radius."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from contact1d.analysis.curve_marks import crossing
+from contact1d.analysis.loop import loop_of
+from contact1d.workflow.continuation.budget import (
+    Reading,
+    Values,
+    budgeted,
+    force_errors,
+    lattice_errors,
+    lattice_warning,
+)
+from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.marks import peak_of
+from contact1d.workflow.continuation.outcome import Outcome, Result
+from contact1d.workflow.continuation.state import State
+from contact1d.workflow.continuation.trace import Trace, of_states
+from contact1d.workflow.continuation.trust import doubts, require_trust
+from contact1d.workflow.deck.steps import DisplaceInTime, Phase, Row, displacements
+from contact1d.workflow.experiments.experiment import FINER_SPACING, Experiment
+from contact1d.workflow.experiments.thermal import CERTAIN, averaged, thermal_rows
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.settings import Settings
+from contact1d.workflow.units import ENERGY, FORCE, LENGTH
+
+RELAXATIONS = 14.0
+"""Time that a dynamic path gives the particles at each displacement, over the time constant of their slowest decay."""
+ROUND_OFF = 1e-9
+EARLINESS = 8.0
+"""Square of the longest move of bodies that part over the range squared, per unit of tolerance."""
+PLACE_ERROR = 0.1
+"""How well a parabola places a maximum, over the increment of the displacement."""
+BEND = 0.125
+"""What a straight line between two radii misses at most, over their difference: of a parabola between them."""
+
+
+class PathExperiment(Experiment):
+    """F_A, a₀ and a_cr, read off the branch that unloads last; the energy that a closed path dissipates."""
+
+    main_results = ("adhesion_force", "zero_load_radius", "critical_radius", "largest_force", "largest_radius")
+
+    def run(self, context: RunContext) -> Outcome:
+        """Run the schedule; with noise, each state is a mean over time."""
+        scene, settings = context.deck.scene, context.deck.settings
+        case, positions = self.reduction(scene, settings), way(scene, settings)
+        lattice: Values = {}
+        in_time = scene.method == "dynamic" and scene.noise is None
+        with context.contact(meanwhile=lambda: lattice.update(lattice_errors(case))) as contact:
+            states = contact.replay(schedule(scene, settings), relaxed=in_time)
+            phases = contact.phases
+        if scene.noise is not None:
+            states = averaged(states, positions)
+            for state in states:
+                require_trust(scene, settings, state)
+        asked = [one for _, one in positions]
+        reported = [state for state, one in zip(states, asked, strict=True) if one]
+        # Where pairs snap, all rows show the jumps; else the same positions there and back show what a curve loses.
+        seen = states[asked.index(True) :] if settings.estimate.snaps else reported
+        ends = {"deepest": max(reported, key=lambda s: s.displacement), "final": reported[-1]}
+        strongest = (ends["deepest"], min(seen, key=lambda s: s.force), ends["final"])
+        errors = force_errors(scene, settings, seen, strongest)
+        results = budgeted(case, of_states(seen), errors, lattice, sampled=scene.noise is None)
+        warnings = self._missing(results, scene) | doubts(scene, settings, tuple(reported))
+        tables = {} if scene.noise is None else {"means": _means(settings, reported)}
+        warnings |= lattice_warning(scene, results)
+        return Outcome(results, tuple(reported), ends, phases, warnings, tables=tables)
+
+    def script(self, branch: Any, scene: Scene) -> None:
+        """The displacements that the scene asks for; where pairs snap, those between them, too."""
+        settings = branch.settings
+        positions = scene.experiment.places()
+        if settings.estimate.snaps:
+            all_of_it = way(scene, settings)
+            first = [asked for _, asked in all_of_it].index(True)
+            positions = [position for position, _ in all_of_it[first:]]
+        for name, stretch in stretches(positions):
+            branch.begin(name)
+            branch.visit(stretch)
+
+    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+        """The schedule that runs."""
+        return schedule(scene, settings)
+
+    def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
+        """What the last unloading has, or without adhesion the deepest state; and the loop."""
+        found = _adhesion(trace, scene, settings) if scene.adheres else _largest(trace)
+        if (loop := loop_of(trace.displacement.tolist(), trace.force.tolist())) is not None:
+            errors = {"sampling": loop.uncertainty}
+            found["dissipated_energy"] = Reading(loop.area, ENERGY, errors, scale=loop.whole)
+        return found
+
+    def advice(self, scene: Scene) -> str:
+        """The rows are the scene's own."""
+        return f"What helps is more steps in experiment.displacements; for a radius {FINER_SPACING}, too"
+
+    def _missing(self, results: Mapping[str, Result], scene: Scene) -> dict[str, str]:
+        """Warnings of results that the path does not reach."""
+        if not scene.adheres:
+            return {}
+        warnings = {}
+        if "adhesion_force" not in results:
+            warnings["no_peak"] = (
+                "the largest tension lies at an end of the last way apart, so the path gives no adhesion_force: "
+                'go further back, or use kind = "pull_off"'
+            )
+        if "zero_load_radius" not in results:
+            warnings["no_zero_load"] = (
+                "the force does not pass 0 on the last way apart, so there is no zero_load_radius"
+            )
+        return warnings
+
+
+def _means(settings: Settings, states: list[State]) -> dict[str, tuple[float, ...]]:
+    """Columns of means.csv: the mean force at each position, and its standard error."""
+    return {
+        "displacement": tuple(one.displacement for one in states),
+        "force": tuple(one.force for one in states),
+        "force_standard_error": tuple(one.residual * settings.particles / CERTAIN for one in states),
+    }
+
+
+def _largest(trace: Trace) -> dict[str, Reading]:
+    """Without adhesion: force and radius where the displacement is largest."""
+    deepest = int(np.argmax(trace.displacement))
+    found = {"largest_force": Reading(float(trace.force[deepest]), FORCE)}
+    if (radius := trace.radius(deepest)) is not None:
+        found["largest_radius"] = Reading(radius, LENGTH)
+    return found
+
+
+def _adhesion(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
+    """Of the last phase in which the bodies are drawn apart; where a smooth curve has none, the last one says the same.
+
+    Where pairs snap, or an edge has no range, the tension on the way down is that at which the bodies jump together.
+    """
+    apart = [name for name in trace.phase if name.startswith("unloading")]
+    jumps = settings.estimate.snaps or scene.adhesion is not None
+    if not apart and jumps:
+        return {}
+    name = apart[-1] if apart else trace.phase[-1]
+    branch = trace.chosen(np.flatnonzero([phase == name for phase in trace.phase]))
+    found: dict[str, Reading] = {}
+    peak = peak_of(branch)
+    if 0 < peak.index < len(branch) - 1 and peak.tension > 0:
+        d, force, i = branch.displacement, branch.force, peak.index
+        rise = max(0.0, float((force[i - 1] - force[i]) / (d[i - 1] - d[i])))
+        early = rise * settings.let_go_early(float(d[i] - d[i + 1]))
+        found["adhesion_force"] = Reading(peak.smooth, FORCE, {"sampling": peak.uncertainty, "instability": early})
+        if (critical := _critical_radius(branch, i, peak.position, scene)) is not None:
+            found["critical_radius"] = critical
+    if scene.adhesion is not None:
+        found |= _fixed_grips(branch)
+    if (zero := _zero_load(branch)) is not None:
+        found["zero_load_radius"] = zero
+    return found
+
+
+def _fixed_grips(branch: Trace) -> dict[str, Reading]:
+    """The displacement at which a contact without a range is lost at once: between the last row held and the next."""
+    held = [branch.radius(i) is not None for i in range(len(branch))]
+    for i, (here, after) in enumerate(pairwise(held)):
+        if here and not after:
+            before, beyond = branch.displacement[i : i + 2].tolist()
+            errors = {"sampling": 0.5 * abs(before - beyond)}
+            return {"fixed_grips_displacement": Reading(0.5 * (before + beyond), LENGTH, errors)}
+    return {}
+
+
+def _critical_radius(branch: Trace, peak: int, position: float, scene: Scene) -> Reading | None:
+    """a at the vertex of a smooth maximum, linear between the rows beside it; at the last row before a jump.
+
+    A body that ends at an edge is in contact up to there or not at all.
+    """
+    radii = [branch.radius(i) for i in range(peak - 1, peak + 2)]
+    before, own, after = radii
+    if own is None:
+        return None
+    if before is None or after is None:
+        return Reading(own, LENGTH, {"sampling": 0.0 if scene.bodies.profile.has_edge else own})
+    if position == branch.displacement[peak]:
+        return Reading(own, LENGTH, {"sampling": abs(before - own)})
+    places = branch.displacement[peak - 1 : peak + 2]
+    value = float(np.interp(position, places[::-1], [after, own, before]))
+    bend = abs(own - 0.5 * (before + after))
+    return Reading(value, LENGTH, {"sampling": bend + PLACE_ERROR * abs(before - after)})
+
+
+def _zero_load(branch: Trace) -> Reading | None:
+    """a where the force crosses 0, linear between two rows."""
+    try:
+        index, position = crossing(branch.displacement.tolist(), branch.force.tolist(), 0.0)
+    except ValueError:
+        return None
+    first, second = branch.radius(index), branch.radius(index + 1)
+    if first is None or second is None:
+        return None
+    start, end = branch.displacement[index : index + 2].tolist()
+    part = (position - start) / (end - start) if end != start else 0.0
+    return Reading(first + part * (second - first), LENGTH, {"sampling": BEND * abs(second - first)})
+
+
+def schedule(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+    """One phase for each stretch of rising ("loading") or falling ("unloading") displacement."""
+    positions = way(scene, settings)
+    phases, first = [], 0
+    for name, stretch in stretches([position for position, _ in positions]):
+        rows = _rows(scene, settings, positions[first : first + len(stretch)])
+        phases.append(Phase(name, rows, state=True))
+        first += len(stretch)
+    return tuple(phases)
+
+
+def stretches(positions: Sequence[float]) -> list[tuple[str, list[float]]]:
+    """Displacements by stretches of one direction: loading, unloading, loading_2, …; the first one is loading's."""
+    found: list[tuple[str, list[float]]] = [("loading", [positions[0]])]
+    for before, position in pairwise(positions):
+        name = "loading" if position > before else "unloading"
+        if found[-1][0] != name:
+            found.append((name, []))
+        found[-1][1].append(position)
+    counts: dict[str, int] = {}
+    numbered = []
+    for name, stretch in found:
+        counts[name] = counts.get(name, 0) + 1
+        numbered.append((name if counts[name] == 1 else f"{name}_{counts[name]}", stretch))
+    return numbered
+
+
+def way(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
+    """Displacements [LU] of all rows, and whether the scene asks for them or they lie between two of those.
+
+    The path starts at 0, where the bodies are in system.data, unless the first displacement draws them apart: from
+    there it is the state that comes from far away.
+    """
+    found: list[tuple[float, bool]] = []
+    before = 0.0
+    for value in scene.experiment.places():
+        longest = settings.longest_move if value > before else _longest_drop(settings)
+        moves = max(1, math.ceil(abs(value - before) / longest - ROUND_OFF))
+        if not found and value < before:
+            moves = 1
+        found += [(before + (value - before) * i / moves, False) for i in range(1, moves)]
+        found.append((value, True))
+        before = value
+    return found
+
+
+def _longest_drop(settings: Settings) -> float:
+    """Longest move [LU] by which bodies that part keep the particles that the interaction still holds; inf where none snaps.
+
+    A move h puts a joined pair h further apart before it relaxes. It is lost where that is beyond the unstable
+    equilibrium next to it, which is 2 √(2 e/|G″|) away at a gap e before the fold of G(r): too early by e = h² |G″|/8.
+    With |G″| of the ratio of the stiffnesses over the range b, and a loop as wide as some of that ratio times b,
+    h = √(8 tolerance) b leaves a share of `tolerance` of the loop.
+    """
+    if settings.law is None or settings.is_smooth:
+        return math.inf
+    return min(settings.longest_move, math.sqrt(EARLINESS * settings.tolerance) * settings.law.longest_range)
+
+
+def _rows(scene: Scene, settings: Settings, positions: Sequence[tuple[float, bool]]) -> tuple[Row, ...]:
+    if scene.noise is not None:
+        return thermal_rows(settings, _decay(scene, settings), positions)
+    if scene.method == "quasistatic":
+        return displacements([position for position, _ in positions])
+    steps = math.ceil(RELAXATIONS * _decay(scene, settings) / settings.time_step)
+    return tuple(DisplaceInTime(float(position), steps) for position, _ in positions)
+
+
+def _decay(scene: Scene, settings: Settings) -> float:
+    """Time constant [TU] with which a particle on its bulk spring comes to rest: 2m/γ, overdamped γ/k."""
+    mass, stiffness = scene.bodies.mass, scene.bulk_stiffness
+    return max(2.0 * mass / settings.damping, settings.damping / stiffness)

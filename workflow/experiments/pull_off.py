@@ -1,0 +1,180 @@
+"""Pull-off: compress by F_D, then find the largest tension that the contact holds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from contact1d.analysis.curve_marks import rivals, smooth_crossing
+from contact1d.analysis.polynomial import through
+from contact1d.workflow.continuation.branch import BEYOND_LIMIT, LOADING_STEPS, PLACE_FACTOR
+from contact1d.workflow.continuation.budget import Reading
+from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.holding import held_phase, overshoot
+from contact1d.workflow.continuation.load_control import FEWEST_HELD, SPREAD, top_of
+from contact1d.workflow.continuation.marks import peak_of, radius_rate
+from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.continuation.trace import Trace
+from contact1d.workflow.continuation.trust import require_no_contradiction
+from contact1d.workflow.deck.steps import Phase, displacements
+from contact1d.workflow.experiments.detachment import planned_detachment, pull_off_thermal
+from contact1d.workflow.experiments.experiment import Experiment
+from contact1d.workflow.scene import PullOff, Scene
+from contact1d.workflow.settings.settings import Settings
+from contact1d.workflow.units import FORCE, LENGTH
+
+UNLOADING_STEPS, TENSIONS = 80, 12
+"""Rows of a planned way back, and tensions of a planned pull, where a run would search."""
+LARGEST_TENSION = 1.2
+"""The last of these tensions over the expected pull-off force."""
+
+
+class PullOffExperiment(Experiment):
+    """F_A, a_cr and a₀ after a preload; with noise the detachment force of each pull."""
+
+    main_results = ("adhesion_force", "zero_load_radius", "critical_radius")
+    branches = {"pulling": "unloading", "separating": "unloading", "critical": "unloading"}  # noqa: RUF012
+
+    def run(self, context: RunContext) -> Outcome:
+        """With noise a ramp until the bodies part, once for each seed."""
+        return super().run(context) if context.deck.scene.noise is None else pull_off_thermal(context)
+
+    def script(self, branch: Any, scene: Scene) -> None:
+        """Press, unload to F = 0, pull to the largest tension, part."""
+        assert isinstance(scene.experiment, PullOff)
+        preload = scene.experiment.preload
+        scale = max(preload, branch.scale)
+        branch.begin("loading")
+        branch.reach(preload, scale)
+        branch.begin("unloading")
+        branch.reach(0.0, min(branch.scale, scale) or scale)
+        branch.mark("zero_load")
+        branch.begin("pulling")
+        branch.maximum()
+        branch.mark("critical")
+        branch.begin("separating")
+        branch.open()
+
+    def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
+        """The marks of the unloading."""
+        assert isinstance(scene.experiment, PullOff)
+        loading = trace.phases("loading")
+        preload = float(loading.force[-1])
+        given = Reading(preload, FORCE, {"solver": abs(preload - scene.experiment.preload)}, prescribed=True)
+        falling = trace.phases("unloading", "pulling", "separating", "critical")
+        marks = _under_load(falling, scene, settings, preload) if trace.bracket else _by_displacement(falling.falling())
+        return marks | {"preload": given}
+
+    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+        """The schedule by the model."""
+        assert isinstance(scene.experiment, PullOff)
+        if scene.noise is not None:
+            return planned_detachment(scene, settings)
+        preload, tension = scene.experiment.preload, settings.estimate.pull_off_force()
+        if scene.method == "dynamic":
+            tensions = [float(-t) for t in np.linspace(0.0, LARGEST_TENSION * tension, TENSIONS + 1)[1:]]
+            return (
+                held_phase("loading", scene, settings, (preload,), max(preload, tension)),
+                held_phase("unloading", scene, settings, (0.0,), max(preload, tension), state=True),
+                held_phase("pulling", scene, settings, tensions, tension, state=True),
+            )
+        deepest, apart = settings.largest_displacement, settings.rest - settings.cutoff
+        if scene.is_stepped:
+            apart = BEYOND_LIMIT * settings.estimate.parted(0.0)
+        down = displacements(np.linspace(0.0, deepest, LOADING_STEPS + 1).tolist())
+        back = displacements(np.linspace(deepest, apart, UNLOADING_STEPS).tolist())
+        return (Phase("loading", down), Phase("unloading", back, state=True))
+
+    def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
+        """Refuse what the run's own curve contradicts."""
+        found = outcome.results["adhesion_force"]
+        require_no_contradiction(settings, found.value, found.uncertainty, outcome.states)
+        return outcome
+
+    def advice(self, scene: Scene) -> str:
+        """In time there is a reason of its own."""
+        since = ", since force control never sees the pull-off itself" if scene.method == "dynamic" else ""
+        return super().advice(scene) + since
+
+
+def _by_displacement(falling: Trace) -> dict[str, Reading]:
+    """F_A at the vertex of the curve, a_cr there, a₀ where the force crosses 0."""
+    peak = peak_of(falling)
+    place = int(np.argmin(np.abs(falling.displacement - peak.position)))
+    rate = radius_rate(falling, place)
+    critical = falling.radius_or_spot(place) + rate * (peak.position - float(falling.displacement[place]))
+    tension = {source: max(error, peak.uncertainty * (source == "sampling")) for source, error in falling.doubt.items()}
+    beside = {"sampling": PLACE_FACTOR * abs(rate) * peak.misplaced}
+    missed = sum(tension.values())
+    teeth = (
+        rivals(falling.displacement.tolist(), falling.force.tolist(), peak) if "instability" in falling.doubt else {}
+    )
+    radii = [falling.radius_or_spot(i) for i, excess in teeth.items() if excess > -missed]
+    if teeth:
+        beside["instability"] = max((abs(radius - critical) for radius in radii), default=0.0)
+    found = {
+        "adhesion_force": Reading(peak.smooth, FORCE, tension),
+        "critical_radius": Reading(max(0.0, critical), LENGTH, beside),
+    }
+    zero = _zero(falling)
+    near = int(np.argmin(np.abs(falling.displacement - zero)))
+    shift = radius_rate(falling, near) * (zero - float(falling.displacement[near]))
+    return found | {"zero_load_radius": Reading(max(0.0, falling.radius_or_spot(near) + shift), LENGTH)}
+
+
+def _zero(falling: Trace) -> float:
+    """Displacement [LU] at which the force crosses 0; where it never does, that of the least force."""
+    try:
+        return smooth_crossing(falling.displacement.tolist(), falling.force.tolist(), 0.0)
+    except ValueError:
+        return float(falling.displacement[int(np.argmin(np.abs(falling.force)))])
+
+
+def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float) -> dict[str, Reading]:
+    """F_A in the middle of the bracket; a_cr, which load control never sees, extrapolated over the displacement."""
+    assert rested.bracket is not None
+    best, broken = rested.bracket
+    tension = 0.5 * (best + broken)
+    errors = {"sampling": 0.5 * (broken - best)} | dict(rested.doubt)
+    zero, last = rested.radius_or_spot(0), len(rested) - 1
+    if settings.is_toothed:
+        # A tooth has no smooth top to go on to. The pull-off may be at the next one, with one particle less at each edge,
+        # and further off where tension is left to it: the tops lie near F = F_A (1 − y²), y = (a − a_cr)/(a₀ − a_cr).
+        radius = rested.radius_or_spot(last)
+        beyond = abs(zero - radius) * math.sqrt(2.0 * sum(errors.values()) / tension)
+        critical = Reading(radius, LENGTH, {"instability": scene.bodies.spacing + beyond})
+    else:
+        critical = _extrapolated(rested)
+    slope = abs(critical.value - zero) / tension
+    at_zero = {"solver": slope * abs(float(rested.force[0]))}
+    if settings.is_toothed:  # beyond the largest tension the plate would not have come back
+        swung = overshoot(settings, scene.bodies.mass, preload, 0.0) * preload
+        at_zero["instability"] = slope * min(swung, tension)
+    return {
+        "adhesion_force": Reading(tension, FORCE, errors),
+        "critical_radius": critical,
+        "zero_load_radius": Reading(zero, LENGTH, at_zero),
+    }
+
+
+def _extrapolated(rested: Trace) -> Reading:
+    """The radius as a parabola through the last three states at rest, where a cubic through four has its largest tension.
+
+    A parabola through three says how far both can be trusted.
+    """
+    count = min(FEWEST_HELD, len(rested))
+    at = np.arange(len(rested) - count, len(rested))
+    d, force = rested.displacement[at], rested.force[at]
+    tops = (
+        [top_of(d[-few:], force[-few:]) for few in (FEWEST_HELD, FEWEST_HELD - 1)] if count == FEWEST_HELD else [None]
+    )
+    last = rested.radius_or_spot(int(at[-1]))
+    if any(top is None for top in tops) or any(rested.radius(int(i)) is None for i in at[1:]):
+        return Reading(last, LENGTH, {"sampling": last})
+    places, radii = d[1:], np.asarray([rested.radius_or_spot(int(i)) for i in at[1:]])
+    width = float(np.ptp(places))
+    value, other = (float(through((places - top[0]) / width, radii)[0]) for top in tops if top is not None)
+    return Reading(value, LENGTH, {"sampling": SPREAD * abs(value - other)})

@@ -1,0 +1,262 @@
+"""Tangential: friction on a rigid plane, F_x over the displacement u along x, which zone sticks, and what is dissipated.
+
+A row is one step of each particle's spring and slider, which is exact while a particle is touched all the way. Between two
+rows of the scene displacement and position change together, along a straight line; where a particle begins or ends to touch
+there is a row of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.analysis.radius import ContactRadius
+from contact1d.analysis.slip import slip, stick_margin, stick_radius
+from contact1d.workflow.continuation.budget import (
+    Reading,
+    Values,
+    budgeted,
+    force_errors,
+    lattice_errors,
+    lattice_warning,
+)
+from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.continuation.trace import Trace, of_states
+from contact1d.workflow.continuation.trust import UntrustedError, doubts
+from contact1d.workflow.deck.lattice import places
+from contact1d.workflow.deck.steps import Draw, Phase
+from contact1d.workflow.experiments.experiment import FINER_SPACING, Experiment
+from contact1d.workflow.scene import Scene, Tangential
+from contact1d.workflow.settings.settings import Settings
+from contact1d.workflow.settings.sliders import Sliders, Stop, sliders_of, stops, without_rests
+from contact1d.workflow.units import ENERGY, FORCE, LENGTH
+
+Array = NDArray[np.float64]
+PRESSING, FORWARD, BACKWARD = "pressing", "forward", "backward"
+MOST_TOUCHES = 1.0
+"""Rows between two of the scene, per 1/tolerance; a particle between two of them is moved from the first."""
+ROUND_OFF = 1e-13
+"""Error of tangential forces over the largest of a path, for each row: a history is a sum over all of them."""
+AS_PREDICTED = 1e-8
+"""How far a particle's tangential force may be from what spring and slider make of the row before, over its limit."""
+
+
+class TangentialExperiment(Experiment):
+    """F_N, F_x, a, c and the dissipated energy Σ ∫ |s_i| dδ_i of the last row; δ_i is how far a particle has slipped."""
+
+    main_results = ("tangential_force", "contact_radius", "stick_radius", "dissipated_energy")
+
+    def run(self, context: RunContext) -> Outcome:
+        """Run the schedule; the forces must be those of the history of each particle."""
+        scene, settings = context.deck.scene, context.deck.settings
+        case = self.reduction(scene, settings)
+        lattice: Values = {}
+        with context.contact(meanwhile=lambda: lattice.update(lattice_errors(case))) as contact:
+            states = contact.replay(self.planned(scene, settings))
+            phases = contact.phases
+        asked = [one for _, one in passed(scene, _chain(scene, settings), settings)]
+        trace = of_states(states, asked)
+        rows = drawn(trace, scene)
+        _require_history(trace, rows)
+        reported = [state for state, one in zip(states, asked, strict=True) if one]
+        kept = [row for row, one in zip(rows, asked, strict=True) if one]
+        farthest = reported[int(np.argmax([abs(row.position) for row in kept]))]
+        errors = force_errors(scene, settings, states, (states[-1],))
+        results = budgeted(case, trace, errors, lattice)
+        warnings = doubts(scene, settings, tuple(reported)) | lattice_warning(scene, results)
+        marked = {"farthest": farthest, "final": reported[-1]}
+        return Outcome(results, tuple(reported), marked, phases, warnings, columns=_columns(kept))
+
+    def script(self, branch: Any, scene: Scene) -> None:
+        """The stops of the model's particles, those that change nothing left out."""
+        chain = branch.model.chain
+        for name, stretch in stretches(passed(scene, chain, branch.settings, sparse=True)):
+            branch.begin(name)
+            branch.draw([stop for stop, _ in stretch], [one for _, one in stretch])
+
+    def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
+        """What the last row has; forces are compared with Σ |s_i|, the energy with the work of that."""
+        rows = drawn(trace, scene)
+        last, final = rows[-1], len(trace) - 1
+        strongest = max(row.carried for row in rows)
+        error = ROUND_OFF * len(rows) * strongest + _moved_too_far(scene, settings)
+        work = sum(0.5 * (a.carried + b.carried) * abs(b.position - a.position) for a, b in pairwise(rows))
+        force = float(trace.force[final])
+        given = scene.experiment.compression is not None
+        radius = trace.radius(final) or 0.0
+        return {
+            "normal_force": Reading(force, FORCE, {"solver": ROUND_OFF * abs(force)}, prescribed=given),
+            "tangential_force": Reading(last.force, FORCE, {"solver": error}, scale=strongest),
+            "contact_radius": Reading(radius, LENGTH, prescribed=radius == 0.0),
+            "stick_radius": Reading(
+                last.stick.value + trace.radius_shift * last.stick.uncertainty, LENGTH,
+                prescribed=last.stick.value == last.stick.uncertainty == 0.0,
+            ),
+            "dissipated_energy": Reading(
+                last.dissipated, ENERGY, {"solver": error * scene.experiment.way}, scale=work
+            ),
+        }  # fmt: skip
+
+    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+        """The load comes on in one row, then a phase for each stretch to the right ("forward") or to the left."""
+        way = passed(scene, _chain(scene, settings), settings)
+        return tuple(
+            Phase(name, tuple(Draw(*stop) for stop, _ in stretch), state=name != PRESSING)
+            for name, stretch in stretches(way)
+        )
+
+    def advice(self, scene: Scene) -> str:
+        """A row is exact, so that the lattice alone is left."""
+        return f"What helps is {FINER_SPACING}"
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What friction made of one state.
+
+    Attributes:
+        position: of the plate along x [LU].
+        force: with which the body resists a move to the right [FU].
+        carried: Σ |s_i|, of all particles whichever way they push [FU].
+        dissipated: energy since the start [FU·LU].
+        wrong: how far a particle's force is from what its spring and slider make of the row before [FU].
+        trace, state: where it was read.
+        scene: with the coefficient of friction.
+        direction: of the last move.
+    """
+
+    position: float
+    force: float
+    carried: float
+    dissipated: float
+    wrong: float
+    trace: Trace
+    state: int
+    scene: Scene
+    direction: int
+
+    @cached_property
+    def stick(self) -> ContactRadius:
+        """Half-width of the zone that sticks; a flat punch sticks or slips as a whole."""
+        assert self.scene.friction is not None
+        profile, coefficient = self.trace.profile(self.state), self.scene.friction.coefficient
+        if not self.scene.bodies.profile.has_edge:
+            return stick_radius(profile, coefficient, self.direction)
+        edge = self.trace.contact(self.state)
+        sticks = edge is not None and stick_margin(profile, coefficient, self.direction).any()
+        return edge if sticks and edge is not None else ContactRadius(0.0, 0.0, 0.0, 0.0, reaches_end=False)
+
+
+def drawn(trace: Trace, scene: Scene) -> list[Drawn]:
+    """What friction made of each state, from the one before it; at the first the load is just there."""
+    assert scene.friction is not None
+    coefficient, spacing, stiffness = scene.friction.coefficient, scene.bodies.spacing, scene.tangential_stiffness
+    rows: list[Drawn] = []
+    dissipated, direction, before, limit = 0.0, 0, np.empty(0), np.empty(0)
+    for i in range(len(trace)):
+        profile = trace.profile(i)
+        force, next_limit = -spacing * profile.shear, spacing * coefficient * np.maximum(profile.pressure, 0.0)
+        wrong = 0.0
+        if i:
+            moved = float(trace.along[i] - trace.along[i - 1])
+            direction = int(np.sign(moved)) or direction
+            row = slip(before, np.full_like(force, stiffness * moved), limit, next_limit, stiffness)
+            wrong = float(np.abs(force - row.force).max())
+            dissipated += float(row.work.sum())
+        before, limit = force, next_limit
+        carried = float(np.abs(force).sum())
+        position = float(trace.along[i])
+        rows.append(Drawn(position, float(force.sum()), carried, dissipated, wrong, trace, i, scene, direction))
+    return rows
+
+
+def _require_history(trace: Trace, rows: Sequence[Drawn]) -> None:
+    """Refuse forces that are not the history's."""
+    assert rows[0].scene.friction is not None
+    coefficient, spacing = rows[0].scene.friction.coefficient, rows[0].scene.bodies.spacing
+    limit = max(coefficient * spacing * float(trace.profile(i).pressure.max()) for i in range(len(trace)))
+    for row in rows:
+        if row.wrong > AS_PREDICTED * limit:
+            raise UntrustedError(
+                f"a particle's tangential force is {row.wrong:.2g} FU off what its spring and slider make of the row "
+                f"before, at displacement {trace.displacement[row.state]:.4g} LU and {row.position:.4g} LU along x (phase "
+                f"{trace.phase[row.state]}): LAMMPS has lost its history. Take rows that are nearer to each other"
+            )
+
+
+def _columns(rows: Sequence[Drawn]) -> dict[str, tuple[float, ...]]:
+    """What curve.csv has beside the columns of every curve."""
+    columns = {
+        "tangential_displacement": [row.position for row in rows],
+        "tangential_force": [row.force for row in rows],
+        "normal_force": [float(row.trace.force[row.state]) for row in rows],
+        "stick_radius": [row.stick.value for row in rows],
+        "stick_radius_uncertainty": [row.stick.uncertainty for row in rows],
+        "dissipated_energy": [row.dissipated for row in rows],
+    }
+    return {name: tuple(column) for name, column in columns.items()}
+
+
+def _chain(scene: Scene, settings: Settings) -> Sliders:
+    """The sliders of the chain that runs."""
+    return sliders_of(scene, places(settings.particles, scene.bodies.spacing))
+
+
+def passed(scene: Scene, chain: Sliders, settings: Settings, sparse: bool = False) -> list[tuple[Stop, bool]]:
+    """Displacement and position [LU] of every row in order, and whether the scene asks for it.
+
+    `sparse`: without those from which it goes straight on.
+    """
+    assert isinstance(scene.experiment, Tangential)
+    asked = stops(scene.experiment, chain)
+    first, *others = without_rests(asked) if sparse else asked
+    found, most = [(first, False)], _most(settings)
+    before = first
+    for stop in others:
+        touches = chain.touches(before[0], stop[0])
+        if len(touches) > most:
+            touches = [touches[i] for i in np.linspace(0, len(touches) - 1, most).round().astype(int)]
+        if stop[1] != before[1]:
+            slope = (stop[1] - before[1]) / (stop[0] - before[0]) if touches else 0.0
+            found += [((depth, before[1] + slope * (depth - before[0])), False) for depth in touches]
+        found.append((stop, True))
+        before = stop
+    return found
+
+
+def stretches(way: Sequence[tuple[Stop, bool]]) -> list[tuple[str, list[tuple[Stop, bool]]]]:
+    """Rows by stretches of one direction, the load first."""
+    moves = [after[1] - before[1] for (before, _), (after, _) in pairwise(way)]
+    direction = BACKWARD if next((move for move in moves if move), 1.0) < 0.0 else FORWARD
+    found = [(PRESSING, [way[0]])]
+    counts: dict[str, int] = {}
+    for row, moved in zip(way[1:], moves, strict=True):
+        if moved:
+            direction = FORWARD if moved > 0.0 else BACKWARD
+        if found[-1][0].partition("_")[0] != direction:
+            counts[direction] = counts.get(direction, 0) + 1
+            found.append((direction if counts[direction] == 1 else f"{direction}_{counts[direction]}", []))
+        found[-1][1].append(row)
+    return found
+
+
+def _moved_too_far(scene: Scene, settings: Settings) -> float:
+    """By how much [FU] tangential forces may be off: of particles that begin to touch between two rows on the way."""
+    assert isinstance(scene.experiment, Tangential)
+    chain, most, error = _chain(scene, settings), _most(settings), 0.0
+    for before, stop in pairwise(stops(scene.experiment, chain)):
+        touches = len(chain.touches(before[0], stop[0])) if before[0] != stop[0] else 0
+        if touches > most:
+            error += 2.0 * touches * chain.tangential * abs(stop[1] - before[1]) / most
+    return error
+
+
+def _most(settings: Settings) -> int:
+    return max(1, round(MOST_TOUCHES / settings.tolerance))

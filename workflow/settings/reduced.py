@@ -1,0 +1,238 @@
+"""The reduced model: particles that know their own spring and what is opposite to them, and nothing of their neighbours.
+
+    springs on a rigid plane    f = k max(0, d − h(x))
+    pairs of opposite chains    f = f(r),  G(r) = r₀ + h(x) − d, on the branch that a pair came by
+    cells that adhere           f = k φ [d − g(x) + c (1 − φ)], while the contact is held (`adhesion`)
+    springs with a slider       s ← clip(s + k_t Δu, ±μ f)
+
+It follows any path of displacements with the memory that its particles have, all positions at once. No result depends on
+it: it predicts, and it says how a result changes with the lattice (`shifted`, `finer`).
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.analysis.slip import slip
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.adhesion import AdhesiveEstimate
+from contact1d.workflow.settings.estimate import ContactEstimate
+from contact1d.workflow.settings.settings import Settings
+from contact1d.workflow.settings.shape import places_within
+from contact1d.workflow.settings.sliders import Sliders
+
+Array = NDArray[np.float64]
+OVERREACH = 0.1
+"""How far beyond the expected displacement a force is looked for, over that displacement and a spacing."""
+MARGIN = 1.5
+"""Depth up to which particles of springs are counted, over the expected one: few carry a load deeper than many."""
+FEWEST = 4.0
+"""Least half-width up to which they are counted, over the spacing."""
+ROUNDS, POINTS = 4, 60
+"""How often the bracket of a displacement is cut, and at how many positions."""
+BESIDE = 2
+"""Particles beside the contact that a profile has: a radius is read between the last that carries and the next."""
+
+
+@dataclass(frozen=True)
+class Followed:
+    """What particles at x (n,) [LU] carry along a path; `force` and `shear` (m, n) [FU]."""
+
+    x: Array
+    force: Array
+    shear: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Reduced(ABC):
+    """The particles of a chain.
+
+    Attributes:
+        estimate: the body, its spacing and stiffness.
+        x: positions of the particles [LU], rising.
+        deepest: largest displacement that is expected [LU].
+    """
+
+    estimate: ContactEstimate
+    x: Array
+    deepest: float
+
+    @abstractmethod
+    def follow(self, displacements: Array) -> Followed:
+        """Forces along a path that begins apart, (m,) [LU]."""
+
+    @abstractmethod
+    def held(self, displacements: Array) -> Array:
+        """F [FU] at displacements (m,) [LU] of a contact that is unloaded from deeper."""
+
+    @property
+    @abstractmethod
+    def apart(self) -> float:
+        """The limit point [LU]: nothing is held below it."""
+
+    def shifted(self, phase: float) -> Reduced:
+        """The same with the apex `phase` spacings off a particle."""
+        return replace(self, x=places_within(self._reach, self.estimate.spacing, phase))
+
+    def finer(self) -> Reduced:
+        """The same body with twice as many particles."""
+        estimate = self.estimate
+        half = replace(
+            estimate, spacing=0.5 * estimate.spacing, stiffness=0.5 * estimate.stiffness, force=0.5 * estimate.force
+        )
+        phase = 0.5 if self.x.size % 2 == 0 else 0.0
+        return replace(self, estimate=half, x=places_within(self._reach, half.spacing, phase))
+
+    @property
+    def _reach(self) -> float:
+        return float(self.x[-1]) + 0.5 * self.estimate.spacing
+
+    def displacement_at(self, force: float) -> float:
+        """Largest displacement [LU] at which a force [FU] is carried; that of the largest tension if none is."""
+        low, high = self.apart, self.deepest + OVERREACH * (abs(self.deepest) + self.estimate.spacing)
+        for _ in range(ROUNDS):
+            positions, step = np.linspace(low, high, POINTS, retstep=True)
+            forces = self.held(positions)
+            below = np.flatnonzero(forces < force)
+            if below.size == 0:
+                return float(positions[int(np.argmin(forces))])
+            last = min(int(below[-1]), POINTS - 2)
+            low, high = float(positions[last]), float(positions[last] + step)
+        ends = forces[last : last + 2]
+        return float(np.interp(force, ends, positions[last : last + 2]))
+
+
+@dataclass(frozen=True, eq=False)
+class Springs(Reduced):
+    """Pairs of opposite particles, and springs on a rigid plane, which are pairs without a memory."""
+
+    @cached_property
+    def heights(self) -> tuple[Array, NDArray[np.intp]]:
+        """Undeformed gaps at displacement 0 [LU], each once, and which is whose."""
+        gaps = self.estimate.rest + self.estimate.profile.height(np.abs(self.x))
+        found, own = np.unique(gaps, return_inverse=True)
+        return found, own
+
+    @property
+    def apart(self) -> float:
+        """Where nothing is felt any more [LU]."""
+        return self.estimate.rest - float(self.estimate.gap[-1])
+
+    def held(self, displacements: Array) -> Array:
+        """As joined pairs have it [FU]."""
+        heights, own = self.heights
+        each = self._forces(heights - displacements[:, None], np.ones(heights.size, dtype=bool))
+        return np.asarray(each @ np.bincount(own))
+
+    def follow(self, displacements: Array) -> Followed:
+        """A pair that has snapped together stays so up to where it snaps apart; see `Reduced.follow`."""
+        heights, own = self.heights
+        joined = np.zeros(heights.size, dtype=bool)
+        each = np.empty((displacements.size, heights.size))
+        for leg in legs(displacements):
+            gaps = heights - displacements[leg, None]
+            each[leg] = self._forces(gaps, joined)
+            joined = (joined | (gaps[-1] < self.estimate.joins)) & (gaps[-1] < self.estimate.snap[0])
+        return Followed(self.x, each[:, own])
+
+    def _forces(self, gaps: Array, joined: NDArray[np.bool_]) -> Array:
+        estimate = self.estimate
+        inner = np.interp(gaps, estimate.gap, estimate.force, right=0.0)
+        if not estimate.snaps or joined.all():
+            return np.asarray(inner)
+        assert estimate.outer is not None
+        return np.where(joined, inner, np.interp(gaps, estimate.outer, estimate.force, right=0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class AdheringCells(Reduced):
+    """The cells of a chain on a rigid plane, which adhere from touch to where fixed grips lose all of it at once."""
+
+    @cached_property
+    def _cells(self):  # type: ignore[no-untyped-def]  # Cells
+        assert isinstance(self.estimate, AdhesiveEstimate)
+        return self.estimate.cells(self.x, self.estimate.profile)
+
+    @property
+    def apart(self) -> float:
+        """Where fixed grips lose the contact [LU]."""
+        assert isinstance(self.estimate, AdhesiveEstimate)
+        return self.estimate.fixed_grips[1]
+
+    def held(self, displacements: Array) -> Array:
+        """F [FU] while it is held."""
+        return np.asarray(self._cells.forces(displacements, self.estimate.stiffness))
+
+    def follow(self, displacements: Array) -> Followed:
+        """Nothing is felt before touch; see `Reduced.follow`."""
+        held = np.zeros(displacements.size, dtype=bool)
+        now = False
+        for i, displacement in enumerate(displacements.tolist()):
+            now = displacement >= 0.0 or (now and displacement >= self.apart)
+            held[i] = now
+        each = self.estimate.stiffness * self._cells.lengths(displacements)
+        return Followed(self.x, np.where(held[:, None], each, 0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Sliding(Springs):
+    """Springs with a slider each, on a rigid plane; a path is of displacements and positions along x."""
+
+    sliders: Sliders | None = None
+
+    @property
+    def chain(self) -> Sliders:
+        """The sliders of these particles."""
+        assert self.sliders is not None
+        heights = np.asarray(self.estimate.profile.height(np.abs(self.x)), dtype=np.float64)
+        return replace(self.sliders, x=self.x, heights=heights)
+
+    def drawn(self, stops: Sequence[tuple[float, float]]) -> Followed:
+        """Forces after each stop, a displacement and a position along x [LU]: straight from one to the next."""
+        chain = self.chain
+        force = np.zeros_like(chain.heights)
+        shears, normal = [force], [chain.normal_forces(stops[0][0])]
+        for (before, start), (after, position) in pairwise(stops):
+            old, new = (np.maximum(depth - chain.heights, 0.0) for depth in (before, after))
+            touched = np.where(old > 0.0, 1.0, 0.0) if after == before else (new - old) / (after - before)
+            limit, next_limit = (chain.coefficient * chain.normal * overlap for overlap in (old, new))
+            pushed = chain.tangential * (position - start) * touched
+            force = slip(force, pushed, limit, next_limit, chain.tangential).force
+            shears.append(force)
+            normal.append(chain.normal * new)
+        return Followed(self.x, np.asarray(normal), -np.asarray(shears))
+
+
+def legs(displacements: Array) -> list[slice]:
+    """Stretches of a path along which displacements do not turn."""
+    ways = np.sign(np.diff(displacements))
+    turns = [i + 1 for i in range(1, len(ways)) if ways[i] * ways[i - 1] < 0.0]
+    edges = [0, *turns, len(displacements)]
+    return [slice(first, last) for first, last in pairwise(edges) if last > first]
+
+
+def reduced(scene: Scene, settings: Settings) -> Reduced:
+    """The model of the very particles that run, as far as the contact reaches."""
+    estimate, spacing = settings.estimate, settings.estimate.spacing
+    deepest = settings.largest_displacement
+    phase = 0.5 if settings.particles % 2 == 0 else 0.0
+    half = 0.5 * (settings.particles - 1) * spacing
+    if isinstance(estimate, AdhesiveEstimate) and scene.adheres:
+        reach = min(half, scene.bodies.reach)
+        return AdheringCells(estimate, places_within(reach * (1.0 + 1e-12), spacing, phase), deepest)
+    wide = estimate.half_width(max(MARGIN * deepest if scene.interaction is None else deepest, 0.0), estimate.felt)
+    reach = min(max(wide, FEWEST * spacing), scene.bodies.reach)
+    if scene.bodies.particles != "auto" or scene.bodies.profile.has_edge:
+        reach = min(reach, half * (1.0 + 1e-12))
+    x = places_within(reach, spacing, phase)
+    if scene.friction is None:
+        return Springs(estimate, x, deepest)
+    sliders = Sliders(x, x, scene.bulk_stiffness, scene.tangential_stiffness, scene.friction.coefficient)
+    return Sliding(estimate, x, deepest, sliders)
