@@ -24,8 +24,9 @@ from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Displace, Hold, Row
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Session
-from contact1d.workflow.experiments.running.contact import Contact, State
-from contact1d.workflow.experiments.running.run_context import RunContext
+from contact1d.workflow.continuation.contact import Contact
+from contact1d.workflow.continuation.state import State
+from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.scene import Parabola, Scene
 from contact1d.workflow.settings.settings import Settings, settings_for
 

@@ -18,9 +18,9 @@ import numpy as np
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.deck.steps import Hold, Phase
-from contact1d.workflow.experiments.pull_off.dynamic import Search
-from contact1d.workflow.experiments.running.contact import State
-from contact1d.workflow.experiments.running.holding import Held
+from contact1d.workflow.continuation.load_control import Search
+from contact1d.workflow.continuation.state import State
+from contact1d.workflow.continuation.holding import Held
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import Settings, settings_for
 from tests.scenes import chains

@@ -20,7 +20,7 @@ from contact1d.workflow.deck.steps import DisplaceInTime, Draw, Phase, UnderLoad
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Engine
-from contact1d.workflow.experiments.running.run_context import RunContext
+from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.scene import EFFECTS, Scene, SceneError
 from contact1d.workflow.settings.settings import settings_for
 

@@ -15,7 +15,7 @@ import pytest
 from contact1d import run
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.pair_lattice import PairLattice
-from contact1d.workflow.experiments.running.trust import UntrustedError, require_no_contradiction
+from contact1d.workflow.continuation.trust import UntrustedError, require_no_contradiction
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 from contact1d.workflow.stability.pairs import TENSION, PairCase, reach, shaped

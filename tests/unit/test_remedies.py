@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from contact1d.workflow.errors import Contact1dError, RunError
-from contact1d.workflow.experiments.running.trust import (
+from contact1d.workflow.continuation.trust import (
     ChainEndError,
     OffEndError,
     PartedError,

@@ -31,7 +31,7 @@ from contact1d import Run
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.solver import trace
 from contact1d.analysis.reference.winkler import rigid_plane_sum, winkler_force, winkler_half_width
-from contact1d.workflow.experiments.running.contact import State
+from contact1d.workflow.continuation.state import State
 from tests.scenes import chains
 
 RunTables = Callable[[dict[str, Any]], Run]

@@ -22,7 +22,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from contact1d import Run
-from contact1d.workflow.experiments.running.contact import State
+from contact1d.workflow.continuation.state import State
 from contact1d.workflow.units import Quantity
 from tests.scenes import chains
 

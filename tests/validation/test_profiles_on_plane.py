@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from contact1d import Run
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import compressive_radius
-from contact1d.workflow.experiments.running.contact import State
+from contact1d.workflow.continuation.state import State
 from contact1d.workflow.scene import scene_from_dict
 
 RunTables = Callable[[dict[str, Any]], Run]

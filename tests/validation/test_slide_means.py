@@ -9,7 +9,7 @@ import pytest
 
 from contact1d import Run, run
 from contact1d.analysis.friction import block_means, interval, mean_of
-from contact1d.workflow.experiments.slide.motion import motion_of
+from contact1d.workflow.experiments.motion import motion_of
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 from contact1d.workflow.stability.random_slides import integrated, mean_friction

@@ -22,7 +22,7 @@ from contact1d.analysis.reference.boltzmann_pairs import BoltzmannPairs
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.thermal_chain import displacement_under
-from contact1d.workflow.experiments.running.sampling import SETTLING_LOOKS
+from contact1d.workflow.experiments.thermal import SETTLING_LOOKS
 from tests.scenes import LAW
 from tests.validation.test_shipped_scenes import SCENES, THERMAL_PLACES, model_of
 

@@ -151,25 +151,29 @@ class ForceErrors:
     Attributes:
         common: alike at neighbouring states: what residual forces add up to at most, table, cutoff, a plane not rigid.
         turning: what a path back may have otherwise than the path there: residual forces are of either sign.
+        anchor: displacement [LU] about which an error may change sign: that of the last marked state.
     """
 
     common: Array
     turning: Array
+    anchor: float = 0.0
 
 
 def force_errors(
     scene: Scene, settings: Settings, states: Sequence[State], marked: Collection[State], left: float | None = None
 ) -> ForceErrors:
-    """Of states, the law's part between `marked` ones by their displacement; `left`: in place of residual forces [FU]."""
-    law = {state.displacement: law_error(scene, settings, state) for state in marked}
-    positions = sorted(law)
-    displacement = np.asarray([state.displacement for state in states])
-    residual = np.asarray([state.residual for state in states])
+    """Of states, by their displacement between `marked` ones; `left`: in place of residual forces [FU]."""
     count = float(settings.particles)
-    bound = residual * count if left is None else np.full_like(residual, left)
+    own = {
+        state.displacement: (count * state.residual if left is None else left) + law_error(scene, settings, state)
+        for state in marked
+    }
+    positions = sorted(own)
+    displacement = np.asarray([state.displacement for state in states])
+    common = np.interp(displacement, positions, [own[position] for position in positions])
     several = count if scene.noise is not None else np.sqrt(count)
-    common = bound + np.interp(displacement, positions, [law[position] for position in positions])
-    return ForceErrors(common, residual * several)
+    turning = several * np.asarray([state.residual for state in states])
+    return ForceErrors(common, turning, list(marked)[-1].displacement)
 
 
 def budgeted(
@@ -194,7 +198,7 @@ def budgeted(
     values = _values(readings)
     shapes = [force_error.common]
     if length > 0.0:
-        shapes.append(force_error.common * (trace.displacement - trace.displacement[-1]) / length)
+        shapes.append(force_error.common * np.clip((trace.displacement - force_error.anchor) / length, -1.0, 1.0))
     if sampled:
         shapes.append(force_error.turning * np.sign(np.gradient(trace.displacement)))
     solver = _changes(case.read, values, [trace.perturbed(sign * shape) for shape in shapes for sign in (1.0, -1.0)])

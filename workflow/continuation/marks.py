@@ -39,6 +39,18 @@ def radius_rate(trace: Trace, state: int, least: float = 0.0) -> float:
     return change / float(trace.displacement[near] - trace.displacement[state])
 
 
+def radius_at(trace: Trace, position: float) -> float:
+    """Contact radius [LU] at a displacement [LU] of a sorted trace, by a parabola through the three nearest states."""
+    near = int(np.argmin(np.abs(trace.displacement - position)))
+    first = min(max(near - 1, 0), max(len(trace) - 3, 0))
+    at = range(first, min(first + 3, len(trace)))
+    if position == trace.displacement[near] or len(at) < 2:
+        return trace.radius_or_spot(near)
+    d = trace.displacement[list(at)]
+    weights = [np.prod([(position - d[k]) / (d[j] - d[k]) for k in range(len(d)) if k != j]) for j in range(len(d))]
+    return max(0.0, float(sum(w * trace.radius_or_spot(i) for w, i in zip(weights, at, strict=True))))
+
+
 def displacement_under(trace: Trace, state: int, force: float, expected: float) -> float:
     """Displacement [LU] at which the curve through a state carries a force [FU] that is near to its own.
 

@@ -15,8 +15,9 @@ from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.settings.sliders import Stop
 
 Array = NDArray[np.float64]
-COARSE, FINE, ZOOMS = 120, 40, 3
-"""Positions of the first look for the largest tension and of each closer one, and how many of these."""
+COARSE, FINE, ZOOMS = 100, 30, 2
+"""Positions of the first look for the largest tension and of each closer one, and how many of these: none where the curve
+is smooth, since the model's forces are straight between the points of a grid, whose corners would place a flat top."""
 BETWEEN = 8
 """Positions on the way to a force."""
 LAST = 1e-9
@@ -76,9 +77,10 @@ class ModelBranch:
         """Pass the largest tension, densely about it."""
         zero, apart = self._rows[-1][1], self.model.apart
         end = zero + (1.0 - LAST) * (apart - zero)
-        positions, step = np.linspace(zero, end, COARSE, retstep=True)
+        dense = COARSE * (2 if self.settings.snaps else 1)
+        positions, step = np.linspace(zero, end, dense, retstep=True)
         found = [positions[1:]]
-        for _ in range(ZOOMS):
+        for _ in range(0 if self.settings.is_smooth else ZOOMS):
             top = float(positions[int(np.argmin(self.model.held(positions)))])
             low, high = max(top - abs(step), end), min(top + abs(step), zero)
             positions, step = np.linspace(high, low, FINE, retstep=True)

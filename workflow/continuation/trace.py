@@ -64,10 +64,6 @@ class Trace:
         found = self.contact(state) or self.rule.or_spot(self.profile(state))
         return max(0.0, found.value + self.radius_shift * found.uncertainty)
 
-    def read_error(self, state: int) -> float:
-        """Uncertainty [LU] of a radius that is read between particles."""
-        return (self.contact(state) or self.rule.or_spot(self.profile(state))).uncertainty
-
     def phases(self, *names: str) -> Trace:
         """The states of these phases, "unloading_2" being one of "unloading"."""
         return self.chosen(np.flatnonzero([name.partition("_")[0] in names for name in self.phase]))
@@ -133,15 +129,14 @@ def of_model(
     none = np.zeros_like(x)
 
     def profile(state: int) -> Profile:
-        pressure = np.pad(followed.force[state], BESIDE) / spacing
-        shear = none if followed.shear is None else np.pad(followed.shear[state], BESIDE) / spacing
+        pressure = np.pad(followed.force(state), BESIDE) / spacing
+        shear = none if followed.shear is None else np.pad(followed.shear(state), BESIDE) / spacing
         return Profile(x, none, none, pressure, shear)
 
-    force = followed.force.sum(axis=1)
     return Trace(
         tuple(phase),
         displacement,
-        force,
+        followed.total,
         np.asarray(asked, dtype=bool),
         along,
         profile,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from functools import partial
 from typing import Any, ClassVar
 
@@ -153,8 +152,3 @@ def in_smaller_steps(run: Callable[[RunContext], Outcome]) -> Callable[[RunConte
         raise ThroughError(f"{latest.message}. {smaller}", latest.advice)
 
     return searched
-
-
-def marked_only(outcome: Outcome, **marked: Any) -> Outcome:
-    """The outcome with other reported states."""
-    return replace(outcome, marked=marked)

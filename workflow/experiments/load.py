@@ -72,7 +72,8 @@ class LoadExperiment(Experiment):
             "force": Reading(carried, FORCE, prescribed=force == 0.0),
         }
         if trace.radius(last):
-            radius = trace.radius_or_spot(last) + radius_rate(trace, last, BRANCH_DISTANCE) * (displacement - own)
+            rate = radius_rate(trace, last, BRANCH_DISTANCE) or settings.estimate.radius_rate(own)
+            radius = trace.radius_or_spot(last) + rate * (displacement - own)
             found["contact_radius"] = Reading(radius, LENGTH)
             if radius > 0.0:
                 pressure = carried / (math.pi * radius**2)

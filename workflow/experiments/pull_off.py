@@ -15,7 +15,7 @@ from contact1d.workflow.continuation.budget import Reading
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.holding import held_phase, overshoot
 from contact1d.workflow.continuation.load_control import FEWEST_HELD, SPREAD, top_of
-from contact1d.workflow.continuation.marks import peak_of, radius_rate
+from contact1d.workflow.continuation.marks import peak_of, radius_at, radius_rate
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import require_no_contradiction
@@ -105,7 +105,7 @@ def _by_displacement(falling: Trace) -> dict[str, Reading]:
     peak = peak_of(falling)
     place = int(np.argmin(np.abs(falling.displacement - peak.position)))
     rate = radius_rate(falling, place)
-    critical = falling.radius_or_spot(place) + rate * (peak.position - float(falling.displacement[place]))
+    critical = radius_at(falling, peak.position)
     tension = {source: max(error, peak.uncertainty * (source == "sampling")) for source, error in falling.doubt.items()}
     beside = {"sampling": PLACE_FACTOR * abs(rate) * peak.misplaced}
     missed = sum(tension.values())
@@ -117,12 +117,10 @@ def _by_displacement(falling: Trace) -> dict[str, Reading]:
         beside["instability"] = max((abs(radius - critical) for radius in radii), default=0.0)
     found = {
         "adhesion_force": Reading(peak.smooth, FORCE, tension),
-        "critical_radius": Reading(max(0.0, critical), LENGTH, beside),
+        "critical_radius": Reading(critical, LENGTH, beside),
     }
     zero = _zero(falling)
-    near = int(np.argmin(np.abs(falling.displacement - zero)))
-    shift = radius_rate(falling, near) * (zero - float(falling.displacement[near]))
-    return found | {"zero_load_radius": Reading(max(0.0, falling.radius_or_spot(near) + shift), LENGTH)}
+    return found | {"zero_load_radius": Reading(radius_at(falling, zero), LENGTH)}
 
 
 def _zero(falling: Trace) -> float:

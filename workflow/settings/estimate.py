@@ -120,6 +120,12 @@ class ContactEstimate:
             inner, outer = places[cell, column], places[cell + 1, column]
         return np.where(height <= 0, self.spacing, outer)
 
+    def radius_rate(self, displacement: float) -> float:
+        """da/dd at a displacement [LU]."""
+        edge, step = float(self.gap[int(self.force.argmin())]), DIFFERENCE * max(abs(displacement), self.spacing)
+        ends = self.half_widths(np.asarray([displacement - step, displacement + step]), edge)
+        return float(ends[1] - ends[0]) / (2.0 * step)
+
     def pull_off_force(self) -> float:
         """Largest tension of the estimate [FU]; 0 without attraction."""
         return max(0.0, self._largest_tension[1])

@@ -12,7 +12,7 @@ it: it predicts, and it says how a result changes with the lattice (`shifted`, `
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.slip import slip
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.adhesion import AdhesiveEstimate
+from contact1d.workflow.settings.adhesion import AdhesiveEstimate, Cells
 from contact1d.workflow.settings.estimate import ContactEstimate
 from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.settings.shape import places_within
@@ -35,19 +35,28 @@ MARGIN = 1.5
 """Depth up to which particles of springs are counted, over the expected one: few carry a load deeper than many."""
 FEWEST = 4.0
 """Least half-width up to which they are counted, over the spacing."""
-ROUNDS, POINTS = 4, 60
-"""How often the bracket of a displacement is cut, and at how many positions."""
-BESIDE = 2
-"""Particles beside the contact that a profile has: a radius is read between the last that carries and the next."""
+ROUNDS, POINTS, SNAPPING = 5, 24, 10
+"""How often the bracket of a displacement is cut, and at how many positions: so many times more at first where pairs snap,
+and the force is a row of teeth."""
+TOUCH = 1e-9
+"""Distance over the spacing at which bodies touch: round-off of a displacement of 0."""
 
 
 @dataclass(frozen=True)
 class Followed:
-    """What particles at x (n,) [LU] carry along a path; `force` and `shear` (m, n) [FU]."""
+    """What particles at x (n,) [LU] carry along a path of m displacements.
+
+    Attributes:
+        x: positions [LU].
+        total: force of all, (m,) [FU].
+        force: of each at one of the displacements, by its number, (n,) [FU].
+        shear: the same along x; None where nothing is prescribed there.
+    """
 
     x: Array
-    force: Array
-    shear: Array | None = None
+    total: Array
+    force: Callable[[int], Array]
+    shear: Callable[[int], Array] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,13 +106,14 @@ class Reduced(ABC):
     def displacement_at(self, force: float) -> float:
         """Largest displacement [LU] at which a force [FU] is carried; that of the largest tension if none is."""
         low, high = self.apart, self.deepest + OVERREACH * (abs(self.deepest) + self.estimate.spacing)
+        points = POINTS * (SNAPPING if self.estimate.snaps else 1)
         for _ in range(ROUNDS):
-            positions, step = np.linspace(low, high, POINTS, retstep=True)
+            positions, step = np.linspace(low, high, points, retstep=True)
             forces = self.held(positions)
             below = np.flatnonzero(forces < force)
             if below.size == 0:
                 return float(positions[int(np.argmin(forces))])
-            last = min(int(below[-1]), POINTS - 2)
+            last, points = min(int(below[-1]), points - 2), POINTS
             low, high = float(positions[last]), float(positions[last] + step)
         ends = forces[last : last + 2]
         return float(np.interp(force, ends, positions[last : last + 2]))
@@ -134,13 +144,19 @@ class Springs(Reduced):
     def follow(self, displacements: Array) -> Followed:
         """A pair that has snapped together stays so up to where it snaps apart; see `Reduced.follow`."""
         heights, own = self.heights
+        counts = np.bincount(own)
         joined = np.zeros(heights.size, dtype=bool)
-        each = np.empty((displacements.size, heights.size))
+        total, memory = np.empty(displacements.size), []
         for leg in legs(displacements):
-            gaps = heights - displacements[leg, None]
-            each[leg] = self._forces(gaps, joined)
-            joined = (joined | (gaps[-1] < self.estimate.joins)) & (gaps[-1] < self.estimate.snap[0])
-        return Followed(self.x, each[:, own])
+            total[leg] = self._forces(heights - displacements[leg, None], joined) @ counts
+            memory += [joined] * (leg.stop - leg.start)
+            last = heights - displacements[leg.stop - 1]
+            joined = (joined | (last < self.estimate.joins)) & (last < self.estimate.snap[0])
+
+        def force(state: int) -> Array:
+            return np.asarray(self._forces(heights - displacements[state], memory[state])[own])
+
+        return Followed(self.x, total, force)
 
     def _forces(self, gaps: Array, joined: NDArray[np.bool_]) -> Array:
         estimate = self.estimate
@@ -156,7 +172,7 @@ class AdheringCells(Reduced):
     """The cells of a chain on a rigid plane, which adhere from touch to where fixed grips lose all of it at once."""
 
     @cached_property
-    def _cells(self):  # type: ignore[no-untyped-def]  # Cells
+    def _cells(self) -> Cells:
         assert isinstance(self.estimate, AdhesiveEstimate)
         return self.estimate.cells(self.x, self.estimate.profile)
 
@@ -175,10 +191,15 @@ class AdheringCells(Reduced):
         held = np.zeros(displacements.size, dtype=bool)
         now = False
         for i, displacement in enumerate(displacements.tolist()):
-            now = displacement >= 0.0 or (now and displacement >= self.apart)
+            now = displacement >= -TOUCH * self.estimate.spacing or (now and displacement >= self.apart)
             held[i] = now
-        each = self.estimate.stiffness * self._cells.lengths(displacements)
-        return Followed(self.x, np.where(held[:, None], each, 0.0))
+        total = np.where(held, self.held(displacements), 0.0)
+
+        def force(state: int) -> Array:
+            lengths = self._cells.lengths(displacements[state : state + 1])[0]
+            return np.asarray(self.estimate.stiffness * lengths * held[state])
+
+        return Followed(self.x, total, force)
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,7 +228,8 @@ class Sliding(Springs):
             force = slip(force, pushed, limit, next_limit, chain.tangential).force
             shears.append(force)
             normal.append(chain.normal * new)
-        return Followed(self.x, np.asarray(normal), -np.asarray(shears))
+        total = np.asarray([forces.sum() for forces in normal])
+        return Followed(self.x, total, normal.__getitem__, lambda state: -shears[state])
 
 
 def legs(displacements: Array) -> list[slice]:
