@@ -119,7 +119,7 @@ def lattice_errors(case: Reduction) -> Values:
         finer = [case.values(model.finer()), case.values(model.finer().finer())]
         for name in found:
             values = (own[name], *(one.get(name, own[name]) for one in finer))
-            found[name] = max(found[name], _extrapolated(*values))
+            found[name] = max(found[name], MARGIN * _extrapolated(*values))
     return found
 
 
@@ -200,7 +200,7 @@ def budgeted(
     if length > 0.0:
         shapes.append(force_error.common * np.clip((trace.displacement - force_error.anchor) / length, -1.0, 1.0))
     if sampled:
-        shapes.append(force_error.turning * np.sign(np.gradient(trace.displacement)))
+        shapes.append(force_error.turning * np.sign(np.diff(trace.displacement, prepend=trace.displacement[:1])))
     solver = _changes(case.read, values, [trace.perturbed(sign * shape) for shape in shapes for sign in (1.0, -1.0)])
     read = _changes(case.read, values, [trace.perturbed(radius_shift=sign) for sign in (1.0, -1.0)])
     between = sampling_errors(case, trace) if sampled else {}

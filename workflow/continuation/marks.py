@@ -21,11 +21,10 @@ def peak_of(trace: Trace) -> Peak:
     """The largest tension by falling displacement; at the limit point, where a contact is lost at once, what it is."""
     found = largest_tension(trace.displacement.tolist(), trace.force.tolist())
     last = len(trace) - 1
-    if found.index < last or not abs(trace.displacement[last] - trace.limit) <= LAST * float(
-        np.ptp(trace.displacement)
-    ):
+    left = abs(float(trace.displacement[last]) - trace.limit) / max(float(np.ptp(trace.displacement)), 1e-300)
+    if found.index < last or not left <= LAST:
         return found
-    return Peak(last, found.tension, LAST * found.tension, found.tension, found.position, 0.0)
+    return Peak(last, found.tension, left * found.tension, found.tension, found.position, 0.0)
 
 
 def radius_rate(trace: Trace, state: int, least: float = 0.0) -> float:
