@@ -94,6 +94,11 @@ class Kind(Table):
         return False
 
     @property
+    def drawing_stiffness(self) -> float:
+        """Stiffness [FU/LU] of a spring that draws the plate off along z; 0 without one."""
+        return 0.0
+
+    @property
     def compression(self) -> float | None:
         """Largest force [FU] that presses the bodies together; None where displacements are prescribed."""
         return None
@@ -166,6 +171,11 @@ class PullOff(Kind):
     def draws_off(self) -> bool:
         """Whether a velocity is given."""
         return self.velocity is not None
+
+    @property
+    def drawing_stiffness(self) -> float:
+        """Of the spring, where it is given."""
+        return self.stiffness or 0.0
 
 
 class Leg(Table):

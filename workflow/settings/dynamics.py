@@ -67,63 +67,87 @@ def dynamics_of(
     still_step: float,
 ) -> Dynamics:
     """Time step, damping, plate mass and settling time from the stiffest and the softest motion of the scene."""
-    bodies = scene.bodies
-    product = still_step if scene.method == "dynamic" else RELAXING_STEP
-    if scene.experiment.motion_is_result:
-        product = MOVING_STEP * math.sqrt(min(1.0, tolerance / MOVING_TOLERANCE))
-    if scene.noise is not None:
-        product = min(product, math.sqrt(tolerance / NOISE_BIAS))
+    bodies, plate, moves = scene.bodies, scene.plate, scene.experiment.motion_is_result
     touching = 2.0 * estimate.half_width(max(largest, 0.0), estimate.rest) / bodies.spacing
     contact = max(touching, 1.0) * estimate.stiffness
     plate_mass = 0.0
-    if scene.plate is not None:
-        plate_mass = particles * bodies.mass if scene.plate.mass == "auto" else scene.plate.mass
+    if plate is not None:
+        plate_mass = particles * bodies.mass if plate.mass == "auto" else plate.mass
     moving = plate_mass + particles * bodies.mass
     critical = 2.0 * math.sqrt(SOFTENING * contact * moving)
-    damping = damped_stiffness = 0.0
-    if scene.damping is not None:
-        automatic = critical / particles if scene.plate is not None else math.sqrt(scene.bulk_stiffness * bodies.mass)
-        given = scene.damping.coefficient
-        damping = automatic if given == "auto" else given
-        # The drag on a motion is part of what is looked at, so it is one and the same throughout.
-        damped_stiffness = SOFTENING * contact if given == "auto" and not scene.experiment.motion_is_result else 0.0
-    plate_damping = 0.0
-    if scene.plate is not None:
-        given = scene.plate.damping
-        # Drag without its noise would cool the plate; with noise the particles' own heat bath is its.
-        automatic = max(
-            0.0,
-            critical - particles * damping,
-            _swinging_apart(plate_mass, particles * bodies.mass, damping / bodies.mass),
-        )
-        plate_damping = given if given != "auto" else 0.0 if scene.noise is not None else automatic
-    slowest = contact / moving if scene.plate is not None else scene.bulk_stiffness / bodies.mass
-    step = product / math.sqrt(stiffest / bodies.mass)
-    if damping > 0.0:
-        step = min(step, DRAG_STEP * bodies.mass / damping)
-    if plate_mass > 0.0:
-        held = particles * scene.bulk_stiffness
-        if scene.cantilever is not None:
-            held = particles * max(scene.bulk_stiffness, scene.tangential_stiffness) + scene.cantilever.stiffness
-        if scene.experiment.kind == "pull_off":
-            held += scene.experiment.stiffness or 0.0
-        step = min(step, product / math.sqrt(held / plate_mass))
-        step = min(step, DRAG_STEP * plate_mass / max(plate_damping, 1e-300))
+    damping, plate_damping = _drags(scene, particles, critical, plate_mass)
+    # The drag on a motion is part of what is looked at, so it is one and the same throughout.
+    is_automatic = scene.damping is not None and scene.damping.coefficient == "auto"
+    limits = time_step_limits(scene, _product(scene, tolerance, still_step), stiffest, damping)
+    limits |= _plate_limits(scene, _product(scene, tolerance, still_step), particles, plate_mass, plate_damping)
+    step = min(limits.values())
+    slowest = contact / moving if plate is not None else scene.bulk_stiffness / bodies.mass
     settle_time = 2.0 * math.pi / math.sqrt(slowest)
     calm, calm_step = damping, step
-    if scene.damping is not None and scene.damping.coefficient == "auto":
+    if is_automatic:
         calm = max(damping, 2.0 * math.sqrt(stiffest * bodies.mass))
         calm_step = min(step, DRAG_STEP * bodies.mass / calm)
-    if scene.experiment.motion_is_result:
+    if moves:
         # A plate that swings as it is loaded goes through the other body, which would carry it at rest.
-        # The law is softer than stiff springs: the plate stands on both in series.
+        # The law is softer than stiff springs: the plate is on both in series.
         held = min(contact, max(0.0, estimate.stiffness_under(scene.experiment.compression or 0.0)))
         if held > 0.0:
             settle_time = max(settle_time, SWING * 2.0 * math.pi * math.sqrt(moving / held))
         enough = 2.0 * math.sqrt(SOFTENING * held * moving) / particles
         enough = min(enough, CALM_STEP * bodies.mass / step)
         calm, calm_step = damping if enough <= damping <= CREEPING * enough else enough, step
-    return Dynamics(step, damping, damped_stiffness, plate_mass, plate_damping, settle_time, calm, calm_step)
+    damped = SOFTENING * contact if is_automatic and not moves else 0.0
+    return Dynamics(step, damping, damped, plate_mass, plate_damping, settle_time, calm, calm_step)
+
+
+def time_step_limits(scene: Scene, product: float, stiffest: float, damping: float) -> dict[str, float]:
+    """Longest time steps [TU] that the particles allow, by what limits them; the smallest of all limits is taken."""
+    mass = scene.bodies.mass
+    limits = {"stiffest spring of a particle": product / math.sqrt(stiffest / mass)}
+    if damping > 0.0:
+        limits["drag of a particle"] = DRAG_STEP * mass / damping
+    return limits
+
+
+def _plate_limits(
+    scene: Scene, product: float, particles: int, plate_mass: float, plate_damping: float
+) -> dict[str, float]:
+    """The same of a plate: its springs in parallel, and its drag."""
+    if plate_mass == 0.0:
+        return {}
+    held = particles * scene.bulk_stiffness
+    if scene.cantilever is not None:
+        held = particles * max(scene.bulk_stiffness, scene.tangential_stiffness) + scene.cantilever.stiffness
+    held += scene.experiment.drawing_stiffness
+    limits = {"springs of the plate": product / math.sqrt(held / plate_mass)}
+    if plate_damping > 0.0:
+        limits["drag of the plate"] = DRAG_STEP * plate_mass / plate_damping
+    return limits
+
+
+def _product(scene: Scene, tolerance: float, still_step: float) -> float:
+    """Largest ω Δt: of a motion that comes to rest, of one that is the result, with noise, or without time."""
+    if scene.experiment.motion_is_result:
+        product = MOVING_STEP * math.sqrt(min(1.0, tolerance / MOVING_TOLERANCE))
+    else:
+        product = still_step if scene.method == "dynamic" else RELAXING_STEP
+    return product if scene.noise is None else min(product, math.sqrt(tolerance / NOISE_BIAS))
+
+
+def _drags(scene: Scene, particles: int, critical: float, plate_mass: float) -> tuple[float, float]:
+    """Drag [FU·TU/LU] of a particle and of the plate, given or together critical for the contact."""
+    mass, damping = scene.bodies.mass, 0.0
+    if scene.damping is not None:
+        automatic = critical / particles if scene.plate is not None else math.sqrt(scene.bulk_stiffness * mass)
+        damping = automatic if scene.damping.coefficient == "auto" else scene.damping.coefficient
+    if scene.plate is None:
+        return damping, 0.0
+    if scene.plate.damping != "auto":
+        return damping, scene.plate.damping
+    if scene.noise is not None:  # drag without its noise would cool the plate; the particles' heat bath is its
+        return damping, 0.0
+    swinging = _swinging_apart(plate_mass, particles * mass, damping / mass)
+    return damping, max(0.0, critical - particles * damping, swinging)
 
 
 def _swinging_apart(plate: float, particles: float, rate: float) -> float:
