@@ -477,7 +477,8 @@ RULES = (
          "must be {count}, the radius times 2 over the spacing", 'write {count} or "auto"'),
     # The material: one elasticity, and one way to the units
     Rule("bodies.bulk_stiffness", lambda d: _stiffness_from_nothing(d),
-         "missing, and nothing to take it from", f"give the stiffness (FU/LU), or {ELASTICITY}"),
+         "must be given (FU/LU): the scene has no elasticity to take it from",
+         f"give a number, or {ELASTICITY}"),
     Rule("material.contact_modulus",
          lambda d: _stands_for_body(d) and d.has("material.contact_modulus")
          and d.has("material.upper", "material.lower"),
