@@ -61,10 +61,10 @@ class _Fault:
         return f"must be {statement(self.allowed).removeprefix('a table with kind = ')}"
 
 
-def mend_words(data: dict[str, Any]) -> list[Problem]:
-    """Report and mend, in `data` (a plain dict), every word that is misspelt or unknown."""
+def mend_words(data: dict[str, Any], model: type[Tables]) -> list[Problem]:
+    """Report and mend, in `data` (a plain dict for this `model`), every word that is misspelt or unknown."""
     problems: list[Problem] = []
-    while mended := [problem for fault in _validated(data, Tables)[1] if (problem := _mend(data, fault))]:
+    while mended := [problem for fault in _validated(data, model)[1] if (problem := _mend(data, fault))]:
         problems += mended
     return problems
 

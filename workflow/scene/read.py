@@ -10,6 +10,8 @@ from os import PathLike, fspath
 from pathlib import Path as FilePath
 from typing import Any
 
+from pydantic import ConfigDict
+
 from contact1d.workflow.scene.check import check_tables, mend_words
 from contact1d.workflow.scene.problems import Problem, SceneError, nearest, path_of, shown
 from contact1d.workflow.scene.profile_file import ProfileFileError, ScaleError, read_profile
@@ -50,6 +52,8 @@ HINTS = {
 
 class Scene(Tables):
     """A whole scene, whose tables fit together: `read_scene` and `scene_from_dict` make it."""
+
+    model_config = ConfigDict(defer_build=False)
 
     def with_(self, changes: Mapping[str, Any] | None = None, *, without: Iterable[str] = (), **keywords: Any) -> Scene:
         """Return this scene with values changed, checked as a whole.
@@ -138,7 +142,7 @@ def scene_from_dict(
 
 def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -> Scene:
     """The scene of `plain`, which is mended on the way; `problems` are those found so far."""
-    problems += mend_words(plain)
+    problems += mend_words(plain, Scene)
     columns, unread = _with_points(plain, folder)
     _with_legs(plain)
     converted = Conversion(plain, columns)

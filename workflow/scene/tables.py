@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Annotated, Literal, Self, cast
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from contact1d.workflow.scene.effects import (
@@ -138,6 +138,8 @@ def _one_line(title: str) -> str:
 
 class Tables(Table):
     """The tables of a scene, each right by itself; `read`, whose `Scene` this is, checks that they fit together."""
+
+    model_config = ConfigDict(defer_build=True)  # built once, by that
 
     title: Annotated[str, AfterValidator(_one_line)] = Field(description="what the scene shows, one line")
     bodies: Bodies = Field(description="the two bodies")
