@@ -69,6 +69,16 @@ _Listed = Annotated[tuple[Displacement, ...], Field(strict=False), MinLen(1), Ta
 Displacements = Annotated[_Listed | Annotated[Span, Tag("table")], Discriminator(_list_or_table)]
 
 
+def _values(listed: tuple[float, ...] | Span) -> list[float]:
+    """The displacements [LU] of a list or a span, in order."""
+    return listed.values() if isinstance(listed, Span) else list(listed)
+
+
+def _for_each(given: tuple[float, ...] | float | None, count: int) -> list[float]:
+    """What is given for each of `count` points, by a list or by one number for all; none where nothing is."""
+    return [] if given is None else list(given) if isinstance(given, tuple) else [given] * count
+
+
 def _list_or_number(value: object) -> str:
     return "list" if isinstance(value, list | tuple) else "number"
 
@@ -169,8 +179,7 @@ class Path(Kind):
 
     def places(self) -> list[float]:
         """Displacements [LU] in the order in which they are visited, the turning point of a span once."""
-        listed = self.displacements
-        return listed.values() if isinstance(listed, Span) else list(listed)
+        return _values(self.displacements)
 
 
 class PullOff(Kind):
@@ -308,23 +317,19 @@ class Tangential(Kind):
     @property
     def compression(self) -> float | None:
         """The largest normal force; None where displacements are given."""
-        forces = self.normal_force
-        return None if forces is None else max(forces) if isinstance(forces, tuple) else forces
+        return max(_for_each(self.normal_force, 1), default=None)
 
     def places(self) -> list[float]:
         """Normal displacements [LU] of the rows, none where forces are given."""
-        given = self.normal_displacement
-        return [] if given is None else list(given) if isinstance(given, tuple) else [given] * len(self.along())
+        return _for_each(self.normal_displacement, len(self.along()))
 
     def along(self) -> list[float]:
         """Displacements along x [LU] of the rows."""
-        listed = self.displacements
-        return listed.values() if isinstance(listed, Span) else list(listed)
+        return _values(self.displacements)
 
     def normal_forces(self) -> list[float]:
         """Normal forces [FU] of the rows, none where displacements are given."""
-        forces = self.normal_force
-        return [] if forces is None else list(forces) if isinstance(forces, tuple) else [forces] * len(self.along())
+        return _for_each(self.normal_force, len(self.along()))
 
     @property
     def way(self) -> float:

@@ -59,11 +59,15 @@ class Draft:
         value = self.at(path)
         return default if value is None else value
 
+    def word(self, path: str, default: str | None = None) -> str | None:
+        """The word at `path`, `default` where it is absent, None if it is not known."""
+        found = self.get(path, default)
+        return found if isinstance(found, str) else None
+
     @property
     def kind(self) -> str | None:
         """Kind of the experiment, None if that is not known."""
-        kind = self.get("experiment.kind")
-        return kind if isinstance(kind, str) else None
+        return self.word("experiment.kind")
 
     @property
     def experiment(self) -> type[Kind]:
@@ -73,8 +77,7 @@ class Draft:
     @property
     def lower(self) -> str | None:
         """What the lower body is, None if that is not known."""
-        lower = self.get("bodies.lower", Bodies.model_fields["lower"].default)
-        return lower if isinstance(lower, str) and self.has("bodies") else None
+        return self.word("bodies.lower", Bodies.model_fields["lower"].default) if self.has("bodies") else None
 
     @property
     def on_plane(self) -> bool:
@@ -89,8 +92,7 @@ class Draft:
     @property
     def profile(self) -> str | None:
         """Kind of the profile, None if that is not known."""
-        kind = self.get("bodies.profile.kind")
-        return kind if isinstance(kind, str) else None
+        return self.word("bodies.profile.kind")
 
     @property
     def effects(self) -> tuple[str, ...]:
