@@ -90,7 +90,7 @@ NormalDisplacements = Annotated[Annotated[Displacement, Tag("number")] | _Listed
 
 UNPULLED = "only a slide is pulled through a spring"
 UNMOVED = "nothing moves along x in it, so that friction does nothing"
-TIMELESS = "its rows follow each other without time, each at rest"
+TIMELESS = "its load steps follow each other without time, each in equilibrium"
 """Why an experiment excludes an effect."""
 
 
@@ -284,7 +284,7 @@ class Tangential(Kind):
     one_of = (
         (
             ("normal_force", "normal_displacement"),
-            "give a normal_force (FU) or a normal_displacement (LU), one or one for each row; not both",
+            "give a normal_force (FU) or a normal_displacement (LU), one for all points or one for each; not both",
         ),
     )
     only_method = "quasistatic"
