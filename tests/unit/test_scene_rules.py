@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+import tomllib
 from typing import Any
 
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from contact1d.workflow.scene import Problem, Scene, SceneError, scene_from_dict
+from contact1d.workflow.scene import Problem, Scene, SceneError, scene_from_dict, scene_to_toml
 from tests.materials import E_STAR, JKR, RUBBER, STEEL, UNITS
 from tests.scenes import chains
 
@@ -59,12 +60,13 @@ def changed(words: str, more: dict[str, Any]) -> dict[str, Any]:
 
 
 def problems(data: dict[str, Any]) -> tuple[Problem, ...]:
-    """The problems of a scene, none if it is accepted; each says what is allowed or what to do."""
+    """The problems of a scene, each with what to do; none if it is accepted, written and read again."""
     try:
-        scene_from_dict(data)
+        scene = scene_from_dict(data)
     except SceneError as error:
         assert all(problem.hint or problem.message.startswith("must be") for problem in error.problems)
         return error.problems
+    assert scene_from_dict(tomllib.loads(scene_to_toml(scene))) == scene == scene.with_()
     return ()
 
 
