@@ -14,6 +14,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 from contact1d.workflow.scene.effects import Plate
@@ -211,7 +212,7 @@ def _beside_particles(draft: Draft) -> Iterator[Problem]:
 
 def _inert_plane(d: Draft) -> bool:
     """A rigid plane neither drags a slide nor holds a pull-off without adhesion."""
-    return d.on_plane and (d.kind == "slide" or (d.kind == "pull_off" and not d.has("adhesion")))
+    return d.on_plane and (d.experiment.motion_is_result or (d.kind == "pull_off" and not d.has("adhesion")))
 
 
 def _law(d: Draft, broken: str) -> Mapping[str, float] | None:
@@ -234,6 +235,11 @@ def _pulled_apart(d: Draft, key: str) -> bool:
     force = d.get(f"experiment.{key}") if d.experiment.load_key == key else None
     attracts = d.has("interaction.attraction") or (d.has("adhesion") and "adhesion" not in d.experiment.excludes)
     return force is not None and force <= 0 and not attracts
+
+
+def _no_work(d: Draft, key: str) -> bool:
+    """Whether an adhesion without energy is to hold a pull-off."""
+    return d.kind == "pull_off" and d.get(f"adhesion.{key}") == 0.0
 
 
 def _punch(d: Draft, broken: str) -> Mapping[str, float] | None:
@@ -319,6 +325,10 @@ def _units_by_run(d: Draft) -> bool:
     return _stands_for_body(d) and d.has("material.surface_energy")
 
 
+def _unit_beside_run(d: Draft, key: str) -> bool:
+    return _units_by_run(d) and d.has(f"material.{key}")
+
+
 def _units_given(d: Draft) -> bool:
     return _stands_for_body(d) and not d.has("material.surface_energy")
 
@@ -392,7 +402,7 @@ RULES = (
     Rule("horizontal", lambda d: d.on_plane and d.has("horizontal") and not _inert_plane(d),
          "useless on a rigid plane, which never pulls a particle tangentially",
          'remove it, or use bodies.lower = "particles"'),
-    Rule("bodies.lower", lambda d: _inert_plane(d) and d.kind == "slide",
+    Rule("bodies.lower", lambda d: _inert_plane(d) and d.experiment.motion_is_result,
          "a rigid plane cannot drag the upper body", 'use lower = "particles" and an [interaction]'),
     Rule("bodies.lower", lambda d: _inert_plane(d) and d.kind == "pull_off",
          "a rigid plane cannot hold the upper body",
@@ -407,28 +417,28 @@ RULES = (
          "not between two chains, which attract each other by the interaction",
          f"use interaction.attraction, or {PLANE}"),
     # The interaction
-    Rule("interaction.attraction.range", lambda d: _law(d, "range"),
+    Rule("interaction.attraction.range", partial(_law, broken="range"),
          "must be greater than the range of the repulsion, {a:g} (LU), else the bodies never attract each other",
          "raise it to {longer:g}, or lower interaction.repulsion.range to {shorter:g}",
          (("interaction.attraction.range", "longer"), ("interaction.repulsion.range", "shorter"))),
-    Rule("interaction.attraction.amplitude", lambda d: _law(d, "amplitude"),
+    Rule("interaction.attraction.amplitude", partial(_law, broken="amplitude"),
          "must be less than {most:.6g} (FU·LU), so that A/a > B/b and particles repel when they touch",
          "lower it to {weaker:g}, or raise interaction.repulsion.amplitude to {stronger:g}",
          (("interaction.attraction.amplitude", "weaker"), ("interaction.repulsion.amplitude", "stronger"))),
-    Rule("interaction.cutoff", lambda d: _law(d, "cutoff"),
+    Rule("interaction.cutoff", partial(_law, broken="cutoff"),
          "must be greater than the force-free distance, {r_0:.6g} (LU)", 'raise it, or use "auto"'),
     # What holds the bodies together
     Rule("interaction.attraction",
          lambda d: d.kind == "pull_off" and d.lower == "particles" and d.has("interaction")
          and not d.has("interaction.attraction", "adhesion"),
          "missing, needed by a pull_off", "add interaction.attraction with amplitude and range"),
-    Rule("experiment.force", lambda d: _pulled_apart(d, "force"),
+    Rule("experiment.force", partial(_pulled_apart, key="force"),
          "must be greater than 0 (FU) without attraction: compression is positive",
          "raise it; a tensile force needs interaction.attraction, or on a rigid plane [adhesion]"),
-    Rule("experiment.normal_force", lambda d: _pulled_apart(d, "normal_force"),
+    Rule("experiment.normal_force", partial(_pulled_apart, key="normal_force"),
          "must be greater than 0 (FU) without attraction: compression is positive",
          "raise it; a force of 0 or a tensile one needs interaction.attraction"),
-    *(Rule(f"adhesion.{key}", lambda d, path=f"adhesion.{key}": d.kind == "pull_off" and d.get(path) == 0.0,  # type: ignore[misc]
+    *(Rule(f"adhesion.{key}", partial(_no_work, key=key),
            "must be greater than 0 (FU/LU) in a pull_off, else nothing holds the bodies together",
            'raise it, or use kind = "load" or "path"') for key in ("work_of_adhesion", "surface_energy")),
     # Adhesion on a plane
@@ -440,16 +450,16 @@ RULES = (
          "not with [adhesion] in a path: under displacement control nothing moves",
          'remove it: method = "quasistatic" is the same without time'),
     # A plate that moves along x
-    Rule("plate.free", lambda d: d.kind == "slide" and _free(d) is not None and "x" not in _free(d),
+    Rule("plate.free", lambda d: d.experiment.motion_is_result and _free(d) is not None and "x" not in _free(d),
          'must contain "x" in a slide', 'write free = ["x", "z"]'),
-    Rule("horizontal", lambda d: d.kind != "slide" and "x" in (_free(d) or ()) and not d.has("horizontal"),
+    Rule("horizontal", lambda d: not d.experiment.motion_is_result and "x" in (_free(d) or ()) and not d.has("horizontal"),
          'missing, needed by plate.free with "x"',
          f'write plate.free = ["z"], or add {EFFECT_TABLES["horizontal"].how}'),
     # The loads of a tangential
-    *(Rule(f"experiment.{key}", lambda d, key=key: _other_number_of_loads(d, key),  # type: ignore[misc]
+    *(Rule(f"experiment.{key}", partial(_other_number_of_loads, key=key),
            "must be one number or as many as there are displacements, {count}; these are {given}",
            "give one for each displacement, or one for all") for key in ("normal_force", "normal_displacement")),
-    *(Rule(f"experiment.{key}", lambda d, key=key: _no_normal_load(d, key),  # type: ignore[misc]
+    *(Rule(f"experiment.{key}", partial(_no_normal_load, key=key),
            "must be greater than 0 somewhere, else the bodies never touch",
            "raise it") for key in ("normal_force", "normal_displacement")),
     # A spacing that is left to the program
@@ -471,11 +481,11 @@ RULES = (
          "must be a length (LU) with {what}: masses, drags and springs between particles belong to one spacing",
          GIVE_SPACING + ", or remove {what}"),
     # A flat punch, whose edge is half a spacing beyond its last particle
-    Rule("bodies.profile.radius", lambda d: _punch(d, "size"),
+    Rule("bodies.profile.radius", partial(_punch, broken="size"),
          "is more spacings than a number holds", "make it smaller, or bodies.spacing wider"),
-    Rule("bodies.profile.radius", lambda d: _punch(d, "edge"),
+    Rule("bodies.profile.radius", partial(_punch, broken="edge"),
          "must be at least 1.5 spacings and a whole number of half spacings", "the nearest is {nearest:g} (LU)"),
-    Rule("bodies.particles", lambda d: _punch(d, "particles"),
+    Rule("bodies.particles", partial(_punch, broken="particles"),
          "must be {count}, the radius times 2 over the spacing", 'write {count} or "auto"'),
     # The material: one elasticity, and one way to the units
     Rule("bodies.bulk_stiffness", lambda d: _stiffness_from_nothing(d),
@@ -485,7 +495,7 @@ RULES = (
          lambda d: _stands_for_body(d) and d.has("material.contact_modulus")
          and d.has("material.upper", "material.lower"),
          "not together with upper or lower", "give E*, or E and ν of both bodies"),
-    *(Rule(f"material.{body}", lambda d, body=body: _one_elastic(d, body),  # type: ignore[misc]
+    *(Rule(f"material.{body}", partial(_one_elastic, absent=body),
            "missing", "write upper and lower, each with youngs_modulus and poisson_ratio, or contact_modulus")
       for body in ("upper", "lower")),
     Rule("material.length_unit", lambda d: _units_given(d) and not d.has("material.length_unit"),
@@ -498,7 +508,7 @@ RULES = (
     Rule("material.force_unit",
          lambda d: _units_given(d) and _stiffness_is_auto(d) and not d.has("material.force_unit"),
          'missing, needed by bulk_stiffness = "auto"', "give one FU in newtons"),
-    *(Rule(f"material.{unit}", lambda d, path=f"material.{unit}": _units_by_run(d) and d.has(path),  # type: ignore[misc]
+    *(Rule(f"material.{unit}", partial(_unit_beside_run, key=unit),
            "not together with surface_energy, with which both units follow from F_A and a₀ of the run",
            "remove one of the two") for unit in ("length_unit", "force_unit")),
     Rule("bodies.bulk_stiffness", lambda d: _units_by_run(d) and _stiffness_is_auto(d),
