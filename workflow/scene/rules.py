@@ -452,7 +452,8 @@ RULES = (
     # A plate that moves along x
     Rule("plate.free", lambda d: d.experiment.motion_is_result and _free(d) is not None and "x" not in _free(d),
          'must contain "x" in a slide', 'write free = ["x", "z"]'),
-    Rule("horizontal", lambda d: not d.experiment.motion_is_result and "x" in (_free(d) or ()) and not d.has("horizontal"),
+    Rule("horizontal",
+         lambda d: not d.experiment.motion_is_result and "x" in (_free(d) or ()) and not d.has("horizontal"),
          'missing, needed by plate.free with "x"',
          f'write plate.free = ["z"], or add {EFFECT_TABLES["horizontal"].how}'),
     # The loads of a tangential
