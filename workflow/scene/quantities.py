@@ -124,7 +124,7 @@ AutoParticleCount = Annotated[Annotated[ParticleCount, Tag("number")] | _Auto, _
 AllOrSome = Annotated[Annotated[StateCount, Tag("number")] | Annotated[Literal["all"], Tag("word")], _Either]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Choice:
     """One of the types that a value may have: `type` with the marks of its `Annotated`; of a list, its `items`."""
 
@@ -145,8 +145,8 @@ class Choice:
     @property
     def kind(self) -> str | None:
         """The word for `kind` of a table that has one."""
-        known = keys_of(self.table) if self.table else {}
-        return str(known["kind"].allowed.words[0]) if "kind" in known else None
+        field = self.table.model_fields.get("kind") if self.table else None
+        return None if field is None else str(get_args(field.annotation)[0])
 
     @property
     def tag(self) -> str | None:
@@ -159,7 +159,7 @@ class Choice:
         return next((mark for mark in self.marks if isinstance(mark, Unit)), None)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Allowed:
     """What may stand at a key: one or more types."""
 
@@ -198,7 +198,7 @@ class Allowed:
         return found[0].table if found else None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Key:
     """A key of a table: its field in Python, what may stand there, what it is, and its default (None: none)."""
 
