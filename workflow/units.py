@@ -1,6 +1,7 @@
 """The one unit system: length LU, force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT in FU·LU.
 
-`Scales` is what LU, FU and MU stand for in SI, where a scene says so.
+`SI` has every unit of the model with its powers, which all conversions use; a test compares them with pint's, whose
+registry reads the units in a scene's texts. `Scales` is what LU, FU and MU stand for in SI, where a scene says so.
 """
 
 from __future__ import annotations
@@ -8,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 LENGTH = "LU"
 FORCE = "FU"
@@ -19,19 +20,52 @@ MASS = "MU"
 TIME = "TU"
 NUMBER = "1"
 
+
+class ModelUnit(NamedTuple):
+    """A unit of the model, LU^lu FU^fu MU^mu TU^tu, and the unit of SI for the same dimension."""
+
+    lu: int
+    fu: int
+    si: str
+    mu: int = 0
+    tu: int = 0
+
+    @property
+    def bases(self) -> frozenset[str]:
+        """Which of LU, FU and MU must be known for its size in SI."""
+        powers = {"LU": self.lu or self.tu, "FU": self.fu or self.tu, "MU": self.mu or self.tu}
+        return frozenset(base for base, power in powers.items() if power)
+
+    @property
+    def lengths(self) -> float:
+        """Power of LU, that in TU included."""
+        return self.lu + 0.5 * self.tu
+
+    @property
+    def forces(self) -> float:
+        """Power of FU, that in TU included."""
+        return self.fu - 0.5 * self.tu
+
+    @property
+    def masses(self) -> float:
+        """Power of MU, that in TU included."""
+        return self.mu + 0.5 * self.tu
+
+
 SI = {
-    LENGTH: (1, 0, "m"),
-    FORCE: (0, 1, "N"),
-    MEAN_PRESSURE: (-2, 1, "Pa"),
-    LINE_PRESSURE: (-1, 1, "N/m"),
-    ENERGY: (1, 1, "J"),
-    MASS: (0, 0, "kg"),
-    TIME: (0.5, -0.5, "s"),
-    NUMBER: (0, 0, "1"),
+    LENGTH: ModelUnit(1, 0, "m"),
+    FORCE: ModelUnit(0, 1, "N"),
+    MEAN_PRESSURE: ModelUnit(-2, 1, "Pa"),
+    LINE_PRESSURE: ModelUnit(-1, 1, "N/m"),
+    ENERGY: ModelUnit(1, 1, "J"),
+    MASS: ModelUnit(0, 0, "kg", mu=1),
+    TIME: ModelUnit(0, 0, "s", tu=1),
+    "LU/TU": ModelUnit(1, 0, "m/s", tu=-1),
+    "FU/TU": ModelUnit(0, 1, "N/s", tu=-1),
+    "FU·TU/LU": ModelUnit(-1, 1, "N·s/m", tu=1),
+    NUMBER: ModelUnit(0, 0, "1"),
 }
-"""For each model unit: powers of LU and FU in it, and its name in SI."""
-MASS_POWERS = {MASS: 1.0, TIME: 0.5}
-"""Powers of MU in the units that have it in them."""
+"""The units of the model by their names."""
 EXACT = 1e-12
 """By which the logarithm of a power of ten may fall short of it."""
 PREFIXES = {-6: "a", -5: "f", -4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G", 4: "T"}
@@ -50,9 +84,8 @@ def scale_of(value: float, unit: str) -> tuple[float, str]:
 
 def prefixed(value: float, unit: str) -> str:
     """A value [`unit` of SI] with four digits and a prefix: `2.356 µN`."""
-    power = math.floor(math.log10(abs(value)) / 3) if value and math.isfinite(value) else 0
-    power = power if power in PREFIXES else 0
-    return f"{value / 1000.0**power:.4g} {PREFIXES[power]}{unit}"
+    factor, name = scale_of(value, unit)
+    return f"{value * factor:.4g} {name}"
 
 
 @dataclass(frozen=True)
@@ -112,26 +145,24 @@ class Scales:
 
     def know(self, unit: str) -> bool:
         """Whether one `unit` is known in SI."""
-        return unit in SI and (self.mass is not None or unit not in MASS_POWERS)
+        return unit in SI and (self.mass is not None or "MU" not in SI[unit].bases)
 
     def factor(self, unit: str) -> float:
         """SI value of one `unit`. Raises KeyError for a unit that is not known."""
         if not self.know(unit):
             raise KeyError(unit)
-        lengths, forces, _ = SI[unit]
-        return float(self.length**lengths * self.force**forces * (self.mass or 1.0) ** MASS_POWERS.get(unit, 0.0))
+        own = SI[unit]
+        return float(self.length**own.lengths * self.force**own.forces * (self.mass or 1.0) ** own.masses)
 
     def written(self, value: float, unit: str) -> tuple[float, str]:
         """The factor from a model `unit` to the SI unit with which a number of this size is written, and that unit."""
-        factor, name = scale_of(value * self.factor(unit), SI[unit][2])
+        factor, name = scale_of(value * self.factor(unit), SI[unit].si)
         return factor * self.factor(unit), name
 
     def in_si(self, value: float, uncertainty: float, unit: str) -> dict[str, float | str]:
         """The quantity in SI: value, uncertainty, unit. Relative uncertainties of the scales are added to its own."""
-        lengths, forces, name = SI[unit]
-        factor = self.factor(unit)
-        scales = (
-            abs(lengths) * self.length_uncertainty / self.length + abs(forces) * self.force_uncertainty / self.force
-        )
+        factor, own = self.factor(unit), SI[unit]
+        scales = abs(own.lengths) * self.length_uncertainty / self.length
+        scales += abs(own.forces) * self.force_uncertainty / self.force
         spread = uncertainty * factor + abs(value * factor) * scales
-        return {"value": value * factor, "uncertainty": spread, "unit": name}
+        return {"value": value * factor, "uncertainty": spread, "unit": own.si}

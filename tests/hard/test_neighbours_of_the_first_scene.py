@@ -18,7 +18,7 @@ import pytest
 
 from contact1d import Contact1dError, read_scene, run
 from contact1d.workflow.runs import advised
-from contact1d.workflow.scene.overrides import set_values
+from contact1d.workflow.scene.read import set_values
 
 SCENE = Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "pull_off.toml"
 KEYS = (

@@ -1,4 +1,4 @@
-"""[adhesion]: what it needs and excludes, each with what to do; the lengths that each particle knows."""
+"""[adhesion]: the contact that is predicted, and what its cells leave open."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
-from contact1d.workflow.scene import SceneError, scene_from_dict
+from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.settings.adhesion import AdhesiveEstimate
 from contact1d.workflow.settings.cells import left_by_cells, pulling_rows
 from contact1d.workflow.settings.settings import SettingsError, settings_for
@@ -31,35 +31,6 @@ MARGIN = 1.25
 """Claim over the difference of the sums."""
 GRID = 1e-6
 """Relative, of what is looked up between 4000 places."""
-
-
-@pytest.mark.parametrize(
-    ("tables", "told"),
-    [
-        ({"adhesion": {}}, "adhesion.work_of_adhesion: missing"),
-        ({"adhesion": {"work_of_adhesion": 1.0, "surface_energy": 0.5}}, "adhesion.surface_energy: not together"),
-        ({"adhesion": {"work_of_adhesion": -1.0}}, "adhesion.work_of_adhesion = -1.0: must be at least 0"),
-        ({"bodies": BODIES | {"reduction": "geike_popov"}}, 'bodies.reduction = "geike_popov": must be "mdr"'),
-        ({"bodies": BODIES | {"lower": "particles"}}, "adhesion: not between two chains"),
-        ({"neighbours": {"stiffness": 0.1}}, r"neighbours: not with \[adhesion\]"),
-        (
-            {"damping": {"coefficient": "auto"}, "experiment": {"kind": "path", "displacements": [0.1]}},
-            r"damping: not with \[adhesion\] in a path",
-        ),
-        ({"adhesion": None}, r"a rigid plane cannot hold .* add \[adhesion\]"),
-    ],
-)
-def test_what_does_not_fit_is_told(tables: dict[str, Any], told: str) -> None:
-    scene = {name: table for name, table in (SCENE | tables).items() if table is not None}
-    with pytest.raises(SceneError, match=told):
-        scene_from_dict(scene)
-
-
-def test_a_tension_needs_something_that_holds() -> None:
-    load = {"kind": "load", "force": -1.0}
-    scene_from_dict(SCENE | {"experiment": load})
-    with pytest.raises(SceneError, match=r"experiment.force = -1.0: must be greater than 0"):
-        scene_from_dict({name: table for name, table in (SCENE | {"experiment": load}).items() if name != "adhesion"})
 
 
 @pytest.mark.parametrize("work", [5.0, 500.0])

@@ -15,9 +15,8 @@ from contact1d.workflow.cli.app import app
 from contact1d.workflow.cli.scenes import Kind
 from contact1d.workflow.cli.starter import SCENES, starter
 from contact1d.workflow.scene import Scene, read_scene
-from contact1d.workflow.scene.quantities import annotation_of, keys_of
+from contact1d.workflow.scene.quantities import keys_of
 from contact1d.workflow.scene.schema import meaning, schema_text
-from contact1d.workflow.scene.wording import kinds_of, members, table_of
 
 KINDS = [kind.value for kind in Kind]
 
@@ -32,7 +31,7 @@ def everything(kind: str) -> dict[str, Any]:
 
 
 def test_there_is_a_file_for_each_experiment() -> None:
-    assert set(KINDS) == set(SCENES) == set(kinds_of(annotation_of(Scene, "experiment")))
+    assert set(KINDS) == set(SCENES) == set(keys_of(Scene)["experiment"].allowed.kinds)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -54,15 +53,14 @@ def test_a_new_scene_runs(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_key_of_every_table_is_there_with_its_meaning(kind: str) -> None:
-    document, text = everything(kind), re.sub(r"\n#   *", " ", starter(kind))
-    assert document.keys() == keys_of(Scene).keys()
-    for name, keys in document.items():
-        for choice in members(annotation_of(Scene, name)):
-            table = table_of(choice)
-            if table is None or (kinds_of(choice) and keys["kind"] not in kinds_of(choice)):
-                continue
-            assert keys.keys() == keys_of(table).keys()
-            assert all(meaning(table, key) in text for key in keys if key != "kind")
+    document, text, keys = everything(kind), re.sub(r"\n#   *", " ", starter(kind)), keys_of(Scene)
+    assert document.keys() == keys.keys()
+    for name, given in document.items():
+        if isinstance(given, dict):
+            table = keys[name].allowed.table_for(given)
+            assert table is not None
+            assert given.keys() == keys_of(table).keys()
+            assert all(meaning(table, key) in text for key in given if key != "kind")
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,7 @@
-"""Measured profiles from files: what parts the columns, what is skipped, what is refused, and where a file is."""
+"""Measured profiles from files: what a file may look like, its units, what is refused, and where it is looked for.
+
+What a wrong file is told, with a remedy that is tried: `test_wrong_inputs`.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,6 @@ import pytest
 
 from contact1d import run
 from contact1d.workflow.scene import Measured, Scene, SceneError, read_scene, scene_from_dict, scene_to_toml
-from contact1d.workflow.scene.profile_file import Points, ProfileFileError, read_profile
 
 RADII, HEIGHTS = [0.0, 0.5, 1.0, 1.5, 2.0], [0.0, 0.25, 1.0, 2.25, 4.0]
 ROWS = [f"{r},{z}" for r, z in zip(RADII, HEIGHTS, strict=True)]
@@ -44,42 +46,17 @@ READABLE = {
 }
 """What a file may look like; each holds the same points."""
 
-UNREADABLE = {
-    "empty cell": ("0,0\n0.5,\n1,1\n", "line 2: z is empty"),
-    "empty radius": ("0,0\n,0.25\n1,1\n", "line 2: r is empty"),
-    "blank cell": ("0,0\n0.5,  ,7\n1,1\n", "line 2: z is empty"),
-    "empty cell of tabs": ("r\tz\n0\t0\n0.5\t\n", "line 3: z is empty"),
-    "nan": ("0,0\n0.5,nan\n1,1\n", "line 2: z is nan"),
-    "infinity": ("0,0\n0.5, -inf\n1,1\n", "line 2: z is -inf"),
-    "text": ("r,z\n0,0\n0.5,broken\n1,1\n", "line 3: z is no number"),
-    "text behind names": ("r,z\nµm,N\n0,0\n1,1\n", "line 1: the unit in the names is no length"),
-    "decimal comma": ("r;z\n0;0\n0,5;0,25\n", "line 3: r is no number; write it with a decimal point"),
-    "line counted with comments": ("# one\n\n0,0\n# four\nx,1\n", "line 5: r is no number"),
-    "one column": ("0\n0.5\n1\n", "line 1: has one column; r and z are needed"),
-    "one column among two": ("0,0\n0.5\n1,1\n", "line 2: has one column; r and z are needed"),
-    "nothing": ("", "has no points"),
-    "comments only": ("# r z\n\n#\n", "has no points"),
-    "names only": ("r,z\n", "has no points"),
-}
-"""Text, and what the message says."""
-
 BODIES: dict[str, Any] = {"particles": "auto", "spacing": 0.5, "bulk_stiffness": 1.0, "lower": "rigid_plane"}
 PATH: dict[str, Any] = {"kind": "path", "displacements": [0.1, 0.3]}
-SCENE = """title = "measured"
-[bodies]
-particles = "auto"
-spacing = 0.5
-bulk_stiffness = 1.0
-lower = "rigid_plane"
-profile = { kind = "table", file = "FILE" }
-[experiment]
-kind = "path"
-displacements = [0.1, 0.3]
-"""
 
 
 def tables(**profile: Any) -> dict[str, Any]:
     return {"title": "measured", "bodies": BODIES | {"profile": {"kind": "table"} | profile}, "experiment": PATH}
+
+
+def in_si(**profile: Any) -> dict[str, Any]:
+    bodies = BODIES | {"profile": {"kind": "table"} | profile, "spacing": "0.5 µm", "bulk_stiffness": "1 N/m"}
+    return {"title": "si", "bodies": bodies, "experiment": {"kind": "path", "displacements": ["0.1 µm"]}}
 
 
 def points(scene: Scene) -> tuple[tuple[float, ...] | None, tuple[float, ...] | None]:
@@ -93,182 +70,147 @@ def lines(data: dict[str, Any], folder: Path) -> list[str]:
     return str(caught.value).split("\n")
 
 
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    """A file with the points, in a folder of its own."""
+    (tmp_path / "p.csv").write_text(PLAIN, encoding="utf-8")
+    return tmp_path / "p.csv"
+
+
 @pytest.mark.parametrize("name", READABLE)
-def test_points_are_read(name: str, tmp_path: Path) -> None:
-    (tmp_path / "p.csv").write_text(READABLE[name], encoding="utf-8", newline="")
-    assert read_profile(tmp_path / "p.csv") == Points(RADII, HEIGHTS)
+def test_points_are_read(name: str, file: Path) -> None:
+    file.write_text(READABLE[name], encoding="utf-8", newline="")
+    assert points(scene_from_dict(tables(file="p.csv"), folder=file.parent)) == (tuple(RADII), tuple(HEIGHTS))
+
+
+UNREADABLE = {
+    "empty radius": ("0,0\n,0.25\n1,1\n", "line 2: r is empty"),
+    "blank cell": ("0,0\n0.5,  ,7\n1,1\n", "line 2: z is empty"),
+    "empty cell of tabs": ("r\tz\n0\t0\n0.5\t\n", "line 3: z is empty"),
+    "nan": ("0,0\n0.5,nan\n1,1\n", "line 2: z is nan"),
+    "infinity": ("0,0\n0.5, -inf\n1,1\n", "line 2: z is -inf"),
+    "text": ("r,z\n0,0\n0.5,hunter2\n1,1\n", "line 3: z is no number"),
+    "text behind names": ("r,z\nµm,N\n0,0\n1,1\n", "line 1: the unit in the names is no length"),
+    "line counted with comments": ("# one\n\n0,0\n# four\nx,1\n", "line 5: r is no number"),
+    "one column": ("0\n0.5\n1\n", "line 1: has one column; r and z are needed"),
+    "names of another table": ("a:hunter2,b,c\n0,0,0\n", "line 1: the names of its 3 columns are not known"),
+    "names only": ("r,z\n", "has no points"),
+    "comments only": ("# r z\n\n#\n", "has no points"),
+    "half a body": ("-1.5,2.25\n-0.5,0.25\n0.5,0.25\n1.5,2.25\n", "at least 4 points from the axis out, not 2"),
+    "no axis": ("-2.5,6\n-1.5,2\n-0.5,0\n0.5,0\n1.5,2\n2.5,6\n3.5,9\n-3,9\n", "begin at the radius 0, not -2.5"),
+    "no text": (b"\x89PNG\r\n\x1a\n\x00\xff", "is no text (UTF-8)"),
+}
+"""Content, and what the message says."""
 
 
 @pytest.mark.parametrize("name", UNREADABLE)
-def test_what_is_no_profile_is_refused_with_its_line(name: str, tmp_path: Path) -> None:
-    text, words = UNREADABLE[name]
-    (tmp_path / "p.csv").write_text(text, encoding="utf-8")
-    with pytest.raises(ProfileFileError) as caught:
-        read_profile(tmp_path / "p.csv")
-    assert words in str(caught.value)
-    assert "p.csv" in str(caught.value)
-    printed = lines(tables(file="p.csv"), tmp_path)
-    assert len(printed) == 1
-    assert printed[0].startswith('bodies.profile.file = "p.csv": ')
-    assert words in printed[0]
-
-
-def test_empty_cell_says_what_to_do(tmp_path: Path) -> None:
-    (tmp_path / "p.csv").write_text("0,0\n0.5,\n")
-    assert lines(tables(file="p.csv"), tmp_path)[0].endswith("leave out a line that has no value, or interpolate it")
-
-
-def test_missing_file_is_named(tmp_path: Path) -> None:
-    assert lines(tables(file="p.csv"), tmp_path) == [
-        f'bodies.profile.file = "p.csv": there is no file {tmp_path / "p.csv"}'
-    ]
-
-
-def test_folder_is_no_file(tmp_path: Path) -> None:
-    (tmp_path / "inner").mkdir()
-    assert "cannot be read: Is a directory" in lines(tables(file="inner"), tmp_path)[0]
-
-
-@pytest.mark.parametrize("content", [b"\x89PNG\r\n\x1a\n\x00\xff", bytes(range(256))])
-def test_binary_file_is_no_text(content: bytes, tmp_path: Path) -> None:
-    (tmp_path / "p.csv").write_bytes(content)
-    printed = lines(tables(file="p.csv"), tmp_path)
-    assert len(printed) == 1
-    assert "is no text (UTF-8)" in printed[0]
-
-
-def test_name_that_no_file_can_have_is_a_problem_of_the_scene(tmp_path: Path) -> None:
-    assert len(lines(tables(file="a\0b"), tmp_path)) == 1
-
-
-def test_points_that_are_no_profile_are_told_as_those_of_lists_are(tmp_path: Path) -> None:
-    (tmp_path / "p.csv").write_text("1,0\n2,1\n3,2\n4,3\n")
-    assert "must begin at the radius 0, not 1" in lines(tables(file="p.csv"), tmp_path)[0]
-
-
-def test_file_with_too_few_points_says_so(tmp_path: Path) -> None:
-    (tmp_path / "p.csv").write_text("0,0\n1,1\n")
-    assert not any("at least one item" in line for line in lines(tables(file="p.csv"), tmp_path))
-
-
-# Where a file is, and that a scene needs it once.
-
-
-def test_file_is_looked_for_beside_the_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "scenes" / "data").mkdir(parents=True)
-    (tmp_path / "elsewhere").mkdir()
-    (tmp_path / "scenes" / "data" / "p.csv").write_text(PLAIN)
-    (tmp_path / "scenes" / "scene.toml").write_text(SCENE.replace("FILE", "data/p.csv"))
-    monkeypatch.chdir(tmp_path / "elsewhere")
-    for path in (tmp_path / "scenes" / "scene.toml", Path("../scenes/scene.toml"), "../scenes/scene.toml"):
-        assert points(read_scene(path)) == (tuple(RADII), tuple(HEIGHTS))
-
-
-def test_file_may_have_a_whole_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "p.csv").write_text(PLAIN)
-    (tmp_path / "scenes").mkdir()
-    (tmp_path / "scenes" / "scene.toml").write_text(SCENE.replace("FILE", str(tmp_path / "p.csv")))
-    assert points(read_scene(tmp_path / "scenes" / "scene.toml")) == (tuple(RADII), tuple(HEIGHTS))
-    monkeypatch.chdir(tmp_path)
-    assert points(scene_from_dict(tables(file="p.csv"))) == (tuple(RADII), tuple(HEIGHTS))
-
-
-def test_file_may_be_an_override(tmp_path: Path) -> None:
-    (tmp_path / "p.csv").write_text(PLAIN)
-    (tmp_path / "scene.toml").write_text(SCENE.replace("FILE", "gone.csv"))
-    scene = read_scene(tmp_path / "scene.toml", ["bodies.profile.file=p.csv", "bodies.profile.scale=2"])
-    assert points(scene)[0] == tuple(2.0 * r for r in RADII)
-
-
-def test_dict_is_left_as_it_is(tmp_path: Path) -> None:
-    (tmp_path / "p.csv").write_text(PLAIN)
-    data = tables(file="p.csv", scale=2.0)
-    scene_from_dict(data, folder=tmp_path)
-    assert data == tables(file="p.csv", scale=2.0)
-
-
-@pytest.mark.parametrize("lists", [{"r": RADII}, {"z": HEIGHTS}, {"r": RADII, "z": HEIGHTS}])
-def test_file_and_lists_exclude_each_other(lists: dict[str, Any], tmp_path: Path) -> None:
-    (tmp_path / "p.csv").write_text(PLAIN)
-    printed = lines(tables(file="p.csv", **lists), tmp_path)
-    assert printed[0] == (
-        'bodies.profile.file = "p.csv": not together with the lists r and z; give the one or the other'
-    )
-
-
-def test_file_beside_one_list_is_one_problem(tmp_path: Path) -> None:
-    (tmp_path / "p.csv").write_text(PLAIN)
-    assert len(lines(tables(file="p.csv", r=RADII), tmp_path)) == 1
-
-
-@pytest.mark.parametrize("misspelt", [{"kind": "tabel", "file": "p.csv"}, {"kind": "table", "fiel": "p.csv"}])
-def test_misspelt_word_is_one_problem(misspelt: dict[str, Any], tmp_path: Path) -> None:
-    (tmp_path / "p.csv").write_text(PLAIN)
-    assert len(lines(tables() | {"bodies": BODIES | {"profile": misspelt}}, tmp_path)) == 1
-
-
-def test_other_mistakes_are_told_together_with_that_of_the_file(tmp_path: Path) -> None:
-    data = tables(file="p.csv")
-    data["bodies"] = data["bodies"] | {"bulk_stiffness": -1.0}
-    data["experiment"] = {"kind": "path", "displacements": []}
-    assert sorted(line.partition(" ")[0] for line in lines(data, tmp_path)) == [
-        "bodies.bulk_stiffness",
-        "bodies.profile.file",
-        "experiment.displacements",
-    ]
-
-
-def test_scene_of_a_run_folder_reads_back_without_the_file(tmp_path: Path) -> None:
-    (tmp_path / "p.csv").write_text("r,z\n0,0\n0.1,0.01\n0.3,0.09\n0.7,0.49\n1.1,1.21\n")
-    (tmp_path / "scene.toml").write_text(
-        SCENE.replace("FILE", "p.csv").replace('csv" }', 'csv", scale = 3.3333333333333335 }')
-    )
-    scene = read_scene(tmp_path / "scene.toml")
-    finished = run(scene, tmp_path / "run", figures=False)
-    (tmp_path / "p.csv").unlink()
-    again = read_scene(finished.folder / "scene.toml")
-    assert again == scene
-    assert hash(again) == hash(scene)
-    assert scene_from_dict(finished.document["scene"]) == scene
-    assert scene_from_dict(tomllib.loads(scene_to_toml(again))) == scene
-    assert "p.csv" not in (finished.folder / "scene.toml").read_text()
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("x,r,z\n9,0,0\n9,1,0.5\n9,2,2\n9,3,4.5\n", ([0.0, 1.0, 2.0, 3.0], [0.0, 0.5, 2.0, 4.5])),
-        ("z (nm); r (nm)\n0;0\n0.5;1\n2;2\n4.5;3\n", ([0.0, 1.0, 2.0, 3.0], [0.0, 0.5, 2.0, 4.5])),
-        ("radius\theight\n0\t0\n1\t0.5\n2\t2\n3\t4.5\n", ([0.0, 1.0, 2.0, 3.0], [0.0, 0.5, 2.0, 4.5])),
-    ],
-)
-def test_columns_are_found_by_their_names(text: str, expected: tuple[list[float], list[float]], tmp_path: Path) -> None:
-    (tmp_path / "p.csv").write_text(text, encoding="utf-8")
-    read = read_profile(tmp_path / "p.csv")
-    assert (read.r, read.z) == expected
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("a,b,c\n0,0,0\n", "line 1: the names of its 3 columns are not known"),
-        ("r,width\n0,0\n", "line 1: the names of its 2 columns are not known"),
-        ("r,radius,z\n0,0,0\n", "line 1: 2 columns could be meant by r"),
-        ("r;z\n0,0;0,0\n0,5;1,5\n", "write it with a decimal point"),
-    ],
-)
-def test_names_that_say_nothing_and_decimal_commas_are_refused(text: str, words: str, tmp_path: Path) -> None:
-    (tmp_path / "p.csv").write_text(text, encoding="utf-8")
-    with pytest.raises(ProfileFileError, match=words):
-        read_profile(tmp_path / "p.csv")
-
-
-@pytest.mark.parametrize(
-    "content", ["secret = hunter2\n", "r,z\n0,0\n1,hunter2\n", "a:hunter2,b,c\n", "0,0\nhunter2\n"]
-)
-def test_no_message_quotes_the_file(content: str, tmp_path: Path) -> None:
+def test_what_is_no_profile_is_one_problem_that_never_quotes_the_file(name: str, file: Path) -> None:
     """A scene may point at any file that its reader may read, and its messages go to whoever sent the scene."""
-    (tmp_path / "p.csv").write_text(content)
-    with pytest.raises(ProfileFileError, match=r"p\.csv") as caught:
-        read_profile(tmp_path / "p.csv")
-    assert "hunter2" not in str(caught.value)
+    content, words = UNREADABLE[name]
+    file.write_bytes(content if isinstance(content, bytes) else content.encode())
+    (line,) = lines(tables(file="p.csv"), file.parent)
+    assert line.startswith('bodies.profile.file = "p.csv": ')
+    assert words in line
+    assert "hunter2" not in line
+
+
+def test_what_is_no_file_is_one_problem(tmp_path: Path) -> None:
+    (tmp_path / "inner").mkdir()
+    for name, words in {"p.csv": "there is no file", "inner": "Is a directory", "a\0b": "no name"}.items():
+        (line,) = lines(tables(file=name), tmp_path)
+        assert words in line
+
+
+@pytest.mark.parametrize(
+    ("profile", "paths"),
+    [
+        ({"file": "p.csv", "r": RADII}, ["bodies.profile.file"]),
+        ({"file": "p.csv", "r": RADII, "z": HEIGHTS}, ["bodies.profile.file"]),
+        ({"fiel": "p.csv"}, ["bodies.profile.fiel"]),
+        ({"kind": "tabel", "file": "p.csv"}, ["bodies.profile.kind"]),
+        *(({"file": "p.csv", "scale": scale}, ["bodies.profile.scale"])
+          for scale in (0.0, -1.0, float("inf"), True, [1.0], 10**400, "2 N")),
+    ],
+)  # fmt: skip
+def test_a_wrong_key_beside_a_file_is_one_problem(profile: dict[str, Any], paths: list[str], file: Path) -> None:
+    assert [line.partition(" = ")[0].partition(":")[0] for line in lines(tables(**profile), file.parent)] == paths
+
+
+def test_other_mistakes_are_reported_together_with_that_of_the_file(tmp_path: Path) -> None:
+    data = tables(file="p.csv")
+    data |= {"bodies": data["bodies"] | {"bulk_stiffness": -1.0}, "experiment": PATH | {"displacements": []}}
+    assert sorted(line.partition(" ")[0] for line in lines(data, tmp_path)) == [
+        "bodies.bulk_stiffness", "bodies.profile.file", "experiment.displacements",
+    ]  # fmt: skip
+
+
+def test_a_file_is_looked_for_beside_the_scene_and_needed_once(
+    file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    text = 'title = "measured"\n[bodies]\nparticles = "auto"\nspacing = 0.5\nbulk_stiffness = 1.0\n'
+    text += 'lower = "rigid_plane"\nprofile = { kind = "table", file = "p.csv", scale = 3.3333333333333335 }\n'
+    (tmp_path / "scene.toml").write_text(text + '[experiment]\nkind = "path"\ndisplacements = [0.1, 0.3]\n')
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    scene = read_scene("../scene.toml")
+    assert scene == read_scene(tmp_path / "scene.toml")
+    assert points(read_scene("../scene.toml", ["bodies.profile.scale=2"]))[0] == tuple(2.0 * r for r in RADII)
+    assert points(scene_from_dict(tables(file=str(file)))) == (tuple(RADII), tuple(HEIGHTS))
+    finished = run(scene, tmp_path / "run", figures=False)
+    file.unlink()
+    again = read_scene(finished.folder / "scene.toml")
+    assert again == scene == scene_from_dict(finished.document["scene"])
+    assert hash(again) == hash(scene)
+    assert scene_from_dict(tomllib.loads(scene_to_toml(again))) == scene
+
+
+def test_scale_multiplies_radii_and_heights(file: Path) -> None:
+    data = tables(file="p.csv", scale=4)
+    scene = scene_from_dict(data, folder=file.parent)
+    assert scene == scene_from_dict(tables(r=[4.0 * r for r in RADII], z=[4.0 * z for z in HEIGHTS]))
+    assert data == tables(file="p.csv", scale=4)
+    radii = points(scene_from_dict(in_si(file="p.csv", scale="2 µm"), folder=file.parent))[0]
+    assert radii == pytest.approx([2e-6 * r for r in RADII], rel=1e-15, abs=0.0)
+
+
+@pytest.mark.parametrize(
+    "names",
+    ["r [µm], z [nm]", "z (nm); r (µm)", "r/µm\tz / nm", "r_um,z_nm", "Radius in µm,Height in nm", "r,z\nµm,nm"],
+)
+def test_units_in_the_names_are_those_of_the_numbers(names: str, file: Path) -> None:
+    order = -1 if names.startswith("z") else 1
+    part = ";" if ";" in names else "\t" if "\t" in names else ","
+    file.write_text("\n".join([names, *(part.join(row.split(",")[::order]) for row in ROWS)]), encoding="utf-8")
+    units = {"length_unit": 1e-6, "force_unit": 1e-6}
+    scene = scene_from_dict(tables(file="p.csv") | {"material": units}, folder=file.parent)
+    assert points(scene)[0] == tuple(RADII)
+    # 1e-3 is rounded once, and each product once more
+    assert points(scene)[1] == pytest.approx([1e-3 * z for z in HEIGHTS], rel=1e-15, abs=0.0)
+
+
+def test_a_file_and_a_scene_have_units_both_or_neither(file: Path) -> None:
+    (line,) = lines(in_si(file="p.csv"), file.parent)
+    assert line.startswith('bodies.profile.file = "p.csv": is in LU, while bodies.spacing = "0.5 µm" has a unit')
+    assert 'write scale = "1 µm"' in line
+    file.write_text("r [µm], z [µm]\n" + PLAIN, encoding="utf-8")
+    (line,) = lines(tables(file="p.csv"), file.parent)
+    assert 'while bodies.profile.file = "p.csv" has a unit' in line
+    (line,) = lines(in_si(file="p.csv", scale="1 nm"), file.parent)
+    assert line.startswith('bodies.profile.scale = "1 nm": ')
+
+
+def test_both_sides_are_averaged(file: Path) -> None:
+    sides = "-2,4.1\n-1.5,2.3\n-1,1\n-0.5,0.3\n1e-9,0\n0.5,0.2\n1,1\n1.5,2.2\n2,3.9\n"
+    file.write_text("x,z\n" + sides)
+    r, z = points(scene_from_dict(tables(file="p.csv"), folder=file.parent))
+    assert r == tuple(RADII)
+    assert z == pytest.approx(HEIGHTS, rel=1e-15, abs=0.0)
+
+
+@pytest.mark.parametrize(
+    "text", ["x,r,z\n9,0,0\n9,1,0.5\n9,2,2\n9,3,4.5\n", "radius\theight\n0\t0\n1\t0.5\n2\t2\n3\t4.5\n"]
+)
+def test_columns_are_found_by_their_names(text: str, file: Path) -> None:
+    file.write_text(text, encoding="utf-8")
+    found = points(scene_from_dict(tables(file="p.csv"), folder=file.parent))
+    assert found == ((0.0, 1.0, 2.0, 3.0), (0.0, 0.5, 2.0, 4.5))

@@ -9,9 +9,9 @@ import os
 from pathlib import Path
 
 from contact1d.workflow import scene as scenes
-from contact1d.workflow.scene.quantities import Table, annotation_of, keys_of
+from contact1d.workflow.scene.quantities import Table, keys_of
+from contact1d.workflow.scene.schema import described
 from contact1d.workflow.scene.si_text import example, in_words
-from contact1d.workflow.scene.wording import described
 
 PAGE = Path(__file__).parents[2] / "docs" / "scene.md"
 HEAD = """# Every key of a scene
@@ -100,11 +100,11 @@ def section(name: str, table: type[Table]) -> str:
     keys = keys_of(table)
     if keys:
         lines.append("| key | what | must be | absent |\n| --- | --- | --- | --- |")
-    for key, field in keys.items():
-        info = table.model_fields[field]
+    for word, key in keys.items():
+        info = table.model_fields[key.field]
         default = "required" if info.is_required() else "none" if info.default is None else f"`{written(info.default)}`"
-        what = str(info.description).replace("|", "\\|")
-        lines.append(f"| `{key}` | {what} | {described(annotation_of(table, key))} | {default} |")
+        what = key.description.replace("|", "\\|")
+        lines.append(f"| `{word}` | {what} | {described(key.allowed)} | {default} |")
     return "\n".join(lines) + "\n"
 
 

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from contact1d.workflow.scene import SceneError, scene_from_dict
-from contact1d.workflow.scene.overrides import apply_overrides
+from contact1d.workflow.scene.read import apply_overrides
 from contact1d.workflow.scene.schema import scene_schema, schema_text
 
 ROOT = Path(__file__).parents[2]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.scene.reduction import SPHERES
+from contact1d.workflow.scene.material import SPHERES
 from contact1d.workflow.units import Quantity
 
 Array = NDArray[np.float64]

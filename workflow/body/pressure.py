@@ -23,7 +23,7 @@ from contact1d.workflow.body.reading import stands_for_spheres
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.state import RadiusRule
 from contact1d.workflow.scene import Scene, Slide
-from contact1d.workflow.scene.reduction import WIDER_THAN_SPHERES
+from contact1d.workflow.scene.material import WIDER_THAN_SPHERES
 from contact1d.workflow.units import ENERGY, LINE_PRESSURE, MEAN_PRESSURE, Quantity
 
 Array = NDArray[np.float64]

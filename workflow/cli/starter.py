@@ -11,9 +11,8 @@ from typing import Any
 
 from contact1d.workflow.scene import Scene, Table
 from contact1d.workflow.scene.problems import as_toml
-from contact1d.workflow.scene.quantities import annotation_of, keys_of
+from contact1d.workflow.scene.quantities import Allowed, keys_of
 from contact1d.workflow.scene.schema import meaning
-from contact1d.workflow.scene.wording import kinds_of, members, table_of
 
 WIDTH = 118
 """Characters of a line of comment."""
@@ -93,58 +92,48 @@ EXAMPLES: dict[str, dict[str, Any]] = {
 
 def starter(kind: str) -> str:
     """The text of a scene file for an experiment of this kind. Raises KeyError for an unknown kind."""
-    scene = SCENES[kind]
-    experiment = _table_of_kind(annotation_of(Scene, "experiment"), kind)
+    scene, keys = SCENES[kind], keys_of(Scene)
+    experiment = keys["experiment"].allowed.kinds[kind]
     lines = [line for head in HEAD for line in _comment(head)]
     lines.append(f"title = {as_toml((experiment.__doc__ or kind).strip().rstrip('.'))}")
-    for key in keys_of(Scene):
-        annotation = annotation_of(Scene, key)
-        table = experiment if key == "experiment" else table_of(annotation)
+    for name, key in keys.items():
+        table = experiment if name == "experiment" else key.allowed.table
         if table is not None:
-            lines += ["", *_table(key, table, scene.get(key), annotation)]
+            lines += ["", *_table(name, table, scene.get(name), key.allowed)]
     return "\n".join(lines) + "\n"
 
 
-def _table(name: str, table: type[Table], given: Mapping[str, Any] | None, annotation: object) -> Iterator[str]:
+def _table(name: str, table: type[Table], given: Mapping[str, Any] | None, allowed: Allowed) -> Iterator[str]:
     """A table with all its keys; behind # what is not given."""
     yield from _comment((table.__doc__ or "").strip().splitlines()[0])
-    yield from _other_kinds(annotation, table)
+    yield from _other_kinds(allowed, table)
     yield f"[{name}]" if given is not None else f"#[{name}]"
-    for key, field in keys_of(table).items():
-        if key != "kind":
-            yield from _comment(meaning(table, key))
-            yield from _inside(annotation_of(table, key), (given or {}).get(key))
-        if given is not None and key in given:
-            yield f"{key} = {as_toml(given[key])}"
-        else:
-            examples = EXAMPLES.get(name, {})
-            yield f"#{key} = {as_toml(examples[key] if key in examples else table.model_fields[field].default)}"
+    here, examples = given or {}, EXAMPLES.get(name, {})
+    for word, key in keys_of(table).items():
+        if word != "kind":
+            yield from _comment(meaning(table, word))
+            yield from _inside(key.allowed, here.get(word))
+        value = here.get(word, examples.get(word, key.default))
+        yield f"{'' if word in here else '#'}{word} = {as_toml(value)}"
 
 
-def _inside(annotation: object, given: object) -> Iterator[str]:
+def _inside(allowed: Allowed, given: object) -> Iterator[str]:
     """What stands in an inline table: each key, and which other kinds of table there are."""
-    for choice in members(annotation):
-        table = table_of(choice)
-        if table is None or (kinds_of(choice) and isinstance(given, Mapping) and given["kind"] not in kinds_of(choice)):
+    for choice in allowed.choices:
+        if choice.table is None or (isinstance(given, Mapping) and choice.kind not in (None, given.get("kind"))):
             continue
-        for key in keys_of(table):
-            if key != "kind":
-                yield from _comment(f"{key}: {meaning(table, key)}", "#   ")
-        yield from _other_kinds(annotation, table, "#   ")
+        for word in keys_of(choice.table):
+            if word != "kind":
+                yield from _comment(f"{word}: {meaning(choice.table, word)}", "#   ")
+        yield from _other_kinds(allowed, choice.table, "#   ")
 
 
-def _other_kinds(annotation: object, chosen: type[Table], begin: str = "# ") -> Iterator[str]:
-    for choice in members(annotation):
-        table = table_of(choice)
-        if table is None or table is chosen or not kinds_of(choice):
-            continue
-        keys = ", ".join(key for key in keys_of(table) if key != "kind")
-        what = table.model_fields["kind"].description
-        yield from _comment(f'or kind = "{kinds_of(choice)[0]}" ({what}) with {keys}', begin)
-
-
-def _table_of_kind(annotation: object, kind: str) -> type[Table]:
-    return next(t for choice in members(annotation) if kind in kinds_of(choice) and (t := table_of(choice)))
+def _other_kinds(allowed: Allowed, chosen: type[Table], begin: str = "# ") -> Iterator[str]:
+    for kind, table in allowed.kinds.items():
+        if table is not chosen:
+            keys = keys_of(table)
+            what, others = keys["kind"].description, ", ".join(word for word in keys if word != "kind")
+            yield from _comment(f'or kind = "{kind}" ({what}) with {others}', begin)
 
 
 def _comment(text: str, begin: str = "# ") -> list[str]:

@@ -19,14 +19,14 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.potentials.table import Table as LawTable
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.scene.quantities import Table, annotation_of, keys_of
-from contact1d.workflow.scene.wording import unit_of
+from contact1d.workflow.scene.quantities import places
+from contact1d.workflow.scene.read import plain_data
 from contact1d.workflow.settings.settings import Settings
+from contact1d.workflow.units import SI
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-AnyTable = TypeVar("AnyTable", bound=Table)
 Value = TypeVar("Value", float, "NDArray[Any]")
 
 ORDINARY_LENGTHS = (1e-2, 1e2)
@@ -34,8 +34,6 @@ ORDINARY_LENGTHS = (1e-2, 1e2)
 steps of 2e-6 is within 1e-4 of the true one at the lower end."""
 ORDINARY_FORCES = (1e-4, 1e4)
 """Bulk stiffness times the unit of length [FU]."""
-POWERS = {"LU": (1.0, 0.0), "FU": (0.0, 1.0), "TU": (0.5, -0.5), "MU": (0.0, 0.0), "1": (0.0, 0.0)}
-"""Powers of the two factors in each unit; TU = √(MU·LU/FU)."""
 SETTINGS = {
     "rest": "LU", "cutoff": "LU", "table_from": "LU", "closest": "LU", "far": "LU", "displacement_step": "LU",
     "loading_step": "LU",
@@ -77,7 +75,11 @@ class DeckUnits:
             return scene
         given = {"bulk_stiffness": scene.bulk_stiffness, "bulk_stiffness_tangential": scene.tangential_stiffness}
         bodies = scene.bodies.model_copy(update=given)
-        return self._table(scene.model_copy(update={"bodies": bodies, "material": None}))
+        data = plain_data(scene.model_copy(update={"bodies": bodies, "material": None}))
+        for place in places(Scene, data):
+            if place.is_number and not place.absent:
+                place.put(data, self.to_deck(place.value, place.unit.name))
+        return Scene.model_validate(data)
 
     def settings(self, settings: Settings) -> Settings:
         """The settings in deck units, but for the estimate, which no deck asks."""
@@ -102,30 +104,11 @@ class DeckUnits:
         assert terms[0] is not None
         return DoubleExponential(terms[0], terms[1])
 
-    def _table(self, table: AnyTable) -> AnyTable:
-        fields = {
-            name: (getattr(table, name), annotation_of(type(table), key)) for key, name in keys_of(type(table)).items()
-        }
-        return table.model_copy(
-            update={name: self._value(value, unit_of(kind)) for name, (value, kind) in fields.items()}
-        )
-
-    def _value(self, value: Any, unit: str | None) -> Any:
-        if isinstance(value, Table):
-            return self._table(value)
-        if isinstance(value, tuple):
-            return tuple(self._value(item, unit) for item in value)
-        is_number = isinstance(value, float | int) and not isinstance(value, bool)
-        return self.to_deck(value, unit) if is_number and unit not in (None, "1", "MU") else value
-
 
 @cache
 def _factor(length: float, force: float, unit: str) -> float:
-    """One unit made of these; every number of every row asks for it."""
-    above, _, below = unit.partition("/")
-    names = [(name, 1.0) for name in above.split("·")] + [(name, -1.0) for name in below.split("·") if name]
-    lengths, forces = (sum(sign * POWERS[name][i] for name, sign in names) for i in (0, 1))
-    return float(length**lengths * force**forces)
+    """One unit made of these, kept: every number of every load step asks for it."""
+    return float(length ** SI[unit].lengths * force ** SI[unit].forces)
 
 
 def units_for(scene: Scene) -> DeckUnits:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.scene.places import places, powers
+from contact1d.workflow.scene.quantities import places
 from contact1d.workflow.scene.si_scene import BOLTZMANN
 from contact1d.workflow.units import LENGTH, Quantity, Scales
 
@@ -90,12 +90,9 @@ def _numbers(scene: Scene, scales: Scales | None) -> Iterator[tuple[str, str]]:
     for place in places(Scene, scene.model_dump(by_alias=True, exclude_none=True)):
         key = ".".join(map(str, place.keys))
         usual = next((usual for usual in USUAL if re.fullmatch(usual.key, key)), None)
-        if usual is None or not place.is_number or (scales is None and place.bases):
+        if usual is None or not place.is_number or (scales is None and place.unit.bases):
             continue
-        sizes = {} if scales is None else {"LU": scales.length, "FU": scales.force}
-        value = place.value
-        for base, power in powers(place.unit.name).items():
-            value *= sizes[base] ** power
+        value = place.value * (scales.factor(place.unit.name) if scales and place.unit.bases else 1.0)
         value /= float(BOLTZMANN) if usual.unit == "K" else 1.0
         if not usual.least <= value <= usual.most:
             what = usual.low if value < usual.least else usual.high

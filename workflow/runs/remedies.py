@@ -47,7 +47,7 @@ from contact1d.workflow.runs.sliding import (
 )
 from contact1d.workflow.scene import Load, Path, PullOff, Scene, SceneError, Slide
 from contact1d.workflow.scene.experiments import Span
-from contact1d.workflow.scene.places import places
+from contact1d.workflow.scene.quantities import places
 from contact1d.workflow.settings.estimate import NotCarriedError
 from contact1d.workflow.settings.way import ShortChainError
 from contact1d.workflow.units import NUMBER

@@ -14,14 +14,21 @@ from contact1d.workflow.scene.effects import (
 )
 from contact1d.workflow.scene.experiments import Experiment, Load, Method, Path, PullOff, Slide, Span, Tangential
 from contact1d.workflow.scene.material import Elastic, Material, Reduction
-from contact1d.workflow.scene.output import Output
 from contact1d.workflow.scene.problems import Problem, SceneError
-from contact1d.workflow.scene.profiles import Cone, Flat, FlatPunch, Measured, Parabola, Power, Profile
+from contact1d.workflow.scene.profiles import (
+    Circle,
+    Cone,
+    Ellipsoid,
+    Flat,
+    FlatPunch,
+    Measured,
+    Parabola,
+    Power,
+    Profile,
+)
 from contact1d.workflow.scene.quantities import Table, Unit
-from contact1d.workflow.scene.read import AnyScene, read_scene, read_tables, scene_from_dict
-from contact1d.workflow.scene.round import Circle, Ellipsoid
-from contact1d.workflow.scene.tables import EFFECTS, Accuracy, Bodies, Scene
-from contact1d.workflow.scene.write import scene_to_toml
+from contact1d.workflow.scene.read import AnyScene, Scene, read_scene, read_tables, scene_from_dict, scene_to_toml
+from contact1d.workflow.scene.tables import EFFECTS, Accuracy, Bodies, Output
 
 __all__ = [
     "EFFECTS",

@@ -6,6 +6,7 @@ repulsion and B, b those of the attraction.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import MinLen
@@ -29,6 +30,12 @@ from contact1d.workflow.scene.quantities import (
     Velocity,
 )
 
+REVERSED = (
+    "to reverse or hold the drive give experiment.path = [[velocity, distance], …] in place of a distance: velocities "
+    "there may be negative or 0"
+)
+"""What to do about a cantilever's velocity that is no positive number."""
+
 
 class Exponential(Table):
     """One term of the interaction: amplitude · exp(−r/range)."""
@@ -38,13 +45,23 @@ class Exponential(Table):
 
 
 class Effect(Table):
-    """A table that may be absent, and then adds nothing. `timed`: in time only, so never in a quasistatic run."""
+    """A table that may be absent, and then adds nothing. Each says here what it needs and what it excludes.
+
+    Attributes:
+        timed: it exists in time only, so never in a quasistatic run.
+        how: how to write it, for a scene that lacks it.
+        excludes: effects that it cannot have beside it, and why.
+    """
 
     timed: ClassVar[bool] = False
+    how: ClassVar[str] = ""
+    excludes: ClassVar[Mapping[str, str]] = {}
 
 
 class Interaction(Effect):
     """Effect: V(r) = A exp(−r/a) − B exp(−r/b) between opposite bodies."""
+
+    how = "[interaction] with its repulsion"
 
     repulsion: Exponential = Field(description="repulsive term, A and a")
     attraction: Exponential | None = Field(default=None, description="attractive term, B and b; absent: no adhesion")
@@ -62,9 +79,13 @@ class Neighbours(Effect):
 class Horizontal(Effect):
     """Effect: particles may also move along x. It has no keys."""
 
+    how = "[horizontal], an empty table: without it particles cannot follow a plate along x"
+
 
 class Friction(Effect):
     """Effect: Coulomb's friction of every particle on a rigid plane."""
+
+    how = "[friction] with its coefficient"
 
     coefficient: RatioOrZero = Field(
         description="largest tangential over normal force of a particle; along x it gives as "
@@ -74,6 +95,14 @@ class Friction(Effect):
 
 class Adhesion(Effect):
     """Effect: the bodies hold each other on a rigid plane, as JKR has it, without a range. W or γ is given."""
+
+    one_of = (
+        (("work_of_adhesion", "surface_energy"), "give W, or with surface_energy γ of one side, half of it; not both"),
+    )
+    excludes: ClassVar[Mapping[str, str]] = {
+        "neighbours": "JKR's contact is a row of independent springs, and neighbours would tie them together",
+        "noise": "particles at rest in their body have no thermal motion of their own",
+    }
 
     work_of_adhesion: LineEnergy | None = Field(
         default=None, description="W, to part both surfaces: F_A = 1.5 π W R of a sphere"
@@ -98,6 +127,7 @@ class Damping(Effect):
     """Effect: viscous damping of particles."""
 
     timed = True
+    how = '[damping] with coefficient = "auto"'
 
     coefficient: AutoDamping = Field(description='drag force over velocity, or "auto": near critical')
 
@@ -106,6 +136,7 @@ class Noise(Effect):
     """Effect: thermal forces on the particles; with the damping it makes one Langevin thermostat."""
 
     timed = True
+    how = "[noise] with temperature and seed"
 
     temperature: Temperature = Field(description="temperature as energy k_BT")
     seed: Seed = Field(description="seed of the random forces")
@@ -126,20 +157,18 @@ class Plate(Effect):
     """Effect: the upper plate is a rigid body with inertia, loaded by a force. Absent: its place is prescribed."""
 
     timed = True
+    how = '[plate] with mass = "auto"'
 
     mass: AutoMass = Field(default="auto", description='mass of the plate, or "auto"')
     free: Free = Field(default=("z",), description='directions in which the plate may move: ["z"] or ["x", "z"]')
     damping: AutoDampingOrZero = Field(default="auto", description='drag force over velocity of the plate, or "auto"')
 
 
-BACK = "for a way back or a rest give experiment.path = [[velocity, distance], …] in place of a distance"
-"""What a cantilever's velocity is not for: those of legs may be negative or 0."""
-
-
 class Cantilever(Effect):
     """Effect: the plate is pulled along x through a spring whose far end moves steadily."""
 
     timed = True
+    how = "[cantilever] with stiffness and velocity"
 
     stiffness: Stiffness = Field(description="stiffness of the spring")
-    velocity: Annotated[Velocity, OutOfRange(BACK)] = Field(description="velocity of the driven end")
+    velocity: Annotated[Velocity, OutOfRange(REVERSED)] = Field(description="velocity of the driven end")

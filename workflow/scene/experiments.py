@@ -1,4 +1,6 @@
-"""The five experiments of a scene: load, path, pull_off, slide, tangential.
+"""The experiments of a scene: load, path, pull_off, slide, tangential; and hold, which is not in `Experiment` yet.
+
+Each says beside its keys what it needs and what it excludes: the rules read no more of it than that.
 
 A prescribed path from d₀ to d₁ in n steps holds d_i = (d₀ (n − i) + d₁ i)/n for i = 0…n, and back in the same places.
 """
@@ -17,6 +19,7 @@ from contact1d.workflow.scene.quantities import (
     CompressionOrNone,
     Displacement,
     DriveVelocity,
+    Duration,
     Force,
     Length,
     LoadingRate,
@@ -25,6 +28,7 @@ from contact1d.workflow.scene.quantities import (
     Stiffness,
     Table,
     Velocity,
+    allowed_by,
 )
 
 Method = Literal["quasistatic", "dynamic"]
@@ -65,6 +69,16 @@ _Listed = Annotated[tuple[Displacement, ...], Field(strict=False), MinLen(1), Ta
 Displacements = Annotated[_Listed | Annotated[Span, Tag("table")], Discriminator(_list_or_table)]
 
 
+def _values(listed: tuple[float, ...] | Span) -> list[float]:
+    """The displacements [LU] of a list or a span, in order."""
+    return listed.values() if isinstance(listed, Span) else list(listed)
+
+
+def _for_each(given: tuple[float, ...] | float | None, count: int) -> list[float]:
+    """What is given for each of `count` points, by a list or by one number for all; none where nothing is."""
+    return [] if given is None else list(given) if isinstance(given, tuple) else [given] * count
+
+
 def _list_or_number(value: object) -> str:
     return "list" if isinstance(value, list | tuple) else "number"
 
@@ -74,19 +88,44 @@ NormalForces = Annotated[Annotated[Compression, Tag("number")] | _Loads, Discrim
 NormalDisplacements = Annotated[Annotated[Displacement, Tag("number")] | _Listed, Discriminator(_list_or_number)]
 
 
+UNPULLED = "only a slide is pulled through a spring"
+UNMOVED = "nothing moves along x in it, so that friction does nothing"
+TIMELESS = "its load steps follow each other without time, each in equilibrium"
+"""Why an experiment excludes an effect."""
+
+
 class Kind(Table):
     """What is done. Each kind says here what other rooms must know of it.
 
     Attributes:
+        only_method: the one method that it has; None: the key `method` says it, or the effects do.
+        excludes: effects that it cannot have by any method, and why.
+        needs: effects that it cannot do without by any method.
+        needs_in_time: effects that a dynamic one cannot do without.
+        only_with_noise: keys that say how a thermal one is repeated.
+        load_key: the key of a normal force that may pull, where the bodies attract each other.
+        finds_pull_off: whether its results have F_A and a₀.
         way_is_given: the scene prescribes the whole way, so that nothing is searched for and no state is ambiguous.
         motion_is_result: the motion itself is looked at, so that the scene exists in time only and its drag is its own.
         draws_off: the plate is drawn off through a spring along z.
         goes_along: the scene also prescribes places along x, on a plane, and has no other method.
     """
 
+    only_method: ClassVar[Method | None] = None
+    excludes: ClassVar[Mapping[str, str]] = {"cantilever": UNPULLED, "friction": UNMOVED}
+    needs: ClassVar[tuple[str, ...]] = ()
+    needs_in_time: ClassVar[tuple[str, ...]] = ("damping", "plate")
+    only_with_noise: ClassVar[tuple[str, ...]] = ()
+    load_key: ClassVar[str | None] = None
+    finds_pull_off: ClassVar[bool] = False
     way_is_given: ClassVar[bool] = False
     motion_is_result: ClassVar[bool] = False
     goes_along: ClassVar[bool] = False
+
+    @property
+    def given_method(self) -> Method | None:
+        """The method that the scene names, or the only one; None: it follows from the effects."""
+        return self.only_method or getattr(self, "method", None)
 
     @property
     def draws_off(self) -> bool:
@@ -116,6 +155,8 @@ class Kind(Table):
 class Load(Kind):
     """Equilibrium under a normal force."""
 
+    load_key = "force"
+
     kind: Literal["load"] = Field(description="equilibrium under a force")
     force: Force = Field(description="normal force on the upper body, compression positive")
     method: Method | None = Field(default=None, description=_METHOD)
@@ -129,6 +170,12 @@ class Load(Kind):
 class Path(Kind):
     """Prescribed displacements of the upper body."""
 
+    excludes: ClassVar[Mapping[str, str]] = {
+        **Kind.excludes,
+        "plate": "a path prescribes the plate's displacement, so the plate has no motion of its own",
+    }
+    needs_in_time = ("damping",)
+    finds_pull_off = True
     way_is_given: ClassVar[bool] = True
 
     kind: Literal["path"] = Field(description="prescribed displacement, there and back")
@@ -137,12 +184,14 @@ class Path(Kind):
 
     def places(self) -> list[float]:
         """Displacements [LU] in the order in which they are visited, the turning point of a span once."""
-        listed = self.displacements
-        return listed.values() if isinstance(listed, Span) else list(listed)
+        return _values(self.displacements)
 
 
 class PullOff(Kind):
     """Compression by a preload, then the largest tension that the contact holds."""
+
+    only_with_noise = ("loading_rate", "velocity", "stiffness", "repeats")
+    finds_pull_off = True
 
     kind: Literal["pull_off"] = Field(description="compress by the preload, then the largest tension held")
     preload: Compression = Field(description="compressive force F_D before the pull")
@@ -198,6 +247,14 @@ class Leg(Table):
 class Slide(Kind):
     """Sliding under a normal force, pulled through the cantilever; always dynamic."""
 
+    one_of = ((("distance", "path"), "give a distance (LU), or a path = [[velocity, distance], …]; not both"),)
+    only_method = "dynamic"
+    excludes: ClassVar[Mapping[str, str]] = {
+        "adhesion": "it is that of a rigid plane, which drags nothing",
+        "friction": "its friction is that of the particles' own forces",
+    }
+    needs = ("horizontal", "damping", "plate", "cantilever")
+    load_key = "normal_force"
     way_is_given: ClassVar[bool] = True
     motion_is_result: ClassVar[bool] = True
 
@@ -234,6 +291,23 @@ class Slide(Kind):
 class Tangential(Kind):
     """Normal load, then tangential displacement along x, with Coulomb's friction on a rigid plane."""
 
+    one_of = (
+        (
+            ("normal_force", "normal_displacement"),
+            "give a normal_force (FU) or a normal_displacement (LU), one for all points or one for each; not both",
+        ),
+    )
+    only_method = "quasistatic"
+    excludes: ClassVar[Mapping[str, str]] = {
+        "adhesion": "whether shear peels an adhesive edge or makes it slip is a criterion of its own (Savkoor and "
+        "Briggs), which neither JKR nor Mindlin has",
+        "neighbours": "friction depends on the path, and a minimiser, which such springs need, has none",
+        "damping": TIMELESS,
+        "noise": TIMELESS,
+        "plate": f"{TIMELESS}; a plate with inertia would oscillate about each, and friction would remember how far",
+        "cantilever": UNPULLED,
+    }
+    needs = ("friction",)
     way_is_given: ClassVar[bool] = True
     goes_along: ClassVar[bool] = True
 
@@ -253,23 +327,19 @@ class Tangential(Kind):
     @property
     def compression(self) -> float | None:
         """The largest normal force; None where displacements are given."""
-        forces = self.normal_force
-        return None if forces is None else max(forces) if isinstance(forces, tuple) else forces
+        return max(_for_each(self.normal_force, 1), default=None)
 
     def places(self) -> list[float]:
         """Normal displacements [LU] of the rows, none where forces are given."""
-        given = self.normal_displacement
-        return [] if given is None else list(given) if isinstance(given, tuple) else [given] * len(self.along())
+        return _for_each(self.normal_displacement, len(self.along()))
 
     def along(self) -> list[float]:
         """Displacements along x [LU] of the rows."""
-        listed = self.displacements
-        return listed.values() if isinstance(listed, Span) else list(listed)
+        return _values(self.displacements)
 
     def normal_forces(self) -> list[float]:
         """Normal forces [FU] of the rows, none where displacements are given."""
-        forces = self.normal_force
-        return [] if forces is None else list(forces) if isinstance(forces, tuple) else [forces] * len(self.along())
+        return _for_each(self.normal_force, len(self.along()))
 
     @property
     def way(self) -> float:
@@ -277,4 +347,34 @@ class Tangential(Kind):
         return max(map(abs, self.along()))
 
 
+class Hold(Kind):
+    """A displacement or a normal force, held for a time; always dynamic."""
+
+    one_of = ((("displacement", "force"), "give a displacement (LU) or a force (FU); not both"),)
+    only_method = "dynamic"
+    needs = ("damping",)
+    load_key = "force"
+
+    kind: Literal["hold"] = Field(description="hold a displacement or a force for a time; always dynamic")
+    displacement: Displacement | None = Field(default=None, description="displacement held, compression positive")
+    force: Force | None = Field(
+        default=None, description="in place of the displacement: normal force held, compression positive; with [plate]"
+    )
+    duration: Duration = Field(description="how long it is held")
+
+    @property
+    def compression(self) -> float | None:
+        """The force, if it compresses; None where the displacement is given."""
+        return None if self.force is None else max(self.force, 0.0)
+
+    def places(self) -> list[float]:
+        """The displacement, if it is given."""
+        return [] if self.displacement is None else [self.displacement]
+
+
 Experiment = Annotated[Load | Path | PullOff | Slide | Tangential, Discriminator("kind")]
+
+KINDS: dict[str, type[Kind]] = {
+    str(choice.kind): choice.type for choice in allowed_by(Experiment).choices if issubclass(choice.type, Kind)
+}
+"""The experiments by their `kind`."""

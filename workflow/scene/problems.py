@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from typing import Any
 
 from contact1d.workflow.errors import Contact1dError
 
@@ -78,6 +79,17 @@ def shown(value: object) -> str:
 def as_key(key: str) -> str:
     """`key` as TOML writes it: bare where it can be, else in quotes."""
     return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else as_toml(key)
+
+
+def tables_as_toml(tables: Mapping[str, Any]) -> str:
+    """The `tables` of a scene as a TOML file: one [table] each, what is inside a table inline."""
+    top = "\n".join(f"{as_key(key)} = {as_toml(value)}" for key, value in tables.items() if not isinstance(value, dict))
+    blocks = (
+        "\n".join([f"[{name}]", *(f"{as_key(key)} = {as_toml(value)}" for key, value in table.items())])
+        for name, table in tables.items()
+        if isinstance(table, dict)
+    )
+    return "\n\n".join((top, *blocks)) + "\n"
 
 
 def path_of(keys: Iterable[str | int]) -> str:

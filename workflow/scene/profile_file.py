@@ -9,14 +9,24 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from contact1d.workflow.scene.profile_header import FORM, Header, HeaderError, header_of
 from contact1d.workflow.scene.profiles import FEWEST_POINTS
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
 
+RADII = ("r", "radius", "radii", "rho", "ρ")
+SIDES = ("x",)
+"""Names of a place from one side to the other, which is read where no radius is there."""
+HEIGHTS = ("z", "h", "height", "heights")
+NAME = re.compile(r"([^\W_]+)\s*(?:\[(.*)\]|\((.*)\)|/\s*(.+)|_(\w+)|\sin\s+(.+)|)$")
+MODEL = "LU"
+FORM = "name the radius r and the height z, with units if they have any (r [µm], z [µm])"
 PLACE_DIFFERENCE = 1e-3
 """Places left and right count as the same up to this share of the mean step."""
 HEIGHT_DIFFERENCE = 0.05
 """Largest difference of both sides of a profile that are averaged, over its height."""
+
+
+Row = tuple[int, list[str]]
+"""A line of a file: its number and its cells."""
 
 
 class ProfileFileError(ValueError):
@@ -73,11 +83,10 @@ def read_profile(path: Path) -> Points:
         ProfileFileError: if there is no such file, a cell is empty or no number, a line has one column, there are
             fewer than FEWEST_POINTS points, names are not known, or the two sides of a profile are not the same.
     """
-    rows = _rows(path)
-    header, rows = _header(path, rows)
+    header, rows = _header(path.name, _rows(path))
     if not rows:
         raise ProfileFileError(f"{path} has no points")
-    points = [_point(path, place, line, (header.radius, header.height)) for place, line in rows]
+    points = [_point(f"{path.name}, line {line}", cells, header.columns) for line, cells in rows]
     if all(after[0] < before[0] for before, after in pairwise(points)):
         points.reverse()
     r, z = [r for r, _ in points], [z for _, z in points]
@@ -89,11 +98,11 @@ def read_profile(path: Path) -> Points:
         r, z = _folded(path, r, z)
     if len(r) < FEWEST_POINTS:
         raise ProfileFileError(f"{path} must have at least {FEWEST_POINTS} points from the axis out, not {len(r)}")
-    return Points(r, z, header.radius_unit, header.height_unit)
+    return Points(r, z, *header.units)
 
 
-def _rows(path: Path) -> list[tuple[int, str]]:
-    """The lines that say something, with their numbers."""
+def _rows(path: Path) -> list[Row]:
+    """The lines that have content, each with its number, as cells."""
     try:
         lines = path.read_bytes().decode("utf-8-sig").splitlines()
     except FileNotFoundError:
@@ -104,28 +113,67 @@ def _rows(path: Path) -> list[tuple[int, str]]:
         raise ProfileFileError(f"{path} cannot be read: {error.strerror}") from None
     except ValueError:
         raise ProfileFileError("is no name that a file can have") from None
-    rows = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
-    return rows[1:] if rows and re.fullmatch(r"sep=.", rows[0][1].strip()) else rows
+    full = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
+    if full and re.fullmatch(r"sep=.", full[0][1].strip()):
+        del full[0]
+    separators = ((i, line, next((one for one in ";,\t" if one in line), None)) for i, line in full)
+    return [(i, line.split(one) if one else line.split()) for i, line, one in separators]
 
 
-def _header(path: Path, rows: list[tuple[int, str]]) -> tuple[Header, list[tuple[int, str]]]:
-    """What the line of names says, if there is one, and the rows below it."""
+@dataclass(frozen=True)
+class Header:
+    """Places of the columns of radius and height, and their units as sizes, "1 µm"; None: none is given."""
+
+    columns: tuple[int, int] = (0, 1)
+    units: tuple[str | None, str | None] = (None, None)
+
+
+def _header(file: str, rows: list[Row]) -> tuple[Header, list[Row]]:
+    """What the line of names says, or of names and of units below it, if there is one, and the rows below it."""
     if not rows:
         return Header(), rows
-    first = _cells(rows[0][1])
-    if any(_number(cell) is not None for cell in first):
-        many = len([cell for cell in first if cell.strip()])
+    line, names = rows[0]
+    if any(_number(cell) is not None for cell in names):
+        many = sum(bool(cell.strip()) for cell in names)
         if many > 2:
-            raise ProfileFileError(f"{path.name} has {many} columns without names; {FORM}")
+            raise ProfileFileError(f"{file} has {many} columns without names; {FORM}")
         return Header(), rows
-    below = _cells(rows[1][1]) if len(rows) > 1 else None
-    if below is not None and any(not cell.strip() or any(map(str.isdigit, cell)) for cell in below):
-        below = None
+    at, bare = f"{file}, line {line}", [name.strip().strip('"') for name in names]
+    words = [match[1] if (match := NAME.match(name.lower())) else "" for name in bare]
+    radius, height = _only(at, words, RADII if set(words) & set(RADII) else SIDES), _only(at, words, HEIGHTS)
+    if radius is None or height is None:
+        raise ProfileFileError(f"{at}: the names of its {len(names)} columns are not known; {FORM}, or leave them out")
+    matches = (NAME.match(bare[radius]), NAME.match(bare[height]))
+    units = [next((unit.strip() for unit in match.groups()[1:] if unit), "") if match else "" for match in matches]
+    below = rows[1][1] if len(rows) > 1 else []
+    beneath = len(below) == len(names) and not any(units)
+    beneath = beneath and not any(not cell.strip() or any(map(str.isdigit, cell)) for cell in below)
+    if beneath:
+        units = [below[column].strip().strip('[]()"') for column in (radius, height)]
+    if any(units) != all(units):
+        raise ProfileFileError(
+            f"{at}: only one of radius and height has a unit; give both the same way, r [µm], z [µm]"
+        )
+    sizes = (_size(at, units[0]), _size(at, units[1]))
+    return Header((radius, height), sizes), rows[2:] if beneath else rows[1:]
+
+
+def _only(at: str, words: list[str], allowed: tuple[str, ...]) -> int | None:
+    """Where the one column of an allowed name is; None where there is none."""
+    found = [i for i, word in enumerate(words) if word in allowed]
+    if len(found) > 1:
+        raise ProfileFileError(f"{at}: {len(found)} columns could be meant by {allowed[0]}; name only one so")
+    return found[0] if found else None
+
+
+def _size(at: str, unit: str) -> str | None:
+    if unit in ("", MODEL):
+        return None
     try:
-        header, beneath = header_of(first, below)
-    except HeaderError as error:
-        raise ProfileFileError(f"{path.name}, line {rows[0][0]}: {error}") from None
-    return header, rows[2:] if beneath else rows[1:]
+        si_value(f"1 {unit}", MODEL)
+    except UnitTextError:
+        raise ProfileFileError(f"{at}: the unit in the names is no length that is known, such as µm; {FORM}") from None
+    return f"1 {unit}"
 
 
 def _rising(values: list[float]) -> bool:
@@ -152,30 +200,24 @@ def _folded(path: Path, x: list[float], z: list[float]) -> tuple[list[float], li
     return [0.5 * (x[i] - x[n - 1 - i]) for i in kept], [0.5 * (z[i] + z[n - 1 - i]) for i in kept]
 
 
-def _point(path: Path, place: int, line: str, columns: tuple[int, int]) -> tuple[float, float]:
-    cells = _cells(line)
-    at = f"{path.name}, line {place}"
+def _point(at: str, cells: list[str], columns: tuple[int, int]) -> tuple[float, float]:
+    """Radius and height of one line."""
     if len(cells) <= max(columns):
         many = "has one column" if len(cells) == 1 else f"has {len(cells)} columns"
         raise ProfileFileError(f"{at}: {many}; r and z are needed")
-    values = []
-    for name, cell in zip("rz", (cells[column] for column in columns), strict=True):
-        value = _number(cell)
-        if value is None:
-            what = "is no number" if cell.strip() else "is empty"
-            hint = "leave out a line that has no value, or interpolate it"
-            if _number(cell.replace(",", ".")) is not None:
-                hint = "write it with a decimal point"
-            raise ProfileFileError(f"{at}: {name} {what}; {hint}")
-        if not math.isfinite(value):
-            raise ProfileFileError(f"{at}: {name} is {value}; leave out a line that has no value")
-        values.append(value)
-    return values[0], values[1]
+    return _finite(at, "r", cells[columns[0]]), _finite(at, "z", cells[columns[1]])
 
 
-def _cells(line: str) -> list[str]:
-    parting = ";" if ";" in line else "," if "," in line else "\t" if "\t" in line else None
-    return line.split(parting) if parting else re.split(r"\s+", line.strip())
+def _finite(at: str, name: str, cell: str) -> float:
+    value = _number(cell)
+    if value is None:
+        what = "is no number" if cell.strip() else "is empty"
+        decimal = _number(cell.replace(",", ".")) is not None
+        hint = "write it with a decimal point" if decimal else "leave out a line that has no value, or interpolate it"
+        raise ProfileFileError(f"{at}: {name} {what}; {hint}")
+    if not math.isfinite(value):
+        raise ProfileFileError(f"{at}: {name} is {value}; leave out a line that has no value")
+    return value
 
 
 def _number(cell: str) -> float | None:

@@ -6,25 +6,24 @@ The MDR takes the axisymmetric body z = f(r) to the plane one
 
 which with springs E* per length has the body's force, displacement and contact radius (Popov and Heß, Method of
 Dimensionality Reduction in Contact Mechanics and Friction, 2015, chapter 3). Powers: g = κ_n f, κ_n =
-(√π/2) n Γ(n/2)/Γ((n+1)/2), κ₁ = π/2, κ₂ = 2. Circle and ellipsoid: `round`.
+(√π/2) n Γ(n/2)/Γ((n+1)/2), κ₁ = π/2, κ₂ = 2. Circle: z = R − √(R² − x²), g = x artanh(x/R). An ellipsoid with the half
+axes b along and c across its axis is a sphere of radius c, b/c times as high.
 """
 
 from __future__ import annotations
 
 import math
 import statistics
+from abc import abstractmethod
 from functools import lru_cache
 from itertools import pairwise
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 from annotated_types import Ge, MinLen
 from pydantic import Discriminator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from contact1d.workflow.scene.quantities import Height, Length, Ratio, Unit
-from contact1d.workflow.scene.reduction import galin_factor
-from contact1d.workflow.scene.round import Circle, Ellipsoid
-from contact1d.workflow.scene.shape import Shape
+from contact1d.workflow.scene.quantities import Height, Length, Ratio, Table, Unit
 
 if TYPE_CHECKING:
     import numpy as np
@@ -37,6 +36,42 @@ STEEPEST = 3.0
 """Slope at a measured point over the rise to its neighbour up to which a cubic has no overshoot."""
 CELLS = 1_000_000
 """Places times points of a measured profile that are transformed at once, to bound the memory."""
+
+LAST_SHARE = 1.0 - 1e-12
+"""The transform of a circle grows without end at its edge, and is taken up to this share of the radius."""
+
+
+def galin_factor(n: float) -> float:
+    """κ_n = (√π/2) n Γ(n/2)/Γ((n+1)/2)."""
+    return 0.5 * math.sqrt(math.pi) * n * math.exp(math.lgamma(0.5 * n) - math.lgamma(0.5 * (n + 1.0)))
+
+
+class Shape(Table):
+    """What all profiles can do; a kind overrides what differs.
+
+    `has_edge`: the body ends at its `reach` by a flank, so that its chain is as long as it is wide and the contact is
+    too; others rise, and the contact ends on them.
+    """
+
+    has_edge: ClassVar[bool] = False
+
+    @abstractmethod
+    def height(self, x: Array) -> Array:
+        """Height z(x) = f(|x|) [LU] above the apex as drawn, at the places `x` [LU]; same shape."""
+
+    @abstractmethod
+    def transformed(self, x: Array) -> Array:
+        """Height g(x) [LU] above the apex after the MDR's transform, at the places `x` [LU]; same shape."""
+
+    @property
+    def reach(self) -> float:
+        """Half-width [LU] within which there is a body at all."""
+        return math.inf
+
+    @property
+    def curvature_radius(self) -> float | None:
+        """Radius of curvature R at the apex [LU], None where there is none."""
+        return None
 
 
 class Parabola(Shape):
@@ -57,6 +92,64 @@ class Parabola(Shape):
     def curvature_radius(self) -> float:
         """R."""
         return self.radius
+
+
+class Circle(Shape):
+    """Profile of the upper body: an exact circle, z = R − √(R² − x²)."""
+
+    kind: Literal["circle"] = Field(description="z = R − √(R² − x²), an exact circle")
+    radius: Length = Field(description="radius R")
+
+    def height(self, x: Array) -> Array:
+        """z = R − √(R² − x²), written without the difference of large numbers."""
+        return x**2 / (self.radius + ((self.radius - x) * (self.radius + x)) ** 0.5)
+
+    def transformed(self, x: Array) -> Array:
+        """g = x artanh(x/R)."""
+        import numpy as np
+
+        share = np.clip(x / self.radius, -LAST_SHARE, LAST_SHARE)
+        return np.asarray(x * np.arctanh(share))
+
+    @property
+    def reach(self) -> float:
+        """R."""
+        return self.radius
+
+    @property
+    def curvature_radius(self) -> float:
+        """R."""
+        return self.radius
+
+
+class Ellipsoid(Shape):
+    """Profile of the upper body: an ellipsoid of revolution, z = b − b √(1 − x²/c²)."""
+
+    kind: Literal["ellipsoid"] = Field(description="z = b − b √(1 − x²/c²), an ellipsoid of revolution about the load")
+    radius: Length = Field(description="half axis c across the load")
+    half_axis: Length = Field(alias="height", description="half axis b along the load")
+
+    def height(self, x: Array) -> Array:
+        """z = b (x/c)²/(1 + √(1 − x²/c²))."""
+        share = x / self.radius
+        return self.half_axis * share**2 / (1.0 + ((1.0 - share) * (1.0 + share)) ** 0.5)
+
+    def transformed(self, x: Array) -> Array:
+        """g = (b/c) x artanh(x/c)."""
+        import numpy as np
+
+        share = np.clip(x / self.radius, -LAST_SHARE, LAST_SHARE)
+        return np.asarray(self.half_axis * share * np.arctanh(share))
+
+    @property
+    def reach(self) -> float:
+        """c."""
+        return self.radius
+
+    @property
+    def curvature_radius(self) -> float:
+        """c²/b."""
+        return self.radius**2 / self.half_axis
 
 
 class Cone(Shape):

@@ -1,17 +1,26 @@
-"""Types of the values in a scene: for each, its range and its model unit in one name.
+"""Types of the values in a scene, each with its range and its unit in one name, and what can be read off them.
 
 Model units: length LU (the spacing), force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT in FU·LU.
+
+`keys_of` is the one reader of the tables' types, and `places` the one walker of a scene's numbers: reading, checking,
+conversion between units, the schema and the documentation use both.
 """
 
 from __future__ import annotations
 
+import types
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Annotated, Any, ClassVar, Literal, get_type_hints
+from typing import Annotated, Any, ClassVar, Literal, Union, get_args, get_origin, get_type_hints
 
 from annotated_types import Ge, Gt, Le
 from pydantic import BaseModel, ConfigDict, Discriminator, GetJsonSchemaHandler, Tag
 
+from contact1d.workflow.units import SI
+
+Keys = tuple[str | int, ...]
+"""Keys from the top of a scene down to a value; an item of a list by its index."""
 TEXT_PATTERN = r"^[ \t]*[+\-−]?[0-9]*\.?[0-9]+.*[A-Za-zµμÅ°%]"
 """What a JSON schema asks of a text that is a number with a unit."""
 
@@ -31,6 +40,11 @@ class Unit:
         """The dimensions that a text may have, each by a unit; the first is the one that messages name."""
         return self.text or (self.name,)
 
+    @property
+    def bases(self) -> frozenset[str]:
+        """Which of LU, FU and MU must be known for its size in SI; none of a unit of SI."""
+        return SI[self.name].bases if self.name in SI else frozenset()
+
     def __get_pydantic_json_schema__(self, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         """Return the schema of a number, or of such a text."""
         number = handler(core_schema)
@@ -47,12 +61,17 @@ class OutOfRange:
 
 
 class Table(BaseModel):
-    """A table of a scene: immutable, no unknown keys, no conversion between types, finite numbers only."""
+    """A table of a scene: immutable, no unknown keys, no conversion between types, finite numbers only.
+
+    Attributes:
+        as_list: it is written as a list of its values.
+        one_of: sets of keys of which exactly one must be there, with what to do otherwise.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
     as_list: ClassVar[bool] = False
-    """Whether it is written as a list of its values."""
+    one_of: ClassVar[tuple[tuple[tuple[str, ...], str], ...]] = ()
 
 
 Length = Annotated[float, Gt(0), Unit("LU")]
@@ -66,6 +85,7 @@ LineEnergy = Annotated[float, Ge(0), Unit("FU/LU")]
 Temperature = Annotated[float, Gt(0), Unit("FU·LU", text=("K", "J"))]
 Velocity = Annotated[float, Gt(0), Unit("LU/TU")]
 LoadingRate = Annotated[float, Gt(0), Unit("FU/TU")]
+Duration = Annotated[float, Gt(0), Unit("TU")]
 DriveVelocity = Annotated[float, Unit("LU/TU")]
 DampingCoefficient = Annotated[float, Gt(0), Unit("FU·TU/LU")]
 DampingCoefficientOrZero = Annotated[float, Ge(0), Unit("FU·TU/LU")]
@@ -78,35 +98,195 @@ ParticleCount = Annotated[int, Ge(3), Le(10_000_000), Unit("1")]
 RepeatCount = Annotated[int, Ge(1), Le(100_000), Unit("1")]
 AnyParticleCount = Annotated[int, Ge(1), Le(10_000_000), Unit("1")]
 StepCount = Annotated[int, Ge(1), Le(1_000_000), Unit("1")]
+StateCount = Annotated[int, Ge(2), Le(1_000_000), Unit("1")]
 Seed = Annotated[int, Ge(1), Le(2**31 - 1), Unit("1")]
+Pascal = Annotated[float, Gt(0), Unit("Pa")]
+SurfaceEnergy = Annotated[float, Gt(0), Unit("J/m²")]
+Metre = Annotated[float, Gt(0), Unit("m")]
+Newton = Annotated[float, Gt(0), Unit("N")]
+Kilogram = Annotated[float, Gt(0), Unit("kg")]
+Poisson = Annotated[float, Gt(-1), Le(0.5), Unit("1")]
 
 
-def _number_or_auto(value: object) -> str:
-    return "auto" if isinstance(value, str) else "number"
+def _number_or_word(value: object) -> str:
+    return "word" if isinstance(value, str) else "number"
 
 
-# The discriminator makes one mistake one error: a string can only have meant "auto", all else only a number.
-_Either = Discriminator(_number_or_auto)
-_Auto = Annotated[Literal["auto"], Tag("auto")]
+# The discriminator makes one mistake one error: a string can only have meant the word, all else only a number.
+_Either = Discriminator(_number_or_word)
+_Auto = Annotated[Literal["auto"], Tag("word")]
 AutoLength = Annotated[Annotated[Length, Tag("number")] | _Auto, _Either]
 AutoStiffness = Annotated[Annotated[Stiffness, Tag("number")] | _Auto, _Either]
 AutoMass = Annotated[Annotated[Mass, Tag("number")] | _Auto, _Either]
 AutoDamping = Annotated[Annotated[DampingCoefficient, Tag("number")] | _Auto, _Either]
 AutoDampingOrZero = Annotated[Annotated[DampingCoefficientOrZero, Tag("number")] | _Auto, _Either]
 AutoParticleCount = Annotated[Annotated[ParticleCount, Tag("number")] | _Auto, _Either]
+AllOrSome = Annotated[Annotated[StateCount, Tag("number")] | Annotated[Literal["all"], Tag("word")], _Either]
 
 
-def keys_of(table: type[Table]) -> dict[str, str]:
-    """Field name of every key that may stand in `table`, in order: {key as written in TOML: name in Python}."""
-    return {field.alias or name: name for name, field in table.model_fields.items()}
+@dataclass(frozen=True)
+class Choice:
+    """One of the types that a value may have: `type` with the marks of its `Annotated`; of a list, its `items`."""
+
+    type: Any
+    marks: tuple[Any, ...] = ()
+    items: Allowed | None = None
+
+    @property
+    def table(self) -> type[Table] | None:
+        """The table that it is, if it is one."""
+        return self.type if isinstance(self.type, type) and issubclass(self.type, Table) else None
+
+    @property
+    def words(self) -> tuple[Any, ...]:
+        """The words that it allows."""
+        return get_args(self.type) if get_origin(self.type) is Literal else ()
+
+    @property
+    def kind(self) -> str | None:
+        """The word for `kind` of a table that has one."""
+        field = self.table.model_fields.get("kind") if self.table else None
+        return None if field is None else str(get_args(field.annotation)[0])
+
+    @property
+    def tag(self) -> str | None:
+        """The name that pydantic puts into a location for this member of a union."""
+        return next((mark.tag for mark in self.marks if isinstance(mark, Tag)), self.kind)
+
+    @property
+    def unit(self) -> Unit | None:
+        """The unit of a number."""
+        return next((mark for mark in self.marks if isinstance(mark, Unit)), None)
 
 
-def annotation_of(table: type[Table], key: str) -> object:
-    """Full type (with its `Annotated` marks) of the key `key` of `table`. Raises KeyError for an unknown key."""
-    return _hints(table)[keys_of(table)[key]]
+@dataclass(frozen=True)
+class Allowed:
+    """What may stand at a key: one or more types."""
+
+    choices: tuple[Choice, ...]
+
+    @property
+    def table(self) -> type[Table] | None:
+        """The table that it must be, None if there are others or none."""
+        return self.choices[0].table if len(self.choices) == 1 else None
+
+    @property
+    def kinds(self) -> dict[str, type[Table]]:
+        """The tables of a union by their `kind`."""
+        return {choice.kind: choice.table for choice in self.choices if choice.kind and choice.table}
+
+    @property
+    def words(self) -> tuple[Any, ...]:
+        """All words that are allowed."""
+        return tuple(word for choice in self.choices for word in choice.words)
+
+    @property
+    def unit(self) -> Unit | None:
+        """The unit of a number, or of the items of a list of numbers."""
+        units = (choice.unit or (choice.items.unit if choice.items else None) for choice in self.choices)
+        return next((unit for unit in units if unit), None)
+
+    @property
+    def quantity(self) -> Unit | None:
+        """The unit of a number that may have a dimension: counts have none."""
+        return next((choice.unit for choice in self.choices if choice.type is float), None)
+
+    def table_for(self, value: Mapping[str, Any]) -> type[Table] | None:
+        """The table that `value` is meant to be, by its kind where there are several."""
+        tables = [choice for choice in self.choices if choice.table]
+        found = tables if len(tables) == 1 else [choice for choice in tables if choice.kind == value.get("kind")]
+        return found[0].table if found else None
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key of a table: its field in Python, what may stand there, what it is, and its default (None: none)."""
+
+    field: str
+    allowed: Allowed
+    description: str
+    default: Any
 
 
 @cache
-def _hints(table: type[Table]) -> dict[str, Any]:
-    """Types of the fields, worked out once: that takes a millisecond, and every scene asks for some tens."""
-    return get_type_hints(table, include_extras=True)
+def keys_of(table: type[Table]) -> dict[str, Key]:
+    """Every key that may stand in `table`, as written in TOML, in order; kept, since every scene asks for some tens."""
+    hints = get_type_hints(table, include_extras=True)
+    return {
+        field.alias or name: Key(name, allowed_by(hints[name]), str(field.description), field.get_default())
+        for name, field in table.model_fields.items()
+    }
+
+
+def allowed_by(annotation: Any, marks: tuple[Any, ...] = ()) -> Allowed:
+    """What a type allows, None left out: a key that may be absent has it."""
+    origin, arguments = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        return allowed_by(arguments[0], (*arguments[1:], *marks))
+    if origin in (Union, types.UnionType):
+        members = [allowed_by(member, marks) for member in arguments if member is not type(None)]
+        return Allowed(tuple(choice for member in members for choice in member.choices))
+    return Allowed((Choice(annotation, marks, allowed_by(arguments[0]) if origin is tuple else None),))
+
+
+@dataclass(frozen=True)
+class Place:
+    """A number's place in a scene: its `keys`, what stands there (or follows from a default), and its unit."""
+
+    keys: Keys
+    value: Any
+    unit: Unit
+    words: tuple[str, ...] = ()
+    absent: bool = False
+
+    @property
+    def is_text(self) -> bool:
+        """Whether it is a text that can only have meant a number with a unit: one with digits, and no plain number."""
+        if not isinstance(self.value, str) or self.value in self.words or not any(map(str.isdigit, self.value)):
+            return False
+        try:
+            float(self.value)
+        except ValueError:
+            return True
+        return False
+
+    @property
+    def is_number(self) -> bool:
+        """Whether it is a number other than 0, which is the same in all units."""
+        return isinstance(self.value, int | float) and not isinstance(self.value, bool) and self.value != 0
+
+    def put(self, data: Any, value: object) -> None:
+        """Put another value in its place in `data`."""
+        for key in self.keys[:-1]:
+            data = data[key]
+        data[self.keys[-1]] = value
+
+
+def places(table: type[Table], data: Mapping[str, Any], keys: Keys = ()) -> Iterator[Place]:
+    """Every place of a number in `data`, a table of this type with the keys of a scene file; absent keys by default."""
+    for name, key in keys_of(table).items():
+        if name in data:
+            yield from _inside(key.allowed, data[name], (*keys, name))
+        elif isinstance(key.default, float) and (unit := key.allowed.quantity):
+            yield Place((*keys, name), key.default, unit, absent=True)
+
+
+def _inside(allowed: Allowed, value: Any, keys: Keys) -> Iterator[Place]:
+    if isinstance(value, Mapping):
+        if table := allowed.table_for(value):
+            yield from places(table, value, keys)
+    elif isinstance(value, list | tuple):
+        for items in (choice.items for choice in allowed.choices if choice.items):
+            for i, item in enumerate(value):
+                yield from _inside(items, item, (*keys, i))
+    elif unit := allowed.quantity:
+        yield Place(keys, value, unit, allowed.words)
+
+
+def tables_in(table: type[Table], path: str = "") -> Iterator[tuple[str, Choice]]:
+    """Every table inside `table`, with its dotted path, that itself first and each kind of a union."""
+    yield path, Choice(table)
+    for name, key in keys_of(table).items():
+        for choice in key.allowed.choices:
+            if choice.table:
+                yield from tables_in(choice.table, f"{path}.{name}" if path else name)

@@ -10,25 +10,21 @@ from os import PathLike, fspath
 from pathlib import Path as FilePath
 from typing import Any
 
+from pydantic import ConfigDict
+
 from contact1d.workflow.scene.check import check_tables, mend_words
-from contact1d.workflow.scene.fit import check_fit
-from contact1d.workflow.scene.overrides import apply_overrides, remove_effects, set_values
-from contact1d.workflow.scene.places import Keys
-from contact1d.workflow.scene.problems import Problem, SceneError, path_of, shown
+from contact1d.workflow.scene.problems import Problem, SceneError, nearest, path_of, shown
 from contact1d.workflow.scene.profile_file import ProfileFileError, ScaleError, read_profile
-from contact1d.workflow.scene.quantities import Table, keys_of
-from contact1d.workflow.scene.si_scene import Column, convert_texts
+from contact1d.workflow.scene.quantities import Keys, Table, keys_of
+from contact1d.workflow.scene.rules import check_fit
+from contact1d.workflow.scene.si_scene import UNIT_KEYS, Column, Conversion
 from contact1d.workflow.scene.si_text import split
-from contact1d.workflow.scene.tables import Bodies, Scene
+from contact1d.workflow.scene.tables import EFFECTS, Bodies, Tables
+from contact1d.workflow.units import SI
 
 PROFILE = ("bodies", "profile")
-UNITS = (("LU", "length_unit", "m"), ("FU", "force_unit", "N"))
-"""What a message says of units of the model: their name, their key in [material], and their unit in SI."""
 IN_MODEL_UNITS = re.compile(r"[1-9][-+.\de]* \((LU|FU)")
 """A number in them, in a message."""
-AnyScene = Scene | str | PathLike[str] | Mapping[str, Any]
-"""What `read_scene` makes a scene of."""
-
 MEANING = {
     "Cannot overwrite a value": "this key is given twice",
     "Cannot declare": "this table is given twice",
@@ -54,6 +50,40 @@ HINTS = {
 }
 
 
+class Scene(Tables):
+    """A whole scene, whose tables fit together: `read_scene` and `scene_from_dict` make it."""
+
+    model_config = ConfigDict(defer_build=False)
+
+    def with_(self, changes: Mapping[str, Any] | None = None, *, without: Iterable[str] = (), **keywords: Any) -> Scene:
+        """Return this scene with values changed, checked as a whole.
+
+            scene.with_({"bodies.profile.radius": 2000.0, "accuracy.tolerance": 1e-4}, without="neighbours")
+            scene.with_(bodies__profile__radius=2000.0, accuracy__tolerance=1e-4)
+
+        Args:
+            changes: values by dotted keys, as in a scene file; a table is a dict, None takes a key or table away.
+            without: effects whose tables are removed.
+            keywords: more changes, the keys' dots written as two underscores.
+
+        Raises:
+            SceneError: the scene that would be is none; with every problem at once.
+        """
+        given: object = {} if changes is None else changes
+        if not isinstance(given, Mapping):
+            form = 'write {"bodies.profile.radius": 2000.0}'
+            raise SceneError([Problem("changes", "must be a mapping of dotted keys to values", shown(given), form)])
+        named = {key.replace("__", "."): value for key, value in keywords.items()}
+        data: dict[str, Any] = plain_data(self)
+        problems = set_values(data, {str(key): value for key, value in {**given, **named}.items()})
+        problems += remove_effects(data, _listed(without))
+        return _checked(plain_data(data), problems, FilePath())
+
+
+AnyScene = Scene | str | PathLike[str] | Mapping[str, Any]
+"""What `read_scene` makes a scene of."""
+
+
 def read_scene(source: AnyScene, overrides: Iterable[str] = (), without: Iterable[str] = ()) -> Scene:
     """The scene that `source` describes, checked.
 
@@ -70,6 +100,11 @@ def read_scene(source: AnyScene, overrides: Iterable[str] = (), without: Iterabl
         return scene_from_dict(source, overrides, without)
     is_text = isinstance(source, str) and _is_text(source)
     return scene_from_dict(read_tables(source), overrides, without, "." if is_text else FilePath(source).parent)
+
+
+def scene_to_toml(scene: Scene) -> str:
+    """The whole `scene` as a TOML file, with defaults written out, that reads back as an equal scene."""
+    return str(scene)
 
 
 def read_tables(source: str | PathLike[str]) -> dict[str, Any]:
@@ -98,34 +133,23 @@ def scene_from_dict(
     strings "table.key=value", applied in order, the value read as TOML or else as bare text; `without` has names of
     effects whose tables are then removed. Raises SceneError with every problem at once.
     """
-    plain = _plain(data)
+    plain = plain_data(data)
     if not isinstance(plain, dict):
         raise SceneError([Problem("scene", "must be a table of tables")])
     problems = apply_overrides(plain, _listed(overrides)) + remove_effects(plain, _listed(without))
     return _checked(plain, problems, FilePath(folder))
 
 
-def changed_scene(scene: Scene, changes: object, without: Iterable[str]) -> Scene:
-    """`Scene.with_`."""
-    if not isinstance(changes, Mapping):
-        form = 'write {"bodies.profile.radius": 2000.0}'
-        raise SceneError([Problem("changes", "must be a mapping of dotted keys to values", shown(changes), form)])
-    data: dict[str, Any] = _plain(scene)
-    problems = set_values(data, {str(key): value for key, value in changes.items()})
-    problems += remove_effects(data, _listed(without))
-    return _checked(_plain(data), problems, FilePath())
-
-
 def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -> Scene:
     """The scene of `plain`, which is mended on the way; `problems` are those found so far."""
-    problems += mend_words(plain)
+    problems += mend_words(plain, Scene)
     columns, unread = _with_points(plain, folder)
     _with_legs(plain)
-    converted = convert_texts(plain, columns)
-    checked = check_tables(plain, converted.told)
+    converted = Conversion(plain, columns)
+    checked = check_tables(plain, Scene, converted.reported)
     found = (*unread, *converted.problems, *checked.problems, *check_fit(plain, checked.unsound))
     problems += [_as_written(problem, converted.texts, columns, plain) for problem in found]
-    if problems or checked.scene is None:
+    if problems or not isinstance(checked.scene, Scene):
         raise SceneError(sorted(problems, key=_rank))
     return checked.scene
 
@@ -135,14 +159,13 @@ def _as_written(
 ) -> Problem:
     """The problem with what stands in the scene: the text with its unit, the file in place of its points."""
     if problem.path in texts:
+        hint = problem.hint
+        if IN_MODEL_UNITS.search(problem.message):
+            material = data.get("material", {})
+            keys = ((base, UNIT_KEYS[base]) for base in ("LU", "FU"))
+            sizes = (f"1 {base} is {material[key]:g} {SI[base].si}" for base, key in keys if key in material)
+            hint = "; ".join(filter(None, (hint, ", ".join(sizes))))
         ways = tuple({key: _with_unit(key, value, texts, data) for key, value in way.items()} for way in problem.ways)
-        units = data.get("material", {})
-        sizes = [f"1 {base} is {units[key]:g} {si}" for base, key, si in UNITS if key in units]
-        hint = (
-            "; ".join(filter(None, (problem.hint, ", ".join(sizes))))
-            if IN_MODEL_UNITS.search(problem.message)
-            else (problem.hint)
-        )
         return replace(problem, given=shown(texts[problem.path]), ways=ways, hint=hint)
     if columns and problem.path == path_of(PROFILE):
         return replace(problem, path=f"{problem.path}.file", given=shown(next(iter(columns.values())).file))
@@ -202,27 +225,90 @@ def _with_legs(data: dict[str, Any]) -> None:
         experiment["path"] = legs
 
 
+def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Problem]:
+    """Set in `data` what each of `overrides` says, in order; returns the problems of those that say nothing.
+
+    A value is read as TOML, or as bare text where it is not TOML; tables on the way that are absent are made.
+    """
+    return [problem for override in overrides if (problem := _apply(data, override))]
+
+
+def set_values(data: dict[str, Any], values: Mapping[str, Any]) -> list[Problem]:
+    """Set in `data` the value of each dotted key; None takes the key away. Returns the problems."""
+    form = "write table.key, for example experiment.method"
+    return [problem for path, value in values.items() if (problem := _set(data, path, value, f"set {path}", form))]
+
+
+def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
+    """Remove from `data` the table of each effect in `names`; returns the problems of those that cannot be removed."""
+    problems = []
+    for name in dict.fromkeys(names):
+        if name in EFFECTS and name in data:
+            del data[name]
+            continue
+        if name in EFFECTS:
+            there = ", ".join(effect for effect in EFFECTS if effect in data) or "none"
+            problems.append(Problem(f"without {name}", "the scene has no such table", hint=f"effects there: {there}"))
+            continue
+        meant = nearest(name, EFFECTS)
+        hint = (f'did you mean "{meant}"? ' if meant else "") + f"effects: {', '.join(EFFECTS)}"
+        problems.append(Problem(f"without {name}", "not an effect that can be removed", hint=hint))
+    return problems
+
+
+def _apply(data: dict[str, Any], override: str) -> Problem | None:
+    path, equals, text = override.partition("=")
+    where = f"set {shown(override)}"
+    form = "write table.key=value, for example experiment.method=dynamic"
+    if not equals or not text.strip():
+        return Problem(where, "no value", hint=form)
+    return _set(data, path, _toml_value(text.strip()), where, form)
+
+
+def _set(data: dict[str, Any], path: str, value: Any, where: str, form: str) -> Problem | None:
+    keys = [key.strip() for key in path.split(".")]
+    if not all(re.fullmatch(r"[A-Za-z0-9_-]+", key) for key in keys):
+        return Problem(where, "not a path of keys", hint=form)
+    table = data
+    for depth, key in enumerate(keys[:-1], start=1):
+        table = table.setdefault(key, {})
+        if not isinstance(table, dict):
+            return Problem(where, f"{'.'.join(keys[:depth])} is not a table", hint="set it as a whole")
+    table[keys[-1]] = value
+    return None
+
+
+def _toml_value(text: str) -> Any:
+    try:
+        values = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
+        return text
+    return values["value"] if len(values) == 1 else text
+
+
 def _listed(words: Iterable[str]) -> list[str]:
     """`words` as a list; one string alone is one word."""
     return [words] if isinstance(words, str) else list(words)
 
 
-def _plain(value: Any) -> Any:
+def plain_data(value: Any) -> Any:
     """A copy of `value` in dicts and lists, without keys that hold None."""
     if isinstance(value, Bodies) and "reduction" not in value.model_fields_set:
-        return _plain(value.model_dump(by_alias=True, exclude={"reduction"}))  # chosen anew: what changes may change it
+        return plain_data(
+            value.model_dump(by_alias=True, exclude={"reduction"})
+        )  # chosen anew: what changes may change it
     if isinstance(value, Table):
         return {
-            key: _plain(item)
-            for key, field in keys_of(type(value)).items()
-            if (item := getattr(value, field)) is not None
+            name: plain_data(item)
+            for name, key in keys_of(type(value)).items()
+            if (item := getattr(value, key.field)) is not None
         }
     if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items() if item is not None}
+        return {str(key): plain_data(item) for key, item in value.items() if item is not None}
     if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
+        return [plain_data(item) for item in value]
     if hasattr(value, "tolist"):  # numpy's arrays and numbers
-        return _plain(value.tolist())
+        return plain_data(value.tolist())
     return value
 
 

@@ -13,11 +13,11 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
-from contact1d.workflow.scene.places import Keys, Place, places, powers
 from contact1d.workflow.scene.problems import Problem, path_of, shown
-from contact1d.workflow.scene.quantities import Table, Unit
+from contact1d.workflow.scene.quantities import Keys, Place, Unit, places
 from contact1d.workflow.scene.si_text import UnitTextError, example, si_value
-from contact1d.workflow.scene.tables import Scene
+from contact1d.workflow.scene.tables import Tables
+from contact1d.workflow.units import SI
 
 BOLTZMANN = Fraction(1380649, 10**29)
 """k_B [J/K], exact since 2019."""
@@ -43,105 +43,93 @@ class Column:
 
 
 @dataclass
-class Converted:
-    """What came of a scene's texts: `problems`, the keys where these are, and the texts that were read, by path."""
+class Conversion:
+    """The texts with units of one scene, as its numbers.
 
+    Attributes:
+        data: the scene, a plain dict, in which numbers take the place of texts.
+        columns: the lists of `data` that were read from a file, by their keys.
+        problems: what is wrong with the texts.
+        reported: the keys where these problems are, or where a number is unknown because of another one.
+        texts: the texts that were read, by path.
+    """
+
+    data: dict[str, Any]
+    columns: Mapping[Keys, Column]
     problems: list[Problem] = field(default_factory=list)
-    told: set[Keys] = field(default_factory=set)
+    reported: set[Keys] = field(default_factory=set)
     texts: dict[str, str] = field(default_factory=dict)
 
-
-def convert_texts(
-    data: dict[str, Any], columns: Mapping[Keys, Column] | None = None, root: type[Table] = Scene
-) -> Converted:
-    """Put numbers in the place of all texts with units in `data`, a plain dict of tables of `root`.
-
-    `columns` are the lists of `data` that were read from a file, by their keys.
-    """
-    return _Conversion(data, columns or {}, root).result()
-
-
-class _Conversion:
-    """One scene under way: `texts` are the places of its texts, and of the columns that have a unit."""
-
-    def __init__(self, data: dict[str, Any], columns: Mapping[Keys, Column], root: type[Table]) -> None:
-        self.data, self.columns, self.root = data, columns, root
-        self.texts = [place for place in places(root, data) if place.is_text]
-        self.texts += [Place(keys, column.unit, Unit("LU")) for keys, column in columns.items() if column.unit]
-        self.done = Converted()
-
-    def result(self) -> Converted:
+    def __post_init__(self) -> None:
         """Convert them: those in SI first, since they say what LU, FU and MU are."""
-        si = {place.keys: value for place in self.texts if (value := self._si(place)) is not None}
-        readable = [place for place in self.texts if place.keys in si]
-        for place in readable:
-            if not place.bases:
-                self._put(place, si[place.keys])
-        needed = frozenset[str]().union(*(place.bases for place in self.texts))
-        scales = self._scales(needed) if needed else {}
-        for place in readable:
-            if place.bases and scales is None:
-                self.done.told.add(place.keys)
-            elif place.bases and scales is not None:
-                self._put(place, si[place.keys] / _size(place.unit.name, scales))
-        return self.done
+        found = [place for place in places(Tables, self.data) if place.is_text]
+        found += [Place(keys, column.unit, Unit("LU")) for keys, column in self.columns.items() if column.unit]
+        read = [(place, value) for place in found if (value := self._si(place)) is not None]
+        for place, value in read:
+            if not place.unit.bases:
+                self._put(place, value)
+        in_model_units = [place for place in found if place.unit.bases]
+        scales = self._scales(in_model_units) if in_model_units else {}
+        for place, value in read:
+            if place.unit.bases and scales is None:
+                self.reported.add(place.keys)
+            elif place.unit.bases and scales is not None:
+                self._put(place, value / _size(place.unit.name, scales))
 
     def _si(self, place: Place) -> Fraction | None:
-        """The quantity that the text says, in SI, a temperature as k_B T; None, and told, where it is none."""
+        """The quantity that the text says, in SI, a temperature as k_B T; None, and reported, where it is none."""
         try:
             value, dimension = si_value(place.value, *place.unit.texts)
         except UnitTextError as error:
-            self._tell(place, str(error))
+            self._report(place, str(error))
             return None
         return value * BOLTZMANN if dimension == "K" and place.unit.name != "K" else value
 
-    def _tell(self, place: Place, message: str, hint: str = "") -> None:
-        self.done.problems.append(Problem(path_of(place.keys), message, shown(place.value), hint))
-        self.done.told.add(place.keys)
+    def _report(self, place: Place, message: str, hint: str = "") -> None:
+        self.problems.append(Problem(path_of(place.keys), message, shown(place.value), hint))
+        self.reported.add(place.keys)
 
     def _put(self, place: Place, value: Fraction) -> None:
         """Put the number in the text's place, or the numbers of a column in theirs."""
-        table: Any = self.data
-        for key in place.keys[:-1]:
-            table = table[key]
         try:
             number = float(value)
         except OverflowError:
-            self._tell(place, "is larger than any number that a computer holds")
+            self._report(place, "is larger than any number that a computer holds")
             return
         if place.keys in self.columns:
-            table[place.keys[-1]] = [number * item for item in table[place.keys[-1]]]
+            place.put(self.data, [number * item for item in self.data["bodies"]["profile"][place.keys[-1]]])
         else:
-            table[place.keys[-1]] = number
-            self.done.texts[path_of(place.keys)] = place.value
+            place.put(self.data, number)
+            self.texts[path_of(place.keys)] = place.value
 
-    def _scales(self, needed: frozenset[str]) -> dict[str, Fraction] | None:
-        """What LU, FU and MU are in SI, those of `needed`; chosen and written into the scene where they are open.
+    def _scales(self, texts: list[Place]) -> dict[str, Fraction] | None:
+        """What LU, FU and MU are in SI, those that `texts` need; chosen and put into the scene where they are open.
 
-        None, and told, where they cannot be known.
+        None, and reported, where they cannot be known.
         """
         material, bodies = self.data.get("material", {}), self.data.get("bodies", {})
         if not isinstance(material, dict) or not isinstance(bodies, dict):
-            return None  # told where tables are checked
-        first, stiffness = next(place for place in self.texts if place.bases), bodies.get("bulk_stiffness", "auto")
+            return None  # reported where tables are checked
+        first, stiffness = texts[0], bodies.get("bulk_stiffness", "auto")
         if "surface_energy" in material:
             message = "LU and FU follow from the run (material.surface_energy), so that units have no size before it"
-            self._tell(first, message, f"write a number in {first.unit.name}")
+            self._report(first, message, f"write a number in {first.unit.name}")
             return None
+        needed = frozenset[str]().union(*(place.unit.bases for place in texts))
         elastic = bool(ELASTIC & material.keys())
         if stiffness == "auto" or not elastic or "MU" in needed:
             needed |= {"LU", "FU"}
-        given = {base: _positive(material.get(key)) for base, key in UNIT_KEYS.items() if key in material}
+        given = {base: _positive(material[key]) for base, key in UNIT_KEYS.items() if key in material}
         known = {base: value for base, value in given.items() if value is not None}
         chosen = needed - given.keys()
         own = ("bodies", "bulk_stiffness")
         fixed = "FU" in chosen and elastic and stiffness != "auto"
-        plain = [place for place in self._plain() if place.bases & chosen]
-        if fixed and own not in self.done.told:
-            self._tell(Place(own, stiffness, Unit("FU/LU")), "follows from the material here", 'write "auto"')
+        plain = [place for place in self._plain() if place.unit.bases & chosen]
+        if fixed and own not in self.reported:
+            self._report(Place(own, stiffness, Unit("FU/LU")), "follows from the material here", 'write "auto"')
         elif plain and not fixed:
-            self.done.problems.append(self._mixed(plain, chosen))
-        # also where a problem was told, so that the rules across tables don't tell its consequences
+            self.problems.append(self._mixed(plain, first, chosen))
+        # also where a problem was reported, so that the rules across tables don't report its consequences
         self.data["material"] = material | {
             UNIT_KEYS[base]: 1.0 for base in sorted(chosen) if not (fixed and base == "FU")
         }
@@ -150,7 +138,7 @@ class _Conversion:
     def _plain(self) -> Iterator[Place]:
         """The places of numbers without a unit; those from one file are one."""
         files = set()
-        for place in places(self.root, self.data):
+        for place in places(Tables, self.data):
             column = self.columns.get(place.keys[:-1])
             if not place.is_number or (column is not None and (column.unit or column.stands_in)):
                 continue
@@ -160,12 +148,12 @@ class _Conversion:
                 files.add(column.file)
                 yield Place(FILE, column.file, Unit("LU"))
 
-    def _mixed(self, plain: list[Place], chosen: frozenset[str]) -> Problem:
+    def _mixed(self, plain: list[Place], text: Place, chosen: frozenset[str]) -> Problem:
         """Plain numbers beside numbers with a unit, and nothing says what the units of the model are."""
-        first, text = plain[0], next(place for place in self.texts if place.bases)
+        first = plain[0]
         if text.keys in self.columns:
             text = replace(text, keys=FILE, value=self.columns[text.keys].file)
-        open_ = {base for place in plain for base in place.bases} & chosen
+        open_ = {base for place in plain for base in place.unit.bases} & chosen
         if not ELASTIC & self.data.get("material", {}).keys():
             open_ |= {"LU", "FU"} & chosen
         bases = [base for base in UNIT_KEYS if base in open_]
@@ -193,12 +181,11 @@ def _positive(value: Any) -> Fraction | None:
 
 
 def _size(name: str, scales: Mapping[str, Fraction]) -> Fraction:
-    """One unit of the model, "FU·TU/LU", in SI."""
-    size = Fraction(1)
-    for base, power in powers(name).items():
-        if base == "TU":
-            square = scales["MU"] * scales["LU"] / scales["FU"]
-            size *= square ** (power // 2) * (Fraction(math.sqrt(square)) if power % 2 else 1)
-        else:
-            size *= scales[base] ** power
+    """One unit of the model in SI: LU^l FU^f MU^m TU^t, TU = √(MU·LU/FU)."""
+    unit, size = SI[name], Fraction(1)
+    for base, power in {"LU": unit.lu, "FU": unit.fu, "MU": unit.mu}.items():
+        size *= scales[base] ** power if power else 1
+    if unit.tu:
+        square = scales["MU"] * scales["LU"] / scales["FU"]
+        size *= square ** (unit.tu // 2) * (Fraction(math.sqrt(square)) if unit.tu % 2 else 1)
     return size

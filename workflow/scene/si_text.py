@@ -13,9 +13,8 @@ from fractions import Fraction
 from functools import cache
 from typing import Any
 
-MODEL_IN_SI = {"LU": "m", "FU": "N", "MU": "kg", "TU": "s"}
-"""The SI unit behind each model unit: "FU·TU/LU" is a quantity in N·s/m."""
-SHORTER = {"N·m": "J", "N/m²": "Pa"}
+from contact1d.workflow.units import SI
+
 DIMENSIONS = {
     "m": ("a length", "10 mm"),
     "N": ("a force", "10 N"),
@@ -48,8 +47,8 @@ COMMON = (
     "mJ/m²", "N/m", "mN/m", "kg", "g", "mg", "K", "s", "ms", "µs", "ns", "m/s", "mm/s", "µm/s", "nm/s",
 )  # fmt: skip
 """Units among which a misspelt one is looked for."""
-ZEROS = {"degree_Celsius": Fraction(27315, 100), "degree_Fahrenheit": Fraction(45967, 180)}
-"""Units of temperature whose zero is not the absolute one, by pint's name, and where it is [K]."""
+OFFSET = frozenset({"degree_Celsius", "degree_Fahrenheit"})
+"""Units of temperature whose zero is not the absolute one, by pint's name."""
 ANGLES = frozenset({"radian", "degree", "turn", "gradian", "arcminute", "arcsecond", "steradian"})
 NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+(?![.\d]))?")
 NAME = re.compile(r"[^\W\d_]+|°[CF]?|%|deg[CF]|delta_deg[CF]")
@@ -76,20 +75,17 @@ class Unit:
 
 def in_words(unit: str) -> str:
     """What a quantity in `unit` (of SI or of the model) is, with an example: "a force, such as 10 N"."""
-    words, example = DIMENSIONS.get(in_si(unit)) or (f"a quantity in {in_si(unit)}", f"1 {in_si(unit)}")
-    return f"{words}, such as {example}"
+    return f"{DIMENSIONS[in_si(unit)][0]}, such as {example(unit)}"
 
 
 def example(unit: str) -> str:
     """A text that a quantity in `unit` may be: "10 mm"."""
-    return (DIMENSIONS.get(in_si(unit)) or ("", f"1 {in_si(unit)}"))[1]
+    return DIMENSIONS[in_si(unit)][1]
 
 
 def in_si(unit: str) -> str:
     """The unit in SI of the same dimension: N·s/m for FU·TU/LU."""
-    for model, si in MODEL_IN_SI.items():
-        unit = unit.replace(model, si)
-    return SHORTER.get(unit, unit)
+    return SI[unit].si if unit in SI else unit
 
 
 def split(text: str) -> tuple[str, str]:
@@ -211,9 +207,9 @@ def _unit(unit: str) -> Unit:
     except Exception as error:  # pint's parser meets nonsense with errors of many kinds that have no class in common
         raise UnitTextError("has a unit that cannot be read") from error
     relative = not plain or any(name.startswith(("degree_", "delta_")) for name in known - ANGLES)
-    if relative and (unit not in names or known.isdisjoint(ZEROS)):
+    if relative and (unit not in names or known.isdisjoint(OFFSET)):
         raise UnitTextError("is not counted from zero: a temperature is in K or °C, and a level has no place here")
-    zero = next((ZEROS[name] for name in known if name in ZEROS), Fraction(0))
+    zero = registry.Quantity(Fraction(0), found).to("K").magnitude if relative else Fraction(0)
     return Unit(Fraction(factor), zero, found.dimensionality, not known.isdisjoint(ANGLES))
 
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, cast, get_args
+from typing import TYPE_CHECKING, Annotated, Literal, Self, cast
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from contact1d.workflow.scene.effects import (
@@ -21,11 +20,12 @@ from contact1d.workflow.scene.effects import (
     Noise,
     Plate,
 )
-from contact1d.workflow.scene.experiments import Experiment, Method, Slide, Tangential
-from contact1d.workflow.scene.material import PARABOLA_SHARE, Material, Reduction
-from contact1d.workflow.scene.output import Output
+from contact1d.workflow.scene.experiments import Experiment, Method
+from contact1d.workflow.scene.material import MEANING, PARABOLA_SHARE, Material, Reduction, default_reduction
+from contact1d.workflow.scene.problems import tables_as_toml
 from contact1d.workflow.scene.profiles import Flat, Parabola, Profile
 from contact1d.workflow.scene.quantities import (
+    AllOrSome,
     AnyParticleCount,
     AutoLength,
     AutoParticleCount,
@@ -36,8 +36,8 @@ from contact1d.workflow.scene.quantities import (
     RelativeTolerance,
     Stiffness,
     Table,
+    keys_of,
 )
-from contact1d.workflow.scene.reduction import MEANING, with_reduction
 
 if TYPE_CHECKING:
     import numpy as np
@@ -120,14 +120,26 @@ class Accuracy(Table):
     tolerance: RelativeTolerance = Field(default=1e-3, description="relative error allowed in the main results")
 
 
+class Output(Table):
+    """What is kept besides the results."""
+
+    states: AllOrSome = Field(
+        description="how many states of the whole way states.lammpstrj holds, each with all atoms' places and the "
+        'force of the opposite body on them: so many, evenly among the rows of curve.csv, or "all" of these; without '
+        "this table it has the reported states only"
+    )
+
+
 def _one_line(title: str) -> str:
     if not title.strip() or not title.isprintable():
         raise PydanticCustomError("scene", "must be one line of text, not empty")
     return title
 
 
-class Scene(Table):
-    """A whole scene. `read_scene` and `scene_from_dict` check that its tables fit together; this class does not."""
+class Tables(Table):
+    """The tables of a scene, each right by itself; `read`, whose `Scene` this is, checks that they fit together."""
+
+    model_config = ConfigDict(defer_build=True)  # built once, by that
 
     title: Annotated[str, AfterValidator(_one_line)] = Field(description="what the scene shows, one line")
     bodies: Bodies = Field(description="the two bodies")
@@ -147,29 +159,14 @@ class Scene(Table):
 
     @model_validator(mode="after")
     def _choose_reduction(self) -> Self:
-        """Give the bodies a reduction if they have none."""
-        self.__dict__["bodies"] = with_reduction(self.bodies, self.material is not None)
-        return self
-
-    def with_(self, changes: Mapping[str, Any] | None = None, *, without: Iterable[str] = (), **keywords: Any) -> Scene:
-        """Return this scene with values changed, checked as a whole.
-
-            scene.with_({"bodies.profile.radius": 2000.0, "accuracy.tolerance": 1e-4}, without="neighbours")
-            scene.with_(bodies__profile__radius=2000.0, accuracy__tolerance=1e-4)
-
-        Args:
-            changes: values by dotted keys, as in a scene file; a table is a dict, None takes a key or table away.
-            without: effects whose tables are removed.
-            keywords: more changes, the keys' dots written as two underscores.
-
-        Raises:
-            SceneError: the scene that would be is none; with every problem at once.
-        """
-        from contact1d.workflow.scene.read import changed_scene
-
-        named = {key.replace("__", "."): value for key, value in keywords.items()}
-        given = {} if changes is None else changes
-        return changed_scene(self, {**given, **named} if isinstance(given, Mapping) else given, without)
+        """The scene whose bodies have a reduction, which counts as not given where it is by default (`Scene.with_`)."""
+        bodies = self.bodies
+        if bodies.reduction is not None:
+            return self
+        chosen = default_reduction(self.material is not None, bodies.lower, bodies.profile.kind)
+        resolved = bodies.model_copy(update={"reduction": chosen})
+        resolved.model_fields_set.discard("reduction")
+        return self.model_copy(update={"bodies": resolved})
 
     def __repr__(self) -> str:
         """One line: title, profile, effects and experiment; `print` shows the whole scene."""
@@ -177,10 +174,8 @@ class Scene(Table):
         return f"<Scene {self.title!r}: {self.bodies.profile.kind}{effects}; {self.experiment.kind}>"
 
     def __str__(self) -> str:
-        """The scene file."""
-        from contact1d.workflow.scene.write import scene_to_toml
-
-        return scene_to_toml(self)
+        """The scene file: TOML with defaults written out, that reads back as an equal scene."""
+        return tables_as_toml(self.model_dump(by_alias=True, exclude_none=True))
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -235,18 +230,11 @@ class Scene(Table):
     @property
     def method(self) -> Method:
         """The method given, else "dynamic" if a plate, damping or noise is there, else "quasistatic"."""
-        if isinstance(self.experiment, Slide):
-            return "dynamic"
-        if isinstance(self.experiment, Tangential):
-            return "quasistatic"
-        return self.experiment.method or default_method(self.effects)
+        return self.experiment.given_method or default_method(self.effects)
 
 
 EFFECT_TABLES: dict[str, type[Effect]] = {
-    name: kind
-    for name, field in Scene.model_fields.items()
-    for kind in get_args(field.annotation)
-    if isinstance(kind, type) and issubclass(kind, Effect)
+    name: table for name, key in keys_of(Tables).items() if (table := key.allowed.table) and issubclass(table, Effect)
 }
 EFFECTS = tuple(EFFECT_TABLES)
 """Names of all effects in deck order, which is that of the scene's fields; each is also the name of its scene table."""

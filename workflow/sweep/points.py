@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
-from contact1d.workflow.scene.overrides import set_values
+from contact1d.workflow.scene.read import set_values
 from contact1d.workflow.sweep.axes import SweepPlan
 
 NAME_LENGTH = 16
