@@ -28,6 +28,7 @@ from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import DigitsError, TensionError, UntrustedError
 from contact1d.workflow.deck.steps import Displace, Phase, displacements
 from contact1d.workflow.settings.reduced import Reduced, reduced
+from contact1d.workflow.settings.settings import Settings
 
 Array = NDArray[np.float64]
 MOST_INCREMENTS = 10_000
@@ -223,12 +224,7 @@ class Branch:
         if direction * (end - start) <= 0.0:
             states.append(self._at(start))
             return
-        one_load = not self.scene.adheres
-        steps = (
-            max(LOADING_STEPS, min(CURVE_STEPS, CURVE_NUMBERS // self.settings.particles))
-            if one_load
-            else LOADING_STEPS
-        )
+        steps = LOADING_STEPS if self.scene.adheres else curve_steps(self.settings)
         rows = np.linspace(start, end, steps + 1)
         self.visit(rows if direction > 0 else rows[1:], "loading" if direction > 0 else "falling")
 
@@ -427,7 +423,8 @@ class Branch:
             self._replay(window, first=number == 0)
             window *= ZOOM_FACTOR
             if self._agrees(before):
-                teeth = rivals(*(values.tolist() for values in _curve(self.falling)), self.peak())
+                d, force = _curve(self.falling)
+                teeth = rivals(d.tolist(), force.tolist(), self.peak())
                 self.missed = abs(self.peak().smooth - before.smooth) + max((0.0, *teeth.values()))
                 self._finished = True
                 return
@@ -556,6 +553,11 @@ class Branch:
         held = self.scene.bodies.spacing * np.maximum(0.0, -profile.pressure)
         near = profile.z_upper - profile.z_lower < distance
         return float(np.sum(np.where(near, np.maximum(held, largest), held)))
+
+
+def curve_steps(settings: Settings) -> int:
+    """Increments of a load's curve where rows are steps of one run."""
+    return max(LOADING_STEPS, min(CURVE_STEPS, CURVE_NUMBERS // settings.particles))
 
 
 class SecondMaximumError(UntrustedError):

@@ -46,7 +46,4 @@ def perform(context: RunContext) -> Outcome:
     scene = context.deck.scene
     if slow := slowness(scene, context.deck.settings):
         context.progress.note(slow)
-    run = kind_of(scene).run
-    if not scene.experiment.motion_is_result and not scene.experiment.goes_along:
-        run = in_smaller_steps(run)
-    return kept_way(context, run(context))
+    return kept_way(context, in_smaller_steps(kind_of(scene).run)(context))

@@ -137,7 +137,8 @@ def in_smaller_steps(run: Callable[[RunContext], Outcome]) -> Callable[[RunConte
         try:
             return tried(context)
         except ThroughError as error:
-            if deck.scene.noise is not None or not context.retries:  # it is the noise that drives particles through
+            # Under noise it is the noise that drives particles through, and a motion is not begun anew.
+            if deck.scene.noise is not None or deck.scene.experiment.motion_is_result or not context.retries:
                 raise
             latest = error
         for part in RETRY_SHARES:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from contact1d.workflow.continuation.branch import LOADING_STEPS
+from contact1d.workflow.continuation.branch import LOADING_STEPS, curve_steps
 from contact1d.workflow.continuation.budget import Reading
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.holding import held_phase, stiffness_under
@@ -89,7 +89,8 @@ class LoadExperiment(Experiment):
         if scene.method == "dynamic":
             scale = max(abs(force), settings.force_scale)
             return (held_phase("loading", scene, settings, (force,), scale, state=True),)
-        rows = displacements(np.linspace(0.0, settings.largest_displacement, LOADING_STEPS + 1).tolist())
+        steps = curve_steps(settings) if scene.is_stepped else LOADING_STEPS
+        rows = displacements(np.linspace(0.0, settings.largest_displacement, steps + 1).tolist())
         return (Phase("loading", rows, state=True),)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
