@@ -49,7 +49,7 @@ validation: $(READY) ## reproduce the paper anew: VALIDATION.md, docs/reproduced
 	@WRITE_DOCS=1 $(BIN)/python -m pytest -q tests/unit/test_validation_page.py tests/unit/test_judged_runs.py
 
 clean: ## remove .venv and the caches; runs/ stays
-	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis .benchmarks
+	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
 	find workflow analysis potentials lammps_inputs tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(LOCKED): requirements.lock
