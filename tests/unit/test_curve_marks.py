@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import argrelmax
 
-from contact1d.analysis.curve_marks import _bend, crossing, largest_tension, promised, rivals, smooth_crossing
+from contact1d.analysis.curve_marks import crossing, largest_tension, promised, rivals, smooth_crossing, tops
 from contact1d.workflow.experiments.pull_off.smooth import PLACE_FACTOR
 
 NEAR_PARABOLA = 1e-6  # of a width: a place goes with the root of a height's round-off
@@ -127,6 +127,7 @@ def test_places_that_all_but_coincide_get_no_polynomial() -> None:
 def test_a_crossing_lies_where_the_straight_line_passes_the_level() -> None:
     assert crossing([2.0, 1.0, 0.0], [3.0, 1.0, -1.0], 0.0) == (1, 0.5)
     assert crossing([2.0, 1.0, 0.0], [3.0, 1.0, -1.0], 1.0) == (0, 1.0)
+    assert crossing([2.0, 1.0, 0.0], [3.0, 2.0, 1.0], 1.0) == (1, 0.0)  # met by the last row
 
 
 def test_a_level_that_is_never_passed_is_an_error() -> None:
@@ -154,20 +155,6 @@ def test_a_parabola_leaves_no_doubt_and_rows_far_away_change_nothing(far: int) -
     assert peak.position == pytest.approx(1e-7, abs=1e-6 * NEAR_PARABOLA)
     assert max(peak.uncertainty, abs(peak.smooth - 2.0)) < PARABOLA
     assert peak.misplaced < 1e-6 * NEAR_PARABOLA
-
-
-def test_the_uncertainty_of_a_top_is_what_two_rows_more_change() -> None:
-    d = falling(0.03 + 0.1 * np.arange(-6, 7))
-    tension = np.exp(-((np.asarray(d) - 0.05) ** 2) + 0.3 * np.asarray(d) ** 3)
-    peak = largest_tension(d, (-tension).tolist())
-    tops = []
-    for beside in (1, 2):
-        near = slice(peak.index - beside, peak.index + beside + 1)
-        fit = np.polynomial.Polynomial.fit(d[near], tension[near], 2 * beside)
-        fine = np.linspace(d[peak.index + 1], d[peak.index - 1], 200_001)
-        tops.append(float(fit(fine).max()))
-    assert peak.smooth == pytest.approx(tops[1], abs=1e-10)  # the grid's step, squared
-    assert peak.uncertainty == pytest.approx(abs(tops[1] - tops[0]), abs=1e-10)
 
 
 @pytest.mark.parametrize("apart", [1e-8, 1e-6, 1e-5, 1e-4, 3e-4])
@@ -198,16 +185,6 @@ def test_a_jump_right_after_the_second_row_is_one() -> None:
     peak = largest_tension([0.8, 0.6, 0.58, 0.38], [-0.98, -1.0, -0.96, -0.9])
     assert (peak.position, peak.misplaced) == (0.6, 0.0)
     assert peak.uncertainty == pytest.approx(0.1 * 0.02)
-
-
-def test_a_bend_is_what_a_parabola_changes_its_slope_by_on_uneven_rows() -> None:
-    d = np.array([9.0, 7.5, 7.1, 4.0, 3.3, 1.0])
-    tension = 3.0 + 0.4 * d - 0.7 * d**2
-    slopes = np.diff(tension) / -np.diff(d)
-    for i in range(2, 5):
-        assert _bend(d, tension, i) == pytest.approx(slopes[i - 1] - slopes[i])
-    assert _bend(d, tension, 1) == 0.0
-    assert _bend(np.array([2.0, 2.0, 1.0, 0.0]), tension, 2) == 0.0
 
 
 def test_what_a_curve_promises_is_the_polynomial_through_five_rows() -> None:
@@ -259,3 +236,17 @@ def test_a_smooth_crossing_is_exact_on_a_cubic_and_straight_at_both_ends() -> No
     for level_at in (5.0, -1.0):
         level = float(law(level_at))
         assert smooth_crossing(d.tolist(), law(d).tolist(), level) == crossing(d.tolist(), law(d).tolist(), level)[1]
+
+
+@pytest.mark.parametrize(
+    ("tension", "fall", "found"),
+    [
+        ([0.0, 5.0, 6.0], 1.0, []),
+        ([0.0, 5.0, 4.5, 6.0, 2.0], 1.0, [3]),
+        ([0.0, 5.0, 3.0, 6.0, 2.0], 1.0, [1, 3]),
+        ([0.0, 5.0, 5.0, 3.0, 3.5, 3.0], 1.0, [1]),
+        ([7.0, 2.0, 4.0, 4.0, 2.0], 1.0, [0, 2]),
+    ],
+)
+def test_tops_are_where_a_fall_begins_that_is_no_noise(tension: list[float], fall: float, found: list[int]) -> None:
+    assert tops(tension, fall) == found

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact1d.analysis.extremum import _is_smooth, _median, _noise, _steepness, place_of_minimum
+from contact1d.analysis.extremum import place_of_minimum
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import compressive_radius, tensile_radius
 
@@ -66,35 +66,6 @@ def test_the_edge_of_a_parabolic_pressure_is_exact_at_any_spacing(spacing: float
     zero = np.zeros_like(x)
     found = compressive_radius(Profile(x, zero, zero, pressure, zero))
     assert found.value == pytest.approx(half, rel=1e-9)
-
-
-def test_noise_on_a_smooth_row_is_found_as_large_as_it_is() -> None:
-    """White noise of unit variance on a parabola, a wave and nothing; the mean of 300 rows is known to 2 %."""
-    random = np.random.default_rng(11)
-    t = np.arange(41.0)
-    for smooth in (0.0 * t, 0.3 * (t - 17.0) ** 2, 50.0 * np.cos(0.2 * t)):
-        found = [_noise(smooth + random.normal(size=t.size), 20) for _ in range(300)]
-        assert 0.75 < np.mean(found) < 1.0  # the least of several estimates, each of which has a mean of 1
-    assert _noise(np.asarray([1.0, 2.0]), 0) == 0.0
-    assert _noise(0.3 * t**2, 20) < 1e-12
-
-
-def test_the_middle_of_a_few_values() -> None:
-    random = np.random.default_rng(12)
-    for count in (1, 2, 5, 8):
-        values = random.normal(size=count)
-        assert _median(values) == np.median(values)
-
-
-@pytest.mark.parametrize(
-    ("y", "steep"),
-    [([3.0, 1.0, 0.0, 2.0, 5.0], 2.0 / 3.0), ([5.0, 2.0, 0.0, 1.0, 3.0], 2.0 / 3.0), ([1.0, 1.0, 0.0, 9.0, 9.0], 1.0),
-     ([8.0, 3.0, 1.0, 2.0, 9.0], 2.0 / 7.0), ([0.0, 0.0, 0.0, 0.0, 0.0], 1.0)],
-)  # fmt: skip
-def test_a_dip_is_as_steep_as_its_higher_neighbour_has_risen_to_the_lower_shoulder(
-    y: list[float], steep: float
-) -> None:
-    assert _steepness(np.asarray(y), 2) == pytest.approx(steep)
 
 
 def test_a_flat_dip_in_noise_is_found_within_its_claim_and_better_than_its_lowest_sample() -> None:
@@ -172,13 +143,3 @@ def test_the_edge_of_a_parabolic_pressure_is_exact_between_uneven_places() -> No
         pressure = np.maximum(0.0, 1.0 - ((x - middle) / half) ** 2)
         zero = np.zeros_like(x)
         assert compressive_radius(Profile(x, zero, zero, pressure, zero)).value == pytest.approx(half, rel=1e-9)
-
-
-@pytest.mark.parametrize("index", [5, 8, 10])
-def test_one_sample_aside_among_the_ten_on_each_side_shows_that_a_row_is_not_smooth(index: int) -> None:
-    """The outermost one of them may go on in any way."""
-    for aside in range(21):
-        y = np.cosh(0.1 * (np.arange(21.0) - 9.0))
-        y[aside] += 1.0
-        for row, at in ((y, index), (y[::-1], 20 - index)):
-            assert _is_smooth(np.arange(21.0), row, at, 0.0) == (aside == 0 or aside >= index + 10)

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.polynomial import Polynomial
+from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 from scipy.stats import t as students
 
@@ -143,3 +145,24 @@ def test_what_a_row_may_miss_of_a_friction_that_rises_to_a_slip(before: list[flo
     friction = np.array([*before, 0.0, 0.0])
     found = largest_before(friction, 0.1 * np.arange(friction.size), 1.0)
     assert found == (before[-1], pytest.approx(missed))
+
+
+@pytest.mark.parametrize("start", [0.0, -40.0, 7.0])
+def test_means_over_periods_are_integrals_of_hermites_cubic_or_of_chords_between_rows(start: float) -> None:
+    random = np.random.default_rng(5)
+    for periods in (1.0, 2.0, 3.7):
+        period = random.uniform(0.5, 3.0)
+        time = start + period * periods * np.linspace(0.0, 1.0, 23) ** 1.3
+        law = Polynomial(random.normal(size=4))  # its integral is no cubic
+        integral = law.integ()(time - start)
+        for rate in (None, law(time - start)):
+            found = block_means(time, integral, period, rate)
+            assert found.size == int(periods)
+            for number, mean in enumerate(found[::-1]):
+                end = time[-1] - start - number * period
+                if rate is None:
+                    at = np.interp([end - period, end], time - start, integral)
+                    assert mean == pytest.approx((at[1] - at[0]) / period)
+                else:
+                    exact = quad(law, end - period, end)[0] / period
+                    assert mean == pytest.approx(exact, abs=1e-3 * np.abs(law(time - start)).max())

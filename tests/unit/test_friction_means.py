@@ -33,12 +33,6 @@ def test_a_mean_leaves_the_run_in_out() -> None:
     assert found.first == 3
 
 
-def test_means_over_periods_are_those_of_what_was_summed_up() -> None:
-    time = np.linspace(0.0, 6.0, 61)
-    for start in (0.0, -5.0, 9.0):
-        assert block_means(time + start, time**2, 2.0) == pytest.approx([2.0, 6.0, 10.0])
-
-
 def moved(place: Any, leg: DriveLeg) -> Motion:
     time = np.linspace(0.0, PERIODS / VELOCITY, 40 * PERIODS + 1)
     none = np.zeros_like(time)

@@ -156,21 +156,6 @@ def test_the_contact_need_not_be_centred() -> None:
     assert not found.reaches_end
 
 
-def test_the_radius_scales_with_length_and_not_with_force() -> None:
-    x = np.arange(-60.0, 61.0)
-    p = smooth(x, -12.3, 12.3)
-    once, scaled = tensile_radius(profile(x, p)), tensile_radius(profile(3.0 * x + 7.0, 1e-9 * p))
-    assert scaled.value == pytest.approx(3.0 * once.value, rel=1e-9)
-    assert scaled.left == pytest.approx(3.0 * once.left + 7.0, rel=1e-9)
-
-
-def test_the_mirror_image_has_the_same_radius() -> None:
-    x, p, _ = random_case(np.random.default_rng(14), snaps=True)
-    found, mirrored = tensile_radius(profile(x, p)), tensile_radius(profile(-x[::-1], p[::-1]))
-    assert mirrored.value == pytest.approx(found.value, rel=1e-9)
-    assert mirrored.left == pytest.approx(-found.right, rel=1e-9)
-
-
 def test_uneven_places_do_not_matter() -> None:
     rng = np.random.default_rng(15)
     x = np.arange(-60.0, 61.0) + rng.uniform(-0.2, 0.2, 121)
