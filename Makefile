@@ -27,7 +27,8 @@ run: $(READY) ## run a scene: SCENE=file.toml (default steel_on_glass), OUT=fold
 	@$(BIN)/contact1d run "$(SCENE)" $(if $(OUT),--out "$(OUT)")
 
 test: $(READY) ## run the tests: ARGS='-m slow' the long ones, ARGS=tests/unit one room
-	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest $(ARGS) # small matrices: threads only get in each other's way
+	@# One process for each core, and small matrices: threads would only get in each other's way.
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --maxprocesses 8 --dist worksteal $(ARGS)
 
 lint: $(READY) ## check style, types and the direction of imports
 	$(BIN)/ruff check .
