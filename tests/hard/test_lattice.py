@@ -45,7 +45,7 @@ SCENES: dict[str, tuple[dict[str, Any], set[str]]] = {
     "pairs pulled off": (PAIRS | {"experiment": {"kind": "pull_off", "preload": 0.1}}, {"adhesion_force"}),
     "pairs, there and back": (
         PAIRS
-        | {"experiment": {"kind": "path", "displacements": {"from": 0.1, "to": -0.5, "steps": 120}}},
+        | {"experiment": {"kind": "path", "displacements": {"from": 0.1, "to": -0.5, "steps": 60}}},
         {"adhesion_force"},
     ),
 }  # fmt: skip
