@@ -1,14 +1,14 @@
 """Every set of effects: it either runs in LAMMPS, row by row and as a deck with bitwise the same states, or is refused.
 
-There are 2⁸ sets of effects, five experiments with their methods and two lower bodies; all of them are tried, so every
-effect alone (with what it requires) and every pair of effects is among them.
+Five experiments with their methods, two lower bodies, every set of up to MOST effects and every larger one that is
+allowed; so every effect alone (with what it requires) and every pair of effects is among them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from itertools import combinations
+from itertools import combinations, cycle
 from pathlib import Path
 from typing import Any
 
@@ -52,6 +52,7 @@ METHODS: dict[str, tuple[str, ...]] = dict.fromkeys(EXPERIMENTS, ("quasistatic",
     "tangential": ("quasistatic",),
 }
 STEPS = 25
+MOST = 3
 SUM = 1e-12
 """The force on the plate is a sum over 20 particles, by LAMMPS and by numpy in their own orders."""
 Case = tuple[str, str, str, frozenset[str]]
@@ -97,8 +98,9 @@ def cases() -> Iterator[Case]:
         for method in methods:
             for lower in ("particles", "rigid_plane"):
                 for count in range(len(EFFECTS) + 1):
-                    for chosen in combinations(EFFECTS, count):
-                        yield kind, method, lower, frozenset(chosen)
+                    for chosen in map(frozenset, combinations(EFFECTS, count)):
+                        if count <= MOST or fits(kind, method, lower, chosen):
+                            yield kind, method, lower, chosen
 
 
 def label(case: Case) -> str:
@@ -195,7 +197,7 @@ def run_a_little(scene: Scene, case: Case, folder: Path) -> None:
 
 @pytest.mark.parametrize(
     ("case", "tangential"),
-    [pytest.param(case, k, id=f"{label(case)}-{k}") for case in LONG for k in BOTH_WAYS],
+    [pytest.param(case, k, id=f"{label(case)}-{k}") for case, k in zip(LONG, cycle(BOTH_WAYS), strict=False)],
 )
 def test_sets_with_long_bonds_run(make_scene: MakeScene, tmp_path: Path, case: Case, tangential: float) -> None:
     """Normal and tangential stiffness differ, either way."""
@@ -205,20 +207,12 @@ def test_sets_with_long_bonds_run(make_scene: MakeScene, tmp_path: Path, case: C
 
 
 @pytest.mark.parametrize("tangential", BOTH_WAYS)
-@pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4, 1e-6])
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-6])
 def test_long_bonds_of_any_accuracy(make_scene: MakeScene, tmp_path: Path, tolerance: float, tangential: float) -> None:
     """A long bond is 10/tolerance spacings long."""
     bodies = {"bulk_stiffness_tangential": tangential}
     scene = make_scene(horizontal={}, bodies=bodies, accuracy={"tolerance": tolerance})
     run_a_little(scene, ("path", "quasistatic", "particles", frozenset()), tmp_path)
-
-
-@pytest.mark.parametrize("radius", [1e3, 1e4, 1e5, 1e6, 1e10])
-def test_plates_of_any_curvature(make_scene: MakeScene, tmp_path: Path, radius: float) -> None:
-    """A plate that is nearly flat, and so nearly a line of anchors, moves like any other."""
-    case = ("load", "dynamic", "particles", frozenset({"interaction", "damping", "plate"}))
-    shape = {"particles": 200, "profile": {"kind": "parabola", "radius": radius}}
-    run_a_little(scene_of(make_scene, case, **shape), case, tmp_path)
 
 
 def test_all_other_sets_are_refused(make_scene: MakeScene) -> None:

@@ -154,29 +154,6 @@ def test_what_is_no_line_load_is_refused(x: Array, q: Array, words: str) -> None
         line_load(x, q, 3.0, ends_at_zero=False)
 
 
-@pytest.mark.parametrize("apex", [False, True])
-@pytest.mark.parametrize("count", [14, 15])
-def test_the_load_goes_through_the_mean_of_both_sides_at_every_place(count: int, apex: bool) -> None:
-    """Whatever the load: one that is no polynomial, and not the same on both sides."""
-    x = places(count, 0.7)
-    q = np.exp(-((x / 4.0) ** 2)) * (1.0 + 0.1 * np.tanh(x))
-    found = line_load(x, q, apex=apex)
-    assert found.edge == x[-1]
-    right = x[(x > 0.0) & (x < x[-1])]
-    piece = np.searchsorted(found.breaks, right)
-    for coefficients in (found.coefficients[:, piece - 1], found.coefficients[:, piece]):  # from both sides
-        met = np.sum(coefficients * right ** np.arange(4)[:, None], axis=0)
-        assert met == pytest.approx(np.exp(-((right / 4.0) ** 2)), abs=POWERS)
-    if apex and count % 2 == 0:
-        assert found.coefficients[:, 0] @ x[7] ** np.arange(4) == pytest.approx(math.exp(-((x[7] / 4.0) ** 2)))
-
-
-@pytest.mark.parametrize("side", [1.0, -1.0])
-def test_the_slope_on_the_axis_alone_says_to_which_side_the_pressure_grows(side: float) -> None:
-    rising_again = np.array([[1.0, -1.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [2.0, -1.0, 0.0, 0.0]]).T
-    assert LineLoad(np.arange(4.0), side * rising_again).pressure(0.0) == side * np.inf
-
-
 @pytest.mark.parametrize("spacing", [2.0**-20, 1.0, 2.0**20])
 def test_places_must_be_the_same_on_both_sides_in_any_unit(spacing: float) -> None:
     x = places(12, spacing)
@@ -207,11 +184,3 @@ def test_the_pressure_of_any_cubics_is_that_of_quadrature() -> None:
                     total += quad(lambda t, s=slope, r=r: s(r * math.cosh(t)), *ends)[0]
             exact = (load.at_edge / math.sqrt(breaks[-1] ** 2 - r**2) - total) / math.pi
             assert float(load.pressure(r)) == pytest.approx(exact, rel=1e-9, abs=1e-9)
-
-
-def test_a_long_list_of_distances_has_the_pressures_of_each_of_them() -> None:
-    load = line_load(places(40), np.exp(-((places(40) / 9.0) ** 2)))
-    r = np.linspace(0.0, 25.0, 301).reshape(7, 43)
-    assert load.pressure(r).tolist() == [[float(load.pressure(one)) for one in row] for row in r]
-    assert load.pressure([]).size == 0
-    assert (load.pressure([20.0, 30.0]) == 0.0).all()

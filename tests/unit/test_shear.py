@@ -58,26 +58,6 @@ def test_a_kink_without_places_on_both_sides_is_left_out() -> None:
     assert load.pressure(R) == pytest.approx(mindlin_shear(R, A, 1e-300, MU, PEAK), abs=EXACT * MU * PEAK)
 
 
-def test_a_kink_stays_with_three_places_on_each_side_of_it_and_goes_with_two() -> None:
-    """Places 0.5, 1.5, … 19.5 of a contact up to 20; what is next to a kink is between it and the kink before."""
-    x = lattice(46)
-    for kinks, stay in (
-        ([2.4], []), ([2.6], [2.6]), ([17.4], [17.4]), ([17.6], []),
-        ([8.4, 11.2], [8.4, 11.2]), ([8.6, 11.2], [11.2]), ([11.2, 8.4], [8.4, 11.2]), ([8.4, 20.4], [8.4]),
-    ):  # fmt: skip
-        breaks = shear_load(x, line(A, x), A, kinks).breaks.tolist()
-        assert [place for place in breaks if place % 1.0 not in (0.0, 0.5)] == stay
-
-
-@pytest.mark.parametrize("scale", [2.0**-7, 2.0**9])
-def test_zones_are_the_same_in_any_unit_of_length(scale: float) -> None:
-    x, kinks = lattice(60), [7.5, 13.4]
-    values = line(A, x) - line(7.5, x) - 2.0 * (line(A, x) - line(13.4, x))
-    here, there = shear_load(x, values, A, kinks), shear_load(scale * x, values, scale * A, [scale * k for k in kinks])
-    assert there.breaks.tolist() == (scale * here.breaks).tolist()
-    assert (there.coefficients * scale ** np.arange(4.0)[:, None]).tolist() == here.coefficients.tolist()
-
-
 def test_kinks_stay_where_the_zone_that_sticks_grows_and_go_where_it_comes_back() -> None:
     stick = [20.0, 15.0, 10.0, 19.0, 14.0, 9.0, 20.0, 12.0]
     assert kinks_of(stick, [20.0] * 8) == [[], [15.0], [10.0], [10.0, 19.0], [10.0, 14.0], [9.0], [9.0], [9.0, 12.0]]
@@ -105,13 +85,6 @@ def test_what_differs_between_both_sides_cancels(count: int) -> None:
     even = line(A, x) - line(7.2, x)
     found = shear_load(x, even + 0.1 * np.tanh(x), A, [7.2]).pressure(R)
     assert found == pytest.approx(mindlin_shear(R, A, 7.2, MU, PEAK), abs=EXACT * MU * PEAK)
-
-
-@pytest.mark.parametrize("scale", [2.0**-20, 2.0**20])
-def test_kinks_are_the_same_in_any_unit_of_length(scale: float) -> None:
-    stick, contact = [3.0, 1.5, 2.5, 0.7, 2.0, 1.0], [4.0, 4.0, 4.0, 2.9, 3.5, 3.5]
-    there = kinks_of([scale * c for c in stick], [scale * a for a in contact])
-    assert there == [[scale * kink for kink in row] for row in kinks_of(stick, contact)]
 
 
 def test_a_zone_that_comes_back_to_a_kink_or_stays_leaves_none() -> None:

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from contact1d import files
 from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.potentials import table as table_module
 from contact1d.potentials.table import MOST_POINTS, Table, table_for, write_table
@@ -216,18 +215,3 @@ def test_without_attraction_no_attractive_term(tmp_path: Path) -> None:
     assert law[1] == "0.17999999999999999 exp(-r/0.13)"
     rows = text.split("RSQ", 1)[1].splitlines()[2:]
     assert min(float(row.split()[3]) for row in rows) > 0.0
-
-
-def test_a_write_that_fails_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A full disc at the last moment: the table of before is still there, and whole."""
-    path = tmp_path / "interaction.table"
-    write_table(Table(ADHESIVE, 2.5, 2000), 0.07, path)
-    before = path.read_bytes()
-
-    def full(*_: object) -> None:
-        raise OSError("no space left on device")
-
-    monkeypatch.setattr(files.os, "replace", full)
-    with pytest.raises(OSError, match="no space"):
-        write_table(Table(REPULSIVE, 1.8, 2000), 0.07, path)
-    assert path.read_bytes() == before

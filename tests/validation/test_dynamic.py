@@ -44,7 +44,7 @@ NEAR_PULL_OFF = 0.01
 SNAPPING, SNAP_STEP, SNAPS_RADIUS = 0.05, 0.004, 4.0
 """Bulk stiffness with which pairs snap [FU/LU]; the reference's step, finer than a tooth [LU]; a radius there is known
 to a few spacings only [LU]."""
-CHAIN = 160
+CHAIN, SNAPPING_CHAIN = 160, 80
 STENCIL = 9
 STIFFNESS = 0.83
 SHORT: tuple[Term, Term, float] = ((0.18, 0.13), (0.09, 0.26), 200.0)
@@ -85,10 +85,12 @@ def model_of(law: tuple[Term, Term, float], effects: tuple[float, bool], finishe
     )
 
 
-def vertical_model(law: tuple[Term, Term, float], neighbours: float, stiffness: float = STIFFNESS) -> ChainModel:
-    """A chain that is long enough for every contact here, whatever the program would take."""
+def vertical_model(
+    law: tuple[Term, Term, float], neighbours: float, stiffness: float = STIFFNESS, count: int = CHAIN
+) -> ChainModel:
+    """A chain that is long enough, whatever the program would take."""
     terms = PairInteraction(Exponential(*law[0]), Exponential(*law[1]))
-    return ChainModel(CHAIN, stiffness, terms, radius=law[2], neighbour_stiffness=neighbours)
+    return ChainModel(count, stiffness, terms, radius=law[2], neighbour_stiffness=neighbours)
 
 
 def radius(model: ChainModel, state: State) -> float:
@@ -96,8 +98,9 @@ def radius(model: ChainModel, state: State) -> float:
     return tension_radius(model.places() + state.upper[:, 0], state.pair_force[:, 1] / model.spacing, STENCIL)
 
 
-@pytest.mark.parametrize("law", [SHORT, LONG], ids=["range 0.26", "range 0.5"])
-@pytest.mark.parametrize("effects", [PLAIN, BOTH], ids=["plain", "neighbours horizontal"])
+@pytest.mark.parametrize(
+    ("law", "effects"), [(SHORT, PLAIN), (LONG, BOTH)], ids=["range 0.26", "range 0.5, neighbours, horizontal"]
+)
 def test_pull_off(run_tables: RunTables, law: tuple[Term, Term, float], effects: tuple[float, bool]) -> None:
     finished = run_tables(tables(law, effects, {"kind": "pull_off", "preload": 0.5}))
     found, model = finished.outcome.quantities, model_of(law, effects, finished)
@@ -110,8 +113,7 @@ def test_pull_off(run_tables: RunTables, law: tuple[Term, Term, float], effects:
     assert found["adhesion_force"].uncertainty < 1e-3 * exact.adhesion_force
 
 
-@pytest.mark.parametrize("force", [0.5, -0.5])
-@pytest.mark.parametrize("effects", [PLAIN, BOTH], ids=["plain", "neighbours horizontal"])
+@pytest.mark.parametrize(("effects", "force"), [(PLAIN, 0.5), (BOTH, -0.5)], ids=["plain", "neighbours horizontal"])
 def test_load(run_tables: RunTables, effects: tuple[float, bool], force: float) -> None:
     finished = run_tables(tables(LONG, effects, {"kind": "load", "force": force}))
     found, model = finished.outcome.quantities, model_of(LONG, effects, finished)
@@ -123,7 +125,7 @@ def test_load(run_tables: RunTables, effects: tuple[float, bool], force: float) 
 
 
 @pytest.mark.parametrize("method", ["dynamic", "quasistatic"])
-@pytest.mark.parametrize("share", [0.9, 0.9977, 0.9997])
+@pytest.mark.parametrize("share", [0.9, 0.9997])
 def test_a_tension_just_below_the_largest_is_within_what_is_claimed(
     run_tables: RunTables, share: float, method: str
 ) -> None:
@@ -145,7 +147,7 @@ def test_a_tension_just_below_the_largest_is_within_what_is_claimed(
     assert found["contact_radius"].uncertainty < NEAR_PULL_OFF * found["contact_radius"].value
 
 
-@pytest.mark.parametrize("radius_of_body", [200.0, 100.0])
+@pytest.mark.parametrize("radius_of_body", [pytest.param(200.0, marks=pytest.mark.slow), 100.0])
 def test_pairs_that_snap_let_go_where_they_do_without_time(run_tables: RunTables, radius_of_body: float) -> None:
     """The largest tooth of the tension: a plate that swings lets go before; and the run tells of several equilibria."""
     scene = tables((*SHORT[:2], radius_of_body), PLAIN, {"kind": "pull_off", "preload": 1.0})
@@ -153,7 +155,7 @@ def test_pairs_that_snap_let_go_where_they_do_without_time(run_tables: RunTables
     still = {name: table for name, table in scene.items() if name not in ("damping", "plate")}
     still["experiment"] = {"kind": "pull_off", "preload": 1.0, "method": "quasistatic"}
     moving, resting = run_tables(scene), run_tables(still)
-    model = vertical_model((*SHORT[:2], radius_of_body), 0.0, SNAPPING)
+    model = vertical_model((*SHORT[:2], radius_of_body), 0.0, SNAPPING, SNAPPING_CHAIN)
     exact = pull_off(model, 1.0, step=SNAP_STEP)
     for finished in (moving, resting):
         found = finished.outcome.on_own_lattice  # the reference has these very particles
