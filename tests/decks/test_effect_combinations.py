@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import DisplaceInTime, Draw, Phase, UnderLoad, displacements
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Engine
-from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.scene import EFFECTS, Scene, SceneError
 from contact1d.workflow.settings.settings import settings_for
 

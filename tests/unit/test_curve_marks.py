@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from contact1d.analysis.curve_marks import crossing, largest_tension, promised, rivals, smooth_crossing, tops
-from contact1d.workflow.experiments.pull_off.smooth import PLACE_FACTOR
 
 PARABOLA = 1e-12  # round-off of a polynomial fit in doubles
+PLACE_FACTOR = 2.0  # of what two rows more change: a claim for a place
 SIXTH = 0.5  # the constant of the interpolation error of this function, generously
 FOURTH = 0.5  # the same of the vertex's place
 CUBIC = 1e-5  # the fit is a parabola: its error is the third derivative times the square of the step

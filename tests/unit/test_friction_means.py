@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from contact1d.analysis.friction import block_means, mean_of, sampled_mean
-from contact1d.workflow.experiments.slide.findings import is_steady
 from contact1d.workflow.experiments.motion import Motion
+from contact1d.workflow.experiments.slide import is_steady
 from contact1d.workflow.settings.drive import DriveLeg
 
 PERIODS, VELOCITY = 12, 0.5

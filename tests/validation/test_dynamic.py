@@ -12,6 +12,7 @@ what is left of the motion when it counts as rest, a tenth of the tolerance.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.analysis.reference.solver import ChainSolver, State, trace
 from contact1d.analysis.reference.tension_radius import tension_radius
+from contact1d.workflow.continuation.outcome import Result
 from tests.scenes import chains
 
 RunTables = Callable[[dict[str, Any]], Run]
@@ -158,14 +160,20 @@ def test_pairs_that_snap_let_go_where_they_do_without_time(run_tables: RunTables
     model = vertical_model((*SHORT[:2], radius_of_body), 0.0, SNAPPING, SNAPPING_CHAIN)
     exact = pull_off(model, 1.0, step=SNAP_STEP)
     for finished in (moving, resting):
-        found = finished.outcome.on_own_lattice  # the reference has these very particles
-        assert abs(found["adhesion_force"].value - exact.adhesion_force) <= found["adhesion_force"].uncertainty
-        assert found["adhesion_force"].uncertainty < 3e-3 * exact.adhesion_force
+        found = on_own_lattice(finished, "adhesion_force")
+        assert abs(found.value - exact.adhesion_force) <= found.uncertainty
+        assert found.uncertainty < 3e-3 * exact.adhesion_force
         assert "snaps" in [warning["name"] for warning in finished.document["warnings"]]
     for name in ("zero_load_radius", "critical_radius"):
-        one, other = moving.outcome.on_own_lattice[name], resting.outcome.on_own_lattice[name]
+        one, other = on_own_lattice(moving, name), on_own_lattice(resting, name)
         assert abs(one.value - other.value) <= one.uncertainty + other.uncertainty
         assert one.uncertainty < SNAPS_RADIUS
+
+
+def on_own_lattice(finished: Run, name: str) -> Result:
+    """A result without its discretisation error: the reference has these very particles."""
+    result = finished.outcome.results[name]
+    return replace(result, errors={source: e for source, e in result.errors.items() if source != "discretisation"})
 
 
 @pytest.mark.parametrize("mass", [5.0, 500.0])
