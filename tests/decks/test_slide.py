@@ -10,14 +10,13 @@ it is the sum of the lower body's forces on the upper particles.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from contact1d import Run, RunError, run
+from contact1d import Run, run
 from contact1d.workflow.scene import scene_from_dict
 
 PARTICLES, DRAG, PLATE_DRAG, MASS, PLATE_MASS = 30, 0.3, 20.0, 1.0, 30.0
@@ -72,14 +71,3 @@ def test_the_static_friction_is_what_has_to_be_overcome(slid: Run) -> None:
     assert friction[top] <= slid.results["static_friction"].value
     assert slid.results["static_friction"].value == pytest.approx(between, rel=SPLINE)
     assert slid.results["static_friction"].value >= slid.results["mean_friction"].value
-
-
-@pytest.mark.parametrize(
-    ("cantilever", "distance"), [({"stiffness": 0.5, "velocity": 0.2}, 2.0), ({"stiffness": 5.0, "velocity": 0.2}, 2.0)]
-)
-def test_a_plate_that_is_still_being_wound_up_does_not_slide(
-    cantilever: dict[str, float], distance: float, tmp_path: Path
-) -> None:
-    experiment = {"kind": "slide", "normal_force": 1.0, "distance": distance}
-    with pytest.raises(RunError, match="no steady sliding yet"):
-        run(scene_from_dict(sliding(cantilever=cantilever, experiment=experiment)), tmp_path / "run", figures=False)

@@ -66,34 +66,3 @@ def test_a_dynamic_deck_minimises_nothing(make_scene: MakeScene) -> None:
         assert "minimize" not in text
         assert "min_style" not in text
         assert len(re.findall(r"^timestep ", text, re.MULTILINE)) == 1
-
-
-@pytest.mark.parametrize("tables", [{}, PLANE, {"damping": {"coefficient": 0.3}}, TIMED | {"experiment": LOAD}, ALL])
-def test_each_group_has_one_integrator_at_most(make_scene: MakeScene, tables: dict[str, Any]) -> None:
-    """Particles by nve where there is time, the plate by the rigid body where there is one, a driver by its way."""
-    scene = make_scene(**tables)
-    found = re.findall(r"^fix +\w+ (\w+) (nve|nvt|npt|nph|rigid|move)\b", commands(text_of(scene)), re.MULTILINE)
-    stepped = [("upper", "move")] * (tables == PLANE)
-    wanted = (
-        stepped
-        + [("plate", "rigid")] * (scene.plate is not None)
-        + [("particles", "nve")] * (scene.method == "dynamic")
-    )
-    wanted += [("cantilever_driver", "move")] * 2 * (scene.cantilever is not None)  # at rest, and then not
-    assert sorted(found) == sorted(wanted)
-
-
-@pytest.mark.parametrize("tables", [{}, RELAXING, TIMED | {"experiment": LOAD}, ALL])
-def test_measuring_is_on_only_while_a_state_is_measured(make_scene: MakeScene, tables: dict[str, Any]) -> None:
-    """Every compute that a row makes is gone before the next; dumps are written at once and never stay."""
-    head, begins, rows = commands(text_of(make_scene(**tables))).partition("variable        row_phase ")
-    assert begins
-    made = re.findall(r"^compute +(\w+)", rows, re.MULTILINE)
-    gone = re.findall(r"^uncompute +(\w+)", rows, re.MULTILINE)
-    assert made
-    assert Counter(made) == Counter(gone)
-    kept = re.findall(r"^compute +(\w+)", head, re.MULTILINE)
-    assert kept == (["cantilever_swing", "cantilever_ride"] if tables is ALL else [])  # means on the way
-    assert not re.search(r"^dump ", head + rows, re.MULTILINE)
-    during = re.findall(r"^compute .*?^uncompute ", rows, re.MULTILINE | re.DOTALL)
-    assert not any(re.search(r"^(minimize |run (?! *0 post no$))", part, re.MULTILINE) for part in during)

@@ -147,34 +147,6 @@ def test_numbers_in_metres_and_newtons_give_the_same_reduced_ones(tmp_path: Path
     assert energy == pytest.approx(value(plain, "dissipated_energy"), rel=1e-9)
 
 
-REFUSED: list[tuple[dict[str, Any], str, str]] = [
-    ({"neighbours": {"stiffness": 0.3}}, "neighbours", "a minimiser"),
-    ({"plate": {"damping": 0.0}}, "plate", "without damping for ever, and friction would remember how far; remove it"),
-    ({"damping": {"coefficient": "auto"}}, "damping", "without time"),
-    ({"noise": {"temperature": 1e-3, "seed": 1}}, "noise", "without time"),
-    ({"horizontal": {}}, "horizontal", "useless on a rigid plane"),
-    ({"adhesion": {"work_of_adhesion": 0.01}}, "adhesion", "Savkoor and Briggs"),
-    ({"friction": None}, "friction", "add [friction] with its coefficient"),
-]
-
-
-@pytest.mark.parametrize(("more", "path", "words"), REFUSED)
-def test_what_does_not_go_together_is_refused_with_the_reason(more: dict[str, Any], path: str, words: str) -> None:
-    with pytest.raises(SceneError) as caught:
-        scene_from_dict(scene([0.1]) | more)
-    assert [problem.path for problem in caught.value.problems] == [path]
-    assert words in str(caught.value)
-
-
-def test_friction_between_two_chains_is_refused_with_a_way_out() -> None:
-    law = {"repulsion": {"amplitude": 0.18, "range": 0.13}}
-    with pytest.raises(SceneError, match='use kind = "slide"'):
-        scene_from_dict(scene([0.1], bodies={"lower": "particles"}) | {"interaction": law})
-    load = {"kind": "load", "force": 1.0}
-    with pytest.raises(SceneError, match="friction: not between two chains"):
-        scene_from_dict(scene([0.1], bodies={"lower": "particles"}) | {"interaction": law, "experiment": load})
-
-
 @pytest.mark.parametrize(
     ("load", "words"),
     [

@@ -216,25 +216,6 @@ def test_table_of_5000_points_is_its_formula(reduction: str, tmp_path: Path) -> 
     assert finished.document["largest_force"]["value"] == pytest.approx(exact(finished, heights), rel=FORCE)
 
 
-def test_table_of_5000_points_pulls_off(tmp_path: Path) -> None:
-    """As the parabola that it is; the estimate asks for its heights some thousands of times."""
-    r = 0.02 * np.arange(5000)
-    experiment = {"kind": "pull_off", "preload": 0.3}
-    found = [
-        run(
-            scene_from_dict(tables(profile, experiment, LAW, reduction="mdr")),
-            tmp_path / profile["kind"],
-            figures=False,
-        )
-        for profile in (
-            {"kind": "table", "r": r.tolist(), "z": (r**2 / 100.0).tolist()},
-            {"kind": "parabola", "radius": 50.0},
-        )
-    ]
-    forces = [finished.document["adhesion_force"]["value"] for finished in found]
-    assert forces[0] == pytest.approx(forces[1], rel=ADHESION)
-
-
 @pytest.mark.parametrize("lower", ["rigid_plane", "particles"])
 def test_three_particles(lower: str, tmp_path: Path) -> None:
     """The fewest that a body may have: the middle one at the apex."""

@@ -110,11 +110,6 @@ def test_particles_closer_than_the_table_was_chosen_for_get_a_warning(
     assert "table_core" in doubts(results)
 
 
-def test_automatic_chains_need_no_warning(tmp_path: Path) -> None:
-    results = run(scene_from_dict(tables(PULL, {"particles": "auto"})), tmp_path / "run", figures=False).document
-    assert doubts(results) == set()
-
-
 def test_atoms_that_fly_apart_are_no_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     spoil(monkeypatch, damping=1e4)  # over the time step it takes away many times the momentum that there is
     scene = tables({"kind": "load", "force": 0.3, "method": "dynamic"}, plate={}, damping={"coefficient": "auto"})
