@@ -34,11 +34,10 @@ UNTRUSTED = {
         "went through each other",
     ),
     "through each other: too deep": (
-        tables({"kind": "path", "displacements": {"from": 0.0, "to": 6.0, "steps": 40}}, {"particles": 24}),
-        "went through each other",
+        tables({"kind": "path", "displacements": [0.0, 6.0]}), "went through each other",
     ),
     "through each other: a preload beyond what particles carry": (
-        tables({"kind": "pull_off", "preload": 100.0}, {"particles": 24}), "went through each other",
+        tables({"kind": "pull_off", "preload": 100.0}), "went through each other",
     ),
     "end of the chain": (tables({"kind": "load", "force": 2.0}, {"particles": 13}), "end of the chain"),
     "more tension than adhesion": (tables({"kind": "load", "force": -5.0}), "never reached"),

@@ -27,7 +27,7 @@ from contact1d.workflow.settings.shape import Profile, Tabulated
 from tests.scenes import LAW, chains
 
 Array = NDArray[np.float64]
-WIDTH, CANCELLED = 1e-13, 1e-17
+WIDTH, CANCELLED = 1e-13, 1e-15
 """Relative: a bracket that is cut to the last digits; absolute [LU]: a height that is a difference."""
 SCAN = 1e-4
 """Relative, of a flat top between places of a scan."""
