@@ -15,7 +15,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.state import State
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import DisplaceInTime, Draw, Phase, UnderLoad, displacements
 from contact1d.workflow.deck.system import write_system
@@ -147,6 +149,18 @@ def phases_of(kind: str, method: str) -> tuple[Phase, ...]:
     )
 
 
+def replayed(contact: Contact, phases: tuple[Phase, ...]) -> list[State]:
+    """The states of all rows, whether they can be trusted or not: so few particles carry no contact."""
+    states: list[State] = []
+    for phase in phases:
+        contact.begin(phase.name, phase.begin)
+        states += contact.rows(phase.rows, trusted=False)
+        if phase.state:
+            contact.write_state()
+    contact.finish()
+    return states
+
+
 def prepared(deck: Deck, folder: Path) -> Path:
     folder.mkdir()
     write_system(deck, folder)
@@ -163,7 +177,7 @@ def test_allowed_sets_run(make_scene: MakeScene, tmp_path: Path, case: Case) -> 
     phases = phases_of(case[0], case[1])
     context = RunContext(deck, prepared(deck, tmp_path / "rows"), Silent(), 60.0)
     with context.contact() as contact:
-        states = contact.replay(phases)
+        states = replayed(contact, phases)
     rows = [row for phase in phases for row in phase.rows]
     assert len(states) == len(rows)
     for state in states:
@@ -191,7 +205,7 @@ LONG = [case for case in ALLOWED if case[3] >= {"horizontal", "neighbours"}]
 def run_a_little(scene: Scene, case: Case, folder: Path) -> None:
     deck = Deck(scene, settings_for(scene))
     with RunContext(deck, prepared(deck, folder / "rows"), Silent(), 60.0).contact() as contact:
-        states = contact.replay(phases_of(case[0], case[1]))
+        states = replayed(contact, phases_of(case[0], case[1]))
     assert np.isfinite([state.force for state in states]).all()
 
 
