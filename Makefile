@@ -27,7 +27,8 @@ run: $(READY) ## run a scene: SCENE=file.toml (default steel_on_glass), OUT=fold
 	@$(BIN)/contact1d run "$(SCENE)" $(if $(OUT),--out "$(OUT)")
 
 test: $(READY) ## run the tests: ARGS='-m slow' the long ones, ARGS=tests/unit one room
-	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest $(ARGS) # small matrices: threads only get in each other's way
+	@# One process for each core, and small matrices: threads would only get in each other's way.
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --maxprocesses 8 --dist loadfile $(ARGS)
 
 lint: $(READY) ## check style, types and the direction of imports
 	$(BIN)/ruff check .
@@ -49,7 +50,7 @@ validation: $(READY) ## reproduce the paper anew: VALIDATION.md, docs/reproduced
 	@WRITE_DOCS=1 $(BIN)/python -m pytest -q tests/unit/test_validation_page.py tests/unit/test_judged_runs.py
 
 clean: ## remove .venv and the caches; runs/ stays
-	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis .benchmarks
+	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
 	find workflow analysis potentials lammps_inputs tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(LOCKED): requirements.lock

@@ -16,6 +16,7 @@ from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import Engine, Session
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
+from tests.approx import relative
 from tests.limits import LIMIT, SLOW_LIMIT, time_limit
 from tests.records import record_slow_tests
 from tests.scenes import chains
@@ -45,6 +46,7 @@ PLANE: dict[str, Any] = {
 
 
 pytest_configure = record_slow_tests
+pytest.approx = relative  # before any test module is imported
 
 
 @pytest.hookimpl(wrapper=True)

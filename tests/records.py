@@ -43,7 +43,8 @@ class SlowTests:
 
 def record_slow_tests(config: pytest.Config) -> None:
     """Have docs/slow.json written by this session, if it is one of the long tests and WRITE_DOCS is set."""
-    if config.getoption("markexpr") == "slow" and os.environ.get("WRITE_DOCS"):
+    worker = hasattr(config, "workerinput")  # of pytest-xdist: what it reports is written where all come together
+    if config.getoption("markexpr") == "slow" and os.environ.get("WRITE_DOCS") and not worker:
         config.pluginmanager.register(SlowTests())
 
 

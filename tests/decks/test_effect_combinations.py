@@ -1,26 +1,28 @@
 """Every set of effects: it either runs in LAMMPS, row by row and as a deck with bitwise the same states, or is refused.
 
-There are 2⁸ sets of effects, five experiments with their methods and two lower bodies; all of them are tried, so every
-effect alone (with what it requires) and every pair of effects is among them.
+Five experiments with their methods, two lower bodies, every set of up to MOST effects and every larger one that is
+allowed; so every effect alone (with what it requires) and every pair of effects is among them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from itertools import combinations
+from itertools import combinations, cycle
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from contact1d.workflow.continuation.contact import Contact
+from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.state import State
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import DisplaceInTime, Draw, Phase, UnderLoad, displacements
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Engine
-from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.scene import EFFECTS, Scene, SceneError
 from contact1d.workflow.settings.settings import settings_for
 
@@ -52,6 +54,7 @@ METHODS: dict[str, tuple[str, ...]] = dict.fromkeys(EXPERIMENTS, ("quasistatic",
     "tangential": ("quasistatic",),
 }
 STEPS = 25
+MOST = 3
 SUM = 1e-12
 """The force on the plate is a sum over 20 particles, by LAMMPS and by numpy in their own orders."""
 Case = tuple[str, str, str, frozenset[str]]
@@ -97,8 +100,9 @@ def cases() -> Iterator[Case]:
         for method in methods:
             for lower in ("particles", "rigid_plane"):
                 for count in range(len(EFFECTS) + 1):
-                    for chosen in combinations(EFFECTS, count):
-                        yield kind, method, lower, frozenset(chosen)
+                    for chosen in map(frozenset, combinations(EFFECTS, count)):
+                        if count <= MOST or fits(kind, method, lower, chosen):
+                            yield kind, method, lower, chosen
 
 
 def label(case: Case) -> str:
@@ -145,6 +149,18 @@ def phases_of(kind: str, method: str) -> tuple[Phase, ...]:
     )
 
 
+def replayed(contact: Contact, phases: tuple[Phase, ...]) -> list[State]:
+    """The states of all rows, whether they can be trusted or not: so few particles carry no contact."""
+    states: list[State] = []
+    for phase in phases:
+        contact.begin(phase.name, phase.begin)
+        states += contact.rows(phase.rows, trusted=False)
+        if phase.state:
+            contact.write_state()
+    contact.finish()
+    return states
+
+
 def prepared(deck: Deck, folder: Path) -> Path:
     folder.mkdir()
     write_system(deck, folder)
@@ -161,7 +177,7 @@ def test_allowed_sets_run(make_scene: MakeScene, tmp_path: Path, case: Case) -> 
     phases = phases_of(case[0], case[1])
     context = RunContext(deck, prepared(deck, tmp_path / "rows"), Silent(), 60.0)
     with context.contact() as contact:
-        states = contact.replay(phases)
+        states = replayed(contact, phases)
     rows = [row for phase in phases for row in phase.rows]
     assert len(states) == len(rows)
     for state in states:
@@ -189,13 +205,13 @@ LONG = [case for case in ALLOWED if case[3] >= {"horizontal", "neighbours"}]
 def run_a_little(scene: Scene, case: Case, folder: Path) -> None:
     deck = Deck(scene, settings_for(scene))
     with RunContext(deck, prepared(deck, folder / "rows"), Silent(), 60.0).contact() as contact:
-        states = contact.replay(phases_of(case[0], case[1]))
+        states = replayed(contact, phases_of(case[0], case[1]))
     assert np.isfinite([state.force for state in states]).all()
 
 
 @pytest.mark.parametrize(
     ("case", "tangential"),
-    [pytest.param(case, k, id=f"{label(case)}-{k}") for case in LONG for k in BOTH_WAYS],
+    [pytest.param(case, k, id=f"{label(case)}-{k}") for case, k in zip(LONG, cycle(BOTH_WAYS), strict=False)],
 )
 def test_sets_with_long_bonds_run(make_scene: MakeScene, tmp_path: Path, case: Case, tangential: float) -> None:
     """Normal and tangential stiffness differ, either way."""
@@ -205,20 +221,12 @@ def test_sets_with_long_bonds_run(make_scene: MakeScene, tmp_path: Path, case: C
 
 
 @pytest.mark.parametrize("tangential", BOTH_WAYS)
-@pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4, 1e-6])
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-6])
 def test_long_bonds_of_any_accuracy(make_scene: MakeScene, tmp_path: Path, tolerance: float, tangential: float) -> None:
     """A long bond is 10/tolerance spacings long."""
     bodies = {"bulk_stiffness_tangential": tangential}
     scene = make_scene(horizontal={}, bodies=bodies, accuracy={"tolerance": tolerance})
     run_a_little(scene, ("path", "quasistatic", "particles", frozenset()), tmp_path)
-
-
-@pytest.mark.parametrize("radius", [1e3, 1e4, 1e5, 1e6, 1e10])
-def test_plates_of_any_curvature(make_scene: MakeScene, tmp_path: Path, radius: float) -> None:
-    """A plate that is nearly flat, and so nearly a line of anchors, moves like any other."""
-    case = ("load", "dynamic", "particles", frozenset({"interaction", "damping", "plate"}))
-    shape = {"particles": 200, "profile": {"kind": "parabola", "radius": radius}}
-    run_a_little(scene_of(make_scene, case, **shape), case, tmp_path)
 
 
 def test_all_other_sets_are_refused(make_scene: MakeScene) -> None:

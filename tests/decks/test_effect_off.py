@@ -171,14 +171,6 @@ def test_long_bonds_go_with_the_horizontal_effect(make_scene: MakeScene, stiffne
     assert not set(fragment_lines("far")) - set(removed) - EMPTY
 
 
-def test_numbering_of_bond_types_follows_the_effects(make_scene: MakeScene) -> None:
-    """Without neighbours the long bonds' type is the second."""
-    scene = make_scene(**ALL | {"bodies": {"bulk_stiffness_tangential": 0.5}})
-    first, second = decks(scene, "neighbours")
-    assert difference(second, first) == Counter(["variable        far_bond_type index 2"])
-    assert "variable        far_bond_type index 3" in first
-
-
 def text_of(scene: Scene) -> str:
     settings = settings_for(scene)
     return Deck(scene, settings).text(planned(scene, settings))
@@ -206,22 +198,6 @@ def test_a_scene_that_never_had_the_effect_has_none_of_its_lines(make_scene: Mak
     of_bodies = {"plate_displacement"}
     for name in {*header(effect, "Needs"), *header(effect, "Defines")} - of_plane - of_guide - of_bodies:
         assert not re.search(rf"\b(?:\w_)?{name}\b", commands(text))
-
-
-def test_no_langevin_without_noise(make_scene: MakeScene) -> None:
-    quiet, noisy = (make_scene(**TIMED, experiment=LOAD, noise=noise) for noise in (None, ALL["noise"]))
-    assert "langevin" not in commands(text_of(quiet))
-    assert commands(text_of(quiet)).count(" viscous ") == 3  # particles (anew with each load) and plate
-    assert commands(text_of(noisy)).count(" langevin ") == 1
-    assert commands(text_of(noisy)).count(" viscous ") == 1  # the plate's
-
-
-def test_no_rigid_body_without_a_plate(make_scene: MakeScene) -> None:
-    prescribed = make_scene(damping={"coefficient": 0.3})
-    assert prescribed.method == "dynamic"
-    assert not re.search(r"fix +\w+ \w+ (rigid|addforce)", commands(text_of(prescribed)))
-    moving = commands(text_of(make_scene(**TIMED, experiment=LOAD)))
-    assert len(re.findall(r"fix +\w+ \w+ rigid ", moving)) == 1
 
 
 def test_no_attraction_in_the_table_without_attraction(make_scene: MakeScene, tmp_path: Path) -> None:

@@ -26,6 +26,8 @@ NUMBER = re.compile(r"-?\d+\.\d+(?:e[+-]?\d+)?|-?\d+e[+-]?\d+")
 SAME = 1e-9
 """Relative, of a number that is computed: numpy's exp differs in its last bits from one processor to another, and the
 estimate behind a schedule bisects on it."""
+ZERO = 1e-15
+"""Of a displacement that is 0 but for round-off; scenes in SI have numbers of 1e-9."""
 
 
 def deck_of(name: str) -> str:
@@ -44,16 +46,10 @@ def test_deck_of_a_shipped_scene(name: str) -> None:
     golden = path.read_text(encoding="utf-8")
     assert NUMBER.sub("…", text) == NUMBER.sub("…", golden)
     numbers, wanted = ([float(n) for n in NUMBER.findall(t)] for t in (text, golden))
-    assert numbers == pytest.approx(wanted, rel=SAME, abs=SAME)
+    assert numbers == pytest.approx(wanted, rel=SAME, abs=ZERO)
 
 
 def test_every_scene_has_a_golden_and_every_golden_a_scene() -> None:
     assert sorted(path.stem for path in GOLDEN.iterdir()) == SCENES
     required = {"hertz_plane", "load", "pull_off", "pull_off_dynamic", "thermal_load", "path_hysteresis"}
     assert required <= set(SCENES)
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_a_deck_is_the_same_every_time(name: str) -> None:
-    """Pure text: no clock, no random number, no order of a set in it."""
-    assert deck_of(name) == deck_of(name)

@@ -12,7 +12,6 @@ import pytest
 
 from contact1d.analysis.atoms import atoms
 from contact1d.analysis.states import read_states
-from contact1d.workflow.deck.keeping import chosen
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.finished import Run
 from tests.decks.test_run_folder import PLANE, READ, lmp
@@ -28,9 +27,9 @@ FRICTION: dict[str, Any] = {
     "friction": {"coefficient": 0.3},
     "experiment": {"kind": "tangential", "normal_force": [4.0, 2.0, 3.0], "displacements": [0.1, 0.2, 0.0]},
 }
-NAMES = ("load_tension", "load_thermal", "path", "pull_off", "pull_off_dynamic", "plane", "plane_adhesion", "slide")
+NAMES = ("load_thermal", "path", "pull_off_dynamic", "plane_adhesion", "slide")
 SCENES = {name: OTHERS[name] for name in NAMES} | {
-    "snapping": chains(400.0, 0.2, (0.18, 0.065, 0.09, 0.13), experiment={"kind": "pull_off", "preload": 0.5}),
+    "snapping": chains(50.0, 0.2, (0.18, 0.065, 0.09, 0.13), experiment={"kind": "pull_off", "preload": 0.2}),
     "tangential": FRICTION,
     "units": {
         "bodies": MICRO | {"lower": "rigid_plane"},
@@ -102,21 +101,3 @@ def test_some_states_are_frames_of_all_and_the_results_are_those_without_any(
             shutil.copy(some.folder / name, again / name)
     assert lmp(again).returncode == 0
     assert (again / "states.lammpstrj").read_bytes() == (some.folder / "states.lammpstrj").read_bytes()
-
-
-@pytest.mark.parametrize(
-    ("wanted", "marked", "found"),
-    [
-        ("all", [], list(range(10))),
-        (20, [], list(range(10))),
-        (4, [], [0, 3, 6, 9]),
-        (4, [5], [0, 3, 5, 9]),
-        (4, [9], [0, 3, 6, 9]),
-        (2, [5], [0, 5, 9]),
-        (3, [42], [0, 4, 9]),
-    ],
-)
-def test_rows_are_chosen_evenly_with_the_reported_ones_among_them(
-    wanted: int | str, marked: list[int], found: list[int]
-) -> None:
-    assert chosen(range(10), wanted, marked) == found

@@ -10,18 +10,14 @@ it is the sum of the lower body's forces on the upper particles.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from contact1d import Run, RunError, run
-from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.experiments import planned
-from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
+from contact1d import Run, run
+from contact1d.workflow.scene import scene_from_dict
 
 PARTICLES, DRAG, PLATE_DRAG, MASS, PLATE_MASS = 30, 0.3, 20.0, 1.0, 30.0
 STIFFNESS, VELOCITY, DISTANCE = 20.0, 0.05, 6.0
@@ -75,29 +71,3 @@ def test_the_static_friction_is_what_has_to_be_overcome(slid: Run) -> None:
     assert friction[top] <= slid.results["static_friction"].value
     assert slid.results["static_friction"].value == pytest.approx(between, rel=SPLINE)
     assert slid.results["static_friction"].value >= slid.results["mean_friction"].value
-
-
-@pytest.mark.parametrize(
-    ("cantilever", "distance"), [({"stiffness": 0.5, "velocity": 0.2}, 2.0), ({"stiffness": 5.0, "velocity": 0.2}, 2.0)]
-)
-def test_a_plate_that_is_still_being_wound_up_does_not_slide(
-    cantilever: dict[str, float], distance: float, tmp_path: Path
-) -> None:
-    experiment = {"kind": "slide", "normal_force": 1.0, "distance": distance}
-    with pytest.raises(RunError, match="no steady sliding yet"):
-        run(scene_from_dict(sliding(cantilever=cantilever, experiment=experiment)), tmp_path / "run", figures=False)
-
-
-def test_a_slide_without_heat_has_no_line_of_it() -> None:
-    """What it would cost: a thermostat, sums of its work, more random numbers; loading with more drag is no heat."""
-    scene = scene_from_dict(sliding())
-    cold, hot = (
-        deck_text(scene.with_({} if still else {"noise": {"temperature": 1e-3, "seed": 1}})) for still in (True, False)
-    )
-    assert not [line for line in cold.splitlines() if "langevin" in line or "noise" in line or "heat" in line]
-    assert "noise_langevin" in hot
-
-
-def deck_text(scene: Scene) -> str:
-    settings = settings_for(scene)
-    return Deck(scene, settings).text(planned(scene, settings))

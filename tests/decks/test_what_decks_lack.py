@@ -15,8 +15,6 @@ from contact1d.workflow.experiments import planned
 from contact1d.workflow.settings.settings import settings_for
 from tests.decks.test_effect_off import ALL, LOAD, PLANE, TIMED, MakeScene, commands, text_of
 
-PULL_OFF = {"kind": "pull_off", "preload": 1.0}
-
 
 @pytest.mark.parametrize("timed", [False, True])
 def test_on_a_rigid_plane_no_pair_style_and_no_lower_body(make_scene: MakeScene, tmp_path: Path, timed: bool) -> None:
@@ -53,14 +51,7 @@ def test_where_nothing_has_to_come_to_rest_nothing_is_minimised(make_scene: Make
     assert [int(count) for count in counts] == [len(phase.rows) for phase in phases]
 
 
-def test_neighbours_on_a_rigid_plane_bring_what_moves(make_scene: MakeScene) -> None:
-    """And no line of rows that are steps is left."""
-    relaxing = commands(text_of(make_scene(**RELAXING)))
-    assert "minimize " in relaxing
-    assert "sweep" not in relaxing
-
-
-@pytest.mark.parametrize("tables", [{}, RELAXING, {"experiment": LOAD}, {"experiment": PULL_OFF}])
+@pytest.mark.parametrize("tables", [{}, RELAXING, {"experiment": LOAD}])
 def test_a_quasistatic_deck_has_no_time_in_it(make_scene: MakeScene, tables: dict[str, Any]) -> None:
     text = commands(text_of(make_scene(**tables)))
     for word in (" nve", "viscous", "langevin", "velocity", " rigid "):  # its timestep is that of FIRE, a minimiser
@@ -75,44 +66,3 @@ def test_a_dynamic_deck_minimises_nothing(make_scene: MakeScene) -> None:
         assert "minimize" not in text
         assert "min_style" not in text
         assert len(re.findall(r"^timestep ", text, re.MULTILINE)) == 1
-
-
-@pytest.mark.parametrize("tables", [{}, PLANE, {"damping": {"coefficient": 0.3}}, TIMED | {"experiment": LOAD}, ALL])
-def test_each_group_has_one_integrator_at_most(make_scene: MakeScene, tables: dict[str, Any]) -> None:
-    """Particles by nve where there is time, the plate by the rigid body where there is one, a driver by its way."""
-    scene = make_scene(**tables)
-    found = re.findall(r"^fix +\w+ (\w+) (nve|nvt|npt|nph|rigid|move)\b", commands(text_of(scene)), re.MULTILINE)
-    stepped = [("upper", "move")] * (tables == PLANE)
-    wanted = (
-        stepped
-        + [("plate", "rigid")] * (scene.plate is not None)
-        + [("particles", "nve")] * (scene.method == "dynamic")
-    )
-    wanted += [("cantilever_driver", "move")] * 2 * (scene.cantilever is not None)  # at rest, and then not
-    assert sorted(found) == sorted(wanted)
-
-
-@pytest.mark.parametrize("tables", [{}, RELAXING, TIMED | {"experiment": LOAD}, ALL])
-def test_measuring_is_on_only_while_a_state_is_measured(make_scene: MakeScene, tables: dict[str, Any]) -> None:
-    """Every compute that a row makes is gone before the next; dumps are written at once and never stay."""
-    head, begins, rows = commands(text_of(make_scene(**tables))).partition("variable        row_phase ")
-    assert begins
-    made = re.findall(r"^compute +(\w+)", rows, re.MULTILINE)
-    gone = re.findall(r"^uncompute +(\w+)", rows, re.MULTILINE)
-    assert made
-    assert Counter(made) == Counter(gone)
-    kept = re.findall(r"^compute +(\w+)", head, re.MULTILINE)
-    assert kept == (["cantilever_swing", "cantilever_ride"] if tables is ALL else [])  # means on the way
-    assert not re.search(r"^dump ", head + rows, re.MULTILINE)
-    during = re.findall(r"^compute .*?^uncompute ", rows, re.MULTILINE | re.DOTALL)
-    assert not any(re.search(r"^(minimize |run (?! *0 post no$))", part, re.MULTILINE) for part in during)
-
-
-def test_commands_of_which_a_deck_has_one(make_scene: MakeScene) -> None:
-    """Styles are set once, before what needs them."""
-    text = commands(text_of(make_scene(**ALL | {"bodies": {"bulk_stiffness_tangential": 0.5}})))
-    once = ("units", "dimension", "boundary", "atom_style", "pair_style", "bond_style", "read_data", "timestep")
-    for command in once:
-        assert len(re.findall(rf"^{command} ", text, re.MULTILINE)) == 1
-    identities = re.findall(r"^(?:fix|group) +(\w+)", text.split("print ")[0], re.MULTILINE)
-    assert max(Counter(identities).values()) == 1

@@ -26,8 +26,6 @@ FORCE = 1e-6
 """Relative, on the plane: the minimiser stops at 1e-6 of the deepest particle's force."""
 ADHESION = 1e-4
 """Relative: what the tolerance 1e-3 leaves of a maximum; measured 2e-5 against either reference."""
-ESTIMATE = 1e-3
-"""Relative, with a tabulated profile: straight lines between 1000 places, and cubics between the table's points."""
 LAST_FIGURE = 1e-3
 """Relative: the four figures of a displacement in a message."""
 
@@ -92,12 +90,6 @@ def test_contact_wider_than_its_profile_is_refused_with_the_possible_displacemen
     assert results["largest_force"]["value"] > 0.0
 
 
-def test_load_that_spreads_over_the_whole_profile_is_refused() -> None:
-    scene = scene_from_dict(tables(WIDE["circle"], {"kind": "load", "force": 5000.0}))
-    with pytest.raises(SettingsError, match=r"needs a displacement of about [\d.]+ LU, at most [\d.]+ LU is possible"):
-        settings_for(scene)
-
-
 @pytest.mark.parametrize("name", ["circle", "table"])
 def test_chain_wider_than_its_profile_is_refused_with_the_longest(name: str, tmp_path: Path) -> None:
     with pytest.raises(SettingsError) as caught:
@@ -117,12 +109,6 @@ def test_profile_whose_reduction_falls_is_refused_with_the_place(tmp_path: Path)
         done(tmp_path, tables(WIDE["table with a flat rim"], path(0.2), reduction="mdr", particles=20))
 
 
-def test_chain_too_short_for_a_circle_is_not_blamed_on_the_profile(tmp_path: Path) -> None:
-    with pytest.raises((SettingsError, RunError)) as caught:
-        done(tmp_path, tables(WIDE["circle"], path(2.0), particles=10))
-    assert "spread over the whole profile" not in str(caught.value)
-
-
 @pytest.mark.parametrize("reach", [0.3, 0.6, 1.2])
 def test_profile_narrower_than_three_particles_is_refused(reach: float, tmp_path: Path) -> None:
     narrow = {"kind": "table", "r": [reach * i / 3 for i in range(4)], "z": [0, 1, 4, 9]}
@@ -130,12 +116,6 @@ def test_profile_narrower_than_three_particles_is_refused(reach: float, tmp_path
         done(tmp_path, tables(narrow, path(0.1)))
     assert settings_for(scene_from_dict(tables(narrow, path(0.1), spacing=0.999 * reach / 1.5))).particles == 4
     assert settings_for(scene_from_dict(tables(narrow, path(0.1), spacing=0.999 * reach, particles=3))).particles == 3
-
-
-def test_circle_narrower_than_a_spacing_is_refused_for_its_size() -> None:
-    with pytest.raises(SettingsError) as caught:
-        settings_for(scene_from_dict(tables({"kind": "circle", "radius": 0.3}, path(0.1))))
-    assert "sqrt" not in str(caught.value)
 
 
 # Flat punches.
@@ -187,12 +167,6 @@ def test_flat_punch_with_a_longer_range_agrees_with_the_reference(tmp_path: Path
     assert abs(found["value"] - reference.adhesion_force) < found["uncertainty"]
 
 
-def test_flat_punch_of_another_length_than_its_chain_never_runs() -> None:
-    punch = scene_from_dict(tables({"kind": "flat_punch", "radius": 1e9}, path(0.1)))
-    with pytest.raises(SettingsError, match=r"would need 2e\+09 particles per body"):
-        settings_for(punch)
-
-
 # Steep, flat, sharp-edged, long, short.
 
 
@@ -212,17 +186,12 @@ def test_cone_so_flat_that_no_chain_is_long_enough_is_refused() -> None:
 
 
 def test_needle_touches_with_the_two_particles_at_its_apex(tmp_path: Path) -> None:
-    """The radius of the largest tension is 0 within half a spacing, and is said to be no better."""
-    results = done(
-        tmp_path, tables({"kind": "cone", "slope": 10.0}, {"kind": "pull_off", "preload": 0.01}, LAW)
-    ).document
+    """The radius of the largest tension is 0 within half a spacing, and is said to be no better. It has figures."""
+    needle = tables({"kind": "cone", "slope": 10.0}, {"kind": "pull_off", "preload": 0.01}, LAW)
+    results = done(tmp_path, needle, figures=True).document
     assert results["adhesion_force"]["value"] > 2.0 * largest_tension(LAW)
     assert results["zero_load_radius"]["value"] <= 0.5
     assert results["zero_load_radius"]["uncertainty"] >= 0.5 * (1.0 - 1e-9)
-
-
-def test_needle_has_figures(tmp_path: Path) -> None:
-    done(tmp_path, tables({"kind": "cone", "slope": 10.0}, {"kind": "pull_off", "preload": 0.01}, LAW), figures=True)
 
 
 @pytest.mark.parametrize("reduction", ["geike_popov", "mdr"])
@@ -245,39 +214,6 @@ def test_table_of_5000_points_is_its_formula(reduction: str, tmp_path: Path) -> 
     finished = done(tmp_path, tables(profile, path(0.1, 0.5), reduction=reduction))
     heights = finished.outcome.states[-1].profile.x ** 2 / (50.0 if reduction == "mdr" else 100.0)
     assert finished.document["largest_force"]["value"] == pytest.approx(exact(finished, heights), rel=FORCE)
-
-
-def test_table_of_5000_points_pulls_off(tmp_path: Path) -> None:
-    """As the parabola that it is; the estimate asks for its heights some thousands of times."""
-    r = 0.02 * np.arange(5000)
-    experiment = {"kind": "pull_off", "preload": 0.3}
-    found = [
-        run(
-            scene_from_dict(tables(profile, experiment, LAW, reduction="mdr")),
-            tmp_path / profile["kind"],
-            figures=False,
-        )
-        for profile in (
-            {"kind": "table", "r": r.tolist(), "z": (r**2 / 100.0).tolist()},
-            {"kind": "parabola", "radius": 50.0},
-        )
-    ]
-    forces = [finished.document["adhesion_force"]["value"] for finished in found]
-    assert forces[0] == pytest.approx(forces[1], rel=ADHESION)
-
-
-@pytest.mark.parametrize("reach", [20.0, 100.0, 1e4])
-def test_estimate_under_a_long_table_is_that_of_its_parabola(reach: float) -> None:
-    """The estimate asks a tabulated profile, whatever is far outside the contact."""
-    r = np.linspace(0.0, reach, round(4.0 * reach) + 1)
-    measured = {"kind": "table", "r": r.tolist(), "z": (r**2 / 100.0).tolist()}
-    found = [
-        settings_for(scene_from_dict(tables(profile, {"kind": "pull_off", "preload": 0.3}, LAW, reduction="mdr")))
-        for profile in (measured, {"kind": "parabola", "radius": 50.0})
-    ]
-    assert found[0].particles == found[1].particles
-    assert found[0].largest_displacement == pytest.approx(found[1].largest_displacement, rel=ESTIMATE)
-    assert found[0].estimate.pull_off_force() == pytest.approx(found[1].estimate.pull_off_force(), rel=ESTIMATE)
 
 
 @pytest.mark.parametrize("lower", ["rigid_plane", "particles"])

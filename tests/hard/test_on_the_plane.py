@@ -13,8 +13,6 @@ from contact1d.analysis.reference.jkr import Jkr
 from contact1d.workflow.scene import SceneError, scene_from_dict
 
 RADIUS, ENERGY = 1000.0, 0.005
-DIGITS = 1e-9
-"""Round-off of a history of some rows, over its largest force."""
 
 
 def scene(**more: Any) -> dict[str, Any]:
@@ -71,14 +69,6 @@ def test_a_tension_that_is_not_held_is_told_what_is(tmp_path: Path) -> None:
     assert "gives a result" in str(caught.value)
 
 
-def test_endless_friction_claims_no_more_than_its_springs_carry(tmp_path: Path) -> None:
-    found = run(along(40.0, 1e9, 0.1, -0.1), tmp_path / "run", figures=False)
-    touching = int((found.profiles["final"].pressure > 0.0).sum())
-    assert found.results.tangential_force.value == pytest.approx(-0.1 * touching, rel=DIGITS)
-    assert found.results.dissipated_energy.value == 0.0
-    assert found.results.dissipated_energy.uncertainty < DIGITS
-
-
 def test_a_way_of_nothing_is_not_doubted(tmp_path: Path) -> None:
     found = run(along(40.0, 0.3, 1e-12), tmp_path / "run", figures=False)
     assert "dissipated_energy" not in found.warnings.get("tolerance", "")
@@ -132,12 +122,3 @@ def test_the_finest_tolerance_claims_what_its_particles_leave(tmp_path: Path) ->
 def test_an_adhesive_load_keeps_its_tolerance_in_its_mean_pressure_too(tmp_path: Path) -> None:
     tables = steel(adhesion={"surface_energy": "50 mJ/m²"}, experiment={"kind": "load", "force": "1 N"})
     assert "tolerance" not in run(tables, tmp_path / "run", figures=False).warnings
-
-
-def test_a_change_that_helps_is_named_once(tmp_path: Path) -> None:
-    timed = {"damping": {"coefficient": "auto"}, "plate": {}}
-    tables = scene(adhesion={"work_of_adhesion": ENERGY}, experiment={"kind": "load", "force": -50.0}, **timed)
-    with pytest.raises(RunError) as caught:
-        run(tables, tmp_path / "run", figures=False)
-    helped = str(caught.value).split("Tried: ")[1].split(";")[0]
-    assert helped.count("experiment.force=") == 1

@@ -7,14 +7,10 @@ from typing import Any
 
 import pytest
 
-from contact1d.workflow.deck.box import MOST_BINS
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.system import write_system
-from contact1d.workflow.engine.failure import NO_MEMORY, TOO_LONG, TOO_WIDE, plain_message
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import read_scene, scene_from_dict
 from contact1d.workflow.settings.settings import SettingsError, settings_for
-from contact1d.workflow.settings.size import in_words
 from tests.scenes import chains
 
 SHIPPED = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
@@ -124,38 +120,6 @@ def test_neighbours_a_million_times_stiffer_than_the_bulk_run_sideways(tmp_path:
     done = run(scene, tmp_path / "run", figures=False)
     assert done.outcome.states[-1].residual < CLAIMED
     assert "bin_edge" in Deck(scene, settings_for(scene)).head
-
-
-def test_ordinary_bodies_leave_the_bins_to_lammps(tmp_path: Path) -> None:
-    scene = scene_from_dict(chains(100.0, experiment=LOAD))
-    deck = Deck(scene, settings_for(scene))
-    assert "bin_edge" not in deck.head
-    write_system(deck, tmp_path)
-    box = [line.split()[:2] for line in (tmp_path / "system.data").read_text().splitlines() if line.endswith("hi")]
-    bins = 1.0
-    for low, high in box:
-        bins *= (float(high) - float(low)) / (0.5 * deck.settings.cutoff)
-    assert bins < MOST_BINS
-
-
-def test_a_large_system_is_told_of() -> None:
-    scene = scene_from_dict(chains(100.0, experiment=LOAD))
-    assert in_words(scene, 1000, 3.0) == ""
-    assert "1000000 particles per body, each within reach of 8" in in_words(scene, 1_000_000, 3.0)
-
-
-@pytest.mark.parametrize(
-    ("raw", "meant"),
-    [
-        ("ERROR: Too many neighbor bins (src/nbin_standard.cpp:1)", TOO_WIDE),
-        ("ERROR: Cannot use neighbor bins - box size << cutoff (src/nbin_standard.cpp:2)", TOO_WIDE),
-        ("ERROR: Domain too large for neighbor bins (src/nbin_standard.cpp:2)", TOO_WIDE),
-        ("ERROR: Invalid run command N value: 5000000000 (src/run.cpp:3)", TOO_LONG),
-        ("ERROR on proc 0: Failed to allocate 5000000000 bytes for array neigh:binhead (src/memory.cpp:4)", NO_MEMORY),
-    ],
-)
-def test_words_of_lammps_are_translated(raw: str, meant: str) -> None:
-    assert plain_message(raw).startswith(f"LAMMPS stopped: {meant} (")
 
 
 def test_a_range_without_end_is_refused_in_a_slide_too(tmp_path: Path) -> None:

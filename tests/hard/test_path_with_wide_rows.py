@@ -15,8 +15,7 @@ import pytest
 from contact1d import run
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.pair_lattice import PairLattice
-from contact1d.workflow.scene import read_scene, scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
+from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.stability.pairs import TENSION, PairCase, reach, shaped
 
 RANGE = 0.03
@@ -38,7 +37,7 @@ def scene(ratio: float, wide: float, method: str = "quasistatic") -> dict[str, A
     return {
         "title": f"{ratio}, rows {wide}",
         "bodies": {
-            "particles": 30, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 100.0},
+            "particles": 20, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 100.0},
             "bulk_stiffness": stiffness,
         },
         "interaction": {
@@ -53,7 +52,7 @@ def scene(ratio: float, wide: float, method: str = "quasistatic") -> dict[str, A
 
 
 @pytest.mark.parametrize("wide", [0.5, 3.0])
-@pytest.mark.parametrize("ratio", [1.2, 3.0, 10.0])
+@pytest.mark.parametrize("ratio", [1.2, 6.0])
 def test_every_row_is_on_its_branch(tmp_path: Path, ratio: float, wide: float) -> None:
     asked = scene_from_dict(scene(ratio, wide))
     states = run(asked, tmp_path, figures=False).outcome.states
@@ -69,21 +68,7 @@ def test_every_row_is_on_its_branch(tmp_path: Path, ratio: float, wide: float) -
     assert abs(loop - true) < AREA * np.trapezoid(np.abs(exact), d[0] + np.cumsum(np.abs(np.diff(d, prepend=d[0]))))
 
 
-def test_rows_that_are_narrow_enough_stay_as_they_are() -> None:
-    """And rows between those that the scene asks for are in the deck, and not in the curve."""
-    from contact1d.workflow.experiments.path.path import schedule
-
-    shipped = read_scene(Path(__file__).parents[2] / "lammps_inputs/scenes/path_hysteresis.toml")
-    rows = sum(len(phase.rows) for phase in schedule(shipped, settings_for(shipped)))
-    assert shipped.experiment.kind == "path"
-    assert rows == len(shipped.experiment.places())
-    wide = scene_from_dict(scene(4.0, 1.0))
-    assert wide.experiment.kind == "path"
-    down = schedule(wide, settings_for(wide))[-1]
-    assert len(down.rows) > 5 * len(wide.experiment.places()) / 2
-
-
-@pytest.mark.parametrize("steps", [20, 33, 60])
+@pytest.mark.parametrize("steps", [33, 60])
 @pytest.mark.parametrize(
     ("kind", "particles", "ratio"), [("power", 3, 0.94), ("flat_punch", 6, 0.74), ("cone", 5, 0.47)]
 )
@@ -101,8 +86,7 @@ def test_a_sharp_maximum_between_two_rows_is_within_the_claim(
     assert found.uncertainty <= 0.5 * exact
 
 
-@pytest.mark.parametrize("wide", [0.1, 1.0])
-@pytest.mark.parametrize("ratio", [3.0, 30.0])
+@pytest.mark.parametrize(("ratio", "wide"), [(3.0, 0.1), (10.0, 1.0)])
 def test_pairs_that_are_drawn_apart_hold_until_their_snap(ratio: float, wide: float, tmp_path: Path) -> None:
     """A body that is moved with its particles puts a pair behind the top that still holds it: up to 2 % of a range."""
     case = PairCase("hold", ratio, shaped("flat_punch", 3, 0.0), 3, 0.0, TOLERANCE)

@@ -29,7 +29,7 @@ LOAD = {"kind": "load", "force": 0.1}
 
 
 @pytest.mark.parametrize("height", [0.05, 5.0])
-@pytest.mark.parametrize("particles", [3, 40, 4_000, 20_000])
+@pytest.mark.parametrize("particles", [3, 200, 20_000])
 def test_a_plate_of_any_length_is_accepted(
     make_scene: MakeScene, open_deck: OpenDeck, particles: int, height: float
 ) -> None:

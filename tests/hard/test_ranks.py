@@ -19,14 +19,11 @@ from typer.testing import CliRunner
 
 from contact1d import read_scene, run
 from contact1d.workflow.cli.app import app
-from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine import launcher
-from contact1d.workflow.engine.launcher import RanksError, cause_among_ranks
+from contact1d.workflow.engine.launcher import RanksError
 from contact1d.workflow.engine.process import stop_idle
 from contact1d.workflow.engine.session import Engine, EngineError
-from contact1d.workflow.runs.ranks import require_ranks
 from contact1d.workflow.scene import scene_to_toml
-from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import chains
 from tests.slurm import slurm
 
@@ -225,21 +222,6 @@ def test_the_command_says_what_to_install(tmp_path: Path, monkeypatch: pytest.Mo
     result = CliRunner().invoke(app, ["run", str(file), "--out", str(tmp_path / "out"), "--ranks", "2"])
     assert (result.exit_code, (tmp_path / "out").exists()) == (2, False)
     assert "pip install 'contact1d[cluster]'" in result.output
-
-
-def test_without_a_launcher_it_says_so_too(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(launcher, "which", lambda name: None)
-    monkeypatch.setattr(sys, "prefix", str(tmp_path))
-    scene = read_scene(SCENES["load"])
-    with pytest.raises(RanksError, match="need mpiexec"):
-        require_ranks(Deck(scene, settings_for(scene)), 2)
-
-
-def test_what_ranks_say_at_the_end_becomes_one_clause() -> None:
-    said = "failed on rank 1: ERROR on proc 1: Lost atoms (src/thermo.cpp:1)\nAbort(1) on node 1\n====\nEXIT CODE: 1"
-    assert cause_among_ranks(2, said) == "LAMMPS stopped: Lost atoms, on rank 1 of 2"
-    assert "was killed" in cause_among_ranks(4, "=== BAD TERMINATION\n=   EXIT CODE: 9\n")
-    assert cause_among_ranks(2, "") == ""
 
 
 @pytest.mark.cluster

@@ -25,7 +25,7 @@ PROFILES: dict[str, dict[str, Any]] = {
     "sharp": {"kind": "parabola", "radius": 50.0},
     "power": {"kind": "power", "exponent": 4.0, "radius": 30.0, "height": 0.5},
 }
-RATIOS = (0.7, 0.9, 0.97, 0.99, 0.999)
+RATIOS = (0.7, 0.97, 0.999)
 NARROW_CLAIM = 1e-6
 """Least claim that is looked at, over the force: below it the reference's law has no cutoff and no table."""
 

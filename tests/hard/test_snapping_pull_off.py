@@ -6,7 +6,6 @@ Between a tooth and the next the force of a sharp body passes 0, and soft spring
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +14,8 @@ import pytest
 from contact1d import run
 from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.analysis.reference.pair_lattice import PairLattice
-from contact1d.workflow.continuation.trust import UntrustedError, require_no_contradiction
 from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
 from contact1d.workflow.stability.pairs import TENSION, PairCase, reach, shaped
-from contact1d.workflow.units import Quantity
 
 LAW = PairInteraction(Exponential(0.011, 0.015), Exponential(0.01, 0.03))
 """Short against the spacing, so that a particle feels its opposite alone."""
@@ -52,7 +48,11 @@ def scene(profile: str, ratio: float, tolerance: float = 1e-2) -> dict[str, Any]
     }  # fmt: skip
 
 
-CASES = [(profile, ratio) for profile in PROFILES for ratio in (1.05, 3.0)] + [("flat punch", 30.0)]
+CASES = [
+    ("flat punch", 1.05), ("flat punch", 3.0), ("sharp", 1.05), ("very sharp", 3.0), ("cone", 1.05),
+    pytest.param("flat punch", 30.0, marks=pytest.mark.slow), pytest.param("sharp", 3.0, marks=pytest.mark.slow),
+    pytest.param("cone", 3.0, marks=pytest.mark.slow),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("profile", "ratio"), CASES)
@@ -67,18 +67,6 @@ def test_adhesion_force_is_that_of_the_highest_tooth(tmp_path: Path, profile: st
     assert abs(found.value - exact) <= max(found.uncertainty, TAIL * exact)
     assert abs(found.value - exact) <= asked.accuracy.tolerance * exact
     assert max(-state.force for state in outcome.states) <= found.value + found.uncertainty
-
-
-def test_a_state_of_the_own_curve_that_contradicts_the_result_is_told(tmp_path: Path) -> None:
-    asked = scene_from_dict(scene("sharp", 0.5))
-    outcome, settings = run(asked, tmp_path, figures=False).outcome, settings_for(asked)
-    require_no_contradiction(settings, outcome.quantities, outcome.states)
-    found = outcome.quantities["adhesion_force"]
-    strongest = min(outcome.states, key=lambda state: state.force)
-    too_small = {"adhesion_force": Quantity(0.5 * found.value, 1e-3 * found.value, found.unit)}
-    with pytest.raises(UntrustedError, match=r"own curve has 0\.\d+ FU"):
-        require_no_contradiction(settings, too_small, [strongest])
-    require_no_contradiction(settings, too_small, [replace(strongest, force=0.4 * strongest.force)])
 
 
 @pytest.mark.parametrize("ratio", [0.9, 0.99])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact1d.analysis.radius import _parabola_zero, compressive_radius, tensile_radius
+from contact1d.analysis.radius import compressive_radius, tensile_radius
 from tests.unit.test_radius import BODY_RADIUS, CASES, COVERED, profile, random_case
 
 ROUND_OFF = 1e-9  # LU: roots of a parabola through three doubles
@@ -37,70 +37,6 @@ def test_the_uncertainty_covers_a_noisy_layer(noise: float) -> None:
         covered += abs(found.value - radius) <= found.uncertainty
         assert found.uncertainty <= 1.0  # between the outermost loaded particle and the next
     assert covered >= COVERED * CASES
-
-
-@pytest.mark.parametrize("residual", [0.0, 1e-3])
-@pytest.mark.parametrize("ahead", [0, 1])
-def test_the_falling_zero_of_a_parabola_is_the_one_between_two_places(ahead: int, residual: float) -> None:
-    """Reference: numpy's roots. Any parabola at uneven places; the two are the last of them, or the one after it, on.
-
-    A residual, over the largest pressure, moves the zero by itself over the slope there, out of its place or into it.
-    """
-    rng = np.random.default_rng(18 + ahead)
-    found, none = 0, 0
-    for _ in range(1500):
-        places = np.cumsum(rng.uniform(0.2, 1.8, 5)) + rng.uniform(-4.0, 4.0)
-        inner, outer = places[2 + ahead], places[3 + ahead]
-        ends = rng.uniform(inner - 0.3, outer + 0.3), rng.uniform(-40.0, 40.0)
-        law = np.polynomial.Polynomial.fromroots(ends) * rng.choice([-1.0, 1.0])
-        if rng.uniform() < 0.2:
-            law = np.polynomial.Polynomial([ends[0], -1.0, 0.0])  # a straight line
-        pressure = law(places[:3])
-        if pressure.min() <= 0.0:
-            continue
-        roots = [r for r in law.roots() if law.deriv()(r) < 0.0]
-        moved = residual * pressure.max() / abs(law.deriv()(roots[0])) if roots else 0.0
-        inside = bool(roots) and inner - moved <= roots[0] <= outer + moved
-        inside &= min(law.deriv()(inner), law.deriv(2)(inner)) < 0.0  # else it rises all the way
-        zero = _parabola_zero(places[:3], pressure, inner, outer, residual)
-        assert (zero is not None) == inside
-        none += zero is None
-        if zero is not None:
-            found += 1
-            assert zero.position == pytest.approx(roots[0], abs=1e-8)
-            least = 1e-12 * (abs(inner) + outer - inner)
-            assert zero.uncertainty == pytest.approx(least + moved, rel=1e-6)
-    assert none > 30
-    assert found > 30
-
-
-@pytest.mark.parametrize("pressure", [[3.0, 2.0, 1.0], [6.0, 5.0, 3.0]])
-def test_a_zero_on_one_of_the_two_places_lies_between_them_whatever_round_off_says(pressure: list[float]) -> None:
-    """In rows that lie anywhere, so that some zeros are a last digit beyond their place."""
-    for start in np.linspace(-9.0, 9.0, 61):
-        places, p = start + 0.1 * np.arange(5.0), np.array(pressure)
-        for inner in (2, 3):
-            found = _parabola_zero(places[:3], p, places[inner], places[inner + 1], 0.0)
-            assert found is not None
-            assert found.position == pytest.approx(start + 0.3, abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("slope", "zero"), [(0.5, (0.5 + 4.25**0.5) / 2.0), (0.0, 1.0), (-0.5, (4.25**0.5 - 0.5) / 2.0)]
-)
-def test_a_pressure_that_still_rises_at_the_last_particle_may_vanish_before_a_far_one(
-    slope: float, zero: float
-) -> None:
-    u = np.array([-0.5, -0.25, 0.0])
-    found = _parabola_zero(u, 1.0 + slope * u - u**2, 0.0, 2.0, 0.0)
-    assert found is not None
-    assert found.position == pytest.approx(zero, abs=ROUND_OFF)
-
-
-def test_a_parabola_that_only_touches_0_or_rises_has_no_falling_zero() -> None:
-    places = np.array([0.0, 1.0, 2.0])
-    for pressure in ([16.0, 9.0, 4.0], [1.0, 2.0, 4.0], [4.0, 2.0, 1.0], [1.0, 1.0, 1.0], [1.0, 2.0, 3.0]):
-        assert _parabola_zero(places, np.array(pressure), 2.0, 3.0, 0.0) is None
 
 
 def test_what_a_minimiser_leaves_widens_the_uncertainty() -> None:

@@ -65,23 +65,6 @@ def test_profiles_come_back_by_the_names_of_their_states(tmp_path: Path) -> None
             np.testing.assert_array_equal(getattr(back[name], field.name), getattr(profile, field.name))
 
 
-def test_long_tables_are_written_in_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The text is that of the csv module, row by row, whatever the size of a chunk."""
-    numbers = awkward(np.random.default_rng(6), 11)
-    numbers[[3, 7]] = math.nan, math.inf
-    words = ["zero_load", 'a "quoted", one', "", "nan"] * 2 + ["line\nbreak", "z", "z"]
-    columns = {"number": numbers, "word, or two": words, "count": list(range(11))}
-    with (tmp_path / "by_row").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(columns)
-        for number, word, count in zip(*columns.values(), strict=True):
-            writer.writerow(["" if math.isnan(number) else f"{number:.17g}", word, f"{count:.17g}"])
-    for chunk in (100, 4):
-        monkeypatch.setattr(curve_module, "CHUNK", chunk)
-        write_columns(tmp_path / "table.csv", columns)
-        assert (tmp_path / "table.csv").read_bytes() == (tmp_path / "by_row").read_bytes()
-
-
 @pytest.mark.parametrize(
     ("read", "names"),
     [
@@ -118,11 +101,6 @@ def test_an_interrupted_write_leaves_the_old_table(curve: Curve, tmp_path: Path)
         with pytest.raises(ValueError, match="zip"):
             write_columns(path, {"displacement": [1.0, 2.0], "force": force})
     assert path.read_bytes() == before
-
-
-def test_a_finished_write_leaves_one_file(curve: Curve, tmp_path: Path) -> None:
-    write_columns(tmp_path / "curve.csv", curve_columns(curve))
-    assert [file.name for file in tmp_path.iterdir()] == ["curve.csv"]
 
 
 def test_columns_of_a_curve_are_equally_long() -> None:

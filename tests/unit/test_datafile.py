@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,10 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d.workflow.deck import datafile
 from contact1d.workflow.deck.datafile import System, assemble, write_data
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.lattice import Body, bodies
+from contact1d.workflow.deck.lattice import bodies
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import Session
 from contact1d.workflow.scene import Scene
@@ -76,40 +74,6 @@ def test_lammps_reads_back_what_was_assembled(make_scene: MakeScene, session: Se
     assert [file.name for file in session.folder.glob("*.part")] == []
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_types_and_bonds(make_scene: MakeScene, case: str) -> None:
-    """N of each type; one bulk spring per particle, N − 1 between neighbours of a body, one long bond per particle."""
-    scene = make_scene(**CASES[case])
-    system = system_of(scene)
-    pair, far = scene.interaction is not None, bool(CASES[case].get("bodies", {}).get("bulk_stiffness_tangential"))
-    types = ([1, 2, 3, 4] if pair else [2, 4]) + ([5, 6] if far else [])
-    assert Counter(system.types.tolist()) == dict.fromkeys(types, PARTICLES)
-    assert len(system.masses) == (6 if far else 4)
-    names = ["bulk"] + ["neighbours"] * (scene.neighbours is not None) + ["far"] * far
-    assert list(system.bond_names) == names
-    count = 2 if pair else 1
-    each = {"bulk": count * PARTICLES, "neighbours": count * (PARTICLES - 1), "far": count * PARTICLES}
-    assert Counter(system.bonds[:, 0].tolist()) == {names.index(name) + 1: each[name] for name in names}
-    kinds = {"bulk": {(1, 3), (2, 4)}, "neighbours": {(1, 1), (2, 2)}, "far": {(1, 5), (2, 6)}}
-    for kind, a, b in system.bonds.tolist():
-        assert tuple(sorted(system.types[[a - 1, b - 1]].tolist())) in kinds[names[kind - 1]]
-        if names[kind - 1] == "neighbours":
-            assert b - a == 1
-            gap = system.positions[b - 1, 0] - system.positions[a - 1, 0]
-            assert gap == pytest.approx(scene.bodies.spacing, rel=1e-12)
-
-
-def test_each_particle_hangs_on_its_own_anchor(make_scene: MakeScene) -> None:
-    """Without neighbours an anchor stands where its particle does; with long bonds those are of one length."""
-    scene = make_scene(**CASES["far"])
-    system = system_of(scene)
-    far = settings_for(scene).far
-    lengths = {1: 0.0, 2: far}
-    for kind, a, b in system.bonds.tolist():
-        apart = np.linalg.norm(system.positions[a - 1] - system.positions[b - 1])
-        assert apart == pytest.approx(lengths[kind], rel=1e-12, abs=0.0)
-
-
 def test_the_plate_has_its_mass(make_scene: MakeScene, open_deck: OpenDeck) -> None:
     """Shared out among the upper anchors, long bonds' ones included; particles have their own."""
     timed = {"damping": {"coefficient": "auto"}, "plate": {"mass": 37.0}}
@@ -149,30 +113,3 @@ def test_a_title_is_only_a_title(make_scene: MakeScene, open_deck: OpenDeck, tit
     _, session = open_deck(make_scene(title=title))
     assert session.value("count(all)") == 4 * PARTICLES
     assert (session.folder / "system.data").read_text(encoding="utf-8").splitlines()[0] == f"# {title}"
-
-
-def test_long_files_are_written_in_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The text does not depend on the size of a chunk."""
-    places = np.random.default_rng(2).normal(size=(11, 3))
-    body = Body("upper", places, places + 0.1, np.empty((0, 3)))
-    system = assemble((body,), True, 1.0, 1.0, (1.0, 1.0, 1.0))
-    write_data(system, "t", tmp_path / "whole")
-    monkeypatch.setattr(datafile, "CHUNK", 4)
-    write_data(system, "t", tmp_path / "chunks")
-    assert (tmp_path / "whole").read_bytes() == (tmp_path / "chunks").read_bytes()
-
-
-def test_a_write_that_fails_leaves_the_old_file(make_scene: MakeScene, tmp_path: Path, monkeypatch: Any) -> None:
-    """Half a data file never has the name of a whole one."""
-    system = system_of(make_scene())
-    path = tmp_path / "system.data"
-    write_data(system, "before", path)
-    before = path.read_bytes()
-
-    def full(*_: object) -> None:
-        raise OSError("no space left on device")
-
-    monkeypatch.setattr(datafile, "_write_rows", full)
-    with pytest.raises(OSError, match="no space"):
-        write_data(system, "after", path)
-    assert path.read_bytes() == before

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from contact1d.workflow.engine.progress import Bar, Lines, choose_progress
+from contact1d.workflow.engine.progress import Lines, choose_progress
 from contact1d.workflow.engine.session import Engine
 
 ATOM = """
@@ -50,14 +50,6 @@ class Ears:
         """Not used by the engine."""
 
 
-class Terminal(io.StringIO):
-    """A stream that says that it is a terminal."""
-
-    def isatty(self) -> bool:
-        """Say so."""
-        return True
-
-
 def test_a_long_run_is_heard_of_while_it_lasts(tmp_path: Path) -> None:
     """Steps arrive in several parts, none negative, and add up to the steps of the session."""
     ears = Ears()
@@ -70,42 +62,6 @@ def test_a_long_run_is_heard_of_while_it_lasts(tmp_path: Path) -> None:
     assert len(ears.advances) >= 3
     assert min(ears.advances) > 0
     assert sum(ears.advances) == LONG + 10
-
-
-def test_lines_begin_a_phase_and_then_wait() -> None:
-    """Within the quiet time there is only the first line; without it there is every line."""
-    quiet, talkative = io.StringIO(), io.StringIO()
-    for lines in (Lines(quiet, 1000.0), Lines(talkative, 0.0)):
-        lines.phase("loading", 100)
-        lines.advance(25)
-        lines.phase("unknown")
-        lines.advance(7)
-        lines.note("done")
-        lines.close()
-    assert quiet.getvalue().splitlines() == ["loading: 100 steps", "unknown", "done"]
-    spoken = talkative.getvalue().splitlines()
-    assert spoken[1].startswith("loading: step 25 of 100, ")
-    assert spoken[3] == "unknown: step 7"
-
-
-def test_bar_shows_phase_and_steps_and_leaves() -> None:
-    """A terminal sees the name and the count; closing twice is harmless."""
-    stream = Terminal()
-    bar = choose_progress(stream)
-    assert isinstance(bar, Bar)
-    bar.advance(1)
-    bar.phase("loading", 100)
-    bar.advance(25)
-    bar.advance(25)
-    bar._rich.refresh()
-    bar.phase("sliding")
-    bar.note("[red] is not markup")
-    bar.close()
-    bar.close()
-    bar.advance(1)
-    assert "sliding" in stream.getvalue()
-    assert "/s " in stream.getvalue()  # the rate
-    assert "[red] is not markup" in stream.getvalue()
 
 
 def test_a_pipe_gets_lines() -> None:

@@ -14,10 +14,9 @@ import pytest
 import contact1d.workflow.deck.fragments as fragments_module
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.effects import EFFECTS, Contribution
-from contact1d.workflow.deck.effects.interaction import interaction as interaction_effect
 from contact1d.workflow.deck.effects.neighbours import neighbours
 from contact1d.workflow.deck.fragments import DeckError, fragment
-from contact1d.workflow.deck.steps import STEPS, Displace, Hold, Phase, UnderLoad
+from contact1d.workflow.deck.steps import Displace, Hold, Phase, UnderLoad
 from contact1d.workflow.scene import EFFECTS as SCENE_EFFECTS
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import settings_for
@@ -27,14 +26,6 @@ MakeScene = Callable[..., Scene]
 ROOT = Path(__file__).parents[2] / "lammps_inputs" / "fragments"
 NAMES = sorted(path.relative_to(ROOT).with_suffix("").as_posix() for path in ROOT.rglob("*.lmp"))
 DEFINITION = re.compile(r'(?:^|then +")(variable|group|fix|compute)\s+(\w+)\s+(\w+)', re.MULTILINE)
-LOOP_VARIABLES = {
-    "row_phase",
-    "state_append",
-    "row_append",
-    "row_skip",
-    *(column for kind in STEPS for column in kind.columns()),
-}
-"""Variables that the schedule defines around the steps."""
 
 
 def text_of(name: str) -> str:
@@ -90,69 +81,11 @@ def test_fixes_and_computes_are_named_after_their_fragment(name: str) -> None:
             assert identity.startswith(f"{owner}_")
 
 
-def test_steps_need_nothing_that_no_part_defines() -> None:
-    """What a step needs is a column of its rows, a loop variable, or of the method or plate that has the step."""
-    of_method = {"force_tolerance", "minimiser_iterations", "plate_force", "plate_velocity"}
-    of_method |= header_of("cantilever", "Needs") | header_of("cantilever", "Defines") | header_of("noise", "Needs")
-    of_method |= {"gentle_move", "gentle_tolerance", "along_place"}
-    of_bodies = {"plate_rest", "plate_displacement", "opposite_x", "opposite_z"}
-    of_schedule = {"row_count"}
-    of_units = header_of("units", "Needs") | header_of("units", "Defines")
-    for name in NAMES:
-        if name.startswith("steps/"):
-            assert header_of(name, "Needs") <= LOOP_VARIABLES | of_method | of_bodies | of_schedule | of_units
-    for kind in STEPS:
-        assert set(kind.columns()) <= header_of(f"steps/{kind.step}", "Needs")
-
-
-def test_no_id_is_defined_by_two_fragments_that_meet() -> None:
-    """Only kinds of lower body, upper body, plate, method, measuring and units share names; a deck has one of each."""
-    owners: dict[str, list[str]] = {}
-    for name in NAMES:
-        for word in header_of(name, "Defines"):
-            owners.setdefault(word, []).append(name)
-    twice = {word: who for word, who in owners.items() if len(who) > 1}
-    planes = ("interaction", "rigid_plane", "standing_plane")
-    pairs = {("plate", "plate_alone"), ("steps/measuring", "steps/measuring_energy")}
-    pairs |= {(name, f"{name}_in_units") for name in ("output_states", "steps/kept")}
-    assert set(map(tuple, twice.values())) <= pairs | {
-        planes,
-        planes[1:],
-        ("bodies", "standing_plate"),
-        ("bodies", "standing", "standing_plate"),
-        ("bodies", "sweep"),
-    }
-
-
 def test_every_effect_is_a_table_and_a_fragment() -> None:
     """Scene table = effect = fragment, in the same order."""
     assert tuple(EFFECTS) == SCENE_EFFECTS
     for name in EFFECTS:
         assert name in NAMES
-
-
-FULL = {
-    "horizontal": {},
-    "neighbours": {"stiffness": 0.3},
-    "damping": {"coefficient": "auto"},
-    "plate": {"free": ["x", "z"]},
-    "cantilever": {"stiffness": 0.5, "velocity": 0.01},
-    "bodies": {"bulk_stiffness_tangential": 0.5},
-    "experiment": {"kind": "slide", "normal_force": 0.1, "distance": 5.0},
-}
-
-
-@pytest.mark.parametrize("noise", [None, {"temperature": 1e-3, "seed": 1}])
-def test_every_contribution_brings_what_its_fragments_need(make_scene: MakeScene, noise: object) -> None:
-    """The effect's own fragment comes first, and its variables are named after it."""
-    scene = make_scene(**FULL, noise=noise)
-    settings = settings_for(scene)
-    for name in scene.effects:
-        part = EFFECTS[name](scene, settings)
-        assert part.name == name
-        assert part.fragments[:1] == ((name,) if (name, noise is None) != ("damping", False) else ())
-        for variable in part.variables:
-            assert variable.startswith((f"{name}_", "far_"))
 
 
 @pytest.fixture
@@ -183,12 +116,6 @@ def test_a_fragment_that_uses_what_it_does_not_declare_raises(fakes: Path) -> No
     change(fakes / "damping.lmp", "# Needs: damping_coefficient", "# Needs: -")
     with pytest.raises(DeckError, match="fragment damping: uses damping_coefficient"):
         fragment("damping")
-
-
-def test_a_fragment_that_reads_an_undeclared_variable_by_v_raises(fakes: Path) -> None:
-    change(fakes / "plate.lmp", "f_plate_body[1][9]", "v_unheard_of*f_plate_body[1][9]")
-    with pytest.raises(DeckError, match="fragment plate: uses unheard_of"):
-        fragment("plate")
 
 
 def test_a_fragment_that_needs_what_it_does_not_use_raises(fakes: Path) -> None:
@@ -235,16 +162,6 @@ def test_an_id_defined_twice_raises(make_scene: MakeScene, fakes: Path) -> None:
         Deck(scene, settings_for(scene)).head  # noqa: B018 (rendering it is the test)
 
 
-def test_one_interaction_and_one_plane_do_not_meet(make_scene: MakeScene, monkeypatch: pytest.MonkeyPatch) -> None:
-    """They define the same two names: a deck with both is refused."""
-    scene = make_scene(interaction=None, bodies={"lower": "rigid_plane"}, neighbours={"stiffness": 0.3})
-    both = make_scene()
-    part = interaction_effect(both, settings_for(both))
-    with_part(monkeypatch, lambda *_: part)
-    with pytest.raises(DeckError, match="defined twice: opposite_x"):
-        Deck(scene, settings_for(scene)).head  # noqa: B018 (rendering it is the test)
-
-
 def test_two_pair_styles_raise(make_scene: MakeScene, monkeypatch: pytest.MonkeyPatch) -> None:
     """The later one would silently take the place of the first."""
     scene = make_scene(neighbours={"stiffness": 0.3})
@@ -267,15 +184,6 @@ def test_a_step_that_redefines_without_a_word_raises(make_scene: MakeScene, fake
     scene = make_scene(damping={"coefficient": "auto"}, plate={}, experiment={"kind": "load", "force": 0.1})
     with pytest.raises(DeckError, match="defined twice: plate_load, by plate and by steps/load"):
         Deck(scene, settings_for(scene)).text((Phase("loading", (UnderLoad(0.1, 10),)),))
-
-
-def test_a_step_that_redefines_what_is_not_there_raises(make_scene: MakeScene) -> None:
-    """A drive without a cantilever."""
-    scene = make_scene()
-    with pytest.raises(
-        DeckError, match=r"used but not defined: cantilever_bath, .*cantilever_velocity, in steps/drive"
-    ):
-        Deck(scene, settings_for(scene)).text((Phase("sliding", (Displace(0.0),), begin=("steps/drive",)),))
 
 
 def test_a_phase_without_rows_is_left_out(make_scene: MakeScene) -> None:

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.polynomial import Polynomial
+from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 from scipy.stats import t as students
 
@@ -102,44 +104,28 @@ def test_a_smooth_largest_friction_lies_between_the_rows_and_within_its_claim() 
     assert worst < 1e-3
 
 
-def test_the_interval_is_students_for_blocks_of_one_two_and_four() -> None:
-    """As long as four of them are left; the last ones, without a rest. A drift of the means counts by half."""
-    random = np.random.default_rng(4)
-    for count in (2, 3, 4, 7, 8, 9, 15, 16, 17, 33, 64):
-        blocks = np.repeat(random.normal(size=count), 3)[:count] + random.normal(size=count)
-        found = []
-        for together in (one for one in (1, 2, 4) if one == 1 or count // one >= 4):
-            means = [blocks[i : i + together].mean() for i in range(count % together, count, together)]
-            error = np.std(means, ddof=1) / np.sqrt(len(means))
-            found.append(students.ppf(0.975, len(means) - 1) * error)
-        halves = blocks[: count // 2].mean(), blocks[-(count // 2) :].mean()
-        assert interval(blocks) == pytest.approx(max(*found, 0.5 * abs(halves[1] - halves[0])), rel=PRINTED)
-
-
 def test_students_factors_are_students() -> None:
     for freedom in range(1, 80):
         near = PRINTED if freedom < 10 else GOES_ON
         assert student(freedom) == pytest.approx(students.ppf(0.975, freedom), rel=near)
 
 
-def test_the_largest_friction_ends_with_the_row_before_one_spacing() -> None:
-    place = np.array([5.0, 5.3, 5.6, 5.9, 6.0, 6.2])
-    assert largest_before(np.arange(6.0), place, 1.0)[0] == 3.0
-    assert largest_before(np.array([9.0, 1.0, 2.0, 3.0, 0.0, 0.0]), place, 1.0) == (9.0, 0.0)
-
-
-@pytest.mark.parametrize(
-    ("before", "missed"),
-    [
-        ([0.0, 2.0, 4.0], 0.25),
-        ([1.0, 3.0, 5.0], 0.25),
-        ([0.0, 7.0, 12.0], 0.625),
-        ([0.0, 1.0, 4.0], 2.0),
-        ([0.0, 3.0], 3.0),
-    ],
-)
-def test_what_a_row_may_miss_of_a_friction_that_rises_to_a_slip(before: list[float], missed: float) -> None:
-    """A straight rise: an eighth of it, as of one that falls off; where it grows: by what it grew."""
-    friction = np.array([*before, 0.0, 0.0])
-    found = largest_before(friction, 0.1 * np.arange(friction.size), 1.0)
-    assert found == (before[-1], pytest.approx(missed))
+@pytest.mark.parametrize("start", [0.0, -40.0, 7.0])
+def test_means_over_periods_are_integrals_of_hermites_cubic_or_of_chords_between_rows(start: float) -> None:
+    random = np.random.default_rng(5)
+    for periods in (1.0, 2.0, 3.7):
+        period = random.uniform(0.5, 3.0)
+        time = start + period * periods * np.linspace(0.0, 1.0, 23) ** 1.3
+        law = Polynomial(random.normal(size=4))  # its integral is no cubic
+        integral = law.integ()(time - start)
+        for rate in (None, law(time - start)):
+            found = block_means(time, integral, period, rate)
+            assert found.size == int(periods)
+            for number, mean in enumerate(found[::-1]):
+                end = time[-1] - start - number * period
+                if rate is None:
+                    at = np.interp([end - period, end], time - start, integral)
+                    assert mean == pytest.approx((at[1] - at[0]) / period)
+                else:
+                    exact = quad(law, end - period, end)[0] / period
+                    assert mean == pytest.approx(exact, abs=1e-3 * np.abs(law(time - start)).max())

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from contact1d.analysis.friction import block_means, mean_of, sampled_mean
-from contact1d.workflow.experiments.slide.findings import is_steady
 from contact1d.workflow.experiments.motion import Motion
+from contact1d.workflow.experiments.slide import is_steady
 from contact1d.workflow.settings.drive import DriveLeg
 
 PERIODS, VELOCITY = 12, 0.5
@@ -31,12 +31,6 @@ def test_a_mean_leaves_the_run_in_out() -> None:
     found = mean_of(blocks)
     assert found.value == pytest.approx(2.0)
     assert found.first == 3
-
-
-def test_means_over_periods_are_those_of_what_was_summed_up() -> None:
-    time = np.linspace(0.0, 6.0, 61)
-    for start in (0.0, -5.0, 9.0):
-        assert block_means(time + start, time**2, 2.0) == pytest.approx([2.0, 6.0, 10.0])
 
 
 def moved(place: Any, leg: DriveLeg) -> Motion:

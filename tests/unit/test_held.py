@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
-from contact1d.analysis.held import _edge, _share, held_radius, whole_cells
+from contact1d.analysis.held import held_radius, whole_cells
 from contact1d.analysis.pressure import Profile
 
 ROUND_OFF = 1e-9
@@ -21,16 +18,6 @@ def row(edge: float, d: float = 1.0) -> Profile:
     middle = np.abs(X) - 0.5 * (1.0 - share)
     zero = np.zeros_like(X)
     return Profile(X, zero, zero, share * (d - middle**2 / 200.0), zero)
-
-
-@pytest.mark.parametrize("d", [-0.3, 0.1, 0.5])
-def test_the_edge_is_found_in_its_cell(d: float) -> None:
-    for edge in np.linspace(15.01, 18.99, 83):
-        found = held_radius(row(float(edge), d))
-        assert found.value == pytest.approx(float(edge), abs=ROUND_OFF)
-        assert found.right == pytest.approx(float(edge), abs=ROUND_OFF)
-        assert found.uncertainty < 0.05
-        assert not found.reaches_end
 
 
 def test_nothing_held_has_no_radius() -> None:
@@ -63,30 +50,6 @@ def test_too_few_particles() -> None:
         held_radius(Profile(np.arange(2.0), two, two, two, two))
 
 
-def test_a_share_is_that_of_the_pressure_inside_and_none_where_that_vanishes() -> None:
-    """An even pressure of 1, and one that falls to 0 at the edge particle's own place."""
-    assert _share(0.5, [1.0, 1.0, 1.0]) == pytest.approx(0.5)
-    assert _share(1.0, [0.25, 0.5, 0.75]) == pytest.approx(1.0)
-    assert math.isnan(_share(0.5, [3.0, 2.0, 1.0]))
-
-
-@pytest.mark.parametrize("edge", [1.2, 2.2, 2.7, 2.9, 3.2, 3.7, 3.9, 4.2, 4.8, 4.9, 5.3, 6.6, 7.4])
-def test_the_inside_is_continued_wherever_three_particles_of_each_side_lie_within(edge: float) -> None:
-    """A contact of eight particles is the smallest one; the error of others is the third difference of the pressure."""
-    share = np.clip(edge - np.abs(X) + 0.5, 0.0, 1.0)
-    zero = np.zeros_like(X)
-    inside = np.cosh(0.2 * X) + 0.1 * X
-    held = share > 0.0
-    profile = Profile(X, zero, zero, share * inside, zero)
-    found = whole_cells(profile, held_radius(profile))
-    if held.sum() < 8:
-        assert found == pytest.approx(profile.pressure)
-    else:
-        within = np.abs(X) < edge - 0.2
-        third = 0.2**3 * np.sinh(0.2 * edge)
-        assert found[within] == pytest.approx(inside[within], abs=third)
-
-
 @pytest.mark.parametrize("spacing", [2.0**-12, 1.0, 2.0**12])
 @pytest.mark.parametrize("origin", [0.0, 32.0])
 def test_both_edges_of_a_parabola_are_found_wherever_each_lies(spacing: float, origin: float) -> None:
@@ -112,56 +75,3 @@ def test_both_edges_of_a_parabola_are_found_wherever_each_lies(spacing: float, o
         within = (t > left + ROUND_OFF) & (t < right - ROUND_OFF)
         assert whole == pytest.approx(np.where(within, inside(t), 0.0), abs=1e-6)
     assert ends > 10
-
-
-def test_three_particles_are_enough_for_an_edge_somewhere_in_a_cell() -> None:
-    x, zero = 2.0 * np.arange(3.0), np.zeros(3)
-    for pressure, left, right in (
-        ([0.0, 1.0, 0.0], 2.0, 2.0),
-        ([1.0, 1.0, 0.0], 0.0, 2.0),
-        ([1.0, 1.0, 1.0], 0.0, 4.0),
-    ):
-        found = held_radius(Profile(x, zero, zero, np.array(pressure), zero))
-        assert (found.left, found.right, found.uncertainty) == (left, right, 1.0)
-        assert found.reaches_end == (sum(pressure) > 1.0)
-
-
-@pytest.mark.parametrize(
-    ("carried", "edge", "claim"),
-    [(1.06, 0.0, 0.5), (1.04, 0.5, 0.0), (0.25, -0.25, 0.0), (-0.04, -0.5, 0.0), (-0.06, 0.0, 0.5), (3.0, 0.0, 0.5)],
-)
-def test_a_share_outside_of_its_cell_by_more_than_it_may_seem_leaves_the_edge_anywhere_in_it(
-    carried: float, edge: float, claim: float
-) -> None:
-    """An even pressure of 1, in spacings of a quarter: parabola and straight line say the same of it."""
-    x, p = 0.25 * np.arange(6.0), np.array([1.0, 1.0, 1.0, 1.0, 1.0, carried])
-    found = _edge(x, p, 5, 0.25, False)
-    assert found.position == pytest.approx(1.25 + 0.25 * edge)
-    assert found.uncertainty == pytest.approx(0.25 * claim, abs=ROUND_OFF)
-
-
-@pytest.mark.parametrize("inner", [[1.0, 1.5, 1.6], [2.0, 1.9, 1.5], [1.0, 1.2, 1.4]])
-@pytest.mark.parametrize("share", [0.2, 0.6, 0.95])
-def test_an_edge_is_as_uncertain_as_a_straight_line_makes_another_of_it(inner: list[float], share: float) -> None:
-    """The share is where φ times the pressure in the middle of φ is what is carried; a search finds the same."""
-
-    def where(pressures: list[float], order: int, carried: float) -> float:
-        law = np.polynomial.Polynomial.fit([-3.0, -2.0, -1.0][2 - order :], pressures[2 - order :], order)
-        return float(brentq(lambda part: part * law(-0.5 * (1.0 - part)) - carried, 0.0, 1.5, xtol=1e-14))
-
-    law = np.polynomial.Polynomial.fit([-3.0, -2.0, -1.0], inner, 2)
-    carried = share * float(law(-0.5 * (1.0 - share)))
-    x, p = 0.25 * np.arange(6.0), np.array([inner[0], inner[0], *inner, carried])
-    found = _edge(x, p, 5, 0.25, True)
-    assert found.at_end
-    assert found.position == pytest.approx(1.25 + 0.25 * (share - 0.5), abs=1e-3)
-    assert found.uncertainty == pytest.approx(0.25 * abs(share - where(inner, 1, carried)), abs=1e-3)
-    three = _edge(x, p, 3, 0.25, False)
-    assert (three.position, three.uncertainty, three.at_end) == (1.25, 0.125, False)
-
-
-def test_an_edge_is_never_more_uncertain_than_half_a_spacing() -> None:
-    """A parabola that turns up says 0.4 of a cell, a straight line that falls says 0.95."""
-    x, p = 0.25 * np.arange(6.0), np.array([9.0, 5.5, 3.0, 1.2, 1.0, 0.76])
-    assert abs(_share(0.76, [3.0, 1.2, 1.0]) - _share(0.76, [1.4, 1.2, 1.0])) > 0.52
-    assert _edge(x, p, 5, 0.25, False).uncertainty == 0.125

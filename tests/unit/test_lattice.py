@@ -12,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.lattice import bodies, neighbour_forces, places
+from contact1d.workflow.deck.lattice import bodies
 from contact1d.workflow.deck.steps import DisplaceInTime
 from contact1d.workflow.engine.session import Session
 from contact1d.workflow.scene import Scene, scene_from_dict
@@ -36,8 +36,6 @@ TO_REST = 2000
 """Timesteps of a drag that is near critical, some 20 to a time constant, in which a motion is gone."""
 LONG_BOND_ROUND_OFF = 5e-12
 """Of a force [FU]: the length of a long bond, here 1e4 LU, is a double to 2e-12 LU."""
-LONG_BOND_ERROR = 1.01
-"""Of the bend u²/2L of a long bond that is moved by u across itself: the next term of its series is u²/4L² of it."""
 PARTICLES = 20
 
 BODIES = [
@@ -89,18 +87,6 @@ def test_undeformed_bodies_are_in_equilibrium(
 
 
 @pytest.mark.parametrize(("shape", "horizontal", "tangential"), BODIES)
-def test_relaxation_moves_nothing(
-    make_scene: MakeScene, open_deck: OpenDeck, shape: str, horizontal: bool, tangential: str
-) -> None:
-    """Minimising the energy of the bodies, apart, leaves every particle on its profile."""
-    deck, session = open_deck(make_scene(**tables(shape, horizontal, tangential)))
-    before = apart(deck, session)["x"]
-    session.execute("min_style cg\nminimize 0 1e-12 1000 1000")
-    softest = min(NORMAL, TANGENTIAL[tangential])
-    assert np.abs(session.atoms("x")["x"] - before).max() <= rest_error(deck) * np.sqrt(PARTICLES) / softest
-
-
-@pytest.mark.parametrize(("shape", "horizontal", "tangential"), BODIES)
 def test_without_neighbours_nothing_pulls_either(
     make_scene: MakeScene, open_deck: OpenDeck, shape: str, horizontal: bool, tangential: str
 ) -> None:
@@ -125,15 +111,6 @@ def test_a_chain_on_a_rigid_plane_is_in_equilibrium(make_scene: MakeScene, open_
     assert np.abs(read["f"][read["type"] == 2]).max() <= ROUND_OFF
 
 
-@pytest.mark.parametrize(("shape", "horizontal", "tangential"), BODIES)
-def test_anchor_shifts_add_up_to_nothing(make_scene: MakeScene, shape: str, horizontal: bool, tangential: str) -> None:
-    """So the force on the plate is the contact's, and its rest place is the profile's."""
-    scene = make_scene(**tables(shape, horizontal, tangential))
-    for body in bodies(scene, settings_for(scene)):
-        shift = body.anchors - body.particles
-        assert np.abs(shift.sum(axis=0)).max() <= ROUND_OFF
-
-
 def test_shifts_are_those_of_the_continuous_chain(make_scene: MakeScene) -> None:
     """Inside, an anchor is offset by k_n/k times the second difference, s²/R; at the ends by k_n/k spacings along x."""
     scene = make_scene(**tables("curved", True, "equal"))
@@ -144,15 +121,6 @@ def test_shifts_are_those_of_the_continuous_chain(make_scene: MakeScene) -> None
     assert shift[1:-1, 0] == pytest.approx(0.0, abs=ROUND_OFF)
     assert shift[[0, -1], 0] == pytest.approx([-ratio, ratio], rel=1e-12)
     assert not shift[:, 1].any()
-
-
-def test_forces_of_neighbours_against_a_loop() -> None:
-    """r_i = k_n Σ (p_j − p_i), written out."""
-    chain = np.random.default_rng(1).normal(size=(7, 3))
-    wanted = np.zeros((7, 3))
-    for i, j in [(0, 1), *((i, i + d) for i in range(1, 6) for d in (-1, 1)), (6, 5)]:
-        wanted[i] += 0.4 * (chain[j] - chain[i])
-    assert neighbour_forces(chain, 0.4) == pytest.approx(wanted, abs=1e-15)
 
 
 @pytest.mark.parametrize("axis", [0, 2])
@@ -211,12 +179,6 @@ def test_particles_in_a_rigid_plane_have_the_series_stiffness(make_scene: MakeSc
     assert 4 < (wanted > 0).sum() < PARTICLES
     force = read["v_opposite_z"][read["type"] == 2]
     assert np.abs(force - wanted).max() <= WALL_ROUND_OFF
-
-
-def test_places() -> None:
-    """Centred, even, for odd and even numbers of particles."""
-    assert places(4, 0.5).tolist() == [-0.75, -0.25, 0.25, 0.75]
-    assert places(3, 2.0).tolist() == [-2.0, 0.0, 2.0]
 
 
 def test_bodies_at_displacement_zero(make_scene: MakeScene) -> None:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -59,15 +57,6 @@ def test_every_particle_that_carries_pressure_is_a_bar_of_its_sign() -> None:
     assert axis.get_xlabel() == "x (LU)"
 
 
-def test_a_contact_that_was_drawn_along_is_marked_where_it_is() -> None:
-    drawn = profile(0.05)
-    moved = Profile(drawn.x + 8.5, drawn.z_lower, drawn.z_upper, drawn.pressure, drawn.shear)
-    for one, centre in ((drawn, 0.0), (moved, 8.5)):
-        (axis,) = plots.pressure_figure({"final": one}, {"final": 28.0}).axes
-        marks = sorted(line.get_xdata()[0] for line in axis.get_lines() if line.get_linestyle() == "--")
-        assert marks == pytest.approx([centre - 28.0, centre + 28.0])
-
-
 def test_the_contact_radius_is_marked_on_both_sides_and_named() -> None:
     radii = {"zero_load": 28.25, "critical": 15.5}
     figure = plots.pressure_figure({"zero_load": profile(0.05), "critical": profile(-0.01)}, radii)
@@ -94,13 +83,6 @@ def test_the_branches_are_drawn_as_measured(curve: Curve) -> None:
     np.testing.assert_array_equal(drawn["unloading"], points[30:][::-1])
     assert "(LU)" in axis.get_xlabel()
     assert "(FU)" in axis.get_ylabel()
-
-
-def test_the_adhesion_force_is_marked_where_there_is_one(curve: Curve) -> None:
-    (axis,) = plots.force_displacement_figure(curve, MARKS).axes
-    assert "1.5 FU" in axis.texts[0].get_text()
-    assert [*axis.get_lines()[-1].get_ydata()] == [-ADHESION, -ADHESION]
-    assert not plots.force_displacement_figure(curve, {}).axes[0].texts
 
 
 def test_jkr_over_displacement_obeys_its_own_equations() -> None:
@@ -145,14 +127,6 @@ def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(curve
     assert barquins[np.argmin(barquins[:, 1]), 0] == pytest.approx(0.397, abs=0.01)  # (1/4)^(2/3), grid of 400
 
 
-def test_friction_is_over_the_way_of_the_drive_with_the_normal_force_below() -> None:
-    columns = {"drive": [0.0, 0.5, 1.0], "friction": [0.0, 0.2, 0.1], "normal_force": [1.0, 1.1, 0.9]}
-    upper, lower = plots.friction_figure(columns).axes
-    np.testing.assert_array_equal(upper.get_lines()[0].get_ydata(), columns["friction"])
-    np.testing.assert_array_equal(lower.get_lines()[0].get_xdata(), columns["drive"])
-    assert [upper.get_ylabel(), lower.get_ylabel()] == ["friction (FU)", "normal force (FU)"]
-
-
 def test_every_figure_is_a_whole_file(curve: Curve, tmp_path: Path) -> None:
     columns = {"drive": [0.0, 1.0], "friction": [0.0, 1.0], "normal_force": [1.0, 1.0]}
     for name, figure in {
@@ -168,11 +142,3 @@ def test_every_figure_is_a_whole_file(curve: Curve, tmp_path: Path) -> None:
         data = file.read_bytes()
         assert data.startswith(PNG)
         assert data[-8:-4] == b"IEND"
-
-
-def test_figures_leave_no_global_state() -> None:
-    code = (
-        "import sys; from contact1d.analysis import plots; assert 'matplotlib' not in sys.modules;"
-        "plots.new_figure((1, 1)); assert 'matplotlib.pyplot' not in sys.modules"
-    )
-    subprocess.run([sys.executable, "-W", "error", "-c", code], check=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ import pytest
 from contact1d.analysis.polynomial import fitting, lowest_minimum, real_roots, through, value
 
 ROUND_OFF = 1e-12  # of a polynomial of low degree in doubles
-ALL_DIGITS = 1e-14  # some last bits: of a double one is 2e-16
 PLACES = np.array([-1.0, -0.4, 0.1, 0.7, 1.0])
 QUARTIC = np.array([0.0, 0.05, -0.5, 0.0, 1.0])
 """t⁴ − t²/2 + t/20: a minimum on each side of 0, the left one lower."""
@@ -66,66 +64,3 @@ def test_a_highest_coefficient_of_round_off_leaves_the_roots_of_the_others(lead:
     known = [-0.75, 0.5]
     assert np.sort(real_roots(np.asarray([-0.375, 0.25, 1.0, lead]), -5.0, 5.0)) == pytest.approx(known)
     assert real_roots(np.asarray([-0.25, 2.0, lead]), -5.0, 5.0) == pytest.approx([0.125])
-
-
-@pytest.mark.parametrize("count", [2, 3, 7, 21])
-def test_the_matrix_of_values_it_goes_through_keeps_all_digits(count: int) -> None:
-    """Against the inverse of the powers in whole fractions, wherever the places lie and in any order."""
-    random = np.random.default_rng(count)
-    for t in (np.linspace(-0.5, 0.5, count), random.permutation(np.linspace(-0.3, 0.9, count))):
-        exact = inverse_of_powers([Fraction(place) for place in t.tolist()])
-        largest = np.abs(exact).max(axis=1, keepdims=True)
-        assert (np.abs(fitting(t, count - 1) - exact) <= ALL_DIGITS * largest).all()
-
-
-def inverse_of_powers(t: list[Fraction]) -> np.ndarray:
-    """By Gauß and Jordan."""
-    n = len(t)
-    rows = [[*(place**k for k in range(n)), *(Fraction(i == j) for j in range(n))] for i, place in enumerate(t)]
-    for i in range(n):
-        pivot = next(k for k in range(i, n) if rows[k][i])
-        rows[i], rows[pivot] = rows[pivot], rows[i]
-        rows[i] = [number / rows[i][i] for number in rows[i]]
-        rows = [
-            row if k == i else [a - row[i] * b for a, b in zip(row, rows[i], strict=True)] for k, row in enumerate(rows)
-        ]
-    return np.array([[float(number) for number in row[n:]] for row in rows])
-
-
-@pytest.mark.parametrize("far", [[], [30.0], [-1e4], [5.0, -400.0, 2e3, 1e4]])
-def test_roots_far_off_take_no_digits_from_those_at_hand(far: list[float]) -> None:
-    for root in (-0.9, -1e-3, 0.3, 0.8):
-        law = np.polynomial.polynomial.polyfromroots([root])
-        for one in far:
-            law = np.polynomial.polynomial.polymul(law, [1.0, -1.0 / one])
-        assert real_roots(law, -1.0, 1.0) == pytest.approx([root], rel=ALL_DIGITS)
-
-
-def test_a_matrix_that_is_kept_for_the_next_state_cannot_be_changed() -> None:
-    with pytest.raises(ValueError, match="read-only"):
-        fitting(PLACES, 2)[0, 0] = 1.0
-
-
-def test_of_two_minima_the_lower_one_counts_wherever_the_maximum_between_them_lies() -> None:
-    """(t² − 1/4)² ± t/20, of any size: its bends are below and above 1."""
-    for scale in (1e-3, 1.0, 1e3):
-        for side in (-1.0, 1.0):
-            law = scale * np.array([0.0625, -0.05 * side, -0.5, 0.0, 1.0])
-            roots = np.polynomial.Polynomial(law).deriv().roots().real
-            lowest = min(roots, key=np.polynomial.Polynomial(law))
-            place, bend = lowest_minimum(law, -1.0, 1.0)
-            assert place == pytest.approx(lowest, abs=ROUND_OFF)
-            assert bend == pytest.approx(scale * (12.0 * lowest**2 - 1.0), rel=10.0 * ROUND_OFF)
-
-
-def test_a_search_that_runs_away_finds_nothing_though_it_might_come_back() -> None:
-    """P″ = (1 − t²)² + 1/100: from 0.7 the first step is 1.9 long, and six steps later it is at 0."""
-    law = np.array([0.0, 0.0, 0.505, 0.0, -1.0 / 6.0, 0.0, 1.0 / 30.0])
-    assert lowest_minimum(law, -1.0, 1.0, near=0.3)[0] == pytest.approx(0.0, abs=ROUND_OFF)
-    assert math.isnan(lowest_minimum(law, -1.0, 1.0, near=0.7)[0])
-    assert math.isnan(lowest_minimum(np.array([0.0, 0.0, 0.0, 0.0, 1.0]), -1.0, 1.0, near=0.0)[0])  # level all around
-
-
-def test_a_minimum_that_is_flat_to_high_order_is_not_found_in_few_steps() -> None:
-    """t⁸: each step of Newton's leaves 6/7 of the way."""
-    assert math.isnan(lowest_minimum(np.array([*np.zeros(8), 1.0]), -1.0, 1.0, near=0.5)[0])

@@ -50,17 +50,6 @@ def test_before_any_move_what_is_left_counts_on_both_sides() -> None:
         assert stick_radius(turned, MU, 0).value == pytest.approx(10.0 * np.sqrt(0.5))
 
 
-@pytest.mark.parametrize("scale", [2.0**-40, 1.0, 2.0**40])
-def test_what_is_left_is_counted_in_the_unit_of_the_pressure_but_for_round_off(scale: float) -> None:
-    """What is pulled holds nothing; a ten-billionth of the largest limit is nothing."""
-    pressure = scale * np.array([-3.0, 0.0, 1.0, 2.0, 4.0, 2.0])
-    shear = -scale * np.array([0.0, 0.0, 0.25, 1.0 - 1e-11, 1.0, -0.5])
-    profile = Profile(np.arange(6.0), 0.0 * pressure, 0.0 * pressure, pressure, shear)
-    assert stick_margin(profile, 0.5, 1) == pytest.approx(scale * np.array([0.0, 0.0, 0.25, 0.0, 1.0, 1.5]), rel=1e-9)
-    assert stick_margin(profile, 0.5, 0) == pytest.approx(scale * np.array([0.0, 0.0, 0.25, 0.0, 1.0, 0.5]), rel=1e-9)
-    assert stick_margin(profile, 0.5, -1) == pytest.approx(scale * np.array([0.0, 0.0, 0.75, 2.0, 3.0, 0.5]), rel=1e-9)
-
-
 limits = st.floats(0.0, 2.0)
 
 
@@ -84,9 +73,3 @@ def test_work_is_what_is_put_in_less_what_the_spring_holds(
     assert row.work[0] == pytest.approx(dissipated, abs=size / steps)
     assert row.work[0] >= 0.0
     assert abs(row.force[0]) <= after
-
-
-def test_what_sticks_does_no_work() -> None:
-    row = slip(np.array([0.1, -0.2]), np.array([0.1, 0.1]), np.ones(2), np.ones(2), 2.0)
-    assert row.work.tolist() == row.way.tolist() == [0.0, 0.0]
-    assert row.force == pytest.approx([0.2, -0.1], rel=ROUND_OFF)

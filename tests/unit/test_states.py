@@ -41,18 +41,6 @@ def test_as_many_states_are_kept_as_numbers_fit_evenly_with_both_ends(
                 assert getattr(found, name) == pytest.approx(expected, rel=1e-6)
 
 
-def test_hundred_states_of_2000_particles_are_kept_and_of_one_more_one_less() -> None:
-    assert states_of(passed(100, 2000)).rows.tolist() == [*range(100)]
-    assert states_of(passed(101, 2000)).rows.size == 100
-
-
-def test_rows_that_are_asked_for_are_kept_however_many(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(states_module, "MOST_NUMBERS", 10)
-    found = states_of(passed(9, 5), [1, 3, 4, 5, 8])
-    assert found.rows.tolist() == [1, 3, 4, 5, 8]
-    assert found.shear[2, 3] == 3.0 + 400.0 + 4e4
-
-
 def test_states_come_back_and_what_holds_objects_or_lacks_a_column_is_refused(tmp_path: Path) -> None:
     kept, path = states_of(passed(4, 3)), tmp_path / "states.npz"
     write_states(path, kept)

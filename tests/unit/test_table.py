@@ -8,9 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
-from contact1d import files
 from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.potentials import table as table_module
 from contact1d.potentials.table import MOST_POINTS, Table, table_for, write_table
@@ -34,8 +32,6 @@ MEASURED = 0.02
 """Header and LAMMPS sample the same error at different places; near its largest value it changes by less than this."""
 DIGITS = 5e-3
 """The header states the error with three digits."""
-SPLINE_MARGIN = 28
-"""Cells after which nothing is left of an end condition: DECAY^28 = 1e-16."""
 BEND = 1e-6
 """Of the force at r = 0: next to its largest tension a force is not between its neighbours on the grid."""
 RATE = 0.25
@@ -104,18 +100,6 @@ def test_table_force_is_what_lammps_computes(session: Session, name: str) -> Non
         cells = r**2 / table.cell
         allowed = END_CONDITION * np.sqrt(1 + cells) * DECAY**cells + ROUND_OFF
         assert (np.abs(force[:, 2] - table.force(r)) <= float(law.force(0.0)) * allowed).all()
-
-
-@pytest.mark.parametrize("name", LAWS)
-def test_table_force_is_the_cubic_spline(name: str) -> None:
-    """`Table.force` against scipy's spline through the same entries, away from the ends, whose conditions differ."""
-    law, cutoff, _ = LAWS[name]
-    table = Table(law, cutoff, 4000)
-    distance, _, force = table.entries()
-    spline = CubicSpline(table.grid(), force / distance)
-    r = np.sqrt(np.linspace(SPLINE_MARGIN * table.cell, cutoff**2 - SPLINE_MARGIN * table.cell, 5000))
-    expected = spline(r**2 + table.plane_offset**2) * r
-    assert np.abs(table.force(r) - expected).max() <= ROUND_OFF * float(law.force(0.0))
 
 
 @pytest.mark.parametrize("name", LAWS)
@@ -205,18 +189,6 @@ def test_an_error_out_of_reach_ends_at_the_largest_table(tmp_path: Path) -> None
     assert float(stated[1]) > 1e-15
 
 
-def test_grid_and_offset() -> None:
-    """Even in r², the last entry at the cutoff, the planes' distance inside the table with cells to spare."""
-    table = Table(ADHESIVE, 2.5, 4000)
-    squared = table.grid()
-    assert np.diff(squared) == pytest.approx(table.cell, rel=1e-7)
-    assert squared[-1] - table.plane_offset**2 == pytest.approx(2.5**2, rel=ROUND_OFF)
-    assert 0.0 < squared[0] < table.plane_offset**2 - 3 * table.cell
-    for column in table.entries():
-        assert column.shape == (4000,)
-        assert np.isfinite(column).all()
-
-
 def test_the_file_is_whole(tmp_path: Path) -> None:
     """Header, section, one row per point, 17 digits: what is read back is bitwise what was meant; no .part is left."""
     table = Table(ADHESIVE, 2.5, 2500)
@@ -243,18 +215,3 @@ def test_without_attraction_no_attractive_term(tmp_path: Path) -> None:
     assert law[1] == "0.17999999999999999 exp(-r/0.13)"
     rows = text.split("RSQ", 1)[1].splitlines()[2:]
     assert min(float(row.split()[3]) for row in rows) > 0.0
-
-
-def test_a_write_that_fails_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A full disc at the last moment: the table of before is still there, and whole."""
-    path = tmp_path / "interaction.table"
-    write_table(Table(ADHESIVE, 2.5, 2000), 0.07, path)
-    before = path.read_bytes()
-
-    def full(*_: object) -> None:
-        raise OSError("no space left on device")
-
-    monkeypatch.setattr(files.os, "replace", full)
-    with pytest.raises(OSError, match="no space"):
-        write_table(Table(REPULSIVE, 1.8, 2000), 0.07, path)
-    assert path.read_bytes() == before

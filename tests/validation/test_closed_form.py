@@ -76,21 +76,3 @@ def test_a_coarse_law_under_a_blunt_body_is_within_the_claim(run_tables: Callabl
     exact = (pairs.adhesion_force(), pairs.zero_load_radius(), pairs.critical_radius())
     for name, value in zip(NAMES, exact, strict=True):
         assert abs(found[name].value - value) <= found[name].uncertainty
-
-
-def test_everything_grows_as_the_root_of_the_radius(measured: dict[float, Mapping[str, Quantity]]) -> None:
-    """Without a look at the closed form: the program's numbers among themselves."""
-    for radius in RADII[1:]:
-        root = float(np.sqrt(radius / RADII[0]))
-        first, other = measured[RADII[0]], measured[radius]
-        assert other["adhesion_force"].value == pytest.approx(root * first["adhesion_force"].value, rel=FORCE)
-        for name in NAMES[1:]:
-            assert abs(other[name].value - root * first[name].value) < (1.0 + root) * RADIUS
-
-
-def test_closed_form_grows_as_the_root_of_the_radius() -> None:
-    """What the comparison rests on, to round-off."""
-    first = closed_form(RADII[0])
-    for radius in RADII[1:]:
-        for name, value in closed_form(radius).items():
-            assert value == pytest.approx(np.sqrt(radius / RADII[0]) * first[name], rel=1e-9)

@@ -12,6 +12,7 @@ what is left of the motion when it counts as rest, a tenth of the tolerance.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from contact1d.analysis.reference.model import ChainModel
 from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.analysis.reference.solver import ChainSolver, State, trace
 from contact1d.analysis.reference.tension_radius import tension_radius
+from contact1d.workflow.continuation.outcome import Result
 from tests.scenes import chains
 
 RunTables = Callable[[dict[str, Any]], Run]
@@ -44,7 +46,7 @@ NEAR_PULL_OFF = 0.01
 SNAPPING, SNAP_STEP, SNAPS_RADIUS = 0.05, 0.004, 4.0
 """Bulk stiffness with which pairs snap [FU/LU]; the reference's step, finer than a tooth [LU]; a radius there is known
 to a few spacings only [LU]."""
-CHAIN = 160
+CHAIN, SNAPPING_CHAIN = 160, 80
 STENCIL = 9
 STIFFNESS = 0.83
 SHORT: tuple[Term, Term, float] = ((0.18, 0.13), (0.09, 0.26), 200.0)
@@ -85,10 +87,12 @@ def model_of(law: tuple[Term, Term, float], effects: tuple[float, bool], finishe
     )
 
 
-def vertical_model(law: tuple[Term, Term, float], neighbours: float, stiffness: float = STIFFNESS) -> ChainModel:
-    """A chain that is long enough for every contact here, whatever the program would take."""
+def vertical_model(
+    law: tuple[Term, Term, float], neighbours: float, stiffness: float = STIFFNESS, count: int = CHAIN
+) -> ChainModel:
+    """A chain that is long enough, whatever the program would take."""
     terms = PairInteraction(Exponential(*law[0]), Exponential(*law[1]))
-    return ChainModel(CHAIN, stiffness, terms, radius=law[2], neighbour_stiffness=neighbours)
+    return ChainModel(count, stiffness, terms, radius=law[2], neighbour_stiffness=neighbours)
 
 
 def radius(model: ChainModel, state: State) -> float:
@@ -96,8 +100,9 @@ def radius(model: ChainModel, state: State) -> float:
     return tension_radius(model.places() + state.upper[:, 0], state.pair_force[:, 1] / model.spacing, STENCIL)
 
 
-@pytest.mark.parametrize("law", [SHORT, LONG], ids=["range 0.26", "range 0.5"])
-@pytest.mark.parametrize("effects", [PLAIN, BOTH], ids=["plain", "neighbours horizontal"])
+@pytest.mark.parametrize(
+    ("law", "effects"), [(SHORT, PLAIN), (LONG, BOTH)], ids=["range 0.26", "range 0.5, neighbours, horizontal"]
+)
 def test_pull_off(run_tables: RunTables, law: tuple[Term, Term, float], effects: tuple[float, bool]) -> None:
     finished = run_tables(tables(law, effects, {"kind": "pull_off", "preload": 0.5}))
     found, model = finished.outcome.quantities, model_of(law, effects, finished)
@@ -110,8 +115,7 @@ def test_pull_off(run_tables: RunTables, law: tuple[Term, Term, float], effects:
     assert found["adhesion_force"].uncertainty < 1e-3 * exact.adhesion_force
 
 
-@pytest.mark.parametrize("force", [0.5, -0.5])
-@pytest.mark.parametrize("effects", [PLAIN, BOTH], ids=["plain", "neighbours horizontal"])
+@pytest.mark.parametrize(("effects", "force"), [(PLAIN, 0.5), (BOTH, -0.5)], ids=["plain", "neighbours horizontal"])
 def test_load(run_tables: RunTables, effects: tuple[float, bool], force: float) -> None:
     finished = run_tables(tables(LONG, effects, {"kind": "load", "force": force}))
     found, model = finished.outcome.quantities, model_of(LONG, effects, finished)
@@ -123,7 +127,7 @@ def test_load(run_tables: RunTables, effects: tuple[float, bool], force: float) 
 
 
 @pytest.mark.parametrize("method", ["dynamic", "quasistatic"])
-@pytest.mark.parametrize("share", [0.9, 0.9977, 0.9997])
+@pytest.mark.parametrize("share", [0.9, 0.9997])
 def test_a_tension_just_below_the_largest_is_within_what_is_claimed(
     run_tables: RunTables, share: float, method: str
 ) -> None:
@@ -145,7 +149,7 @@ def test_a_tension_just_below_the_largest_is_within_what_is_claimed(
     assert found["contact_radius"].uncertainty < NEAR_PULL_OFF * found["contact_radius"].value
 
 
-@pytest.mark.parametrize("radius_of_body", [200.0, 100.0])
+@pytest.mark.parametrize("radius_of_body", [pytest.param(200.0, marks=pytest.mark.slow), 100.0])
 def test_pairs_that_snap_let_go_where_they_do_without_time(run_tables: RunTables, radius_of_body: float) -> None:
     """The largest tooth of the tension: a plate that swings lets go before; and the run tells of several equilibria."""
     scene = tables((*SHORT[:2], radius_of_body), PLAIN, {"kind": "pull_off", "preload": 1.0})
@@ -153,17 +157,23 @@ def test_pairs_that_snap_let_go_where_they_do_without_time(run_tables: RunTables
     still = {name: table for name, table in scene.items() if name not in ("damping", "plate")}
     still["experiment"] = {"kind": "pull_off", "preload": 1.0, "method": "quasistatic"}
     moving, resting = run_tables(scene), run_tables(still)
-    model = vertical_model((*SHORT[:2], radius_of_body), 0.0, SNAPPING)
+    model = vertical_model((*SHORT[:2], radius_of_body), 0.0, SNAPPING, SNAPPING_CHAIN)
     exact = pull_off(model, 1.0, step=SNAP_STEP)
     for finished in (moving, resting):
-        found = finished.outcome.on_own_lattice  # the reference has these very particles
-        assert abs(found["adhesion_force"].value - exact.adhesion_force) <= found["adhesion_force"].uncertainty
-        assert found["adhesion_force"].uncertainty < 3e-3 * exact.adhesion_force
+        found = on_own_lattice(finished, "adhesion_force")
+        assert abs(found.value - exact.adhesion_force) <= found.uncertainty
+        assert found.uncertainty < 3e-3 * exact.adhesion_force
         assert "snaps" in [warning["name"] for warning in finished.document["warnings"]]
     for name in ("zero_load_radius", "critical_radius"):
-        one, other = moving.outcome.on_own_lattice[name], resting.outcome.on_own_lattice[name]
+        one, other = on_own_lattice(moving, name), on_own_lattice(resting, name)
         assert abs(one.value - other.value) <= one.uncertainty + other.uncertainty
         assert one.uncertainty < SNAPS_RADIUS
+
+
+def on_own_lattice(finished: Run, name: str) -> Result:
+    """A result without its discretisation error: the reference has these very particles."""
+    result = finished.outcome.results[name]
+    return replace(result, errors={source: e for source, e in result.errors.items() if source != "discretisation"})
 
 
 @pytest.mark.parametrize("mass", [5.0, 500.0])

@@ -27,7 +27,9 @@ def paper() -> Scene:
     return read_scene(SCENES / "paper.toml")
 
 
-@pytest.mark.parametrize(("share", "velocity", "distance"), [(0.15, 2e-2, 30.0), (0.05, 2e-3, 6.0)])
+@pytest.mark.parametrize(
+    ("share", "velocity", "distance"), [pytest.param(0.15, 2e-2, 30.0, marks=pytest.mark.slow), (0.05, 2e-3, 6.0)]
+)
 def test_the_friction_under_heat_is_that_of_its_reference(
     share: float, velocity: float, distance: float, tmp_path: Path
 ) -> None:

@@ -68,10 +68,9 @@ def on_plane(
     return run_tables(scene).outcome.states
 
 
-@pytest.mark.parametrize("radius", [100.0, 1000.0, 10000.0])
-@pytest.mark.parametrize("spacing", [0.5, 1.0, 3.0])
+@pytest.mark.parametrize(("radius", "spacing"), [(100.0, 0.5), (1000.0, 1.0), (10000.0, 3.0)])
 def test_force_is_the_sum_over_particles(run_tables: RunTables, radius: float, spacing: float) -> None:
-    displacements = np.array([0.02, 0.1, 0.5, 2.0, 1.0])
+    displacements = np.array([-0.5, 0.0, 0.02, 0.1, 0.5, 2.0, 1.0, -0.1])
     states = on_plane(run_tables, radius, spacing, STIFFNESS, displacements)
     for displacement, state in zip(displacements, states, strict=True):
         exact = rigid_plane_sum(float(displacement), state.profile.x, radius, STIFFNESS)
@@ -82,11 +81,6 @@ def test_pressure_is_that_of_each_spring(run_tables: RunTables) -> None:
     state = on_plane(run_tables, 1000.0, 1.0, STIFFNESS, np.array([0.7]))[0]
     exact = STIFFNESS * np.maximum(0.0, 0.7 - state.profile.x**2 / 2000.0)
     assert state.profile.pressure == pytest.approx(exact, abs=FORCE * float(exact.max()))
-
-
-def test_untouched_plane_carries_nothing(run_tables: RunTables) -> None:
-    states = on_plane(run_tables, 1000.0, 1.0, STIFFNESS, np.array([-0.5, 0.0, 1.0, -0.1]))
-    assert [state.force for state in states if state.displacement <= 0.0] == [0.0, 0.0, 0.0]
 
 
 def test_convergence_towards_the_closed_form(run_tables: RunTables) -> None:

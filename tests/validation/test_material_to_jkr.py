@@ -105,7 +105,7 @@ def test_pressure_at_zero_load_is_jkrs(done: tuple[Material, MaterialRun]) -> No
 def test_scene_has_the_particles_in_the_contact_radius_that_its_tolerance_takes_and_nothing_sideways(
     done: tuple[Material, MaterialRun],
 ) -> None:
-    """At 1e-3: test_spacing_from_tolerance holds the tolerance itself."""
+    """At 1e-3: test_automatic_spacing holds the tolerance itself."""
     _, found = done
     assert found.run.results.zero_load_radius.value == pytest.approx(33.0, rel=ONE_PERCENT)
     assert (found.scene.bodies.reduction, found.scene.effects) == ("mdr", ("adhesion",))

@@ -24,11 +24,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Session
-from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import chains
@@ -124,21 +124,8 @@ def modes(neighbours: float) -> tuple[Array, Array]:
     return STIFFNESS + 4.0 * neighbours * np.sin(np.pi * q / (2 * PARTICLES)) ** 2, shape
 
 
-def test_independent_particles(sample: Callable[..., Sample]) -> None:
-    taken = sample()
-    variance = TEMPERATURE / STIFFNESS
-    squares = taken.displacement[:, :, 2] ** 2
-    check(squares, variance)
-    check(taken.velocity[:, :, 2] ** 2, TEMPERATURE / MASS)
-    by_particle = squares.mean(axis=0)
-    error = by_particle.std(ddof=1) / np.sqrt(by_particle.size)
-    assert abs(by_particle.mean() - variance) < SIGMAS * error + INTEGRATOR * variance
-    beside = taken.displacement[:, : PARTICLES - 1, 2] * taken.displacement[:, 1:PARTICLES, 2]
-    assert abs(beside.mean()) < SIGMAS * beside.std() / np.sqrt(beside.size)
-
-
 def test_held_directions_stay_exactly_where_they_are(sample: Callable[..., Sample]) -> None:
-    taken = sample()
+    taken = sample(0.3)
     for held in (0, 1):
         assert not taken.displacement[:, :, held].any()
         assert not taken.velocity[:, :, held].any()
@@ -178,65 +165,3 @@ def test_both_directions(sample: Callable[..., Sample]) -> None:
     mixed = taken.displacement[:, :, 0] * taken.displacement[:, :, 2]
     assert abs(mixed.mean()) < SIGMAS * mixed.std() / np.sqrt(mixed.size)
     assert not taken.displacement[:, :, 1].any()
-
-
-FREE_PARTICLES = """
-units           lj
-atom_style      atomic
-boundary        f f f
-region          box block -50 50 -50 50 -50 50
-region          middle block -20 20 -20 20 -20 20
-create_box      1 box
-create_atoms    1 random 100 7 middle
-mass            1 1.0
-pair_style      zero 1.0
-pair_coeff      * *
-timestep        0.05
-"""
-OSCILLATORS = """
-fix             springs all spring/self 1.0
-velocity        all create 0.01 5 mom no rot no
-velocity        all set 0.0 0.0 NULL
-compute         free all temp/partial 0 0 1
-compute_modify  free extra/dof 0
-"""
-HELD_BUT_Z = "fix             hold all setforce 0.0 0.0 NULL\n"
-HELD_IN_Y = "fix             hold all setforce NULL 0.0 NULL\nfix             move all nve\n"
-
-
-@pytest.mark.parametrize(("option", "wanders"), [("", False), ("gjf vhalf", True)])
-def test_why_gjf_is_not_used(session: Session, option: str, wanders: bool) -> None:
-    """`fix langevin … gjf` would have no bias, but it displaces particles itself, past the forces that setforce holds.
-
-    The same deck without the option keeps y to the last bit; with it the held coordinate diffuses.
-    """
-    langevin = f"fix             bath all langevin 0.01 0.01 1.0 3 {option}\n"
-    session.execute(FREE_PARTICLES + langevin + HELD_IN_Y, phase="gjf")
-    start = session.atoms("x")["x"][:, 1]
-    session.execute("run 1000")
-    away = np.abs(session.atoms("x")["x"][:, 1] - start)
-    if wanders:
-        assert np.sqrt(np.mean(away**2)) > 1e-3
-    else:
-        assert not away.any()
-
-
-@pytest.mark.parametrize(
-    ("bath", "shared"),
-    [
-        ("langevin 0.01 0.01 1.0 3\nfix move all nve", True),
-        ("temp/csvr 0.01 0.01 1.0 3\nfix_modify bath temp free\nfix move all nve", False),
-        ("nvt temp 0.01 0.01 1.0\nfix_modify bath temp free", False),
-    ],
-)
-def test_why_no_thermostat_that_scales_all_velocities_is_used(session: Session, bath: str, shared: bool) -> None:
-    """Springs keep their shares of the energy under it: in however long a run each has a variance of its own."""
-    session.execute(f"{FREE_PARTICLES}{OSCILLATORS}fix bath all {bath}\n{HELD_BUT_Z}", phase="shares")
-    start = session.atoms("x")["x"][:, 2]
-    moved = []
-    for _ in range(300):
-        session.execute("run 100 post no")
-        moved.append(session.atoms("x")["x"][:, 2] - start)
-    by_particle = np.mean(np.square(moved[20:]), axis=0) / 0.01
-    assert (by_particle.std() < 0.25) == shared  # of some 200 independent samples: 0.1
-    assert (by_particle.std() > 0.5) != shared

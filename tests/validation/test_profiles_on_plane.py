@@ -25,8 +25,6 @@ import pytest
 from numpy.typing import NDArray
 
 from contact1d import Run
-from contact1d.analysis.pressure import Profile
-from contact1d.analysis.radius import compressive_radius
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.scene import scene_from_dict
 
@@ -182,17 +180,7 @@ def test_radius_is_that_of_the_indenter(run_tables: RunTables, name: str) -> Non
         assert found["value"] == pytest.approx(a, abs=PLACE + abs(third) / indenter.slope(a))
 
 
-def test_radius_of_a_pressure_that_ends_as_a_line() -> None:
-    """A cone's. The three last particles make the line's zero exactly, wherever it lies."""
-    x = np.arange(40.0) - 19.5
-    for edge in np.linspace(5.0, 15.0, 401):
-        pressure = np.maximum(0.0, edge - np.abs(x))
-        found = compressive_radius(Profile(x, 0.0 * x, 0.0 * x, pressure, 0.0 * x))
-        assert found is not None
-        assert found.value == pytest.approx(float(edge), abs=PLACE)
-
-
-@pytest.mark.parametrize("radius", [1.5, 10.0, 10.5, 200.0])
+@pytest.mark.parametrize("radius", [1.5, 10.5])
 @pytest.mark.parametrize("reduction", ["mdr", "geike_popov"])
 def test_flat_punch_has_no_lattice_error(run_tables: RunTables, radius: float, reduction: str) -> None:
     """Half a spacing beyond the last particle is its edge: F = 2 c a d exactly."""

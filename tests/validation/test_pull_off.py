@@ -86,33 +86,12 @@ RANGES = (
     ((2.0, 1.0), (1.0, 2.0), 50.0, 0.5),
 )
 """Repulsion, attraction, radius and preload: the longer the range, the smaller the radius, and contacts stay alike."""
-CASES = [
-    Case(*values, neighbours, horizontal)
-    for values in RANGES
-    for neighbours in (0.0, 0.3)
-    for horizontal in (False, True)
-] + [
+CASES = [Case(*values, *effects) for values in RANGES for effects in ((0.0, False), (0.3, True))] + [
+    Case(*RANGES[1], 0.3, False),
     Case(*RANGES[2], 0.0, True, 1.2),
     Case(*RANGES[3], 0.3, True, 1.5),
     Case(*RANGES[4], 0.3, True, 0.5),
 ]
-
-Compare = Callable[[Case], Comparison]
-
-
-@pytest.fixture(scope="module")
-def compare(run_tables: Callable[[dict[str, Any]], Any]) -> Compare:
-    """`compare(case)`: run it and solve it, once."""
-    known: dict[Case, Comparison] = {}
-
-    def compared(case: Case) -> Comparison:
-        if case not in known:
-            finished = run_tables(tables(case))
-            model = reference_model(case, finished.outcome.states[0].profile.x.size)
-            known[case] = Comparison(dict(finished.outcome.quantities), reference(model, case))
-        return known[case]
-
-    return compared
 
 
 def tables(case: Case) -> dict[str, Any]:
@@ -157,31 +136,21 @@ def radius(model: ChainModel, state: State) -> float:
 
 
 @pytest.mark.parametrize("case", CASES, ids=str)
-def test_pull_off_agrees_with_the_reference(compare: Compare, case: Case) -> None:
-    compared = compare(case)
+def test_pull_off_agrees_with_the_reference(run_tables: Callable[[dict[str, Any]], Any], case: Case) -> None:
+    """And the stated uncertainty covers the error, within the tolerance that the scene asks for, 1e-3."""
+    finished = run_tables(tables(case))
+    model = reference_model(case, finished.outcome.states[0].profile.x.size)
+    compared = Comparison(dict(finished.outcome.quantities), reference(model, case))
     assert compared.error("adhesion_force") < FORCE
     assert compared.error("zero_load_radius") < ZERO_LOAD_RADIUS
     assert compared.error("critical_radius") < CRITICAL_RADIUS
     assert compared.found["preload"].value == pytest.approx(case.preload, rel=PRELOAD)
-
-
-def test_uncertainty_covers_the_error_in_every_case(compare: Compare) -> None:
-    """All of the cases, for the force and for the zero-load radius."""
-    assert len(CASES) == 23
     for name in ("adhesion_force", "zero_load_radius"):
-        assert [str(case) for case in CASES if not compare(case).covered(name)] == []
+        assert compared.covered(name)
+        assert 0.0 < compared.found[name].uncertainty < 1e-3 * compared.exact[name]
 
 
-def test_uncertainty_is_no_excuse(compare: Compare) -> None:
-    """A stated uncertainty says something: it is within the tolerance that the scene asks for, 1e-3."""
-    for case in CASES:
-        for name in ("adhesion_force", "zero_load_radius"):
-            quantity = compare(case).found[name]
-            assert 0.0 < quantity.uncertainty < 1e-3 * quantity.value, (str(case), name)
-
-
-@pytest.mark.parametrize("tolerance", [1e-2, 5e-3, 1e-3])
-@pytest.mark.parametrize("preload", [60.0, 80.0])
+@pytest.mark.parametrize(("preload", "tolerance"), [(60.0, 5e-3), (80.0, 1e-2)])
 def test_a_load_that_the_chains_carry_is_reached(
     run_tables: Callable[[dict[str, Any]], Any], preload: float, tolerance: float
 ) -> None:

@@ -12,10 +12,8 @@ import numpy as np
 import pytest
 
 from contact1d import Run, run
-from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.reproduce.heat import FLAT_PAIR, TEMPERATURE
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
 
 SIGMAS = 3.0
 CLOSED = 5e-3
@@ -46,18 +44,6 @@ def test_the_plate_is_as_warm_as_its_particles(tmp_path: Path) -> None:
 def test_the_balance_of_energy_holds_under_heat(hot: Run) -> None:
     work, lost, stored = (hot.results[f"{n}"].value for n in ("cantilever_work", "dissipated_energy", "stored_energy"))
     assert work == pytest.approx(lost + stored, abs=CLOSED * max(abs(work), abs(lost), abs(stored)))
-
-
-def test_the_thermostat_is_that_of_the_drag() -> None:
-    """Of the particles m/γ, of the plate its anchor's mass over c: a time halved is a drag doubled, at any heat."""
-    scene = scene_of()
-    settings = settings_for(scene)
-    values = {}
-    for part in Deck(scene, settings).parts:
-        values |= part.variables
-    assert float(values["noise_damp"]) == pytest.approx(1.0 / 0.4)
-    assert float(values["noise_plate_damp"]) == pytest.approx(8.0 / 8 / 4.0)
-    assert float(values["plate_damping_per_anchor"]) == 0.0
 
 
 def test_heat_lowers_the_friction(hot: Run, tmp_path: Path) -> None:

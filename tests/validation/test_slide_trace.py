@@ -6,7 +6,6 @@ automatic drag and mass) are taken over.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,9 +13,6 @@ import pytest
 
 from contact1d import Run, run
 from contact1d.analysis.reference.slide import Integrator, Trace
-from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.steps import Hold
-from contact1d.workflow.experiments import planned
 from contact1d.workflow.judging.slide_model import slide_model
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import Settings, settings_for
@@ -60,8 +56,7 @@ def integrated(scene: Scene, settings: Settings) -> Trace:
 
 CASES: dict[str, dict[str, Any]] = {
     "plain": {},
-    "neighbours": {"neighbours": {"stiffness": 0.3}},
-    "softer along": {"bodies": {"bulk_stiffness_tangential": 1.2}},
+    "neighbours, softer along": {"neighbours": {"stiffness": 0.3}, "bodies": {"bulk_stiffness_tangential": 1.2}},
     "twice the drag": {"damping": {"coefficient": 0.4}, "plate": {"damping": 4.0}},
 }
 
@@ -79,6 +74,7 @@ def test_the_trace_is_that_of_the_integrator(both: tuple[Run, Trace]) -> None:
     assert slid.friction["friction"] == pytest.approx(expected.friction, abs=TRACE * peak)
     assert slid.friction["cantilever_force"] == pytest.approx(expected.cantilever_force, abs=TRACE * peak)
     assert slid.friction["plate_x"] == pytest.approx(expected.place, abs=TRACE)
+    assert slid.friction["drive"][-1] == pytest.approx(5.0, abs=1e-12)
 
 
 def test_means_over_whole_periods_are_those_of_every_step(both: tuple[Run, Trace]) -> None:
@@ -113,22 +109,4 @@ def test_the_work_is_dissipated_or_stored(both: tuple[Run, Trace]) -> None:
     assert lost > 0.0
 
 
-def test_the_drag_is_the_scenes_from_the_first_line_on(both: tuple[Run, Trace]) -> None:
-    """The rows of the way to rest set it anew, the last of them to the scene's: a deck without them has the same."""
-    scene = both[0].scene
-    settings = settings_for(scene)
-    assert scene.damping is not None
-    variables = {name: value for part in Deck(scene, settings).parts for name, value in part.variables.items()}
-    assert float(variables["damping_coefficient"]) == scene.damping.coefficient
-    loading = planned(scene, settings)[0]
-    drags = [row.damping for row in loading.rows if isinstance(row, Hold)]
-    assert drags == [settings.calm_damping, scene.damping.coefficient]
-    assert settings.calm_damping > scene.damping.coefficient
-
-
 ENERGIES = ("cantilever_work", "dissipated_energy", "stored_energy")
-
-
-def test_the_drive_goes_the_whole_way_exactly(both: tuple[Run, Trace], tmp_path: Path) -> None:
-    slid, _ = both
-    assert slid.friction["drive"][-1] == pytest.approx(5.0, abs=1e-12)
