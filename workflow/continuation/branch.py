@@ -26,7 +26,7 @@ from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import DigitsError, TensionError, UntrustedError
-from contact1d.workflow.deck.steps import Displace, Phase, displacements
+from contact1d.workflow.deck.steps import Displace, DisplaceInTime, Phase, displacements
 from contact1d.workflow.settings.reduced import Reduced, reduced
 from contact1d.workflow.settings.settings import Settings
 
@@ -53,6 +53,8 @@ RETURN_SHARE = 0.5
 """Move of a search that comes back to where the bodies have been, over their particles' smallest distance."""
 SAME = 1e-12
 """Displacements nearer than this over the spacing are the same: a force that still differs has jumped."""
+APPROACH_STEPS = 20
+"""Timesteps of a move on the way to a displacement that is held for a time."""
 LOADING_STEPS = 24
 """Rows on the way to a force that is known beforehand."""
 CURVE_STEPS, CURVE_NUMBERS = 100, 200_000
@@ -95,6 +97,7 @@ class Branch:
         loading, falling: states of rising, and then of falling displacement, as they were measured.
         marked: states that are reported, by name.
         missed: how far the search may be off the largest tension [FU].
+        on_the_way: how many of the first states nobody asks for.
     """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
@@ -106,7 +109,7 @@ class Branch:
         self.loading: list[State] = []
         self.falling: list[State] = []
         self.marked: dict[str, State] = {}
-        self.missed = 0.0
+        self.missed, self.on_the_way = 0.0, 0
         self._targets: dict[str, float] = {}
         self._open = ExitStack()
         self._finished = False
@@ -148,7 +151,8 @@ class Branch:
             doubt["sampling"] = self.missed
             if not self.reversible:
                 doubt["instability"] = self.cut_short()
-        return replace(of_states(self.states, limit=limit), doubt=doubt)
+        asked = [i >= self.on_the_way for i in range(len(self.states))]
+        return replace(of_states(self.states, asked, limit), doubt=doubt)
 
     def begin(self, name: str) -> None:
         """Begin a phase; of a finished schedule nothing is left to do."""
@@ -171,6 +175,16 @@ class Branch:
         states = self.contact.rows(displacements([float(position) for position in positions]))
         (self.loading if phases == "loading" else self.falling).extend(states)
         return states
+
+    def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
+        """Hold a displacement [LU] for a time [TU], in which particles move."""
+        assert displacement is not None
+        moves = max(1, math.ceil(abs(displacement) / self.settings.longest_move - SAME))
+        rows = [DisplaceInTime(displacement * i / moves, APPROACH_STEPS) for i in range(1, moves)]
+        count, steps = self.settings.rows_of(duration)
+        held = [DisplaceInTime(displacement, 1), *[DisplaceInTime(displacement, steps)] * count]
+        self.on_the_way = len(rows)
+        self.loading += self.contact.rows([*rows, *held], moving=True)
 
     # --- a force
 

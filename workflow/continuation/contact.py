@@ -81,12 +81,13 @@ class Contact:
         """Run one row of the current phase and measure; see `rows`."""
         return self.rows((row,), trusted)[0]
 
-    def rows(self, rows: Sequence[Row], trusted: bool = True) -> list[State]:
+    def rows(self, rows: Sequence[Row], trusted: bool = True, moving: bool = False) -> list[State]:
         """Run rows of the current phase, which are known beforehand, and measure each.
 
         Args:
             rows: of one kind.
             trusted: whether each state is a result; one on the way to equilibrium is not.
+            moving: whether the motion itself is looked at, so that nothing has to be at rest.
 
         Raises:
             EngineError: LAMMPS failed, or lost particles.
@@ -104,7 +105,7 @@ class Contact:
             self._phases[-1] = replace(self._phases[-1], rows=(*self._phases[-1].rows, *batch))
             self._latest = (self._steps if self.deck.stepped else self._measured)(batch, first)
             for state in self._latest if trusted else ():
-                require_trust(self.scene, self.settings, state)
+                require_trust(self.scene, self.settings, state, moving)
             found += self._latest
         self.rows_seconds += self.session.lammps_seconds - before
         return found

@@ -25,7 +25,7 @@ from contact1d.workflow.continuation.holding import Held, Start, hold, overshoot
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import ThroughError, UntrustedError
-from contact1d.workflow.deck.steps import Phase
+from contact1d.workflow.deck.steps import Phase, UnderLoad
 from contact1d.workflow.settings.reduced import Reduced, reduced
 
 Array = NDArray[np.float64]
@@ -201,6 +201,14 @@ class LoadBranch:
             self._take(hold(self.contact, force if close else max(force, gentle), scale), self.falling)
         if not self._last.held:
             raise UntrustedError(f"the contact cannot hold {self._last.load:.4g} FU: the bodies part")
+
+    def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
+        """Hold a force [FU] for a time [TU]; a tension from F = 0 on."""
+        assert force is not None
+        if force < 0.0:
+            self.reach(0.0, self.scale)
+        count, steps = self.settings.rows_of(duration)
+        self.loading += self.contact.rows([UnderLoad(force, 1), *[UnderLoad(force, steps)] * count], moving=True)
 
     def holds_more(self, force: float) -> bool:
         """Whether a tension that is larger by FIRST_RISE tolerances is held, too, tried with a contact of its own.

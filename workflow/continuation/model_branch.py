@@ -73,6 +73,13 @@ class ModelBranch:
         start = self._rows[-1][1] if self._rows else min(0.0, end) - self.settings.estimate.spacing
         self._rows += [(self._phase, at, True) for at in np.linspace(start, end, BETWEEN + 1)[1:].tolist()]
 
+    def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
+        """What is held, in equilibrium."""
+        if force is not None:
+            self.reach(force, abs(force))
+        elif displacement is not None:
+            self.visit([self.model.apart, displacement])  # what follows from the beginning is as uncertain as the end
+
     def maximum(self) -> None:
         """Pass the largest tension, densely about it."""
         zero, apart = self._rows[-1][1], self.model.apart

@@ -5,6 +5,7 @@ from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.trust import slowness
 from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.experiment import Experiment, in_smaller_steps
+from contact1d.workflow.experiments.hold import HoldExperiment
 from contact1d.workflow.experiments.keeping import kept_way, planned_way
 from contact1d.workflow.experiments.load import LoadExperiment
 from contact1d.workflow.experiments.path import PathExperiment
@@ -17,6 +18,7 @@ from contact1d.workflow.settings.settings import Settings
 __all__ = ["KINDS", "kind_of", "perform", "planned"]
 
 KINDS: dict[str, Experiment] = {
+    "hold": HoldExperiment(),
     "load": LoadExperiment(),
     "path": PathExperiment(),
     "pull_off": PullOffExperiment(),

@@ -162,8 +162,8 @@ def write_tables(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> 
         "curve.csv": curve_columns(curve),
         "profile.csv": profile_columns(outcome.profiles),
     }
-    if isinstance(scene.experiment, Tangential):
-        tables["curve.csv"] |= outcome.columns
+    tables["curve.csv"] |= outcome.columns
+    if scene.experiment.goes_along:
         along = {name: np.asarray(column) for name, column in outcome.columns.items()}
         if shears := body_shears(scene, outcome.profiles, along, curve.contact_radius):
             tables["shear_3d.csv"] = _shear_columns(shears)

@@ -12,7 +12,7 @@ from contact1d.workflow.scene.effects import (
     Noise,
     Plate,
 )
-from contact1d.workflow.scene.experiments import Experiment, Load, Method, Path, PullOff, Slide, Span, Tangential
+from contact1d.workflow.scene.experiments import Experiment, Hold, Load, Method, Path, PullOff, Slide, Span, Tangential
 from contact1d.workflow.scene.material import Elastic, Material, Reduction
 from contact1d.workflow.scene.problems import Problem, SceneError
 from contact1d.workflow.scene.profiles import (
@@ -47,6 +47,7 @@ __all__ = [
     "Flat",
     "FlatPunch",
     "Friction",
+    "Hold",
     "Horizontal",
     "Interaction",
     "Load",

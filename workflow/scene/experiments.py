@@ -372,7 +372,7 @@ class Hold(Kind):
         return [] if self.displacement is None else [self.displacement]
 
 
-Experiment = Annotated[Load | Path | PullOff | Slide | Tangential, Discriminator("kind")]
+Experiment = Annotated[Load | Path | PullOff | Slide | Tangential | Hold, Discriminator("kind")]
 
 KINDS: dict[str, type[Kind]] = {
     str(choice.kind): choice.type for choice in allowed_by(Experiment).choices if issubclass(choice.type, Kind)

@@ -52,6 +52,8 @@ near 0."""
 NEAR_SHARE = 0.2
 """Least distance down to which a table follows the law and a search comes down in ever smaller moves, over `closest`: a
 table that is smoothed any earlier lets bodies through that the law still carries."""
+ROWS_IN_TIME = 100
+"""States of a motion that is followed for a given time."""
 FAR_SHARE = 10.0
 """Length of a long bond over the spacing, per 1/tolerance: a sideways move u bends its force by u/2L."""
 STAGGER_SHARE = 5e-4
@@ -173,6 +175,12 @@ class Settings:
             near = MOVE_SHARE * self.part * smallest_distance if smallest_distance < math.inf else 0.0
             return min(self.loading_step, max(self.displacement_step, near))
         return min(self.smooth_step, max(NEAR_SHARE * self.longest_move, MOVE_SHARE * smallest_distance))
+
+    def rows_of(self, duration: float) -> tuple[int, int]:
+        """Rows of a motion that takes so long [TU], and timesteps of each."""
+        total = max(1, math.ceil(duration / self.time_step))
+        rows = min(ROWS_IN_TIME, total)
+        return rows, math.ceil(total / rows)
 
     def let_go_early(self, move: float) -> float:
         """How far [LU] before its time a pair lets go of a body that is drawn away by `move` [LU] at a time."""

@@ -1,0 +1,61 @@
+"""Hold: a displacement or a force, held for a time while the particles and the plate move."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from contact1d.workflow.continuation.budget import Reading
+from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.continuation.trace import Trace
+from contact1d.workflow.deck.steps import DisplaceInTime, Phase, UnderLoad
+from contact1d.workflow.experiments.experiment import Experiment
+from contact1d.workflow.scene import Hold, Scene
+from contact1d.workflow.settings.settings import Settings
+from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
+
+
+class HoldExperiment(Experiment):
+    """d, F, a and F/(πa²) at the end, and by how much what is not held has changed since the beginning."""
+
+    main_results = ("displacement", "force", "contact_radius")
+
+    def script(self, branch: Any, scene: Scene) -> None:
+        """Hold."""
+        assert isinstance(scene.experiment, Hold)
+        branch.begin("holding")
+        branch.hold(scene.experiment.duration, scene.experiment.displacement, scene.experiment.force)
+        branch.mark("final")
+
+    def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
+        """The last state, and its distance from the first one that was held."""
+        assert isinstance(scene.experiment, Hold)
+        first, last = int(trace.asked.argmax()), len(trace) - 1
+        by_force = scene.experiment.force is not None
+        free, unit = (trace.displacement, LENGTH) if by_force else (trace.force, FORCE)
+        force = float(trace.force[last])
+        found = {
+            "displacement": Reading(float(trace.displacement[last]), LENGTH, prescribed=not by_force),
+            "force": Reading(force, FORCE),
+            "relaxation": Reading(float(abs(free[last] - free[first])), unit, scale=float(abs(free).max())),
+        }
+        if radius := trace.radius(last):
+            found["contact_radius"] = Reading(radius, LENGTH)
+            found["mean_pressure"] = Reading(force / (math.pi * radius**2), MEAN_PRESSURE)
+        return found
+
+    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+        """The rows that run."""
+        held = scene.experiment
+        assert isinstance(held, Hold)
+        count, steps = settings.rows_of(held.duration)
+        if held.force is not None:
+            return (Phase("holding", (UnderLoad(held.force, steps),) * count, state=True),)
+        assert held.displacement is not None
+        return (Phase("holding", (DisplaceInTime(held.displacement, steps),) * count, state=True),)
+
+    def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
+        """The time of each state, from when LAMMPS began."""
+        return replace(outcome, columns={"time": tuple(one.step * settings.time_step for one in outcome.states)})
