@@ -24,7 +24,7 @@ from contact1d.workflow.engine import launcher
 from contact1d.workflow.engine.launcher import RanksError, cause_among_ranks
 from contact1d.workflow.engine.process import stop_idle
 from contact1d.workflow.engine.session import Engine, EngineError
-from contact1d.workflow.runs.ranks import require_ranks
+from contact1d.workflow.runs.processors import require_ranks
 from contact1d.workflow.scene import scene_to_toml
 from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import chains

@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 from contact1d import Run, RunError, Scene, load_run, run_many
-from contact1d.workflow.runs.pool import pool
+from contact1d.workflow.runs.processors import pool
 
 MakeScene = Callable[..., Scene]
 EXECUTORS: dict[str, Callable[[], Executor]] = {
@@ -152,7 +152,7 @@ def test_processes_end_with_a_block_that_fails() -> None:
 def test_processes_end_with_a_parent_that_is_killed() -> None:
     """Nobody is left to hold the output open."""
     code = (
-        "import os, signal, time; from contact1d.workflow.runs.pool import pool\n"
+        "import os, signal, time; from contact1d.workflow.runs.processors import pool\n"
         "with pool(1) as executor:\n"
         "    print(executor.submit(os.getpid).result(), flush=True)\n"
         f"    executor.submit(time.sleep, {LONG})\n"

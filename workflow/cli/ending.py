@@ -16,6 +16,7 @@ from contact1d.files import FULL_DISK
 
 if TYPE_CHECKING:
     from contact1d.workflow.engine.progress import Progress
+    from contact1d.workflow.errors import SceneEdit
     from contact1d.workflow.scene import Scene, SceneError
 
 FAILS = 1
@@ -57,16 +58,14 @@ def read(path: Path, overrides: list[str] | None, without: list[str] | None, pro
     try:
         return read_scene(path, tuple(overrides or ()), tuple(without or ()))
     except SceneError as error:
-        if progress is not None and all(problem.ways for problem in error.problems):
+        if progress is not None and error.changes:
             from contact1d.workflow.runs.advised import mended
+            from contact1d.workflow.runs.advised import overrides as options
 
-            error = mended(
-                lambda change: read_scene(
-                    path, (*(overrides or ()), *change.overrides), (*(without or ()), *change.without)
-                ),
-                error,
-                progress,
-            )
+            def edited(edit: SceneEdit) -> Scene:
+                return read_scene(path, (*(overrides or ()), *options(edit)), (*(without or ()), *edit.without))
+
+            error = mended(edited, error, progress)
         stop(problems_in(str(path), error), CALL_IS_WRONG)
 
 

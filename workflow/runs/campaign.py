@@ -27,10 +27,9 @@ from contact1d.workflow.engine.session import EngineError
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments import perform, planned
 from contact1d.workflow.experiments.spacing import with_spacing
-from contact1d.workflow.runs.cores import cores
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.runs.plausibility import implausible
-from contact1d.workflow.runs.ranks import require_ranks
+from contact1d.workflow.runs.processors import cores, require_ranks
 from contact1d.workflow.runs.refinement import Refined, refined
 from contact1d.workflow.runs.report import FILES, FORMATS, curve_of, failure, results, write_results, write_tables
 from contact1d.workflow.runs.scales import scales_of

@@ -12,8 +12,7 @@ from shutil import which
 from warnings import catch_warnings, simplefilter
 
 from contact1d.workflow.errors import Contact1dError
-from contact1d.workflow.runs.cores import cores
-from contact1d.workflow.runs.pool import pool
+from contact1d.workflow.runs.processors import cores, pool
 
 NAMES = ("local", "slurm")
 JOB_POINTS = 100
