@@ -14,8 +14,7 @@ import numpy as np
 
 from contact1d.analysis.curve import DETACHMENTS, Curve
 from contact1d.files import PART, write_whole
-from contact1d.workflow.body.implied import formulas, with_implied
-from contact1d.workflow.body.pressure import with_body
+from contact1d.workflow.body.derived import formulas, with_body, with_implied
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.trust import UntrustedError

@@ -17,10 +17,9 @@ from contact1d.analysis.pressure import Profile
 from contact1d.analysis.reference.mindlin import mindlin_path, sliding_displacement
 from contact1d.analysis.slip import stick_margin
 from contact1d.analysis.time_plots import samples_figure
-from contact1d.workflow.body.closed_form import Case
-from contact1d.workflow.body.pressure import REPORTED, body_pressures
-from contact1d.workflow.body.shear import body_shears, row_of
-from contact1d.workflow.body.theory import applying
+from contact1d.workflow.body.derived import REPORTED
+from contact1d.workflow.body.theory import Case, applying
+from contact1d.workflow.body.traction import body_pressures, body_shears, row_of
 from contact1d.workflow.continuation.state import RadiusRule
 from contact1d.workflow.scene import Scene, Tangential
 from contact1d.workflow.units import Quantity, Scales

@@ -24,8 +24,7 @@ from contact1d.analysis.curve import (
     read_tangential,
 )
 from contact1d.analysis.pressure import Profile
-from contact1d.workflow.body.pressure import BodyPressure, body_pressures
-from contact1d.workflow.body.shear import BodyShear, body_shears
+from contact1d.workflow.body.traction import BodyPressure, BodyShear, body_pressures, body_shears
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.runs.report import RESULTS
