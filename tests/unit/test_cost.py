@@ -15,14 +15,23 @@ import numpy as np
 import pytest
 
 from contact1d import read_scene
-from contact1d.workflow.cost.advice import TARGETS, advise, choice, combinations
-from contact1d.workflow.cost.change import Change, at_tolerance, base_change
-from contact1d.workflow.cost.errors import judged, main_results
-from contact1d.workflow.cost.knobs import knobs_of, left_out
-from contact1d.workflow.cost.orders import Order, fit_order, pareto_front
-from contact1d.workflow.cost.per_step import without_effects
-from contact1d.workflow.cost.record import Advice, CostRecord, EffectCost, KnobRecord, VariantRecord, read_record
-from contact1d.workflow.cost.report import COLUMNS, csv_text, effects_markdown, summary, write_report
+from contact1d.workflow.cost.knobs import Change, at_tolerance, base_change, knobs_of, left_out, main_results
+from contact1d.workflow.cost.measure import without_effects
+from contact1d.workflow.cost.report import (
+    COLUMNS,
+    Advice,
+    CostRecord,
+    EffectCost,
+    KnobRecord,
+    Order,
+    VariantRecord,
+    csv_text,
+    effects_markdown,
+    read_record,
+    summary,
+    write_report,
+)
+from contact1d.workflow.cost.study import TARGETS, advise, choice, combinations, fit_order, judged, pareto_front
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import settings_for
 from contact1d.workflow.units import Quantity

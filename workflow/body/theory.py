@@ -221,13 +221,16 @@ def _power_contact(case: Case) -> tuple[sneddon.PowerLaw, float]:
 
 
 def _power_values(case: Case) -> Values:
-    """p(0) = E* κ_n c a^{n−1}/π · n/(n−1) for n > 1; a cone's has no bound."""
+    """p(0) = E* κ_n c a^{n−1}/π · n/(n−1) for n > 1; a cone's has no bound. For n ≤ 2 it is the largest."""
     body, a = _power_contact(case)
     n, central = body.exponent, None
     if n > 1.0:
         rise = sneddon.galin_factor(n) * body.coefficient * a ** (n - 1.0)
         central = case.contact_modulus * rise * n / (math.pi * (n - 1.0))
-    return _contact(case, a, float(body.displacement(a)), float(body.force(a)), central)
+    said = _contact(case, a, float(body.displacement(a)), float(body.force(a)), central)
+    if n > 2.0:  # the largest pressure is off the axis
+        del said["peak_pressure"]
+    return said
 
 
 def _hertz_pressure(case: Case, r: Array) -> Array:

@@ -119,12 +119,14 @@ def _pressure(scene: Scene, profile: Profile, radius: ContactRadius) -> BodyPres
     r = inside if fine.has_apex else np.append(0.0, inside)
     p = fine.pressure(r)
     spread = _spread(p, levels[1], r) + radius.uncertainty / radius.value * np.abs(p)
-    tops = [None if level is None else float(level.pressure(r[:: 2**i]).max()) for i, level in enumerate(levels)]
+    tops = [None if level is None else float(level.pressure(r).max()) for level in levels]
     middles = [None if level is None else float(level.pressure([0.0])[0]) for level in levels]
     noise, top = NOISE * scene.accuracy.tolerance, int(p.argmax())
-    bounded = not fine.has_apex
-    central = Quantity(float(p[0]), float(spread[0]), MEAN_PRESSURE) if bounded and _converges(middles, noise) else None
-    peak = Quantity(float(p[top]), float(spread[top]), MEAN_PRESSURE) if bounded and _converges(tops, noise) else None
+    central = peak = None
+    if not fine.has_apex and _converges(middles, noise):
+        central = Quantity(float(p[0]), float(spread[0]), MEAN_PRESSURE)
+    if not fine.has_apex and fine.at_edge <= noise * p[top] * fine.edge and _converges(tops, noise):
+        peak = Quantity(float(p[top]), float(spread[top]), MEAN_PRESSURE)  # a jump at the edge is a pole
     return BodyPressure(r, p, spread, radius.value / wider, central, peak)
 
 
