@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import ClassVar
 
 
 @dataclass(frozen=True)
@@ -23,8 +24,11 @@ class Contact1dError(Exception):
     """Every error that is about a scene, a folder or a run, and not a mistake in a program.
 
     Attributes:
+        exit_code: of a command that it ends: 2, the scene or the call is wrong; 3, the run failed.
         changes: edits of the scene that may help, the best one first.
     """
+
+    exit_code: ClassVar[int] = 2
 
     def __init__(self, *arguments: object, changes: Iterable[SceneEdit] = ()) -> None:
         """Keep the changes beside the arguments; both survive pickling."""
@@ -50,6 +54,8 @@ class RunError(Contact1dError, RuntimeError):
         kept: whether the run began, so that its files are there, and its results.json says the same.
     """
 
+    exit_code = 3
+
     def __init__(self, message: str, folder: Path, kept: bool = True) -> None:
         """Keep them; they are arguments, so that the error can be pickled."""
         super().__init__(message, folder, kept)
@@ -67,6 +73,8 @@ class UntrustedError(Contact1dError, RuntimeError):
         message: why.
         advice: what to do, where no change was tried; "" where the message says it.
     """
+
+    exit_code = 3
 
     def __init__(self, message: str, advice: str = "", changes: Iterable[SceneEdit] = ()) -> None:
         """Keep all."""

@@ -2,7 +2,8 @@
 
 Each is the inverse Abel transform of its line load (`analysis.abel`, `analysis.shear`). Its error is the difference
 from what every second particle alone gives, and the edge's. Whether a pressure has a bound is decided by convergence:
-from every, every second and every fourth particle; where the differences do not shrink there is no number.
+from every, every second and every fourth particle; where the differences do not shrink there is no number. Where the
+contact is too narrow for that, a largest pressure off the axis is none.
 """
 
 from __future__ import annotations
@@ -119,22 +120,25 @@ def _pressure(scene: Scene, profile: Profile, radius: ContactRadius) -> BodyPres
     r = inside if fine.has_apex else np.append(0.0, inside)
     p = fine.pressure(r)
     spread = _spread(p, levels[1], r) + radius.uncertainty / radius.value * np.abs(p)
-    tops = [None if level is None else float(level.pressure(r).max()) for level in levels]
-    middles = [None if level is None else float(level.pressure([0.0])[0]) for level in levels]
+    within = np.count_nonzero(side < radius.value / wider)
+    told = [level for i, level in enumerate(levels) if level is not None and within >= FEWEST * 2**i]
     noise, top = NOISE * scene.accuracy.tolerance, int(p.argmax())
     central = peak = None
-    if not fine.has_apex and _converges(middles, noise):
+    if not fine.has_apex and _converges([float(level.pressure([0.0])[0]) for level in told], noise):
         central = Quantity(float(p[0]), float(spread[0]), MEAN_PRESSURE)
-    if not fine.has_apex and fine.at_edge <= noise * p[top] * fine.edge and _converges(tops, noise):
-        peak = Quantity(float(p[top]), float(spread[top]), MEAN_PRESSURE)  # a jump at the edge is a pole
+    if top == 0:
+        peak = central
+    elif len(told) == 3 and not (fine.has_apex or fine.at_edge > noise * p[top] * fine.edge):  # a jump is a pole
+        tops = [float(level.pressure(r).max()) for level in told]
+        peak = Quantity(float(p[top]), float(spread[top]), MEAN_PRESSURE) if _converges(tops, noise) else None
     return BodyPressure(r, p, spread, radius.value / wider, central, peak)
 
 
-def _converges(levels: Sequence[float | None], noise: float) -> bool:
-    """Whether a value through every, every second and every fourth particle converges; two levels cannot tell."""
+def _converges(levels: Sequence[float], noise: float) -> bool:
+    """Whether a value through every, every second and every fourth particle converges; fewer levels cannot tell."""
+    if len(levels) < 3:
+        return True
     first, second, fourth = levels
-    if first is None or second is None or fourth is None:
-        return first is not None
     change = abs(first - second)
     return change <= noise * abs(first) or change < SHRINKS * abs(first - fourth)
 

@@ -16,11 +16,13 @@ from contextlib import contextmanager, suppress
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from types import ModuleType
-from typing import ParamSpec, TypeVar
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
-from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.launcher import RanksError, launcher_of
 from contact1d.workflow.engine.process import start_ahead
+
+if TYPE_CHECKING:
+    from contact1d.workflow.deck.deck import Deck
 
 P = ParamSpec("P")
 T = TypeVar("T")
