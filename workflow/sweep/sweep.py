@@ -21,9 +21,8 @@ from contact1d.workflow.runs.campaign import LOCK, AnyPath, alone, run
 from contact1d.workflow.scene import Scene, SceneError
 from contact1d.workflow.scene.problems import as_toml
 from contact1d.workflow.settings.settings import SettingsError
-from contact1d.workflow.sweep.axes import AnySweep, SweepPlan, read_sweep
+from contact1d.workflow.sweep.axes import AnySweep, SweepPlan, points, read_sweep, require_keys
 from contact1d.workflow.sweep.executors import ExecutorError, Workplace, workplace_of
-from contact1d.workflow.sweep.points import points, require_keys
 from contact1d.workflow.sweep.table import (
     MANY_ROWS,
     RECORD,
