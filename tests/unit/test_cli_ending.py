@@ -20,7 +20,6 @@ from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import EngineError
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.identify import IdentifyError
-from contact1d.workflow.identify.finished import FinishedRunError
 from contact1d.workflow.scene import Problem, SceneError
 from contact1d.workflow.settings.settings import SettingsError
 
@@ -58,7 +57,6 @@ def full(place: str | None = None) -> OSError:
         (SettingsError("no such chain"), 2, "no such chain\n"),
         (FolderError("it is taken"), 2, "it is taken\n"),
         (IdentifyError("out of reach"), 2, "out of reach\n"),
-        (FinishedRunError("no numbers"), 2, "no numbers\n"),
         (RunError("atoms flew apart", NOWHERE), 3, "the run failed: atoms flew apart\n"),
         (EngineError("it crashed", "loading", 7, NOWHERE, ""), 3, "the run failed: it crashed\n"),
         (BrokenProcessPool("died"), 3, "the run failed: a process of it was killed, most often because the machine"),

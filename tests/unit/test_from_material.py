@@ -81,9 +81,9 @@ def test_every_problem_is_told_at_once() -> None:
         'radius = "10 mn": must be a length, such as 10 mm; 10 mn has a unit that is not known, mn',
         'upper.youngs_modulus = "210 N": must be a pressure, such as 210 GPa; 210 N is a force',
         "upper.poisson_ratio = 0.8: must be greater than -1 and at most 0.5",
-        'model = "plate": must be "plane" or "particles"',
         "load: missing; without attraction a load alone makes a contact; or give surface_energy or work_of_adhesion: "
         'load = "10 N"',
+        'model = "plate": must be "plane" or "particles"',
     ]
 
 
@@ -92,15 +92,15 @@ def test_every_problem_is_told_at_once() -> None:
     [
         ({"radius": None}, "radius: give either a radius or a profile"),
         ({"profile": {"kind": "cone", "slope": 0.1}}, "radius: give either a radius or a profile"),
-        ({"radius": -1.0}, "radius = -1 m: must be greater than 0"),
-        ({"load": "-1 N"}, "load = -1 N: must be at least 0"),
+        ({"radius": -1.0}, "radius = -1.0: must be greater than 0 (m)"),
+        ({"load": "-1 N"}, 'load = "-1 N": must be at least 0'),
         ({"lower": None}, "lower: missing"),
         ({"lower": "stiff"}, 'lower = "stiff": must be a table with youngs_modulus and poisson_ratio, or "rigid"'),
         ({"upper": "rigid", "lower": "rigid"}, "upper: one of the two bodies must be elastic"),
         ({"contact_modulus": "1 GPa"}, "contact_modulus: not together with upper or lower"),
         ({"surface_energy": 0.1, "work_of_adhesion": 0.2}, "surface_energy: not together with work_of_adhesion"),
-        ({"surface_energy": "50 mN"}, 'surface_energy = "50 mN": must be an energy per area'),
-        ({"radius": True}, "radius = true: must be a length, such as 10 mm, or a number in m"),
+        ({"surface_energy": "50 mN"}, 'surface_energy = "50 mN": must be a force per length or energy per area'),
+        ({"radius": True}, "radius = true: must be a number greater than 0 (m)"),
         ({"title": ""}, 'title = "": must be one line of text'),
     ],
 )
@@ -120,9 +120,9 @@ def test_file_that_is_none_is_told(tmp_path: Path) -> None:
             path.write_bytes(b"title = '\xe9'")
         else:
             path.write_text(text)
-        with pytest.raises(SceneError, match="is no TOML"):
+        with pytest.raises(SceneError, match=r"no value|UTF-8"):
             read_contact(path)
-    with pytest.raises(SceneError, match="No such file"):
+    with pytest.raises(SceneError, match="no such file"):
         read_contact(tmp_path / "absent.toml")
 
 

@@ -121,7 +121,7 @@ def _mistakes(given: Mapping[str, float], run: Path | None) -> list[str]:
 def _units_of_run(folder: Path, contact_modulus: float, surface_energy: float) -> None:
     """Print LU and FU of a finished run, and its results in SI."""
     from contact1d.workflow.cli.summary import quantities
-    from contact1d.workflow.identify.finished import scales_of_run
+    from contact1d.workflow.identify.interaction import scales_of_run
 
     scales, results = scales_of_run(folder, contact_modulus, surface_energy)
     for entry in results.values():
