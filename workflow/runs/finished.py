@@ -139,17 +139,7 @@ class Run:
         from contact1d.analysis.plots import plain_axes
         from contact1d.workflow.runs.drawing import drawings
 
-        values = {key: quantity.value for key, quantity in self.results.items()}
-        there = drawings(
-            self.scene,
-            values,
-            self.curve,
-            self.profiles,
-            self.friction,
-            self.detachments,
-            self.scales,
-            self.folder,
-        )
+        there = drawings(self)
         name = name or next(iter(there))
         if name not in there:
             raise ValueError(f"the run has no figure {name!r}, it has {', '.join(there)}")
