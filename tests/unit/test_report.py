@@ -15,8 +15,7 @@ from contact1d import Contact1dError, FolderError, Run, run, sweep
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.states import MOST_NUMBERS, read_states, states_of, write_states
 from contact1d.workflow.report.animation import animate, ovito_script
-from contact1d.workflow.report.report import report
-from contact1d.workflow.report.words import scene_in_words
+from contact1d.workflow.report.report import report, scene_in_words
 from contact1d.workflow.scene import read_scene
 from tests.scenes import chains
 

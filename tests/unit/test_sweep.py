@@ -20,7 +20,7 @@ import contact1d.workflow.sweep.sweep as sweeping
 from contact1d import FolderError, load_run, sweep
 from contact1d.workflow.cli.app import app
 from contact1d.workflow.engine.progress import Silent
-from contact1d.workflow.sweep.executors import ExecutorError
+from contact1d.workflow.sweep.sweep import ExecutorError
 from contact1d.workflow.sweep.table import PARQUET, TABLE
 from tests.sweeps import FORCE, RADIUS, Here, Stub, axis, plane, rows
 
@@ -127,7 +127,7 @@ def test_an_executor_that_is_not_there_says_what_to_install(tmp_path: Path, monk
         sweep(plane(axis(FORCE, 0.5)), tmp_path / "s", "slurm")
     with pytest.raises(ExecutorError, match="local or slurm"):
         sweep(plane(axis(FORCE, 0.5)), tmp_path / "s", "cloud")
-    monkeypatch.setattr("contact1d.workflow.sweep.executors.find_spec", lambda name: None)
+    monkeypatch.setattr("contact1d.workflow.sweep.sweep.find_spec", lambda name: None)
     with pytest.raises(ExecutorError, match=r"pip install 'contact1d\[cluster\]'"):
         sweep(plane(axis(FORCE, 0.5)), tmp_path / "s", "slurm")
     assert not (tmp_path / "s").exists()
