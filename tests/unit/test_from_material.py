@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import math
 import re
 import tomllib
@@ -11,7 +10,6 @@ from typing import Any
 
 import pytest
 
-from contact1d.workflow.cli.identify import identify
 from contact1d.workflow.identify import IdentifyError
 from contact1d.workflow.identify.choice import chosen, theories_of
 from contact1d.workflow.identify.contact import KEYS, read_contact
@@ -109,23 +107,6 @@ def test_one_mistake_is_one_sentence(change: dict[str, Any], words: str) -> None
     assert problem.startswith(words)
 
 
-def test_scene_is_no_material() -> None:
-    assert problems(bodies={}, experiment={}) == ["bodies: this is a scene and no material; run it with contact1d run"]
-
-
-def test_file_that_is_none_is_told(tmp_path: Path) -> None:
-    for name, text in (("there.toml", "radius = "), ("latin.toml", None)):
-        path = tmp_path / name
-        if text is None:
-            path.write_bytes(b"title = '\xe9'")
-        else:
-            path.write_text(text)
-        with pytest.raises(SceneError, match=r"no value|UTF-8"):
-            read_contact(path)
-    with pytest.raises(SceneError, match="no such file"):
-        read_contact(tmp_path / "absent.toml")
-
-
 # What is chosen.
 
 
@@ -218,11 +199,6 @@ def test_tip_of_an_atomic_force_microscope_is_told_that_dmt_holds_with_its_value
     assert "by Maugis and Dugdale, between it and JKR" in between
 
 
-def test_contact_under_an_atom_is_refused() -> None:
-    words = refused(**TIP | {"radius": "1 nm"})
-    assert words.startswith("the contact is narrower than an atom: DMT has a zero-load radius of 196.8 pm")
-
-
 def test_rough_surfaces_are_refused_with_the_roughness_that_is_not() -> None:
     smooth = TIP | {"radius": "5 um"}
     words = refused(**smooth, roughness="1 nm")
@@ -252,7 +228,6 @@ def test_page_has_every_key_and_its_examples_are_contacts() -> None:
     assert named == set(KEYS)
 
 
-def test_help_of_the_command_has_an_example_that_is_a_contact() -> None:
-    text = inspect.getdoc(identify) or ""
-    lines = [line.strip() for line in text.splitlines() if " = " in line]
-    assert read_contact(tomllib.loads("\n".join(lines))).work_of_adhesion == pytest.approx(0.1)
+def test_contact_under_an_atom_is_refused() -> None:
+    words = refused(**TIP | {"radius": "1 nm"})
+    assert words.startswith("the contact is narrower than an atom: DMT has a zero-load radius of 196.8 pm")

@@ -7,7 +7,6 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from scipy.interpolate import make_interp_spline
 
 from contact1d.analysis.reference.mindlin import mindlin_shear
 from contact1d.analysis.shear import kinks_of, shear_load
@@ -84,12 +83,6 @@ def test_kinks_stay_where_the_zone_that_sticks_grows_and_go_where_it_comes_back(
     assert kinks_of(stick, [20.0] * 8) == [[], [15.0], [10.0], [10.0, 19.0], [10.0, 14.0], [9.0], [9.0], [9.0, 12.0]]
 
 
-def test_a_contact_that_grows_leaves_its_old_edge_behind() -> None:
-    assert kinks_of([20.0, 10.0, 25.0, 22.0, 15.0], [20.0, 20.0, 25.0, 25.0, 25.0]) == [
-        [], [10.0], [10.0, 20.0], [10.0, 20.0, 22.0], [10.0, 15.0],
-    ]  # fmt: skip
-
-
 def test_too_few_places_or_places_that_differ_raise() -> None:
     with pytest.raises(ValueError, match="3 places on each side"):
         shear_load(lattice(10), np.ones(10), 1.2)
@@ -106,81 +99,3 @@ def test_what_differs_between_both_sides_cancels(count: int) -> None:
     even = line(A, x) - line(7.2, x)
     found = shear_load(x, even + 0.1 * np.tanh(x), A, [7.2]).pressure(R)
     assert found == pytest.approx(mindlin_shear(R, A, 7.2, MU, PEAK), abs=EXACT * MU * PEAK)
-
-
-@pytest.mark.parametrize("scale", [2.0**-20, 2.0**20])
-def test_kinks_are_the_same_in_any_unit_of_length(scale: float) -> None:
-    stick, contact = [3.0, 1.5, 2.5, 0.7, 2.0, 1.0], [4.0, 4.0, 4.0, 2.9, 3.5, 3.5]
-    there = kinks_of([scale * c for c in stick], [scale * a for a in contact])
-    assert there == [[scale * kink for kink in row] for row in kinks_of(stick, contact)]
-
-
-def splines(x: np.ndarray, q: np.ndarray, edge: float, kinks: list[float], apex: bool, at: np.ndarray) -> np.ndarray:
-    """The line shear at places 0 ≤ x ≤ edge, zone by zone: splines without knots next to a zone's ends."""
-    right, mean = x[(x >= 0.0) & (x < edge - 1e-3)], (0.5 * (q + q[::-1]))[(x >= 0.0) & (x < edge - 1e-3)]
-    found, low, start = np.zeros_like(at), 0.0, None
-    for border in [*kinks, edge]:
-        height = 0.0
-        if border != edge:
-            order = np.argsort(np.abs(right - border))
-            sides = [[i for i in order if side * (right[i] - border) > 1e-3][:3] for side in (-1.0, 1.0)]
-            height = float(np.mean([np.polyval(np.polyfit(right[i], mean[i], 2), border) for i in sides]))
-        inside = (right > low + 1e-3 if start is not None else right >= 0.0) & (right < border - 1e-3)
-        places, values = [*right[inside], border], [*mean[inside], height]
-        if start is not None:
-            places, values = [low, *places], [start, *values]
-        elif not apex:
-            places, values = (
-                [-p for p in places if p > 0.0][::-1] + places,
-                [v for p, v in zip(places, values, strict=True) if p > 0.0][::-1] + values,
-            )
-        zone = (at >= low) & (at <= border)
-        found[zone] = make_interp_spline(places, values, k=3)(at[zone])
-        low, start = border, height
-    return found
-
-
-@pytest.mark.parametrize("apex", [False, True])
-@pytest.mark.parametrize("count", [30, 31])
-@pytest.mark.parametrize(
-    ("edge", "kinks"),
-    [(13.2, []), (13.2, [5.3]), (12.5, [4.5, 8.5]), (12.0, [4.0, 8.0]), (13.2, [3.1, 6.2, 9.9]), (3.2, []), (2.6, [])],
-)
-def test_the_line_shear_is_a_spline_of_its_own_between_kinks_wherever_they_lie(
-    edge: float, kinks: list[float], count: int, apex: bool
-) -> None:
-    """Kinks and edges between places, and on them; three places are enough."""
-    x = lattice(count)
-    q = np.exp(-((x / 6.0) ** 2)) + 0.3 * np.cos(0.7 * x) + 0.2 * np.tanh(x)
-    at = np.linspace(0.0, edge, 400)
-    load = shear_load(x, q, edge, kinks, apex)
-    assert load.edge == edge
-    assert load.has_apex == apex
-    piece = np.clip(np.searchsorted(load.breaks, at, side="right") - 1, 0, load.breaks.size - 2)
-    found = (load.coefficients[:, piece] * at ** np.arange(4)[:, None]).sum(axis=0)
-    assert found == pytest.approx(splines(x, q, edge, kinks, apex, at), abs=1e-9)
-
-
-@pytest.mark.parametrize("off", [-1e-9, 0.0, 1e-9])
-@pytest.mark.parametrize("scale", [2.0**-20, 1.0, 2.0**20])
-def test_a_place_on_a_kink_or_the_edge_belongs_to_it_and_is_none_of_the_three_beside_it(
-    scale: float, off: float
-) -> None:
-    """Places 0.5, 1.5, … up to the edge at 19.5, all of them round-off aside, in any unit of length."""
-    x = lattice(46)
-    q = np.cos(0.1 * x)
-    for kinks, stay in (
-        ([2.5], []), ([3.5], [3.5]), ([15.5], [15.5]), ([16.5], []),
-        ([8.5, 11.5], [11.5]), ([7.5, 11.5], [7.5, 11.5]), ([11.5, 11.5], [11.5]),
-    ):  # fmt: skip
-        load = shear_load(scale * x, q, scale * (19.5 + off), [scale * (kink + off) for kink in kinks])
-        expected = splines(x, q, 19.5 + off, [kink + off for kink in stay], False, np.arange(20.0))
-        piece = np.searchsorted(load.breaks, scale * np.arange(20.0), side="right") - 1
-        found = (load.coefficients[:, piece] * (scale * np.arange(20.0)) ** np.arange(4)[:, None]).sum(axis=0)
-        assert found == pytest.approx(expected, abs=1e-9)
-        assert load.breaks.size == 21  # the axis, 19 places or what they belong to, and the edge
-
-
-def test_a_zone_that_comes_back_to_a_kink_or_stays_leaves_none() -> None:
-    assert kinks_of([9.0, 4.0, 7.0, 4.0, 4.0], [9.0] * 5) == [[], [4.0], [4.0, 7.0], [4.0], [4.0]]
-    assert kinks_of([0.0, 0.0, 5.0, 5.0], [3.0, 6.0, 8.0, 5.0]) == [[], [], [5.0], []]
