@@ -25,14 +25,13 @@ from contact1d.workflow.cost.report import (
     Order,
     VariantRecord,
     csv_text,
-    effects_markdown,
-    read_record,
     summary,
 )
 from contact1d.workflow.cost.study import TARGETS, advise, choice, fit_order, judged, pareto_front
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import settings_for
 from contact1d.workflow.units import Quantity
+from tests.costs import effects_markdown, read_record
 
 MakeScene = Callable[..., Scene]
 ROOT = Path(__file__).parents[2]

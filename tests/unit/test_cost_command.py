@@ -12,9 +12,9 @@ from typer.testing import CliRunner
 from contact1d import read_scene
 from contact1d.workflow.cli.app import app
 from contact1d.workflow.cost.measure import Prepared, measure
-from contact1d.workflow.cost.report import read_record
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.settings.settings import settings_for
+from tests.costs import read_record
 from tests.unit.test_cost import SCENES, MakeScene
 
 TINY = """
