@@ -66,7 +66,7 @@ def with_method(scene: Scene, method: str) -> Change:
     """The scene with the other method: what exists in time only goes, or comes as far as the experiment needs it."""
     if method == "quasistatic":
         return Change(("experiment.method=quasistatic",), tuple(name for name in TIMED if name in scene.effects))
-    needed = ["damping.coefficient=auto"] + (["plate.mass=auto"] if scene.experiment.kind != "path" else [])
+    needed = ["damping.coefficient=auto"] + ([] if scene.experiment.way_is_given else ["plate.mass=auto"])
     return Change(("experiment.method=dynamic", *needed))
 
 
@@ -222,10 +222,10 @@ def _damping(own: Settings) -> Knob:
 
 
 def _increment(scene: Scene) -> Iterator[Knob]:
-    experiment = scene.experiment
-    if experiment.kind != "path" or not isinstance(experiment.displacements, Span):
+    span = None if scene.experiment.goes_along else getattr(scene.experiment, "displacements", None)
+    if not isinstance(span, Span):
         return
-    own = experiment.displacements.steps
+    own = span.steps
     counts = dict.fromkeys(max(1, round(own / factor)) for factor in INCREMENT_FACTORS)
     rows = [Level(n, f"{n} increments", Change((f"experiment.displacements.steps={n}",))) for n in counts]
     yield Knob("load increment", "increments of a leg", "larger", tuple(rows), own, own_reference=True)

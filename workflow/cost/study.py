@@ -382,7 +382,7 @@ def choice(scene: Scene, settings: Settings) -> str:
         words.append(f"time step {settings.time_step:.3g} TU")
     else:
         words.append(f"residual {settings.force_tolerance / settings.force_scale:.0e}")
-        if scene.experiment.kind != "path":
+        if not scene.experiment.way_is_given:
             step = settings.smooth_step if settings.is_smooth else settings.displacement_step
             words.append(f"increment {step:.3g} LU")
     return ", ".join(words)

@@ -26,7 +26,7 @@ from contact1d.workflow.errors import Contact1dError, FolderError, RunError
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.finished import Run, load_run
 from contact1d.workflow.runs.scales import UNIT_FIXING_RESULTS, jkr_scales
-from contact1d.workflow.scene import Circle, Parabola, PullOff, Scene, scene_from_dict
+from contact1d.workflow.scene import PullOff, Scene, scene_from_dict
 from contact1d.workflow.scene.material import PARABOLA_SHARE
 from contact1d.workflow.settings.estimate import ContactEstimate, particles_estimate
 from contact1d.workflow.settings.scales import interaction_law
@@ -358,11 +358,11 @@ def scales_of_run(folder: Path, contact_modulus: float, surface_energy: float) -
     missing = [name for name in UNIT_FIXING_RESULTS if name not in run.results]
     if missing:
         raise IdentifyError(f"{folder} has no {' and no '.join(missing)}: use a run of kind pull_off")
-    profile = run.scene.bodies.profile
-    if not isinstance(profile, Parabola | Circle):
+    profile, curvature = run.scene.bodies.profile, run.scene.bodies.profile.curvature_radius
+    if curvature is None:
         raise IdentifyError(f"{folder}: the profile is a {profile.kind}, and JKR is for a sphere")
     force, radius = (run.results[name] for name in UNIT_FIXING_RESULTS)
     if not (force.value > 0.0 and radius.value > 0.0):
         raise IdentifyError(f"{folder}: F_A and a_0 must be positive; they are {force.value:g} and {radius.value:g}")
-    scales = jkr_scales(force, radius, profile.radius, contact_modulus, surface_energy)
+    scales = jkr_scales(force, radius, curvature, contact_modulus, surface_energy)
     return scales, {name: quantity.entry() for name, quantity in run.results.items() if quantity.unit in SI}
