@@ -71,9 +71,9 @@ def cost(
         asked = read(scene, set_, without)
         from contact1d.workflow.cost.report import closing, summary, write_report
         from contact1d.workflow.cost.study import cost_of
+        from contact1d.workflow.experiments.spacing import with_spacing
         from contact1d.workflow.runs.processors import cores
         from contact1d.workflow.settings.settings import settings_for
-        from contact1d.workflow.experiments.spacing import with_spacing
 
         checked = with_spacing(asked)
         settings_for(checked)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from contact1d.workflow.engine.progress import Progress
+from contact1d.workflow.experiments.spacing import fine_enough
 from contact1d.workflow.identify.contact import AnyContact, AskedContact, read_contact
 from contact1d.workflow.identify.interaction import IdentifyError, Target, identify, jkr_target, material_scene
 from contact1d.workflow.identify.theories import (
@@ -23,7 +24,6 @@ from contact1d.workflow.runs import advised
 from contact1d.workflow.runs.campaign import AnyPath
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.experiments.spacing import fine_enough
 
 PRELOAD_SHARE = 0.7
 """Preload of a pull-off over JKR's F_A, where no load is given."""

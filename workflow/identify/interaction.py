@@ -28,6 +28,7 @@ from contact1d.workflow.runs.finished import Run, load_run
 from contact1d.workflow.runs.scales import UNIT_FIXING_RESULTS, jkr_scales
 from contact1d.workflow.scene import PullOff, Scene, scene_from_dict
 from contact1d.workflow.scene.material import PARABOLA_SHARE
+from contact1d.workflow.scene.reduction import SPHERES
 from contact1d.workflow.settings.estimate import ContactEstimate, particles_estimate
 from contact1d.workflow.settings.scales import interaction_law
 from contact1d.workflow.units import SI, Scales
@@ -359,7 +360,7 @@ def scales_of_run(folder: Path, contact_modulus: float, surface_energy: float) -
     if missing:
         raise IdentifyError(f"{folder} has no {' and no '.join(missing)}: use a run of kind pull_off")
     profile, curvature = run.scene.bodies.profile, run.scene.bodies.profile.curvature_radius
-    if curvature is None:
+    if curvature is None or profile.kind not in SPHERES:
         raise IdentifyError(f"{folder}: the profile is a {profile.kind}, and JKR is for a sphere")
     force, radius = (run.results[name] for name in UNIT_FIXING_RESULTS)
     if not (force.value > 0.0 and radius.value > 0.0):

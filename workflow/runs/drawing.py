@@ -19,11 +19,8 @@ from contact1d.analysis.time_plots import samples_figure
 from contact1d.workflow.body.derived import REPORTED
 from contact1d.workflow.body.reading import IMAGE
 from contact1d.workflow.body.theory import Case, applying
-from contact1d.workflow.body.traction import body_pressures, body_shears, row_of
-from contact1d.workflow.continuation.state import RadiusRule
-from contact1d.workflow.scene import Scene, Tangential
-from contact1d.workflow.units import Quantity, Scales
 from contact1d.workflow.body.traction import row_of
+from contact1d.workflow.continuation.state import RadiusRule
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import Scales
 
