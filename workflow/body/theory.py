@@ -22,7 +22,7 @@ from contact1d.analysis.reference import mindlin, sneddon
 from contact1d.analysis.reference.adhesive_power import AdhesivePower
 from contact1d.analysis.reference.dmt import Dmt
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.scene.reduction import SPHERES
+from contact1d.workflow.scene.material import SPHERES
 from contact1d.workflow.units import Quantity, Scales, scale_of
 
 Array = NDArray[np.float64]

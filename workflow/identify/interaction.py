@@ -27,8 +27,7 @@ from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.finished import Run, load_run
 from contact1d.workflow.runs.scales import UNIT_FIXING_RESULTS, jkr_scales
 from contact1d.workflow.scene import PullOff, Scene, scene_from_dict
-from contact1d.workflow.scene.material import PARABOLA_SHARE
-from contact1d.workflow.scene.reduction import SPHERES
+from contact1d.workflow.scene.material import PARABOLA_SHARE, SPHERES
 from contact1d.workflow.settings.estimate import ContactEstimate, particles_estimate
 from contact1d.workflow.settings.scales import interaction_law
 from contact1d.workflow.units import SI, Scales

@@ -21,8 +21,7 @@ from contact1d.workflow.report.charts import Chart, curves, over_axes, pressures
 from contact1d.workflow.runs.campaign import AnyPath
 from contact1d.workflow.runs.finished import Run, read_run
 from contact1d.workflow.scene import Scene, Table, scene_to_toml
-from contact1d.workflow.scene.quantities import annotation_of, keys_of
-from contact1d.workflow.scene.wording import unit_of
+from contact1d.workflow.scene.quantities import keys_of
 from contact1d.workflow.sweep.axes import read_sweep
 from contact1d.workflow.sweep.table import RECORD, TABLE, read_table, units_in
 
@@ -192,14 +191,15 @@ def _meaning(table: Table) -> str:
 
 
 def _values(table: Table, within: str = "") -> Iterator[tuple[str, str]]:
-    for key, name in keys_of(type(table)).items():
-        value = getattr(table, name)
-        label = key.replace("_", " ")
+    for name, key in keys_of(type(table)).items():
+        value = getattr(table, key.field)
+        label = name.replace("_", " ")
         if isinstance(value, Table):
             yield from _values(value, f"{within}{label}: ")
         elif value is not None:
-            unit = unit_of(annotation_of(type(table), key))
-            yield within + label, _shown(value) + (f" {unit}" if unit not in (None, "1") and value != "auto" else "")
+            unit = key.allowed.unit
+            named = unit is not None and unit.name != "1" and value != "auto"
+            yield within + label, _shown(value) + (f" {unit.name}" if unit and named else "")
 
 
 def _shown(value: Any) -> str:

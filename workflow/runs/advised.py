@@ -16,8 +16,8 @@ from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.runs.report import RESULTS, write_results
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import AnyScene, Scene, SceneError, read_scene
-from contact1d.workflow.scene.places import places
 from contact1d.workflow.scene.problems import as_toml
+from contact1d.workflow.scene.quantities import places
 from contact1d.workflow.settings.settings import Settings, SettingsError, settings_for
 from contact1d.workflow.units import NUMBER
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from contact1d.workflow.errors import SceneEdit
-from contact1d.workflow.scene.tables import Scene
+from contact1d.workflow.scene.read import Scene
 
 STEP = 3.0
 """Load before an edit over that after it, where nothing says how much is carried."""

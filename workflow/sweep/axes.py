@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 
 from contact1d.workflow.scene import Problem, Scene, SceneError, read_tables, scene_from_dict
-from contact1d.workflow.scene.overrides import set_values
 from contact1d.workflow.scene.problems import nearest, shown
+from contact1d.workflow.scene.read import set_values
 from contact1d.workflow.scene.si_text import UnitTextError, split
 
 AnySweep = str | PathLike[str] | Mapping[str, Any]
