@@ -22,8 +22,7 @@ from numpy.typing import NDArray
 
 from benchmarks.pages import write_between
 from contact1d.potentials.table import Table
-from contact1d.workflow.cost.change import base_change
-from contact1d.workflow.cost.errors import main_results
+from contact1d.workflow.cost.knobs import base_change, main_results
 from contact1d.workflow.cost.study import reference_of
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.effects import EFFECTS, Contribution

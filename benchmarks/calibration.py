@@ -24,10 +24,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from benchmarks.calibration_choice import TOGETHER, Row, read_rows, write_choice, write_rows
-from contact1d.workflow.cost.advice import TARGETS, power
-from contact1d.workflow.cost.change import at_tolerance
+from contact1d.workflow.cost.knobs import at_tolerance
 from contact1d.workflow.cost.measure import Measured, Prepared, measure
-from contact1d.workflow.cost.study import reference_of
+from contact1d.workflow.cost.report import power
+from contact1d.workflow.cost.study import TARGETS, reference_of
 from contact1d.workflow.engine.progress import choose_progress
 from contact1d.workflow.scene import Scene, read_scene
 from contact1d.workflow.settings.calibration import CALIBRATION, Calibration

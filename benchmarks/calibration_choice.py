@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.pages import write_between
-from contact1d.workflow.cost.advice import TARGETS, power
+from contact1d.workflow.cost.report import power
+from contact1d.workflow.cost.study import TARGETS
 from contact1d.workflow.judging.markdown import table
 from contact1d.workflow.settings.calibration import FILE, Calibration, calibration_of, meanings
 

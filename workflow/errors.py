@@ -1,12 +1,44 @@
-"""What the program raises for a person to read: each a `Contact1dError` that says what is wrong and what to do."""
+"""What the program raises for a person to read: what is wrong, what is allowed, what to do.
+
+An error carries its remedy: advice in words, and edits of the scene that the raising place knows to help. Whoever
+reports it tries the first of these once (`workflow.runs.advised`).
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import ClassVar
+
+
+@dataclass(frozen=True)
+class SceneEdit:
+    """Values by dotted keys, and effects that are left out."""
+
+    values: Mapping[str, object] = field(default_factory=dict)
+    without: tuple[str, ...] = ()
 
 
 class Contact1dError(Exception):
-    """Every error that is about a scene, a folder or a run, and not a mistake in a program."""
+    """Every error that is about a scene, a folder or a run, and not a mistake in a program.
+
+    Attributes:
+        exit_code: of a command that it ends: 2, the scene or the call is wrong; 3, the run failed.
+        changes: edits of the scene that may help, the best one first.
+    """
+
+    exit_code: ClassVar[int] = 2
+
+    def __init__(self, *arguments: object, changes: Iterable[SceneEdit] = ()) -> None:
+        """Keep the changes beside the arguments; both survive pickling."""
+        super().__init__(*arguments)
+        self._changes = tuple(changes)
+
+    @property
+    def changes(self) -> tuple[SceneEdit, ...]:
+        """See above."""
+        return self._changes
 
 
 class FolderError(Contact1dError, RuntimeError):
@@ -22,6 +54,8 @@ class RunError(Contact1dError, RuntimeError):
         kept: whether the run began, so that its files are there, and its results.json says the same.
     """
 
+    exit_code = 3
+
     def __init__(self, message: str, folder: Path, kept: bool = True) -> None:
         """Keep them; they are arguments, so that the error can be pickled."""
         super().__init__(message, folder, kept)
@@ -30,3 +64,68 @@ class RunError(Contact1dError, RuntimeError):
     def __str__(self) -> str:
         """Return the message, and where the files are or would have been."""
         return f"{self.message}\n{'files kept in' if self.kept else 'run folder:'} {self.folder}"
+
+
+class UntrustedError(Contact1dError, RuntimeError):
+    """The run ended, but its result can't be trusted.
+
+    Attributes:
+        message: why.
+        advice: what to do, where no change was tried; "" where the message says it.
+    """
+
+    exit_code = 3
+
+    def __init__(self, message: str, advice: str = "", changes: Iterable[SceneEdit] = ()) -> None:
+        """Keep all."""
+        super().__init__(message, advice, changes=changes)
+        self.message, self.advice = message, advice
+
+    def __str__(self) -> str:
+        """Return both, one behind the other."""
+        return f"{self.message}: {self.advice}" if self.advice else self.message
+
+
+class ThroughError(UntrustedError):
+    """The bodies went through each other, which may be the path there and not the load (`in_smaller_steps`)."""
+
+
+class ChainEndError(UntrustedError):
+    """The contact is wider than its chain."""
+
+
+class UnsteadyError(UntrustedError):
+    """A slide without steady state: its distance is too short beside what the cantilever is drawn by."""
+
+
+class OffEndError(UntrustedError):
+    """A plate that slid off the lower body."""
+
+
+class PartedError(UntrustedError):
+    """Bodies that do not hold the force that draws them apart."""
+
+
+class RestlessError(UntrustedError):
+    """A plate that does not relax."""
+
+
+class TensionError(UntrustedError):
+    """A tension that the contact does not hold; `most` is about what it holds [FU]."""
+
+    HELD_SHARE = 0.9
+    """Tension that is suggested over the largest one."""
+
+    def __init__(self, force: float, most: float) -> None:
+        """The force [FU] that was asked for, and what is held; they are the arguments for pickling."""
+        suggested = float(f"{-self.HELD_SHARE * most:.3g}")
+        super().__init__(
+            f"{force:.4g} FU is never reached: the largest tension is about {most:.4g} FU",
+            changes=[SceneEdit({"experiment.force": suggested})],
+        )
+        self.args = (force, most)
+        self.most = most
+
+
+class DigitsError(UntrustedError):
+    """Forces that are nothing beside the last digits of positions."""

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from contact1d.analysis.atoms import atoms
     from contact1d.workflow.engine.failure import EngineError
     from contact1d.workflow.errors import Contact1dError, FolderError, RunError
-    from contact1d.workflow.identify.from_material import from_material
+    from contact1d.workflow.identify.choice import from_material
     from contact1d.workflow.runs.advised import run
     from contact1d.workflow.runs.campaign import write_deck
     from contact1d.workflow.runs.finished import Run, load_run
@@ -62,7 +62,7 @@ _HOMES = {
     "analysis.atoms": ("atoms",),
     "workflow.engine.failure": ("EngineError",),
     "workflow.errors": ("Contact1dError", "FolderError", "RunError"),
-    "workflow.identify.from_material": ("from_material",),
+    "workflow.identify.choice": ("from_material",),
     "workflow.runs.advised": ("run",),
     "workflow.runs.campaign": ("write_deck",),
     "workflow.runs.finished": ("Run", "load_run"),

@@ -14,8 +14,8 @@ from typing import Any
 import pytest
 
 from contact1d import sweep
-from contact1d.workflow.sweep import executors
-from contact1d.workflow.sweep.executors import ExecutorError
+from contact1d.workflow.sweep import sweep as executors
+from contact1d.workflow.sweep.sweep import ExecutorError
 from contact1d.workflow.sweep.table import TABLE
 from tests.slurm import slurm
 

@@ -1,23 +1,36 @@
-"""A run that fails says which change was tried and helps; what it says can be typed."""
+"""A run that fails says what helps: the first change that its error carries was tried, once, and can be typed."""
 
 from __future__ import annotations
 
+import pickle
 import re
 import shlex
 from pathlib import Path
 
 import pytest
 
-from contact1d import RunError, load_run, read_scene, run
+from contact1d import Contact1dError, RunError, load_run, read_scene, run
+from contact1d.workflow.engine.progress import Silent
+from contact1d.workflow.errors import SceneEdit, TensionError
+from contact1d.workflow.runs.advised import in_words
 from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
-from tests.scenes import chains
+from tests.scenes import STEEL_ON_GLASS, chains
 
 SIDEWAYS = chains(1000.0, horizontal={}, experiment={"kind": "pull_off", "preload": 3.0})
 """The README's scene without neighbours under three times its preload: its particles step aside."""
 
 
+class Trials(Silent):
+    """Counts what is tried."""
+
+    count = 0
+
+    def note(self, text: str) -> None:
+        self.count += text.startswith("trying what helps")
+
+
 def changed(scene: Scene, message: str) -> Scene:
-    """The scene with the first change that a message says gives a result."""
+    """The scene with the change that a message says gives a result."""
     found = re.search(r"Tried: (.*?) gives a result", message)
     assert found is not None, message
     words = shlex.split(found[1])
@@ -26,16 +39,27 @@ def changed(scene: Scene, message: str) -> Scene:
     return read_scene(scene, sets, [value for option, value in pairs if option == "--without"])
 
 
-def test_message_names_a_change_with_which_the_scene_gives_a_result(tmp_path: Path) -> None:
-    scene = scene_from_dict(SIDEWAYS)
-    with pytest.raises(RunError) as caught:
-        run(scene, tmp_path / "run", figures=False)
-    assert "lower the load" not in str(caught.value)  # what nobody tried
-    assert "Tried: --without horizontal gives a result" in caught.value.message
+@pytest.mark.parametrize(
+    ("tables", "tried"),
+    [
+        (SIDEWAYS, "--without horizontal"),
+        (SIDEWAYS | {"bodies": SIDEWAYS["bodies"] | {"particles": 41}}, "--set bodies.particles=auto"),
+        (chains(1000.0, experiment={"kind": "load", "force": -9.0}), "--set experiment.force=-"),
+    ],
+    ids=["through", "chain_end", "tension"],
+)
+def test_message_names_a_change_with_which_the_scene_gives_a_result(
+    tables: dict[str, object], tried: str, tmp_path: Path
+) -> None:
+    scene, trials = scene_from_dict(tables), Trials()
+    if "particles=auto" in tried:
+        scene = scene.with_({"experiment.preload": 1.0})
+    with pytest.raises(RunError, match=f"Tried: {tried}") as caught:
+        run(scene, tmp_path / "run", figures=False, progress=trials)
+    assert trials.count == 1
     mended = changed(scene, caught.value.message)
-    assert mended.horizontal is None
-    assert run(mended, tmp_path / "mended", figures=False).results.adhesion_force.value > 0.0
-    with pytest.raises(RunError, match="Tried: --without horizontal gives a result"):
+    assert run(mended, tmp_path / "mended", figures=False).results
+    with pytest.raises(RunError, match=f"Tried: {tried}"):  # as results.json has it
         load_run(tmp_path / "run")
 
 
@@ -44,3 +68,31 @@ def test_law_that_is_none_is_mended_by_trying(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match=r"Tried: --set interaction\.attraction\.range=0\.78 gives a result"):
         run(tables, tmp_path / "run")
     assert not (tmp_path / "run").exists()
+
+
+def test_load_that_no_pair_carries_is_refused_at_once_and_what_failed_too_is_said(tmp_path: Path) -> None:
+    """200 pairs of A/a = 1.38 FU each; half of that is not carried where particles may step aside."""
+    scene, trials = scene_from_dict(SIDEWAYS | {"experiment": {"kind": "load", "force": 1e6}}), Trials()
+    with pytest.raises(Contact1dError, match=r"from about 276\.9 FU on.*Tried without a result") as caught:
+        run(scene.with_({"bodies.particles": 200}), tmp_path / "run", progress=trials)
+    assert trials.count == 1
+    assert "--set experiment.force=138.0" in str(caught.value)
+
+
+def test_changes_have_units_where_the_scene_has(tmp_path: Path) -> None:
+    """They are for the scene's file, in which a plain number may have no meaning."""
+    particles = (
+        "bodies.lower=particles", "interaction.repulsion={ amplitude = '1 µJ', range = '1 µm' }",
+        "bodies.particles=21", "experiment.force=1 kN",
+    )  # fmt: skip
+    with pytest.raises(Contact1dError, match=r"--set experiment\.force=\S+N\b"):
+        run(read_scene(STEEL_ON_GLASS, particles), tmp_path / "run")
+
+
+def test_an_error_and_its_changes_survive_pickling() -> None:
+    error = pickle.loads(pickle.dumps(TensionError(-9.0, 2.0)))
+    assert error.most == 2.0
+    assert error.changes == (SceneEdit({"experiment.force": -1.8}),)
+    assert in_words(SceneEdit({"experiment.preload": 1.0}, ("horizontal",))) == (
+        "--without horizontal --set experiment.preload=1.0"
+    )

@@ -21,7 +21,7 @@ from benchmarks.calibration_choice import (
     read_rows,
 )
 from benchmarks.pages import between
-from contact1d.workflow.cost.advice import TARGETS
+from contact1d.workflow.cost.study import TARGETS
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.calibration import CALIBRATION, FILE, Calibration, calibration_of
 from contact1d.workflow.settings.settings import settings_for

@@ -14,13 +14,14 @@ from pathlib import Path
 
 import pytest
 import typer
+from typer.testing import CliRunner
 
 from contact1d.workflow.cli import ending
+from contact1d.workflow.cli.app import app
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import EngineError
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.identify import IdentifyError
-from contact1d.workflow.identify.finished import FinishedRunError
 from contact1d.workflow.scene import Problem, SceneError
 from contact1d.workflow.settings.settings import SettingsError
 
@@ -58,7 +59,6 @@ def full(place: str | None = None) -> OSError:
         (SettingsError("no such chain"), 2, "no such chain\n"),
         (FolderError("it is taken"), 2, "it is taken\n"),
         (IdentifyError("out of reach"), 2, "out of reach\n"),
-        (FinishedRunError("no numbers"), 2, "no numbers\n"),
         (RunError("atoms flew apart", NOWHERE), 3, "the run failed: atoms flew apart\n"),
         (EngineError("it crashed", "loading", 7, NOWHERE, ""), 3, "the run failed: it crashed\n"),
         (BrokenProcessPool("died"), 3, "the run failed: a process of it was killed, most often because the machine"),
@@ -144,23 +144,22 @@ def test_an_interrupted_run_says_what_is_left(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("command", ["run", "deck", "cost"])
-def test_every_command_reads_a_scene_in_the_same_way(command: str, tmp_path: Path) -> None:
-    options = ["--out", "out", "--set", "experiment.forc=1", "--without", "nois"]
-    done = contact1d(command, SCENES / "load.toml", *options, cwd=tmp_path)
-    assert (done.returncode, done.stdout) == (2, "")
+def test_every_command_reads_a_scene_in_the_same_way(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    scene = str(SCENES / "load.toml")
+    wrong = ["--out", "out", "--set", "experiment.forc=1", "--without", "nois"]
+    done = CliRunner().invoke(app, [command, scene, *wrong])
+    assert (done.exit_code, done.stdout) == (2, "")
     first, *problems = done.stderr.splitlines()
-    assert first == f"{SCENES / 'load.toml'}: 2 problems"
+    assert first == f"{scene}: 2 problems"
     assert "did you mean" in problems[0]
+    missing = CliRunner().invoke(app, [command, "nope.toml", "--out", "out"])
+    assert (missing.exit_code, missing.stderr) == (2, "nope.toml: 1 problem\n  nope.toml: no such file\n")
     assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize("command", ["run", "deck", "cost"])
-def test_a_missing_scene_and_a_place_that_takes_no_folder_are_told(command: str, tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("mine")
-    missing = contact1d(command, "nope.toml", "--out", "out", cwd=tmp_path)
-    assert (missing.returncode, missing.stderr) == (2, "nope.toml: 1 problem\n  nope.toml: no such file\n")
     for out, words in (("taken", "taken is a file"), ("taken/in", "cannot be written"), ("n" * 300, "name too long")):
-        done = contact1d(command, SCENES / "load.toml", "--out", out, cwd=tmp_path)
-        assert done.returncode == 2, done.stderr
+        done = CliRunner().invoke(app, [command, scene, "--out", out])
+        assert done.exit_code == 2, done.stderr
         assert words in done.stderr
-        assert "Traceback" not in done.stderr

@@ -15,17 +15,23 @@ import numpy as np
 import pytest
 
 from contact1d import read_scene
-from contact1d.workflow.cost.advice import TARGETS, advise, choice, combinations
-from contact1d.workflow.cost.change import Change, at_tolerance, base_change
-from contact1d.workflow.cost.errors import judged, main_results
-from contact1d.workflow.cost.knobs import knobs_of, left_out
-from contact1d.workflow.cost.orders import Order, fit_order, pareto_front
-from contact1d.workflow.cost.per_step import without_effects
-from contact1d.workflow.cost.record import Advice, CostRecord, EffectCost, KnobRecord, VariantRecord, read_record
-from contact1d.workflow.cost.report import COLUMNS, csv_text, effects_markdown, summary, write_report
+from contact1d.workflow.cost.knobs import at_tolerance, base_change, knobs_of, left_out
+from contact1d.workflow.cost.report import (
+    COLUMNS,
+    Advice,
+    CostRecord,
+    EffectCost,
+    KnobRecord,
+    Order,
+    VariantRecord,
+    csv_text,
+    summary,
+)
+from contact1d.workflow.cost.study import TARGETS, advise, choice, fit_order, judged, pareto_front
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import settings_for
 from contact1d.workflow.units import Quantity
+from tests.costs import effects_markdown, read_record
 
 MakeScene = Callable[..., Scene]
 ROOT = Path(__file__).parents[2]
@@ -59,20 +65,6 @@ def test_a_scene_has_the_knobs_that_its_file_can_turn(name: str, wanted: set[str
     assert ("spacing" in left_out(scene)) == ("spacing" not in wanted)
 
 
-def test_a_law_without_attraction_has_no_cutoff_to_turn(make_scene: MakeScene) -> None:
-    scene = make_scene(interaction={"repulsion": {"amplitude": 0.18, "range": 0.13}})
-    assert "cutoff" not in names(scene)
-    assert "physics" in left_out(scene)["cutoff"]
-
-
-def test_a_change_sets_keys_and_changes_add_up(make_scene: MakeScene) -> None:
-    scene = make_scene()
-    change = base_change(scene) + Change(("accuracy.tolerance=0.1",)) + Change(("accuracy.tolerance=0.01",))
-    changed = change.scene(scene)
-    assert changed.accuracy.tolerance == 0.01
-    assert changed.bodies.particles == "auto"
-
-
 def test_a_spacing_keeps_stiffness_per_length() -> None:
     scene = read_scene(SCENES / "hertz_plane.toml")
     base, knobs = base_change(scene), knobs_of(scene, settings_for(scene))
@@ -81,11 +73,6 @@ def test_a_spacing_keeps_stiffness_per_length() -> None:
         changed = (base + level.change).scene(scene)
         assert changed.bodies.spacing == level.value
         assert changed.bulk_stiffness / changed.bodies.spacing == pytest.approx(0.5, rel=ROUND_OFF)
-
-
-def test_where_a_spacing_would_be_other_physics_it_is_not_turned() -> None:
-    for name, word in (("pull_off", "opposite particles"), ("load", "amplitudes"), ("thermal_load", "thermal")):
-        assert word in left_out(read_scene(SCENES / f"{name}.toml"))["spacing"]
 
 
 def test_the_order_of_synthetic_errors_is_found_with_its_standard_error() -> None:
@@ -101,14 +88,6 @@ def test_the_order_of_synthetic_errors_is_found_with_its_standard_error() -> Non
     pulls = [(fit.order - 2.0) / fit.standard_error for fit in fits if fit is not None]
     # Student's t with two degrees of freedom: half of all lies within 0.816; 396 fits give that share within 0.025.
     assert np.mean(np.abs(pulls) < 0.816) == pytest.approx(0.5, abs=0.1)
-
-
-def test_errors_at_the_floor_or_without_a_number_are_not_fitted() -> None:
-    h, errors = [0.1, 0.05, 0.025, 0.0125, 0.00625], [0.5, 1e-3, 1e-4, 1e-5, 1e-6]
-    assert fit_order(h, errors, floor=1e-6) == fit_order(h[1:4], errors[1:4])
-    assert fit_order(h, errors, floor=1e-4) is None
-    assert fit_order(h, [math.nan] * 5) is None
-    assert fit_order(h, [1e-12] * 5) is None
 
 
 def test_the_pareto_front_is_what_nothing_else_beats() -> None:
@@ -140,11 +119,6 @@ def test_advice_says_what_the_tolerance_chooses_and_what_is_cheaper_in_the_scene
     assert (advice.chosen, advice.label) == ("accuracy.tolerance = 0.001", "tuned")
 
 
-def test_advice_is_silent_about_what_saves_nothing_to_speak_of() -> None:
-    variants = [tolerance(1e-3, 1e-5, 1.0), tolerance(1e-1, 1e-4, 0.95)]
-    assert advise(1e-3, variants, noisy=False).text.endswith("; nothing else that was tried is clearly cheaper")
-
-
 def test_advice_tells_a_tolerance_that_was_not_run_or_is_not_enough() -> None:
     variants = [tolerance(1e-3, 2e-3, 1.0), variant("slow", 1e-6, 3.0)]
     not_enough = advise(1e-3, variants, noisy=False)
@@ -170,21 +144,6 @@ def test_the_kept_advice_is_what_the_tolerance_uses() -> None:
         assert f"chooses {choice(asked, settings_for(asked))}: error " in one.text
 
 
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        ("pull_off", ("table of ", "cutoff ", "chain of ", "residual ", "increment ")),
-        ("hertz_plane", ("chain of ", "residual ")),
-        ("pull_off_dynamic", ("table of ", "cutoff ", "chain of ", "time step ")),
-    ],
-)
-def test_a_choice_names_the_settings_that_a_scene_has(name: str, words: tuple[str, ...]) -> None:
-    scene = read_scene(SCENES / f"{name}.toml")
-    parts = choice(scene, settings_for(scene)).split(", ")
-    assert len(parts) == len(words)
-    assert all(part.startswith(word) for part, word in zip(parts, words, strict=True))
-
-
 def test_with_noise_an_error_counts_with_its_standard_error() -> None:
     lucky = variant("lucky", 1e-6, 1.0, spread=5e-3)
     assert advise(1e-2, [lucky], noisy=True).label == "lucky"
@@ -193,32 +152,6 @@ def test_with_noise_an_error_counts_with_its_standard_error() -> None:
     found = judged(variant("a", math.nan, 1.0), {"displacement": Quantity(2.02, 0.004, "LU")}, reference, noisy=True)
     assert found.error == pytest.approx(0.01)
     assert found.spread == pytest.approx(0.0025)
-
-
-def test_a_variant_without_a_main_result_has_failed(make_scene: MakeScene) -> None:
-    force, none = Quantity(1.0, 0.1, "FU"), Quantity(0.0, 0.1, "LU")
-    reference = main_results(make_scene(), {"adhesion_force": force, "zero_load_radius": none, "preload": force})
-    assert list(reference) == ["adhesion_force"]
-    assert judged(variant("a", math.nan, 1.0), {}, reference, noisy=False).failure == "found no adhesion_force"
-
-
-def test_a_combination_takes_each_knob_at_its_coarsest_good_value() -> None:
-    scene = read_scene(SCENES / "pull_off.toml")
-    base, knobs = base_change(scene), knobs_of(scene, settings_for(scene))
-    cutoff = next(knob for knob in knobs if knob.name == "cutoff")
-    errors = (1e-1, 2e-3, 1e-4, 1e-5, 1e-6)
-    records = [variant(one.label, e, 1.0, knob="cutoff") for one, e in zip(cutoff.levels, errors, strict=True)]
-    found = {label: (text, change) for label, text, change in combinations(knobs, records, base)}
-    for target, place in (("1e-2", 1), ("1e-3", 2), ("1e-4", 3), ("1e-5", 4)):
-        level = cutoff.levels[place]
-        assert found[f"combined for {target}"] == (level.label, base + level.change)
-
-
-def test_effects_that_cannot_be_left_out_say_why() -> None:
-    changes, reasons = without_effects(read_scene(SCENES / "pull_off_dynamic.toml"))
-    assert set(changes) == {"neighbours", "horizontal"}
-    assert set(reasons) == {"interaction", "damping", "plate"}
-    assert "needed by a dynamic pull_off" in reasons["plate"]
 
 
 def record() -> CostRecord:
@@ -271,12 +204,6 @@ def test_the_summary_and_the_readme_say_orders_costs_failures_and_advice() -> No
     ):
         assert words in text
     assert "| `neighbours` | 17.0 µs | 15.0 µs | 1.133 ± 0.004 | 5.0 ns | up to 6.0e-05 |" in effects_markdown(record())
-
-
-def test_a_report_is_three_files_and_a_figure_is_drawn_without_a_failed_variant(tmp_path: Path) -> None:
-    write_report(record(), tmp_path)
-    assert {path.name for path in tmp_path.iterdir()} == {"cost.json", "cost.csv", "cost.png"}
-    assert (tmp_path / "cost.png").stat().st_size > 10_000
 
 
 def test_the_table_of_the_page_is_what_the_kept_record_says() -> None:

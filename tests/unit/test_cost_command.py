@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 from contact1d import read_scene
+from contact1d.workflow.cli.app import app
 from contact1d.workflow.cost.measure import Prepared, measure
-from contact1d.workflow.cost.record import read_record
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.settings.settings import settings_for
+from tests.costs import read_record
 from tests.unit.test_cost import SCENES, MakeScene
 
 TINY = """
@@ -48,15 +48,11 @@ def test_a_variant_that_fails_is_listed_and_does_not_stop_the_others(make_scene:
     assert not list(tmp_path.iterdir())
 
 
-def contact1d(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "contact1d.workflow.cli.app", *map(str, arguments)]
-    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=300, check=False)
-
-
-def test_the_command_studies_a_scene_from_end_to_end(tmp_path: Path) -> None:
+def test_the_command_studies_a_scene_from_end_to_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "tiny.toml").write_text(TINY, encoding="utf-8")
-    done = contact1d("cost", "tiny.toml", "--repeats", "1", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
+    done = CliRunner().invoke(app, ["cost", "tiny.toml", "--repeats", "1"])
+    assert done.exit_code == 0, done.stderr
     assert "tolerance 1e-3: " in done.stdout
     assert "gave no numbers" not in done.stdout  # the shortest chains are too short, which nobody asked for
     folder = tmp_path / "costs" / "tiny"
@@ -74,23 +70,6 @@ def test_the_command_studies_a_scene_from_end_to_end(tmp_path: Path) -> None:
     assert [one.name for one in found.effect_costs] == ["neighbours"]
     assert found.effect_costs[0].without_us > 0.0
     assert json.loads((folder / "cost.json").read_text(encoding="utf-8"))["reference"].startswith("quasistatic")
-
-
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        (["pull_off.toml", "--set", "bodies.spacing=-1"], "bodies.spacing"),
-        (["pull_off.toml", "--without", "interaction"], "interaction"),
-        (["nowhere.toml"], "no such file"),
-    ],
-)
-def test_a_wrong_scene_is_told_and_nothing_is_written(options: list[str], words: str, tmp_path: Path) -> None:
-    name, *more = options
-    done = contact1d("cost", SCENES / name, *more, cwd=tmp_path)
-    assert done.returncode == 2, done.stdout
-    assert words in done.stderr
-    assert "Traceback" not in done.stderr
-    assert not list(tmp_path.iterdir())
 
 
 def test_a_variant_that_its_run_refuses_is_a_row_with_the_reason(tmp_path: Path) -> None:

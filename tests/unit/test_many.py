@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import os
-import pickle
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
@@ -16,7 +14,6 @@ from typing import Any
 import pytest
 
 from contact1d import Run, RunError, Scene, load_run, run_many
-from contact1d.workflow.runs.pool import pool
 
 MakeScene = Callable[..., Scene]
 EXECUTORS: dict[str, Callable[[], Executor]] = {
@@ -93,14 +90,6 @@ def test_a_process_that_is_killed_leaves_the_entries_that_were_done(plane: MakeS
     assert [entry.folder.name for entry in lost] == ["1", "2"]
 
 
-def test_an_executor_that_takes_no_more_gives_errors(plane: MakeScene, tmp_path: Path) -> None:
-    executor = ThreadPoolExecutor(1)
-    executor.shutdown()
-    (entry,) = run_many([(plane(), tmp_path / "run")], executor)
-    assert isinstance(entry, RunError)
-    assert "after shutdown" in entry.message
-
-
 @pytest.mark.parametrize("way", ["file", "pipe"])
 def test_a_script_needs_no_guard(way: str, plane: MakeScene, tmp_path: Path) -> None:
     """It is run once, whether Python reads it from a file or from a pipe."""
@@ -120,39 +109,10 @@ def test_two_runs_never_share_a_folder(plane: MakeScene, tmp_path: Path) -> None
     assert "same folder" in second.message
 
 
-def test_a_mistake_in_the_program_is_an_entry_that_says_where(
-    plane: MakeScene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    from contact1d.workflow.runs import campaign
-
-    monkeypatch.setattr(campaign, "perform", lambda context: 1 / 0)
-    with ThreadPoolExecutor(1) as executor:
-        (entry,) = run_many([(plane(), tmp_path / "run")], executor)
-    assert isinstance(entry, RunError)
-    assert entry.message == "ZeroDivisionError: division by zero"
-    assert "in <lambda>" in pickle.loads(pickle.dumps(entry)).__notes__[0]
-
-
-def test_a_run_error_survives_the_way_between_processes() -> None:
-    error = pickle.loads(pickle.dumps(RunError("why", Path("somewhere"), kept=False)))
-    assert (error.message, error.folder, error.kept) == ("why", Path("somewhere"), False)
-    assert str(error) == "why\nrun folder: somewhere"
-
-
-def test_processes_end_with_a_block_that_fails() -> None:
-    with pytest.raises(KeyboardInterrupt), pool(2) as executor:
-        worker = executor.submit(os.getpid).result()
-        for _ in range(4):
-            executor.submit(time.sleep, LONG)
-        raise KeyboardInterrupt
-    with pytest.raises(ProcessLookupError):
-        os.kill(worker, 0)
-
-
 def test_processes_end_with_a_parent_that_is_killed() -> None:
     """Nobody is left to hold the output open."""
     code = (
-        "import os, signal, time; from contact1d.workflow.runs.pool import pool\n"
+        "import os, signal, time; from contact1d.workflow.runs.processors import pool\n"
         "with pool(1) as executor:\n"
         "    print(executor.submit(os.getpid).result(), flush=True)\n"
         f"    executor.submit(time.sleep, {LONG})\n"

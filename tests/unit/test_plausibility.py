@@ -51,27 +51,6 @@ def test_what_looks_wrong_is_said(given: Scene, name: str, words: str) -> None:
     assert words in told[name]
 
 
-def test_a_surface_energy_is_judged_with_the_units_of_the_run() -> None:
-    interaction = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
-    bodies = {
-        "particles": 200, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 1000.0}, "bulk_stiffness": 0.83,
-    }  # fmt: skip
-    data = {
-        "title": "t",
-        "bodies": bodies,
-        "interaction": interaction,
-        "experiment": {"kind": "pull_off", "preload": 1},
-    }
-    glass = scene_from_dict(data | {"material": {"contact_modulus": 50e9, "surface_energy": "0.05 J/m²"}})
-    assert implausible(glass, Scales(1e-9, 1e-6), {}) == {}
-    assert implausible(glass, None, {}) == {}
-    huge = implausible(glass, Scales(0.05, 1e-6), {})  # R = 1000 LU = 50 m, ranges of centimetres
-    assert list(huge) == ["implausible_size"]
-    assert "bodies.profile.radius is 50 m" in huge["implausible_size"]
-    wrong = scene_from_dict(data | {"material": {"contact_modulus": 50e9, "surface_energy": 50.0}})
-    assert "50 J/m², where 0.02 to 3 are usual" in implausible(wrong, None, {})["implausible_surface_energy"]
-
-
 def test_a_contact_below_an_atom_is_told() -> None:
     steel = scene({"upper": STEEL, "lower": STEEL})
     small = {"contact_radius": Quantity(3e-11, 1e-13, "LU"), "force": Quantity(1e-11, 0.0, "FU")}

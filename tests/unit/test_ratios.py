@@ -16,7 +16,7 @@ import pytest
 from benchmarks import deck_overhead, plain
 from benchmarks.peers.table import ratios
 from benchmarks.scaling import spread
-from contact1d.workflow.cost import per_step
+from contact1d.workflow.cost import measure as per_step
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.progress import Lines
 from contact1d.workflow.scene import Scene, read_scene

@@ -12,11 +12,8 @@ import numpy as np
 import pytest
 
 from contact1d import Contact1dError, FolderError, Run, run, sweep
-from contact1d.analysis.pressure import Profile
-from contact1d.analysis.states import MOST_NUMBERS, read_states, states_of, write_states
 from contact1d.workflow.report.animation import animate, ovito_script
 from contact1d.workflow.report.report import report
-from contact1d.workflow.report.words import scene_in_words
 from contact1d.workflow.scene import read_scene
 from tests.scenes import chains
 
@@ -126,36 +123,6 @@ def test_every_kind_of_run_has_a_page(name: str, tmp_path: Path) -> None:
     assert data["charts"]
     if len(kept.curve.force) > 1:
         assert len(data["way"]["along"]) == len(data["way"]["words"])
-
-
-@pytest.mark.parametrize("place", ["nowhere", "other"])
-def test_a_folder_without_a_run_is_told(place: str, tmp_path: Path) -> None:
-    (tmp_path / "other").mkdir()
-    with pytest.raises(FolderError, match="give the folder of a finished run"):
-        report([tmp_path / place], tmp_path / "r.html")
-    assert not (tmp_path / "r.html").exists()
-
-
-def test_a_scene_in_words_has_every_table_and_value_with_its_unit() -> None:
-    told = {said.name: said for said in scene_in_words(read_scene(PULL_OFF))}
-    assert list(told) == ["bodies", "interaction", "accuracy", "experiment"]
-    assert ("preload", "0.5 FU") in told["experiment"].values
-    assert ("repulsion: amplitude", "0.18 FU·LU") in told["interaction"].values
-    assert ("cutoff", "auto") in told["interaction"].values
-    assert told["interaction"].meaning.startswith("V(r) = A exp")
-
-
-def test_states_are_thinned_evenly_and_read_back(tmp_path: Path) -> None:
-    n, m = 1000, 500
-    x = np.linspace(-5.0, 5.0, n)
-    kept = states_of([Profile(x, x * 0.0, x * x, x + row, x) for row in range(m)])
-    assert kept.pressure.size <= MOST_NUMBERS
-    assert (kept.rows[0], kept.rows[-1]) == (0, m - 1)
-    assert kept.x[0, 0] == -5.0
-    assert kept.x[0, -1] == 5.0
-    assert (kept.x[0], kept.rows.size) == (pytest.approx(x.astype(np.float32)), MOST_NUMBERS // n)
-    write_states(tmp_path / "states.npz", kept)
-    np.testing.assert_array_equal(read_states(tmp_path / "states.npz").pressure, kept.pressure)
 
 
 def test_the_way_of_a_run_moves_a_picture_for_each_state(tmp_path: Path) -> None:

@@ -63,12 +63,6 @@ def test_kinks_stay_where_the_zone_that_sticks_grows_and_go_where_it_comes_back(
     assert kinks_of(stick, [20.0] * 8) == [[], [15.0], [10.0], [10.0, 19.0], [10.0, 14.0], [9.0], [9.0], [9.0, 12.0]]
 
 
-def test_a_contact_that_grows_leaves_its_old_edge_behind() -> None:
-    assert kinks_of([20.0, 10.0, 25.0, 22.0, 15.0], [20.0, 20.0, 25.0, 25.0, 25.0]) == [
-        [], [10.0], [10.0, 20.0], [10.0, 20.0, 22.0], [10.0, 15.0],
-    ]  # fmt: skip
-
-
 def test_too_few_places_or_places_that_differ_raise() -> None:
     with pytest.raises(ValueError, match="3 places on each side"):
         shear_load(lattice(10), np.ones(10), 1.2)

@@ -48,17 +48,6 @@ def test_a_result_stands_in_si_with_the_closed_form_beside_it() -> None:
     assert line.endswith("Hertz 110 µm (+0.12 %)")
 
 
-def test_whose_the_radii_are_is_said() -> None:
-    def first(**document: Any) -> str:
-        return quantities(document)[0]
-
-    flat = {"bodies": {"profile": {"kind": "flat"}}}
-    assert "those of the body" in first(reduction="mdr")
-    assert "same in each" in first(reduction="mdr", scene=flat)
-    assert "of its image" in first(reduction="geike_popov", contact_radius=entry(1.0))
-    assert "two equal spheres" in first(reduction="geike_popov", image_contact_radius=entry(1.0))
-
-
 def profile(pressure: np.ndarray) -> Profile:
     x = np.linspace(-10.0, 10.0, len(pressure))
     zero = np.zeros_like(x)
@@ -81,7 +70,3 @@ def test_the_plot_is_in_si_where_units_are_known() -> None:
     assert lines[0].split()[0] == "2"
     assert lines[-1].split()[0] == "kN/m"
     assert "µm" in lines[-1]
-
-
-def test_bodies_that_do_not_touch_have_no_plot() -> None:
-    assert pressure_plot(profile(np.zeros(5)), 1.0) == ["  no pressure"]

@@ -56,7 +56,8 @@ def test_closed_forms_are_the_lines_of_a_sweeps_figures_and_the_runs_points_on_t
     said = theories_of(done.folder, plan)["displacement"]["Hertz"]
     for radius in radii:
         hertz = [(0.75 * force / 0.5 / radius**0.5) ** (2.0 / 3.0) for force in forces]
-        assert [said[(str(radius),)][force] for force in forces] == pytest.approx(hertz, rel=1e-12)
+        beside = [said[(str(radius),)][force] for force in forces]
+        assert beside == pytest.approx(hertz, rel=1e-9)  # of the force that is held
     figure = sweep_figure(
         plan,
         "displacement",

@@ -10,9 +10,7 @@ from typing import Any
 
 import pytest
 
-from contact1d.workflow.body.closed_form import Case
-from contact1d.workflow.body.tabor_forms import tabor
-from contact1d.workflow.body.theory import applying
+from contact1d.workflow.body.theory import Case, applying, tabor
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.units import Quantity
 from tests.scenes import chains

@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 
 from contact1d.workflow.runs.plausibility import implausible
-from contact1d.workflow.runs.remedies import Change, _in_si
 from contact1d.workflow.scene import Scene, SceneError, read_scene
 from contact1d.workflow.units import Scales
 from tests.scenes import STEEL_ON_GLASS
@@ -200,15 +199,6 @@ def test_ways_that_are_tried_have_units_where_the_scene_has(wrong: str) -> None:
     assert len(problem.ways) == 2
     for way in problem.ways:
         assert isinstance(read_scene(STEEL_ON_GLASS, [*set_, *(f"{key}={value}" for key, value in way.items())]), Scene)
-
-
-def test_changes_that_are_tried_have_units_where_the_scene_has() -> None:
-    """They are for the scene's file, in which a plain number may have no meaning."""
-    change = _in_si(read_scene(STEEL_ON_GLASS), Change({F: 10.0 / 3.0, "bodies.particles": "auto"}))
-    assert str(change) == "--set experiment.force=3.33N --set bodies.particles=auto"
-    assert read_scene(STEEL_ON_GLASS, change.overrides).experiment.compression == 3.33
-    plain = Change({"experiment.preload": 0.333})
-    assert _in_si(read_scene(SHIPPED), plain) == plain
 
 
 def doubts(scene: Scene) -> str:

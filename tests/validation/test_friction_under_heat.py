@@ -12,7 +12,7 @@ import pytest
 
 from contact1d import Run, run, run_many
 from contact1d.workflow.reproduce import heat
-from contact1d.workflow.runs.pool import pool
+from contact1d.workflow.runs.processors import pool
 from contact1d.workflow.scene import Scene, read_scene
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"

@@ -8,16 +8,13 @@ from typing import Annotated
 
 import typer
 
-from contact1d.workflow.cli.animate import animate
 from contact1d.workflow.cli.arguments import Format, SceneFile, Set, Without
-from contact1d.workflow.cli.cost import cost
-from contact1d.workflow.cli.ending import FAILS, Commands, command, read
+from contact1d.workflow.cli.ending import FAILS, Commands, command, read, say
 from contact1d.workflow.cli.identify import identify
-from contact1d.workflow.cli.report import report
 from contact1d.workflow.cli.reproduce import reproduce
 from contact1d.workflow.cli.scenes import new, schema
 from contact1d.workflow.cli.stability import stability
-from contact1d.workflow.cli.sweep import sweep
+from contact1d.workflow.cli.studies import animate, cost, report, sweep
 
 GARBAGE_THRESHOLD = 100_000
 """New objects after which Python looks for garbage: at 700, a tenth of what the imports take goes into looking."""
@@ -88,9 +85,7 @@ def run(
         )
     from contact1d.workflow.cli.summary import pressure_plot, quantities
 
-    typer.echo("\n".join(quantities(finished.document)))
-    for warning in finished.document["warnings"]:
-        typer.secho(f"warning {warning['name']}: {warning['message']}", err=True, fg="yellow")
+    say(quantities(finished.document), finished.warnings)
     if not quiet:
         assert finished.outcome is not None
         name, profile = next(iter(finished.outcome.profiles.items()))

@@ -19,7 +19,7 @@ from packaging.requirements import Requirement
 from contact1d.workflow.engine.failure import EngineError
 
 if TYPE_CHECKING:
-    from contact1d.workflow.engine.session import Installation, Session
+    from contact1d.workflow.engine.session import Session
 
 DISTRIBUTION = "contact1d"
 OLDEST_PYTHON = (3, 11)
@@ -79,17 +79,16 @@ class Check:
 
 def checks() -> list[Check]:
     """Return all checks in the order in which a defect should be mended; starts LAMMPS once, in a temporary folder."""
-    found = [_python(), *_dependencies(), *_machine()]
+    found = [*_python(), *_machine()]
     try:
         from contact1d.workflow.engine.session import Engine
 
         with tempfile.TemporaryDirectory() as folder, Engine.session(Path(folder), time_limit=60.0) as session:
             found += _lammps(session)
-    except (EngineError, OSError) as error:
-        cause = error.message if isinstance(error, EngineError) else str(error)
-        found.append(Check("LAMMPS runs", False, cause, REINSTALL))
     except ImportError as error:
         found.append(Check("LAMMPS runs", False, str(error), "install contact1d anew: pip install -e . in its folder"))
+    except (EngineError, OSError) as error:
+        found.append(Check("LAMMPS runs", False, getattr(error, "message", str(error)), REINSTALL))
     return found
 
 
@@ -116,14 +115,15 @@ def _target(link: Path) -> str:
         return ""
 
 
-def _python() -> Check:
-    found = sys.version_info[:2]
+def _check(name: str, ok: bool, detail: str, advice: str) -> Check:
+    """With advice only where something is wrong."""
+    return Check(name, ok, detail, "" if ok else advice)
+
+
+def _python() -> Iterator[Check]:
+    """Python, and the packages that this distribution asks for."""
     oldest = ".".join(map(str, OLDEST_PYTHON))
-    ok = found >= OLDEST_PYTHON
-    return Check("Python", ok, sys.version.split()[0], "" if ok else f"use Python {oldest} or newer")
-
-
-def _dependencies() -> Iterator[Check]:
+    yield _check("Python", sys.version_info >= OLDEST_PYTHON, sys.version.split()[0], f"use Python {oldest} or newer")
     try:
         lines = importlib.metadata.requires(DISTRIBUTION) or []
     except importlib.metadata.PackageNotFoundError:
@@ -137,8 +137,7 @@ def _dependencies() -> Iterator[Check]:
         except importlib.metadata.PackageNotFoundError:
             version = ""
         ok = bool(version) and requirement.specifier.contains(version, prereleases=True)
-        advice = "" if ok else f"pip install '{requirement}'"
-        yield Check(requirement.name, ok, version or "not installed", advice)
+        yield _check(requirement.name, ok, version or "not installed", f"pip install '{requirement}'")
 
 
 def _machine() -> Iterator[Check]:
@@ -149,37 +148,29 @@ def _machine() -> Iterator[Check]:
             yield Check(name, True, f"{folder} can be written to")
         except OSError as error:
             yield Check(name, False, f"{folder}: {error.strerror}", "choose a folder that you may write to")
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    yield Check("processor cores", True, f"{cores} to use; a run uses one")
+    from contact1d.workflow.runs.processors import cores
+
+    yield Check("processor cores", True, f"{cores()} to use; a run uses one")
 
 
 def _lammps(session: Session) -> Iterator[Check]:
+    """What LAMMPS is made of, a run of two atoms, and that it accepts no connections."""
     installation = session.about(STYLES)
     yield Check("LAMMPS starts", True, f"version {installation.version}")
     yield Check("MPI library", True, installation.mpi or "found by the system")
-    yield _parts(installation)
+    missing = [package for package in PACKAGES if package not in installation.packages]
+    missing += [" ".join(style) for style in installation.missing]
+    detail = f"missing: {', '.join(missing)}" if missing else ", ".join(PACKAGES)
+    yield _check("LAMMPS packages", not missing, detail, REINSTALL)
     session.execute(TWO_ATOMS, phase="two atoms")
     energy, force = session.values("ebond", "fx[1]")
     ok = abs(energy - SPRING_ENERGY) < ROUND_OFF and abs(force - SPRING_FORCE) < ROUND_OFF
     detail = f"energy {energy:.15g} (must be {SPRING_ENERGY}), force {force:.15g} (must be {SPRING_FORCE})"
-    yield Check("two-atom run", ok, detail, "" if ok else REINSTALL)
-    yield _listeners(session.pid)
-
-
-def _parts(installation: Installation) -> Check:
-    missing = [package for package in PACKAGES if package not in installation.packages]
-    missing += [" ".join(style) for style in installation.missing]
-    if missing:
-        return Check("LAMMPS packages", False, f"missing: {', '.join(missing)}", REINSTALL)
-    return Check("LAMMPS packages", True, ", ".join(PACKAGES))
-
-
-def _listeners(pid: int) -> Check:
+    yield _check("two-atom run", ok, detail, REINSTALL)
     try:
-        addresses = listening_sockets(pid)
+        addresses = listening_sockets(session.pid)
+        detail = f"LAMMPS listens at {', '.join(addresses)}" if addresses else "LAMMPS accepts no connections"
     except OSError:
-        return Check("no network listener", True, "cannot be seen on this system")
-    if not addresses:
-        return Check("no network listener", True, "LAMMPS accepts no connections")
+        addresses, detail = [], "cannot be seen on this system"
     advice = "unset UCX_TLS, or set it to self,sm: then MPI uses memory only"
-    return Check("no network listener", False, f"LAMMPS listens at {', '.join(addresses)}", advice)
+    yield _check("no network listener", not addresses, detail, advice)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -16,7 +16,8 @@ from contact1d.files import FULL_DISK
 
 if TYPE_CHECKING:
     from contact1d.workflow.engine.progress import Progress
-    from contact1d.workflow.scene import Scene, SceneError
+    from contact1d.workflow.errors import SceneEdit
+    from contact1d.workflow.scene import Scene
 
 FAILS = 1
 """A row of `reproduce` fails, or the installation is not whole."""
@@ -47,6 +48,15 @@ def stop(message: str, code: int) -> NoReturn:
     raise SystemExit(code)
 
 
+def say(lines: Iterable[str], warnings: Mapping[str, str], place: object = None) -> None:
+    """Print lines, warnings on standard error, and where the files are."""
+    typer.echo("\n".join(lines))
+    for name, message in warnings.items():
+        typer.secho(f"warning {name}: {message}", err=True, fg="yellow")
+    if place is not None:
+        typer.echo(f"\n{place}")
+
+
 def read(path: Path, overrides: list[str] | None, without: list[str] | None, progress: Progress | None = None) -> Scene:
     """The scene in a file as the options change it; with every problem told, the end of the command.
 
@@ -57,23 +67,21 @@ def read(path: Path, overrides: list[str] | None, without: list[str] | None, pro
     try:
         return read_scene(path, tuple(overrides or ()), tuple(without or ()))
     except SceneError as error:
-        if progress is not None and all(problem.ways for problem in error.problems):
+        if progress is not None and error.changes:
             from contact1d.workflow.runs.advised import mended
+            from contact1d.workflow.runs.advised import overrides as options
 
-            error = mended(
-                lambda change: read_scene(
-                    path, (*(overrides or ()), *change.overrides), (*(without or ()), *change.without)
-                ),
-                error,
-                progress,
-            )
-        stop(problems_in(str(path), error), CALL_IS_WRONG)
+            def edited(edit: SceneEdit) -> Scene:
+                return read_scene(path, (*(overrides or ()), *options(edit)), (*(without or ()), *edit.without))
+
+            error = mended(edited, error, progress)
+        stop(problems_in(str(path), error.problems), CALL_IS_WRONG)
 
 
-def problems_in(where: str, error: SceneError) -> str:
+def problems_in(where: str, problems: Sequence[object]) -> str:
     """Every problem of a file on a line of its own, under their number."""
-    count = len(error.problems)
-    return "\n".join([f"{where}: {count} problem{'s' if count > 1 else ''}", *(f"  {one}" for one in error.problems)])
+    count = len(problems)
+    return "\n".join([f"{where}: {count} problem{'s' if count > 1 else ''}", *(f"  {one}" for one in problems)])
 
 
 @contextmanager
@@ -136,22 +144,10 @@ def _of_program(error: BaseException, what: str, blame: int) -> tuple[str, int] 
 
     if not isinstance(error, Contact1dError):
         return None
-    from contact1d.workflow.scene import SceneError
-
-    if isinstance(error, SceneError):
-        return problems_in("the scene", error), blame
-    from contact1d.workflow.engine.failure import EngineError
-    from contact1d.workflow.engine.launcher import RanksError
-    from contact1d.workflow.errors import FolderError, RunError
-    from contact1d.workflow.identify import IdentifyError
-    from contact1d.workflow.identify.finished import FinishedRunError
-    from contact1d.workflow.settings.settings import SettingsError
-    from contact1d.workflow.sweep.executors import ExecutorError
-
-    if isinstance(error, FolderError | FinishedRunError | ExecutorError | RanksError):
-        return str(error), CALL_IS_WRONG
-    if isinstance(error, SettingsError | IdentifyError):
-        return (str(error) if blame == CALL_IS_WRONG else f"{what} failed: {error}"), blame
-    if isinstance(error, RunError | EngineError):  # a folder that stood for a while only is not named
-        return f"{what} failed: {error if error.folder.is_dir() else error.message}", RUN_FAILED
-    return None
+    if problems := getattr(error, "problems", ()):
+        return problems_in("the scene", problems), blame
+    if error.exit_code == RUN_FAILED:  # a folder that was there for a while only is not named
+        folder, message = getattr(error, "folder", None), getattr(error, "message", error)
+        return f"{what} failed: {error if folder is not None and folder.is_dir() else message}", RUN_FAILED
+    code = blame if isinstance(error, ValueError) else error.exit_code  # a value of the scene, or a place
+    return (str(error) if code == CALL_IS_WRONG else f"{what} failed: {error}"), code

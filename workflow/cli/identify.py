@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from contact1d.workflow.cli.ending import CALL_IS_WRONG, command, problems_in, stop
+from contact1d.workflow.cli.ending import CALL_IS_WRONG, command, problems_in, say, stop
 
 if TYPE_CHECKING:
-    from contact1d.workflow.identify import Identified, Target
+    from contact1d.workflow.identify import Target
 
 
 def identify(
@@ -121,7 +121,7 @@ def _mistakes(given: Mapping[str, float], run: Path | None) -> list[str]:
 def _units_of_run(folder: Path, contact_modulus: float, surface_energy: float) -> None:
     """Print LU and FU of a finished run, and its results in SI."""
     from contact1d.workflow.cli.summary import quantities
-    from contact1d.workflow.identify.finished import scales_of_run
+    from contact1d.workflow.identify.interaction import scales_of_run
 
     scales, results = scales_of_run(folder, contact_modulus, surface_energy)
     for entry in results.values():
@@ -140,16 +140,12 @@ def _from_material(file: Path, out: Path) -> None:
         try:
             found = from_material(file, out, progress)
         except SceneError as error:
-            stop(problems_in(str(file), error), CALL_IS_WRONG)
-    from contact1d.workflow.cli.material import beside_theories, regime
-    from contact1d.workflow.cli.summary import quantities
+            stop(problems_in(str(file), error.problems), CALL_IS_WRONG)
+    from contact1d.workflow.cli.summary import beside_theories, quantities, regime
 
-    typer.echo("\n".join([found.contact.title, *regime(found), "", *quantities(found.run.document)]))
-    if table := list(beside_theories(found)):
-        typer.echo("\n".join(["", *table]))
-    for name, message in {**found.doubts, **found.run.warnings}.items():
-        typer.secho(f"warning {name}: {message}", err=True, fg="yellow")
-    typer.echo(f"\n{found.run.folder}/scene.toml")
+    table = list(beside_theories(found))
+    lines = [found.contact.title, *regime(found), "", *quantities(found.run.document), *([""] if table else []), *table]
+    say(lines, {**found.doubts, **found.run.warnings}, found.run.folder / "scene.toml")
 
 
 def _scene_of_material(
@@ -162,26 +158,15 @@ def _scene_of_material(
 
         scene, wanted = material_scene(contact_modulus, radius, target, length_unit, tolerance)
         found = search(scene, wanted, out, progress)
-    _say(found, target)
-
-
-def _say(found: Identified, target: Target) -> None:
     from contact1d.workflow.cli.summary import in_si, quantities
 
-    results = found.run.document
+    results, terms = found.run.document, found.scene.interaction
     lines = [f"identified in {found.runs} run{'s' if found.runs > 1 else ''}"]
-    for name, wanted, unit in (
-        ("adhesion_force", target.adhesion_force, "N"), ("zero_load_radius", target.zero_load_radius, "m"),
-    ):  # fmt: skip
-        value = results[name]["si"]["value"]
-        asked = in_si({"value": wanted, "uncertainty": 0.0, "unit": unit})
-        lines.append(f"  {name.replace('_', ' ')}: wanted {asked}, off by {value / wanted - 1.0:+.1e}")
-    terms = found.scene.interaction
-    assert terms is not None
-    assert terms.attraction is not None
-    for name, term in (("repulsion", terms.repulsion), ("attraction", terms.attraction)):
-        lines.append(f"  {name:<28} amplitude {term.amplitude:.6g} FU·LU, range {term.range:.6g} LU")
-    typer.echo("\n".join([*lines, *quantities(results)]))
-    for warning in results["warnings"]:
-        typer.secho(f"warning {warning['name']}: {warning['message']}", err=True, fg="yellow")
-    typer.echo(f"\n{found.run.folder}/scene.toml")
+    for (name, asked), unit in zip(vars(target).items(), ("N", "m"), strict=True):
+        said = in_si({"value": asked, "uncertainty": 0.0, "unit": unit})
+        off = results[name]["si"]["value"] / asked - 1.0
+        lines.append(f"  {name.replace('_', ' ')}: wanted {said}, off by {off:+.1e}")
+    for name, term in terms or ():
+        if name in ("repulsion", "attraction"):
+            lines.append(f"  {name:<28} amplitude {term.amplitude:.6g} FU·LU, range {term.range:.6g} LU")
+    say([*lines, *quantities(results)], found.run.warnings, found.run.folder / "scene.toml")

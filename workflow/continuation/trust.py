@@ -8,7 +8,17 @@ from collections.abc import Iterable
 from contact1d.analysis.law_error import left_out
 from contact1d.analysis.pressure import Profile, end_pressure_share
 from contact1d.workflow.continuation.state import State
+from contact1d.workflow.errors import ChainEndError as ChainEndError
+from contact1d.workflow.errors import DigitsError as DigitsError
+from contact1d.workflow.errors import OffEndError as OffEndError
+from contact1d.workflow.errors import PartedError as PartedError
+from contact1d.workflow.errors import RestlessError as RestlessError
+from contact1d.workflow.errors import TensionError as TensionError
+from contact1d.workflow.errors import ThroughError as ThroughError
+from contact1d.workflow.errors import UnsteadyError as UnsteadyError
+from contact1d.workflow.errors import UntrustedError as UntrustedError
 from contact1d.workflow.scene import Damping, Plate, Scene
+from contact1d.workflow.scene.remedies import against_passing, longer_chain
 from contact1d.workflow.settings.chain import decay_length, reflected
 from contact1d.workflow.settings.settings import Settings, settings_for
 
@@ -27,56 +37,6 @@ SLOWNESS_RATIO = 10.0
 """Timesteps to settle over those with automatic values from which on it is told: seconds become minutes."""
 
 
-class UntrustedError(RuntimeError):
-    """The run ended, but its result can't be trusted: why, and what to do where nothing was found by trying it."""
-
-    def __init__(self, message: str, advice: str = "") -> None:
-        """Keep both; `advice` may stand in the message itself."""
-        super().__init__(message, advice)
-        self.message, self.advice = message, advice
-
-    def __str__(self) -> str:
-        """Return both, one behind the other."""
-        return f"{self.message}: {self.advice}" if self.advice else self.message
-
-
-class ThroughError(UntrustedError):
-    """The bodies went through each other, which may be the way there and not the load (`in_smaller_steps`)."""
-
-
-class ChainEndError(UntrustedError):
-    """The contact is wider than its chain."""
-
-
-class UnsteadyError(UntrustedError):
-    """A slide that is none, or none yet: its way is too short beside what the cantilever is drawn by."""
-
-
-class OffEndError(UntrustedError):
-    """A plate that slid off the lower body."""
-
-
-class PartedError(UntrustedError):
-    """Bodies that do not hold the force that draws them apart."""
-
-
-class RestlessError(UntrustedError):
-    """A plate that does not come to rest."""
-
-
-class TensionError(UntrustedError):
-    """A tension that the contact does not hold; `most` is about what it holds [FU]."""
-
-    def __init__(self, force: float, most: float) -> None:
-        """The force [FU] that was asked for, and what is kept."""
-        super().__init__(f"{force:.4g} FU is never reached: the largest tension is about {most:.4g} FU")
-        self.most = most
-
-
-class DigitsError(UntrustedError):
-    """Forces that are nothing beside the last digits of places."""
-
-
 def require_trust(scene: Scene, settings: Settings, state: State, moving: bool = False) -> None:
     """Refuse a state that is no result; one of a motion has to be at rest only where it is not looked at as `moving`.
 
@@ -91,6 +51,7 @@ def require_trust(scene: Scene, settings: Settings, state: State, moving: bool =
             f"the bodies went through each other {at}: a particle lies {state.depth:.3g} LU below the opposite "
             f"surface. One layer of particles cannot carry this load{heat}",
             f"{_against_passing(scene)}lower the load or the displacement, or take a stronger repulsion",
+            against_passing(scene),
         )
     if not moving and scene.plate is None and scene.noise is None and not is_converged(settings, state):
         limit = RESIDUAL_LIMIT * settings.tolerance * settings.force_scale
@@ -110,6 +71,7 @@ def require_trust(scene: Scene, settings: Settings, state: State, moving: bool =
         raise ChainEndError(
             f"the contact reaches the end of the chain {at}",
             f"take {_more_particles(scene, settings)}, or a smaller load",
+            longer_chain(scene),
         )
 
 

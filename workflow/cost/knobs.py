@@ -1,22 +1,116 @@
 """The numerical knobs of a scene: what its file can turn without changing the physics, the values to try, and how.
 
-They are turned one at a time from a base that is much more exact than the scene asks for (`change.base_change`), so
-that an error belongs to the knob.
+They are turned one at a time from a base that is much more exact than the scene asks for (`base_change`), so that an
+error belongs to the knob. base + one knob's change = a variant;  base + several = a combination. A spacing is turned
+with stiffness and drag per length kept, and of neighbour springs stiffness times length.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from contact1d.workflow.cost.change import Change, at_tolerance, with_method
-from contact1d.workflow.cost.errors import is_sampled
-from contact1d.workflow.cost.spacing import SPACING_FACTORS, at_spacing, spacing_is_physics
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.experiments import kind_of
+from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.scene.experiments import Span
+from contact1d.workflow.scene.tables import TIMED
 from contact1d.workflow.settings.settings import Settings, settings_for
+from contact1d.workflow.units import Quantity
+
+BASE_TOLERANCE = 1e-5
+"""Of the base of a quasistatic scene; in time the scene's own is taken, since time costs by the tolerance."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """What makes a variant of a scene.
+
+    Attributes:
+        overrides: "table.key=value", as `--set` takes them.
+        without: effects left out.
+    """
+
+    overrides: tuple[str, ...] = ()
+    without: tuple[str, ...] = ()
+
+    def __add__(self, later: Change) -> Change:
+        """Both; where they meet, the later one prevails."""
+        return Change(self.overrides + later.overrides, tuple(dict.fromkeys(self.without + later.without)))
+
+    def scene(self, scene: Scene) -> Scene:
+        """The changed scene. Raises SceneError where it is none."""
+        return scene_from_dict(scene, self.overrides, self.without)
+
+
+def base_change(scene: Scene) -> Change:
+    """Much more exact than the scene (in time: as exact), on a chain and with a cutoff that are long enough."""
+    tolerance = scene.accuracy.tolerance
+    if scene.method == "quasistatic":
+        tolerance = min(BASE_TOLERANCE, tolerance)
+    return at_tolerance(scene, tolerance)
+
+
+def at_tolerance(scene: Scene, tolerance: float) -> Change:
+    """The tolerance, and nothing numerical that the scene fixed by itself."""
+    overrides = [f"accuracy.tolerance={tolerance!r}"]
+    if not scene.bodies.profile.has_edge:
+        overrides.append("bodies.particles=auto")
+    if scene.interaction is not None and scene.interaction.attraction is not None:
+        overrides.append("interaction.cutoff=auto")
+    return Change(tuple(overrides))
+
+
+def with_method(scene: Scene, method: str) -> Change:
+    """The scene with the other method: what exists in time only goes, or comes as far as the experiment needs it."""
+    if method == "quasistatic":
+        return Change(("experiment.method=quasistatic",), tuple(name for name in TIMED if name in scene.effects))
+    needed = ["damping.coefficient=auto"] + ([] if scene.experiment.way_is_given else ["plate.mass=auto"])
+    return Change(("experiment.method=dynamic", *needed))
+
+
+def is_sampled(scene: Scene) -> bool:
+    """Whether results are averages over a motion, whose uncertainty is a standard error: with noise, and of a slide."""
+    return scene.noise is not None or scene.experiment.motion_is_result
+
+
+def main_results(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Quantity]:
+    """Those that have a relative error: present and not 0. With noise the force that a load holds is no result."""
+    names = [name for name in kind_of(scene).main_results if scene.noise is None or name != "force"]
+    named = {name: quantities[name] for name in names if name in quantities}
+    return {name: one for name, one in named.items() if one.value != 0.0 and math.isfinite(one.value)}
+
+
+SPACING_FACTORS = (4.0, 2.0, 1.0, 0.5, 0.125)
+"""Over the scene's own."""
+
+
+def spacing_is_physics(scene: Scene) -> str:
+    """Why the spacing cannot be turned with the physics kept; "" where it can."""
+    if scene.bodies.profile.has_edge:
+        return "a flat punch is as wide as its particles make it"
+    if scene.noise is not None:
+        return "thermal motion of a particle belongs to its spacing"
+    if scene.interaction is not None:
+        return "the force of a row of opposite particles belongs to its spacing: no amplitudes keep it at another one"
+    return ""
+
+
+def at_spacing(scene: Scene, spacing: float) -> tuple[str, ...]:
+    """Scene keys that go with the spacing [LU]."""
+    factor, bodies = spacing / scene.bodies.spacing, scene.bodies
+    keys = [f"bodies.spacing={spacing!r}", f"bodies.mass={factor * bodies.mass!r}"]
+    if bodies.bulk_stiffness != "auto":
+        keys.append(f"bodies.bulk_stiffness={factor * scene.bulk_stiffness!r}")
+    if bodies.bulk_stiffness_tangential is not None:
+        keys.append(f"bodies.bulk_stiffness_tangential={factor * bodies.bulk_stiffness_tangential!r}")
+    if scene.neighbours is not None:
+        keys.append(f"neighbours.stiffness={scene.neighbours.stiffness / factor!r}")
+    if scene.damping is not None and scene.damping.coefficient != "auto":
+        keys.append(f"damping.coefficient={factor * scene.damping.coefficient!r}")
+    return tuple(keys)
+
 
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 TOLERANCE_FACTORS = (8.0, 4.0, 2.0, 1.0, 0.5)
@@ -128,10 +222,10 @@ def _damping(own: Settings) -> Knob:
 
 
 def _increment(scene: Scene) -> Iterator[Knob]:
-    experiment = scene.experiment
-    if experiment.kind != "path" or not isinstance(experiment.displacements, Span):
+    span = None if scene.experiment.goes_along else getattr(scene.experiment, "displacements", None)
+    if not isinstance(span, Span):
         return
-    own = experiment.displacements.steps
+    own = span.steps
     counts = dict.fromkeys(max(1, round(own / factor)) for factor in INCREMENT_FACTORS)
     rows = [Level(n, f"{n} increments", Change((f"experiment.displacements.steps={n}",))) for n in counts]
     yield Knob("load increment", "increments of a leg", "larger", tuple(rows), own, own_reference=True)

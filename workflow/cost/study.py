@@ -1,26 +1,52 @@
-"""A cost study: reference, every knob turned from the base, effects left out, combinations; then orders and advice."""
+"""A cost study: reference, every knob turned from the base, effects left out, combinations; then orders and advice.
+
+What a tolerance chooses is good in every scene of a study of many (`workflow.settings.calibration`); one scene may
+need less. Errors are those of the main results, relative to a reference of much higher accuracy; the largest stands for
+a variant.
+"""
 
 from __future__ import annotations
 
+import math
 import tempfile
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
-from contact1d.workflow.cost.advice import TARGETS, advise, choice, combinations
-from contact1d.workflow.cost.change import Change, at_tolerance, base_change, with_method
-from contact1d.workflow.cost.errors import is_sampled, judged, main_results
-from contact1d.workflow.cost.knobs import Knob, knobs_of, left_out
-from contact1d.workflow.cost.measure import Measured, Prepared, measure, run_once
-from contact1d.workflow.cost.orders import fit_order, pareto_front
-from contact1d.workflow.cost.per_step import effect_costs, without_effects
-from contact1d.workflow.cost.record import CostRecord, EffectCost, KnobRecord, VariantRecord
+import numpy as np
+
+from contact1d.workflow.cost.knobs import (
+    Change,
+    Knob,
+    at_tolerance,
+    base_change,
+    is_sampled,
+    knobs_of,
+    left_out,
+    main_results,
+    with_method,
+)
+from contact1d.workflow.cost.measure import Measured, Prepared, effect_costs, measure, run_once, without_effects
+from contact1d.workflow.cost.report import (
+    AS_IT_IS,
+    BASE,
+    COMBINED,
+    EFFECT,
+    Advice,
+    CostRecord,
+    EffectCost,
+    KnobRecord,
+    Order,
+    VariantRecord,
+    power,
+)
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.errors import RunError
 from contact1d.workflow.runs.report import versions
 from contact1d.workflow.scene import Scene, SceneError
-from contact1d.workflow.settings.settings import SettingsError, settings_for
+from contact1d.workflow.settings.settings import Settings, SettingsError, settings_for
 from contact1d.workflow.units import Quantity
 
 REFERENCE_TOLERANCES = (1e-7, 1e-6, 1e-5)
@@ -29,21 +55,19 @@ REFERENCE_SHARES = (0.1, 0.3)
 """Of the scene's own tolerance, tried in turn where the result exists in time only."""
 NOISY_SHARE = 0.25
 """The same with noise: sixteen times as many samples, as far as the program takes them."""
-AS_IT_IS, BASE, EFFECT, COMBINED = "scene", "base", "effect", "combined"
-"""Knobs, in a manner of speaking, of variants that belong to none."""
 
 
 @dataclass(frozen=True)
 class Planned:
-    """A variant before it runs, and the knob that it belongs to, if any."""
+    """A variant before it runs: its record without numbers, and how it is made."""
 
-    label: str
+    record: VariantRecord
     change: Change
-    group: str
-    value: float = float("nan")
-    same_physics: bool = True
-    own_reference: bool = False
-    details: str = ""
+
+
+def _plan(label: str, group: str, change: Change, value: float = math.nan, **more: Any) -> Planned:
+    keys = change.overrides + tuple(f"without {effect}" for effect in change.without)
+    return Planned(VariantRecord(label, group, value, scene_keys=keys, **more), change)
 
 
 def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, progress: Progress) -> CostRecord:
@@ -75,7 +99,7 @@ def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, p
         records = _against_own(records, knobs)
         if not is_sampled(scene):
             found = [
-                Planned(label, one, COMBINED, details=text) for label, text, one in combinations(knobs, records, change)
+                _plan(label, COMBINED, one, details=text) for label, text, one in combinations(knobs, records, change)
             ]
             if found:
                 progress.phase("combinations", repeats * len(found))
@@ -135,23 +159,17 @@ def reference_of(scene: Scene, folder: Path) -> tuple[str, dict[str, Quantity]]:
 
 
 def _planned(scene: Scene, knobs: Sequence[Knob], base: Change) -> list[Planned]:
-    found = [Planned("the scene as it is", Change(), AS_IT_IS), Planned("base", base, BASE)]
+    found = [_plan("the scene as it is", AS_IT_IS, Change()), _plan("base", BASE, base)]
     for knob in knobs:
-        whole = knob.name == "tolerance" or knob.name.startswith("method")
-        found += [
-            Planned(
-                level.label,
-                level.change if whole else base + level.change,
-                knob.name,
-                level.value,
-                own_reference=knob.own_reference,
-                details=_choice(scene, level.change) if knob.name == "tolerance" else "",
+        for level in knob.levels:
+            whole = knob.name == "tolerance" or knob.alternative
+            change = level.change if whole else base + level.change
+            details = _choice(scene, change) if knob.name == "tolerance" else ""
+            found.append(
+                _plan(level.label, knob.name, change, level.value, details=details, own_reference=knob.own_reference)
             )
-            for level in knob.levels
-        ]
     changes, _ = without_effects(scene)
-    found += [Planned(f"without {effect}", one, EFFECT, same_physics=False) for effect, one in changes.items()]
-    return found
+    return found + [_plan(f"without {effect}", EFFECT, one, same_physics=False) for effect, one in changes.items()]
 
 
 def _choice(scene: Scene, change: Change) -> str:
@@ -175,22 +193,18 @@ def _measured(
     for one in planned:
         try:
             changed = one.change.scene(scene)
-            ready.append(Prepared(one.label, changed, settings_for(changed)))
+            ready.append(Prepared(one.record.label, changed, settings_for(changed)))
         except (SceneError, SettingsError) as error:
-            failures[one.label] = Measured(failure=str(error))
+            failures[one.record.label] = Measured(failure=str(error))
     done = (measure(ready, folder, repeats, workers, progress) if ready else {}) | failures
-    return [_record(one, done[one.label], reference, is_sampled(scene)) for one in planned]
+    return [_record(one.record, done[one.record.label], reference, is_sampled(scene)) for one in planned]
 
 
-def _record(one: Planned, measured: Measured, reference: Mapping[str, Quantity], noisy: bool) -> VariantRecord:
-    record = VariantRecord(
-        label=one.label,
-        knob=one.group,
-        value=one.value,
-        details=one.details,
-        scene_keys=one.change.overrides + tuple(f"without {effect}" for effect in one.change.without),
-        same_physics=one.same_physics,
-        own_reference=one.own_reference,
+def _record(
+    planned: VariantRecord, measured: Measured, reference: Mapping[str, Quantity], noisy: bool
+) -> VariantRecord:
+    record = replace(
+        planned,
         cpu_s=measured.cpu_s,
         cpu_runs=measured.cpu_runs,
         total_s=measured.total_s,
@@ -200,11 +214,33 @@ def _record(one: Planned, measured: Measured, reference: Mapping[str, Quantity],
     )
     if measured.failure:
         return record
-    if not one.same_physics:
-        return replace(
-            record, values={name: measured.quantities[name].value for name in reference if name in measured.quantities}
-        )
-    return judged(record, measured.quantities, reference, noisy)
+    found = measured.quantities
+    if not record.same_physics:
+        return replace(record, values={name: found[name].value for name in reference if name in found})
+    return judged(record, found, reference, noisy)
+
+
+def judged(
+    record: VariantRecord, quantities: Mapping[str, Quantity], reference: Mapping[str, Quantity], noisy: bool
+) -> VariantRecord:
+    """The record with its errors; one that lacks a main result has failed.
+
+    Args:
+        record: a variant that ran.
+        quantities: that it found.
+        reference: main results of the reference.
+        noisy: whether uncertainties are standard errors, from which those of the errors follow (`is_sampled`).
+    """
+    if missing := [name for name in reference if name not in quantities]:
+        return replace(record, failure=f"found no {' and no '.join(missing)}")
+    values = {name: quantities[name].value for name in reference}
+    errors = {name: abs(values[name] / reference[name].value - 1.0) for name in reference}
+    worst = max(errors, key=lambda name: errors[name])
+    spread = 0.0
+    if noisy:
+        both = math.hypot(quantities[worst].uncertainty, reference[worst].uncertainty)
+        spread = both / abs(reference[worst].value)
+    return replace(record, values=values, errors=errors, error=errors[worst], spread=spread)
 
 
 def _against_own(records: Sequence[VariantRecord], knobs: Sequence[Knob]) -> list[VariantRecord]:
@@ -245,3 +281,147 @@ def _with_changes(effects: Sequence[EffectCost], records: Sequence[VariantRecord
         changes = {name: value / scene.values[name] - 1.0 for name, value in values.items() if name in scene.values}
         found.append(replace(effect, changes=changes))
     return tuple(found)
+
+
+FLOOR_FACTOR = 5.0
+"""An error below this many floors belongs to the other settings, not to the knob."""
+ASYMPTOTIC = 0.1
+"""Errors above it are too large for a leading term to prevail."""
+ROUND_OFF = 1e-9
+"""Errors below it are those of the reference and of round-off."""
+FEWEST_POINTS = 3
+"""Points below which a slope would have no standard error."""
+
+
+def fit_order(h: Sequence[float], errors: Sequence[float], floor: float = 0.0) -> Order | None:
+    """Least squares of ln error = p ln h + c.
+
+    Args:
+        h: what goes to zero as the knob gets finer, > 0.
+        errors: relative, of the same length; NaN where there is none.
+        floor: error that is left where this knob has none: points within FLOOR_FACTOR times it are left out.
+
+    Returns:
+        The order with its standard error, √(Σ residual²/(n − 2)/Σ(x − x̄)²), or None with fewer than FEWEST_POINTS
+        points between the floor and ASYMPTOTIC.
+    """
+    used = [
+        (math.log(one), math.log(error))
+        for one, error in zip(h, errors, strict=True)
+        if math.isfinite(error) and max(FLOOR_FACTOR * floor, ROUND_OFF) < error < ASYMPTOTIC
+    ]
+    if len(used) < FEWEST_POINTS or len({x for x, _ in used}) < FEWEST_POINTS:
+        return None
+    x, y = np.asarray(used).T
+    spread = float(np.sum((x - x.mean()) ** 2))
+    slope = float(np.sum((x - x.mean()) * (y - y.mean()))) / spread
+    residual = y - y.mean() - slope * (x - x.mean())
+    return Order(slope, math.sqrt(float(np.sum(residual**2)) / (len(used) - 2) / spread), len(used))
+
+
+def pareto_front(costs: Sequence[float], errors: Sequence[float]) -> list[int]:
+    """Indices of the points that no other beats in both cost and error, the cheapest first; NaN is no point."""
+    order = sorted(
+        (i for i in range(len(costs)) if math.isfinite(costs[i]) and math.isfinite(errors[i])),
+        key=lambda i: (costs[i], errors[i]),
+    )
+    front: list[int] = []
+    for i in order:
+        if not front or errors[i] < errors[front[-1]]:
+            front.append(i)
+    return front
+
+
+TABLE, FIGURE = "cost.csv", "cost.png"
+
+
+TARGETS = (1e-2, 1e-3, 1e-4, 1e-5)
+KNOB_SHARE = 0.25
+"""Part of a tolerance that one knob of a combination may use up."""
+WORTHWHILE_SAVING = 0.9
+"""CPU time over that of what the tolerance chooses, below which something is worth saying: medians differ by less."""
+
+
+def combinations(
+    knobs: Sequence[Knob], records: Sequence[VariantRecord], base: Change
+) -> Iterator[tuple[str, str, Change]]:
+    """For each tolerance, every knob at its coarsest value with an error within KNOB_SHARE of it."""
+    turned = [knob for knob in knobs if not knob.own_reference and not knob.alternative]
+    for target in TARGETS:
+        change = base
+        found: list[str] = []
+        for knob in turned:
+            level = _coarsest(knob, records, KNOB_SHARE * target)
+            if level is not None:
+                change += knob.levels[level].change
+                found.append(knob.levels[level].label)
+        if found:
+            yield f"combined for {power(target)}", ", ".join(found), change
+
+
+def _coarsest(knob: Knob, records: Sequence[VariantRecord], error: float) -> int | None:
+    """Index of the coarsest level within that error; of a knob without a scale of errors, of the cheapest one."""
+    measured = {one.label: one for one in records if one.knob == knob.name and one.competes and one.error <= error}
+    within = [i for i, level in enumerate(knob.levels) if level.label in measured]
+    if not within:
+        return None
+    if knob.name == "damping":
+        return min(within, key=lambda i: measured[knob.levels[i].label].cpu_s)
+    return (max if knob.finer == "smaller" else min)(within, key=lambda i: knob.levels[i].value)
+
+
+def choice(scene: Scene, settings: Settings) -> str:
+    """What the settings of a scene are, in the words of the knobs."""
+    words = []
+    if settings.table is not None and scene.interaction is not None:
+        words.append(f"table of {settings.table.points} points")
+        if scene.interaction.attraction is not None:
+            words.append(f"cutoff {settings.cutoff:.3g} LU")
+    words.append(f"chain of {settings.particles} particles")
+    if scene.method == "dynamic":
+        words.append(f"time step {settings.time_step:.3g} TU")
+    else:
+        words.append(f"residual {settings.force_tolerance / settings.force_scale:.0e}")
+        if not scene.experiment.way_is_given:
+            step = settings.smooth_step if settings.is_smooth else settings.displacement_step
+            words.append(f"increment {step:.3g} LU")
+    return ", ".join(words)
+
+
+def advise(tolerance: float, variants: Sequence[VariantRecord], noisy: bool) -> Advice:
+    """One line: what `[accuracy] tolerance` chooses and what that was measured to be, and what reaches it for less.
+
+    Args:
+        tolerance: that is asked for.
+        variants: that compete.
+        noisy: whether errors have a standard error.
+    """
+    chosen = next((one for one in variants if one.knob == "tolerance" and math.isclose(one.value, tolerance)), None)
+    reaching = sorted((one for one in variants if one.bound <= tolerance), key=lambda one: one.cpu_s)
+    if chosen is None:
+        text = f"tolerance {power(tolerance)}: was not run"
+    else:
+        text = f"tolerance {power(tolerance)}: chooses {chosen.details}: {_in_words(chosen)}"
+        text += "" if chosen in reaching else ", which is not enough"
+    limit = WORTHWHILE_SAVING * chosen.cpu_s if chosen in reaching and chosen is not None else math.inf
+    less = [one for one in reaching if one.cpu_s < limit]
+    if less:
+        text += f"; {'cheaper' if limit < math.inf else 'the cheapest'} in this scene: {said(less[0])}"
+    elif limit < math.inf:
+        text += "; nothing else that was tried is clearly cheaper"
+    else:
+        best = min(variants, key=lambda one: one.bound, default=None)
+        nearest = "" if best is None else f" (best {best.bound:.1e}{', by its noise' if noisy else ''}: {best.label})"
+        text += f"; not reached by any setting tried{nearest}"
+    return Advice(tolerance, text, "" if chosen is None else chosen.label, reaching[0].label if reaching else "")
+
+
+def said(one: VariantRecord) -> str:
+    """Label, what it is made of if the label does not say it, error and CPU time."""
+    details = f" ({one.details})" if one.details and one.knob != "tolerance" else ""
+    return f"{one.label}{details}, {_in_words(one)}"
+
+
+def _in_words(one: VariantRecord) -> str:
+    spread = f" ± {one.spread:.0e}" if one.spread else ""
+    return f"error {one.error:.1e}{spread} in {one.cpu_s:.2g} s of CPU"

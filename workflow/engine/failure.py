@@ -34,6 +34,8 @@ class EngineError(Contact1dError, RuntimeError):
         log_tail: the last lines of its log, and what the process said when it died.
     """
 
+    exit_code = 3
+
     def __init__(self, message: str, phase: str, step: int, folder: Path, log_tail: str) -> None:
         """Keep the attributes; all of them are arguments, so that the error can be pickled."""
         super().__init__(message, phase, step, folder, log_tail)

@@ -150,6 +150,6 @@ def in_smaller_steps(run: Callable[[RunContext], Outcome]) -> Callable[[RunConte
                 latest = error
         context.deck = deck
         smaller = f"Steps {1 / RETRY_SHARES[-1]:g} times smaller did not help"
-        raise ThroughError(f"{latest.message}. {smaller}", latest.advice)
+        raise ThroughError(f"{latest.message}. {smaller}", latest.advice, latest.changes)
 
     return searched

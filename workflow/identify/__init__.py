@@ -1,10 +1,16 @@
 """From a material to a scene: the interaction with which the model has a wanted F_A and a₀, found by a solver."""
 
-from contact1d.workflow.identify.from_material import MaterialRun, from_material
-from contact1d.workflow.identify.material import jkr_target, material_scene
-from contact1d.workflow.identify.search import Identified, identify
-from contact1d.workflow.identify.start import estimated
-from contact1d.workflow.identify.target import IdentifyError, Target, require_reachable
+from contact1d.workflow.identify.choice import MaterialRun, from_material
+from contact1d.workflow.identify.interaction import (
+    Identified,
+    IdentifyError,
+    Target,
+    estimated,
+    identify,
+    jkr_target,
+    material_scene,
+    require_reachable,
+)
 
 __all__ = [
     "Identified",

@@ -2,42 +2,52 @@
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, Literal
 
-from contact1d.workflow.scene import Problem, SceneError
+from contact1d.workflow.scene import Problem, SceneError, read_tables, scene_from_dict
 from contact1d.workflow.scene.material import Elastic
 from contact1d.workflow.scene.problems import nearest, shown
 from contact1d.workflow.scene.profile_file import ProfileFileError, ScaleError, read_profile
-from contact1d.workflow.scene.si_text import UnitTextError, example, in_words, si_value
+from contact1d.workflow.scene.profiles import Profile as Shape
+from contact1d.workflow.scene.si_text import UnitTextError, si_value
 
 AnyContact = str | PathLike[str] | Mapping[str, Any]
 """What `read_contact` makes a contact of: a TOML file, by its path, or its tables."""
 Model = Literal["plane", "particles"]
 MODELS: tuple[Model, ...] = ("plane", "particles")
+DEFAULT_TOLERANCE = 1e-3
 USUAL_RANGE = 0.3e-9
 """Range of attraction [m] where none is given: a distance between atoms, and z₀ of most solids."""
 RIGID = "rigid"
-UNITS = {
-    "radius": "m",
-    "contact_modulus": "Pa",
-    "surface_energy": "J/m²",
-    "work_of_adhesion": "J/m²",
-    "range": "m",
-    "load": "N",
-    "roughness": "m",
-    "tolerance": "1",
+PLACES = {
+    "radius": "bodies.profile.radius",
+    "profile": "bodies.profile",
+    "upper": "material.upper",
+    "lower": "material.lower",
+    "contact_modulus": "material.contact_modulus",
+    "surface_energy": "adhesion.surface_energy",
+    "work_of_adhesion": "adhesion.work_of_adhesion",
+    "range": "adhesion.range",
+    "load": "experiment.force",
+    "tolerance": "accuracy.tolerance",
+    "title": "title",
 }
-"""Keys that hold a quantity, each a number in this unit or a text with any unit of its dimension."""
-KEYS = ("title", "radius", "profile", "upper", "lower", *[key for key in UNITS if key != "radius"], "model")
-LENGTHS, OF_A_FILE = ("radius", "height"), ("file", "scale")
-"""Keys of a profile that hold a length, and those that its file is read by."""
-BODY = {"youngs_modulus": "Pa", "poisson_ratio": "1"}
-LARGEST_POISSON = 0.5
+"""Keys that a scene has, too, and where."""
+KEYS = (*PLACES, "roughness", "model")
+IN_SI = {
+    "(FU/LU)": "(J/m²)",
+    "(LU)": "(m)",
+    "(FU)": "(N)",
+    "; 1 LU is 1 m, 1 FU is 1 N": "",
+    "1 LU is 1 m, 1 FU is 1 N": "",
+}
+"""Words of a scene's messages, where LU and FU are metre and newton."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +57,7 @@ class AskedContact:
     Attributes:
         title: one line.
         profile: of the upper body, with the keys of a scene's; numbers in metres.
+        shape: the same, as a scene in metres has it.
         contact_modulus: E* [Pa].
         bodies: both, where their elasticity is given; empty where E* is, or one of them is rigid.
         work_of_adhesion: W = 2γ [J/m²]; 0: no attraction.
@@ -60,6 +71,7 @@ class AskedContact:
 
     title: str
     profile: Mapping[str, Any]
+    shape: Shape
     contact_modulus: float
     bodies: Mapping[str, Elastic] = field(default_factory=dict)
     work_of_adhesion: float = 0.0
@@ -67,7 +79,7 @@ class AskedContact:
     range_is_assumed: bool = True
     load: float | None = None
     roughness: float | None = None
-    tolerance: float = 1e-3
+    tolerance: float = DEFAULT_TOLERANCE
     model: Model = "plane"
 
     @property
@@ -78,173 +90,144 @@ class AskedContact:
 
 
 def read_contact(source: AnyContact) -> AskedContact:
-    """The contact that a file or its tables describe.
+    """The contact that a file or its tables describe, read as a scene with 1 LU = 1 m and 1 FU = 1 N.
 
     Raises:
         SceneError: with every problem at once.
     """
     folder = Path() if isinstance(source, Mapping) else Path(fspath(source)).parent
-    return _Reader(_tables(source), folder).contact()
-
-
-def _tables(source: AnyContact) -> dict[str, Any]:
-    if isinstance(source, Mapping):
-        return dict(source)
-    path = fspath(source)
+    data = dict(source) if isinstance(source, Mapping) else read_tables(source)
+    if {"bodies", "experiment"} <= data.keys():
+        raise SceneError([Problem("bodies", "this is a scene and no material", hint="run it with contact1d run")])
+    problems = [*_mistakes(data), *_without_unit(data, folder)]
+    taken = {problem.path for problem in problems}
+    scene = None
     try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise SceneError([Problem(path, error.strerror or str(error))]) from None
-    except ValueError as error:  # not TOML, or not UTF-8
-        raise SceneError([Problem(path, f"is no TOML: {error}")]) from None
+        scene = scene_from_dict(_as_scene({key: v for key, v in data.items() if key not in taken}), folder=folder)
+    except SceneError as error:
+        found = [_as_given(problem, data) for problem in error.problems]
+        problems += [one for one in found if one.path.partition(".")[0] in data.keys() - taken]
+    roughness = _length(data, "roughness", problems)
+    if problems or scene is None:
+        raise SceneError(sorted(problems, key=lambda one: _rank(one, data)))
+    material, adhesion = scene.material, scene.adhesion
+    assert material is not None
+    rigid = RIGID in (data.get("upper"), data.get("lower"))
+    bodies = {name: body for name in ("upper", "lower") if (body := getattr(material, name)) is not None}
+    return AskedContact(
+        title=scene.title,
+        profile=scene.bodies.profile.model_dump(by_alias=True, exclude_none=True),
+        shape=scene.bodies.profile,
+        contact_modulus=material.effective_modulus() * (2.0 if rigid else 1.0),
+        bodies={} if rigid else bodies,
+        work_of_adhesion=0.0 if adhesion is None or not _adheres(data) else adhesion.work,
+        range=USUAL_RANGE if adhesion is None or adhesion.range is None else adhesion.range,
+        range_is_assumed="range" not in data,
+        load=scene.experiment.compression if "load" in data else None,
+        roughness=roughness,
+        tolerance=scene.accuracy.tolerance if "tolerance" in data else DEFAULT_TOLERANCE,
+        model=data.get("model", "plane"),
+    )
 
 
-class _Reader:
-    """Reads one contact and gathers what is wrong with it."""
+def _adheres(data: Mapping[str, Any]) -> bool:
+    return bool(data.get("surface_energy") or data.get("work_of_adhesion"))
 
-    def __init__(self, data: dict[str, Any], folder: Path) -> None:
-        self.data, self.folder = data, folder
-        self.problems: list[Problem] = []
 
-    def contact(self) -> AskedContact:
-        """The contact. Raises SceneError with every problem."""
-        if {"bodies", "experiment"} <= self.data.keys():
-            raise SceneError([Problem("bodies", "this is a scene and no material", hint="run it with contact1d run")])
-        for key in self.data:
-            if key not in KEYS:
-                meant = nearest(key, KEYS)
-                hint = f'did you mean "{meant}"?' if meant else f"allowed here: {', '.join(KEYS)}"
-                self.problems.append(Problem(key, "unknown key", hint=hint))
-        values = {key: self._quantity(key, self.data, unit, key) for key, unit in UNITS.items()}
-        profile = self._profile(values["radius"])
-        bodies, modulus = self._elasticity(values["contact_modulus"])
-        energy = self._energy(values["surface_energy"], values["work_of_adhesion"])
-        self._positive(values)
-        model = self.data.get("model", "plane")
-        if model not in MODELS:
-            self.problems.append(Problem("model", 'must be "plane" or "particles"', shown(model)))
-        if not energy and values["load"] is None:
-            hint = "without attraction a load alone makes a contact; or give surface_energy or work_of_adhesion"
-            self.problems.append(Problem("load", "missing", hint=f'{hint}: load = "{example("N")}"'))
-        title = self.data.get("title", "A contact")
-        if not isinstance(title, str) or not title.strip() or not title.isprintable():
-            self.problems.append(Problem("title", "must be one line of text", shown(title)))
-        if self.problems:
-            raise SceneError(self.problems)
-        reach = values["range"]
-        return AskedContact(
-            title=title,
-            profile=profile,
-            contact_modulus=modulus,
-            bodies=bodies,
-            work_of_adhesion=energy,
-            range=USUAL_RANGE if reach is None else reach,
-            range_is_assumed=reach is None,
-            load=values["load"],
-            roughness=values["roughness"],
-            tolerance=values["tolerance"] or 1e-3,
-            model=model,
-        )
+def _mistakes(data: Mapping[str, Any]) -> Iterator[Problem]:
+    """What no scene would say of the keys and of having them together."""
+    for key in (key for key in data if key not in KEYS):
+        meant = nearest(key, KEYS)
+        hint = f'did you mean "{meant}"?' if meant else f"allowed here: {', '.join(KEYS)}"
+        yield Problem(key, "unknown key", hint=hint)
+    if ("profile" in data) == ("radius" in data):
+        hint = 'radius = "5 um" for a sphere, or profile = { kind = "cone", slope = 0.1 } as in a scene'
+        yield Problem("radius", "give either a radius or a profile", hint=hint)
+    given = [data[name] for name in ("upper", "lower") if name in data]
+    if "contact_modulus" in data and given:
+        hint = "give E*, or E and ν of both bodies"
+        yield Problem("contact_modulus", "not together with upper or lower", hint=hint)
+    elif "contact_modulus" not in data and len(given) < 2:
+        hint = 'write { youngs_modulus = "210 GPa", poisson_ratio = 0.3 } or "rigid", or give contact_modulus, E*'
+        yield Problem("lower" if "upper" in data else "upper", "missing", hint=hint)
+    if given == [RIGID, RIGID]:
+        yield Problem("upper", "one of the two bodies must be elastic")
+    for name in ("upper", "lower"):
+        if not isinstance(data.get(name, {}), Mapping) and data[name] != RIGID:
+            must = 'must be a table with youngs_modulus and poisson_ratio, or "rigid"'
+            yield Problem(name, must, shown(data[name]))
+    if {"surface_energy", "work_of_adhesion"} <= data.keys():
+        hint = "γ of one side is half of W, the work of adhesion: give one of the two"
+        yield Problem("surface_energy", "not together with work_of_adhesion", hint=hint)
+    if data.get("model", "plane") not in MODELS:
+        yield Problem("model", 'must be "plane" or "particles"', shown(data["model"]))
+    if "load" not in data and not _adheres(data):
+        hint = "without attraction a load alone makes a contact; or give surface_energy or work_of_adhesion"
+        yield Problem("load", "missing", hint=f'{hint}: load = "10 N"')
+    if str(data.get("load", "")).lstrip().startswith("-"):
+        yield Problem("load", "must be at least 0", shown(data["load"]))
 
-    def _quantity(self, path: str, table: Mapping[str, Any], unit: str, key: str) -> float | None:
-        """The number at a key, in SI; None where it is absent or wrong."""
-        given = table.get(key)
-        if given is None:
-            return None
-        if isinstance(given, str):
-            try:
-                return float(si_value(given, unit)[0])
-            except UnitTextError as error:
-                self.problems.append(Problem(path, str(error), shown(given)))
-                return None
-        if isinstance(given, bool) or not isinstance(given, int | float) or not abs(given) < float("inf"):
-            must = f"must be {in_words(unit)}, or a number in {unit}" if unit != "1" else "must be a number"
-            self.problems.append(Problem(path, must, shown(given)))
-            return None
-        return float(given)
 
-    def _positive(self, values: Mapping[str, float | None]) -> None:
-        for key, value in values.items():
-            least = "at least 0" if key in ("load", "roughness", "surface_energy", "work_of_adhesion") else ""
-            if value is not None and (value < 0.0 if least else value <= 0.0):
-                self.problems.append(Problem(key, f"must be {least or 'greater than 0'}", f"{value:g} {UNITS[key]}"))
+def _without_unit(data: Mapping[str, Any], folder: Path) -> Iterator[Problem]:
+    """A profile's file has units of its own, or the profile a scale; what else is wrong with it the scene says."""
+    profile = data.get("profile")
+    if isinstance(profile, Mapping) and isinstance(profile.get("file"), str) and "scale" not in profile:
+        with suppress(ProfileFileError, ScaleError):
+            if None in read_profile(folder / profile["file"]).scaled(None)[1].values():
+                hint = 'write scale = "1 um", the length of one of its units, or name the columns r [µm] and z [nm]'
+                yield Problem("profile.scale", "missing: the file says no unit", hint=hint)
 
-    def _profile(self, radius: float | None) -> Mapping[str, Any]:
-        given = self.data.get("profile")
-        if (given is None) == ("radius" not in self.data):
-            hint = 'radius = "5 um" for a sphere, or profile = { kind = "cone", slope = 0.1 } as in a scene'
-            self.problems.append(Problem("radius", "give either a radius or a profile", hint=hint))
-            return {}
-        if given is None:
-            return {"kind": "parabola", "radius": radius}
-        if not isinstance(given, Mapping) or not isinstance(given.get("kind"), str):
-            hint = 'write { kind = "cone", slope = 0.1 }, as in a scene'
-            self.problems.append(Problem("profile", 'must be a table with a "kind"', shown(given), hint))
-            return {}
-        lengths = {key: self._quantity(f"profile.{key}", given, "m", key) for key in LENGTHS if key in given}
-        points = self._points(given) if isinstance(given.get("file"), str) else {}
-        return {key: value for key, value in {**given, **lengths, **points}.items() if key not in OF_A_FILE}
 
-    def _points(self, given: Mapping[str, Any]) -> dict[str, list[float]]:
-        """The lists r and z [m] of a profile's file."""
-        try:
-            lists, units = read_profile(self.folder / given["file"]).scaled(given.get("scale"))
-        except ProfileFileError as error:
-            self.problems.append(Problem("profile.file", str(error), shown(given["file"])))
-            return {}
-        except ScaleError as error:
-            self.problems.append(Problem("profile.scale", str(error), shown(given["scale"])))
-            return {}
-        if "scale" not in given and None in units.values():
-            hint = 'write scale = "1 um", the length of one of its units, or name the columns r [µm] and z [nm]'
-            self.problems.append(Problem("profile.scale", "missing: the file says no unit", hint=hint))
-            return {}
-        meters = {key: 1.0 if unit is None else float(si_value(unit, "m")[0]) for key, unit in units.items()}
-        return {key: [meters[key] * value for value in values] for key, values in lists.items()}
+def _as_scene(data: Mapping[str, Any]) -> dict[str, Any]:
+    """A chain on a rigid plane with what is given; what is missing, or no scene has, stands in."""
+    profile = data.get("profile", {"kind": "parabola", "radius": data.get("radius", 1.0)})
+    elastic = {name: data[name] for name in ("upper", "lower") if isinstance(data.get(name), Mapping)}
+    one = next(iter(elastic.values()), None)
+    bodies = {} if one is None else {"upper": one, "lower": one} | elastic
+    modulus = {"contact_modulus": data.get("contact_modulus", 1.0)} if one is None else {}
+    tables: dict[str, Any] = {
+        "title": data.get("title", "A contact"),
+        "bodies": {"particles": "auto", "spacing": "auto", "profile": profile, "reduction": "mdr",
+                   "lower": "rigid_plane", "bulk_stiffness": "auto"},
+        "material": {**bodies, **modulus, "length_unit": 1.0, "force_unit": 1.0},
+        "experiment": {"kind": "load", "force": data.get("load", 0.0) or 1.0},
+    }  # fmt: skip
+    energy = {key: data[key] for key in ("surface_energy", "work_of_adhesion") if data.get(key)}
+    if energy or "range" in data:
+        reach = {"range": data["range"]} if "range" in data else {}
+        tables["adhesion"] = (energy or {"work_of_adhesion": 1.0}) | reach
+    if "tolerance" in data:
+        tables["accuracy"] = {"tolerance": data["tolerance"]}
+    return tables
 
-    def _elasticity(self, modulus: float | None) -> tuple[dict[str, Elastic], float]:
-        """Both bodies, as far as they are elastic and given, and E* [Pa]."""
-        given: dict[str, Any] = {name: self.data[name] for name in ("upper", "lower") if name in self.data}
-        if "contact_modulus" in self.data:
-            if given:
-                hint = "give E*, or E and ν of both bodies"
-                self.problems.append(Problem("contact_modulus", "not together with upper or lower", hint=hint))
-            return {}, modulus or 1.0
-        if len(given) < 2:
-            absent = "lower" if "upper" in given else "upper"
-            hint = 'write { youngs_modulus = "210 GPa", poisson_ratio = 0.3 } or "rigid", or give contact_modulus, E*'
-            self.problems.append(Problem(absent, "missing", hint=hint))
-            return {}, 1.0
-        bodies = {name: self._body(name, table) for name, table in given.items() if table != RIGID}
-        elastic: dict[str, Elastic] = {name: body for name, body in bodies.items() if body is not None}
-        if not bodies:
-            self.problems.append(Problem("upper", "one of the two bodies must be elastic"))
-        if not elastic:
-            return {}, 1.0
-        modulus = 1.0 / sum(body.compliance for body in elastic.values())
-        return (elastic if len(elastic) == 2 else {}), modulus
 
-    def _body(self, name: str, table: object) -> Elastic | None:
-        must = 'must be a table with youngs_modulus and poisson_ratio, or "rigid"'
-        if not isinstance(table, Mapping) or set(table) != set(BODY):
-            self.problems.append(Problem(name, must, shown(table)))
-            return None
-        before = len(self.problems)
-        numbers = {key: self._quantity(f"{name}.{key}", table, unit, key) for key, unit in BODY.items()}
-        youngs, poisson = numbers["youngs_modulus"], numbers["poisson_ratio"]
-        if youngs is not None and youngs <= 0.0:
-            self.problems.append(Problem(f"{name}.youngs_modulus", "must be greater than 0", f"{youngs:g} Pa"))
-        if poisson is not None and not -1.0 < poisson <= LARGEST_POISSON:
-            self.problems.append(
-                Problem(f"{name}.poisson_ratio", "must be greater than -1 and at most 0.5", f"{poisson:g}")
-            )
-        if len(self.problems) > before or youngs is None or poisson is None:
-            return None
-        return Elastic(youngs_modulus=youngs, poisson_ratio=poisson)
+def _as_given(problem: Problem, data: Mapping[str, Any]) -> Problem:
+    """The problem of a scene, by the contact's own key and units."""
+    keys = [key for key in PLACES if key in data]
+    own = next((key for key in keys if problem.path.startswith(PLACES[key])), problem.path)
+    path = problem.path.replace(PLACES.get(own, own), own, 1)
+    message, hint = problem.message, problem.hint
+    for word, si in IN_SI.items():
+        message, hint = message.replace(word, si), hint.replace(word, si)
+    return Problem(path, message, problem.given, hint.removesuffix("; "))
 
-    def _energy(self, gamma: float | None, work: float | None) -> float:
-        """W [J/m²]."""
-        if "surface_energy" in self.data and "work_of_adhesion" in self.data:
-            hint = "γ of one side is half of W, the work of adhesion: give one of the two"
-            self.problems.append(Problem("surface_energy", "not together with work_of_adhesion", hint=hint))
-        return work if work is not None else 2.0 * (gamma or 0.0)
+
+def _rank(problem: Problem, data: Mapping[str, Any]) -> int:
+    """Its place among the keys: unknown ones first."""
+    key = problem.path.partition(".")[0]
+    return KEYS.index(key) if key in KEYS else -1
+
+
+def _length(data: Mapping[str, Any], key: str, problems: list[Problem]) -> float | None:
+    """A length ≥ 0 [m]; None where it is absent or wrong."""
+    given = data.get(key)
+    if given is None:
+        return None
+    try:
+        value = float(si_value(given, "m")[0] if isinstance(given, str) else given)
+    except (UnitTextError, TypeError, ValueError) as error:
+        problems.append(Problem(key, str(error), shown(given)))
+        return None
+    if not 0.0 <= value < math.inf:
+        problems.append(Problem(key, "must be at least 0", shown(given)))
+    return value

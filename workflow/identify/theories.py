@@ -1,4 +1,12 @@
-"""What the theories of an adhesive sphere say of a contact, and which of them holds: JKR, DMT, Maugis and Dugdale."""
+"""What theories say of a contact: JKR, DMT, Maugis and Dugdale, which of them holds, and whether a chain stands for it.
+
+Radius and force of the body before any run, by the method of dimensionality reduction: with E* per
+length, g(x) = |x| ∫ f′/√(x² − r²) dr and Heß's rule at the edge, d = g(a) − √(2πaW/E*),
+
+    F(a) = 2 E* [a d − ∫₀ᵃ g dx]
+
+which is JKR's for a sphere and exact for any axisymmetric body with one contact.
+"""
 
 from __future__ import annotations
 
@@ -6,11 +14,18 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from contact1d.analysis.reference.dmt import Dmt
 from contact1d.analysis.reference.jkr import Jkr
 from contact1d.analysis.reference.maugis_dugdale import MaugisDugdale, maugis_parameter_of_tabor
 from contact1d.analysis.reference.tabor import DMT_TABOR, JKR_TABOR, Verdict, tabor_number, valid_theory
+from contact1d.workflow.identify.contact import AskedContact
+from contact1d.workflow.identify.interaction import LARGEST_RADIUS_SHARE, IdentifyError
+from contact1d.workflow.units import prefixed
 
 
 @dataclass(frozen=True)
@@ -44,40 +59,27 @@ class Theories:
     @cached_property
     def values(self) -> Mapping[str, Mapping[str, float]]:
         """By theory, F_A [N], a₀ [m], a where a fixed load pulls off [m], a under the load [m] where one is given."""
-        return {"JKR": self._jkr(), "DMT": self._dmt(), "Maugis-Dugdale": self._maugis()}
-
-    def _jkr(self) -> dict[str, float]:
-        jkr = Jkr(self.radius, self.contact_modulus, self.work_of_adhesion)
-        found = {
-            "adhesion_force": jkr.pull_off_force(),
-            "zero_load_radius": jkr.zero_load_radius(),
-            "critical_radius": jkr.critical_radius(),
-        }
-        return found if self.load is None else found | {"loaded_radius": float(jkr.contact_radius(self.load))}
-
-    def _dmt(self) -> dict[str, float]:
-        dmt = Dmt(self.radius, self.contact_modulus, self.work_of_adhesion)
-        found = {
-            "adhesion_force": dmt.pull_off_force(),
-            "zero_load_radius": dmt.zero_load_radius(),
-            "critical_radius": 0.0,
-        }
-        return found if self.load is None else found | {"loaded_radius": float(dmt.contact_radius(self.load))}
-
-    def _maugis(self) -> dict[str, float]:
-        contact = MaugisDugdale(maugis_parameter_of_tabor(self.tabor))
+        pair = self.radius, self.contact_modulus, self.work_of_adhesion
+        jkr, dmt = Jkr(*pair), Dmt(*pair)
+        maugis = MaugisDugdale(maugis_parameter_of_tabor(self.tabor))
         force = math.pi * self.work_of_adhesion * self.radius
-        length = math.cbrt(math.pi * self.work_of_adhesion * self.radius**2 / (4.0 / 3.0 * self.contact_modulus))
+        length = math.cbrt(0.75 * force * self.radius / self.contact_modulus)
         found = {
-            "adhesion_force": force * contact.pull_off_load(),
-            "zero_load_radius": length * contact.zero_load_radius(),
-            "critical_radius": length * contact.critical_radius(),
+            "JKR": (jkr.pull_off_force(), jkr.zero_load_radius(), jkr.critical_radius()),
+            "DMT": (dmt.pull_off_force(), dmt.zero_load_radius(), 0.0),
+            "Maugis-Dugdale": (
+                force * maugis.pull_off_load(), length * maugis.zero_load_radius(), length * maugis.critical_radius(),
+            ),
+        }  # fmt: skip
+        named = {
+            name: dict(zip(("adhesion_force", "zero_load_radius", "critical_radius"), values, strict=True))
+            for name, values in found.items()
         }
-        return (
-            found
-            if self.load is None
-            else found | {"loaded_radius": length * contact.contact_radius(self.load / force)}
-        )
+        if self.load is not None:
+            named["JKR"]["loaded_radius"] = float(jkr.contact_radius(self.load))
+            named["DMT"]["loaded_radius"] = float(dmt.contact_radius(self.load))
+            named["Maugis-Dugdale"]["loaded_radius"] = length * maugis.contact_radius(self.load / force)
+        return named
 
     @property
     def holding(self) -> str:
@@ -90,3 +92,152 @@ class Theories:
     def jkr_error(self) -> float:
         """F_A of JKR over that of the theory that holds, less 1."""
         return self.values["JKR"]["adhesion_force"] / self.values[self.holding]["adhesion_force"] - 1.0
+
+
+LEAST_TABOR = 0.5
+"""Tabor's μ below which no chain is offered: JKR's F_A is there 10 % below that of Maugis and Dugdale."""
+ATOM = 0.3e-9
+"""Diameter of an atom [m]: a contact that is narrower is none of a continuum."""
+ROUGH_SHARE, TOO_ROUGH_SHARE = 0.1, 1.0
+"""Roughness over the stretch δ_c at which a summit as blunt as the sphere lets go. Fuller and Tabor (1975): what holds
+falls with it, to a third or so at 1 and to nothing at 3; summits that are sharper let go sooner."""
+
+
+def judged(contact: AskedContact, theories: Theories) -> dict[str, str]:
+    """What limits a chain as a stand-in for an adhesive sphere.
+
+    Raises:
+        IdentifyError: it cannot stand for it.
+    """
+    held = theories.values[theories.holding]
+    if held["zero_load_radius"] < ATOM:
+        raise IdentifyError(
+            f"the contact is narrower than an atom: {theories.holding} has a zero-load radius of "
+            f"{prefixed(held['zero_load_radius'], 'm')}, and an atom's diameter is {prefixed(ATOM, 'm')}. No continuum "
+            "theory and no chain says anything of it; atoms do"
+        )
+    if theories.tabor < LEAST_TABOR:
+        raise IdentifyError(_no_chain(theories))
+    doubts = {}
+    stretch, roughness = -_let_go(contact), contact.roughness or 0.0
+    beside = f"summits of {prefixed(roughness, 'm')} beside a stretch of {prefixed(stretch, 'm')}"
+    if roughness > TOO_ROUGH_SHARE * stretch:
+        raise IdentifyError(
+            f"the surfaces are too rough to hold as a smooth sphere does: {beside} at which even one as blunt as the "
+            "sphere lets go, so that most have parted when the last hold (Fuller and Tabor). Up to a roughness of "
+            f"{_down(TOO_ROUGH_SHARE * stretch)} m there is a scene"
+        )
+    if roughness > ROUGH_SHARE * stretch:
+        doubts["roughness"] = f"{beside} at which the contact parts: it holds less than a smooth sphere's"
+    if theories.holding != "JKR":
+        doubts["tabor"] = (
+            f"{theories.verdict.reason}. The scene has JKR's law, whose pull-off force is {-theories.jkr_error:.1%} "
+            f"below that of {theories.holding} with this range"
+        )
+    return doubts
+
+
+def _no_chain(theories: Theories) -> str:
+    """That μ is too small, with the values that hold."""
+    jkr, dmt = (theories.values[name]["adhesion_force"] for name in ("JKR", "DMT"))
+    between = ""
+    if theories.holding != "DMT":
+        held = theories.values[theories.holding]
+        between = (
+            f", or nearer {prefixed(held['adhesion_force'], 'N')} and {prefixed(held['zero_load_radius'], 'm')} by "
+        )
+        between += "Maugis and Dugdale, between it and JKR"
+    return (
+        f"DMT holds, and no chain stands for it: Tabor's μ is {theories.tabor:.2g}, so that the attraction reaches "
+        f"farther than it stretches the bodies. F_A = 2πWR = {prefixed(dmt, 'N')}, a_0 = "
+        f"{prefixed(theories.values['DMT']['zero_load_radius'], 'm')}{between}. A chain would have JKR's F_A, "
+        f"{prefixed(jkr, 'N')}, which is {-theories.jkr_error:.0%} too small here; from μ = {LEAST_TABOR:g} on there "
+        "is a scene"
+    )
+
+
+def _let_go(contact: AskedContact) -> float:
+    """Displacement of JKR's sphere where it parts under fixed grips [m], < 0."""
+    assert contact.radius is not None
+    jkr = Jkr(contact.radius, contact.contact_modulus, contact.work_of_adhesion)
+    return float(jkr.displacement(jkr.critical_radius_fixed_grips()))
+
+
+def _down(value: float) -> str:
+    """Three digits, rounded down."""
+    digits = 10.0 ** (math.floor(math.log10(value)) - 2)
+    return f"{math.floor(value / digits) * digits:.3g}"
+
+
+def require_size(contact: AskedContact, radius: float) -> None:
+    """Refuse a contact under an atom, and one that is wide beside its sphere."""
+    if radius < ATOM:
+        raise IdentifyError(
+            f"the contact radius is {prefixed(radius, 'm')}, less than an atom's diameter: no theory holds"
+        )
+    if contact.radius is not None and radius > LARGEST_RADIUS_SHARE * contact.radius:
+        raise IdentifyError(
+            f"the contact radius is {prefixed(radius, 'm')}, {radius / contact.radius:.2g} of the sphere's: the "
+            f"theory is for contacts small beside the sphere, here up to {LARGEST_RADIUS_SHARE:g} of it. A larger "
+            "radius, a larger contact modulus, a smaller load or less attraction has that"
+        )
+
+
+SHORTEST, LONGEST, PLACES = 1e-12, 1e4, 8000
+"""Radii [m] among which that of a contact is looked for, in a geometric row, and how many."""
+INSIDE = 0.999999
+"""Largest of them over the half-width of a body that ends: the transform of a circle has no bound there."""
+
+
+def profile_in(contact: AskedContact, unit: float) -> dict[str, Any]:
+    """The profile in units of the scene [m]."""
+    profile = dict(contact.profile)
+    for key in ("radius", "height"):
+        if key in profile:
+            profile[key] /= unit
+    for key in ("r", "z"):
+        if key in profile:
+            profile[key] = [value / unit for value in profile[key]]
+    return profile
+
+
+def curve(contact: AskedContact) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Contact radii [m], rising, and the forces F(a) [N] by the module's equation."""
+    shape = contact.shape
+    reach = shape.reach
+    if shape.has_edge:
+        radii = np.asarray([reach])
+        return radii, np.asarray([math.inf])
+    radii = np.geomspace(SHORTEST, min(LONGEST, INSIDE * reach), PLACES)
+    with np.errstate(over="ignore"):
+        heights = shape.transformed(radii)
+    radii, heights = radii[np.isfinite(heights)], heights[np.isfinite(heights)]
+    steps = np.diff(radii, prepend=0.0)
+    below = np.cumsum(0.5 * (heights + np.concatenate([[0.0], heights[:-1]])) * steps)
+    stretch = np.sqrt(2.0 * math.pi * radii * contact.work_of_adhesion / contact.contact_modulus)
+    return radii, 2.0 * contact.contact_modulus * (radii * (heights - stretch) - below)
+
+
+def contact_radius(contact: AskedContact) -> float:
+    """The contact radius [m] that spacings are counted in: at F = 0 with attraction, else under the load."""
+    radii, forces = curve(contact)
+    if len(radii) == 1:
+        return float(radii[0])
+    wanted = 0.0 if contact.work_of_adhesion else contact.load or 0.0
+    above = np.flatnonzero(forces < wanted)
+    if above.size == 0 or above[-1] + 1 == len(radii):
+        raise IdentifyError(
+            f"no contact radius between {radii[0]:.3g} and {radii[-1]:.3g} m has a force of {wanted:g} N: compare the "
+            "profile's lengths, the load and the contact modulus with each other"
+        )
+    at = int(above[-1])
+    return float(np.interp(wanted, forces[at : at + 2], radii[at : at + 2]))
+
+
+def largest_tension(contact: AskedContact) -> float:
+    """The largest tension under a fixed load [N]."""
+    radii, forces = curve(contact)
+    if len(radii) > 1:
+        return max(-float(forces.min()), 1e-300)
+    stretch = math.sqrt(2.0 * math.pi * radii[0] * contact.work_of_adhesion / contact.contact_modulus)
+    return 2.0 * contact.contact_modulus * float(radii[0]) * stretch  # a punch parts at once (Kendall)

@@ -50,31 +50,33 @@ def chart(title: str, x: str, y: str, traces: Iterable[Mapping[str, Any]], **lay
     return {"data": list(traces), "layout": frame | layout}
 
 
+def trace(x: Iterable[Any], y: Iterable[Any], name: str, colour: str, mode: str, **line: Any) -> dict[str, Any]:
+    """A line, points, or both."""
+    return {"x": _listed(x), "y": _listed(y), "name": name, "mode": mode, "marker": {"size": 4},
+            "line": {"color": colour} | line}  # fmt: skip
+
+
 def curves(runs: Mapping[str, Run]) -> list[Chart]:
     """Force over displacement and over contact radius of the runs, overlaid; of a slide friction over time."""
-    found = []
-    moved = {name: run for name, run in runs.items() if _moves(run.curve.displacement)}
-    if moved:
-        found.append(
-            chart("Force over displacement", "displacement (LU), compression positive", "force (FU)",
-                  _traces(moved, "displacement", "force"))
-        )  # fmt: skip
-    touching = {name: run for name, run in moved.items() if np.isfinite(run.curve.contact_radius).sum() > 1}
-    if touching:
-        found.append(
-            chart("Force over contact radius", "contact radius (LU)", "force (FU)",
-                  _traces(touching, "contact_radius", "force"))
-        )  # fmt: skip
+    found: list[Chart] = []
     for key, title, x, y in ALONG:
         every = {name: _over_time(run) for name, run in runs.items()}
         kept = {name: columns for name, columns in every.items() if {key, y[0]} <= {*columns}}
-        if kept:
-            traces = [
-                {"x": _listed(columns[key]), "y": _listed(columns[y[0]]), "name": name, "mode": "lines",
-                 "line": {"color": colour}}
-                for (name, columns), colour in zip(kept.items(), _colours(len(kept)), strict=True)
-            ]  # fmt: skip
+        traces = [
+            trace(columns[key], columns[y[0]], name, colour, "lines")
+            for (name, columns), colour in zip(kept.items(), _colours(len(kept)), strict=True)
+        ]
+        if traces:
             found.insert(0, chart(title, x, y[1], traces))
+    moved = {name: run for name, run in runs.items() if _moves(run.curve.displacement)}
+    touching = {name: run for name, run in moved.items() if np.isfinite(run.curve.contact_radius).sum() > 1}
+    for column, label, some in (
+        ("displacement", "displacement (LU), compression positive", moved),
+        ("contact_radius", "contact radius (LU)", touching),
+    ):
+        if some:
+            title = f"Force over {column.replace('_', ' ')}"
+            found.append(chart(title, label, "force (FU)", _traces(some, column, "force")))
     return found
 
 
@@ -91,12 +93,9 @@ def _traces(runs: Mapping[str, Run], x: str, y: str) -> list[dict[str, Any]]:
         branches = rows_of_branches(run.curve.branch, run.curve.displacement)
         for (branch, rows), dash in zip(branches.items(), DASHES * len(branches), strict=False):
             label = branch if len(runs) == 1 else f"{name}, {branch}"
-            traces.append(
-                {"x": _listed(getattr(run.curve, x)[rows]), "y": _listed(getattr(run.curve, y)[rows]),
-                 "customdata": rows.tolist(), "name": label, "mode": mode,
-                 "marker": {"size": 4}, "line": {"color": colour, "dash": dash},
-                 "hovertemplate": f"{x.replace('_', ' ')} %{{x:.5g}}<br>{y} %{{y:.5g}}<br>state %{{customdata}}"}
-            )  # fmt: skip
+            made = trace(getattr(run.curve, x)[rows], getattr(run.curve, y)[rows], label, colour, mode, dash=dash)
+            hover = f"{x.replace('_', ' ')} %{{x:.5g}}<br>{y} %{{y:.5g}}<br>state %{{customdata}}"
+            traces.append(made | {"customdata": rows.tolist(), "hovertemplate": hover})
     return traces
 
 
@@ -108,9 +107,8 @@ def pressures(runs: Mapping[str, Run]) -> Chart | None:
             if np.any(profile.pressure):
                 label = state.replace("_", " ") if len(runs) == 1 else f"{name}, {state.replace('_', ' ')}"
                 traces.append(
-                    {"x": _listed(profile.x), "y": _listed(profile.pressure), "name": label, "mode": "lines+markers",
-                     "marker": {"size": 4}, "line": {"color": colour, "dash": dash, "shape": "hvh"}}
-                )  # fmt: skip
+                    trace(profile.x, profile.pressure, label, colour, "lines+markers", dash=dash, shape="hvh")
+                )
     if not traces:
         return None
     half = 1.1 * max(half_width(np.asarray(trace["x"]), np.asarray(trace["y"])) for trace in traces)
@@ -229,9 +227,9 @@ def over_axes(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> list[C
 def _theory(form: str, said: Mapping[float, float], dash: str, colour: str, shown: bool) -> dict[str, Any]:
     """A closed form along a line of a sweep, in its colour; `shown` in the legend."""
     places = sorted(said)
-    return {"x": places, "y": _listed([said[place] for place in places]), "name": form, "legendgroup": form,
-            "showlegend": shown, "mode": "lines" if len(places) > 1 else "markers",
-            "line": {"color": colour, "dash": dash}, "hovertemplate": f"{form} %{{y:.5g}}<extra></extra>"}  # fmt: skip
+    mode = "lines" if len(places) > 1 else "markers"
+    made = trace(places, [said[place] for place in places], form, colour, mode, dash=dash)
+    return made | {"legendgroup": form, "showlegend": shown, "hovertemplate": f"{form} %{{y:.5g}}<extra></extra>"}
 
 
 def _line(labels: Sequence[str], line: Line, names: Sequence[str], colour: str, covered: bool) -> dict[str, Any]:
@@ -239,9 +237,8 @@ def _line(labels: Sequence[str], line: Line, names: Sequence[str], colour: str, 
     places = sorted(line)
     means, errors = np.transpose([mean_of(line[place]) for place in places])
     label = ", ".join(f"{name} = {value}" for name, value in zip(names, labels, strict=True))
-    return {"x": places, "y": _listed(means), "error_y": {"type": "data", "array": _listed(errors), "thickness": 1},
-            "name": label or "runs", "mode": "markers" if covered else "lines+markers", "marker": {"size": 7},
-            "line": {"color": colour}}  # fmt: skip
+    made = trace(places, means, label or "runs", colour, "markers" if covered else "lines+markers")
+    return made | {"marker": {"size": 7}, "error_y": {"type": "data", "array": _listed(errors), "thickness": 1}}
 
 
 def half_width(x: np.ndarray[Any, Any], pressure: np.ndarray[Any, Any]) -> float:

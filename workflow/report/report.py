@@ -1,9 +1,12 @@
-"""Runs, or a sweep, as one HTML page that needs nothing beside it: no network, no other file."""
+"""Runs, or a sweep, as one HTML page that needs nothing beside it: no network, no other file.
+
+A scene is put in words for somebody who has not seen its file, from the tables' own descriptions.
+"""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -15,10 +18,10 @@ from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.errors import FolderError
 from contact1d.workflow.pages.parts import environment, text_of
 from contact1d.workflow.report.charts import Chart, curves, over_axes, pressures, way
-from contact1d.workflow.report.words import Said, scene_in_words
 from contact1d.workflow.runs.campaign import AnyPath
 from contact1d.workflow.runs.finished import Run, read_run
-from contact1d.workflow.scene import scene_to_toml
+from contact1d.workflow.scene import Scene, Table, scene_to_toml
+from contact1d.workflow.scene.quantities import keys_of
 from contact1d.workflow.sweep.axes import read_sweep
 from contact1d.workflow.sweep.table import RECORD, TABLE, read_table, units_in
 
@@ -157,3 +160,55 @@ def _page(template: str, charts: Sequence[Chart], moving: Mapping[str, Any] | No
         values |= {"last": len(moving["words"]) - 1, "start": moving["start"]}
     page = {"plotly": get_plotlyjs(), "script": text_of(PACKAGE, "page.js"), "data": data.replace("</", "<\\/")}
     return made.get_template(template).render(page | values)
+
+
+MOST_ITEMS = 6
+"""Items of a list that are shown; of more, the ends."""
+
+
+@dataclass(frozen=True)
+class Said:
+    """A table of the scene: its name, what it stands for, and its values: what each is, and the value with its unit."""
+
+    name: str
+    meaning: str
+    values: tuple[tuple[str, str], ...]
+
+
+def scene_in_words(scene: Scene) -> list[Said]:
+    """Every table that the scene has, in the order of a scene file."""
+    tables = ((name, getattr(scene, name)) for name in Scene.model_fields)
+    return [
+        Said(name.replace("_", " "), _meaning(table), tuple(_values(table)))
+        for name, table in tables
+        if isinstance(table, Table)
+    ]
+
+
+def _meaning(table: Table) -> str:
+    text = (type(table).__doc__ or "").partition("\n")[0].removeprefix("Effect: ")
+    return text[:1].upper() + text[1:]
+
+
+def _values(table: Table, within: str = "") -> Iterator[tuple[str, str]]:
+    for name, key in keys_of(type(table)).items():
+        value = getattr(table, key.field)
+        label = name.replace("_", " ")
+        if isinstance(value, Table):
+            yield from _values(value, f"{within}{label}: ")
+        elif value is not None:
+            unit = key.allowed.unit
+            named = unit is not None and unit.name != "1" and value != "auto"
+            yield within + label, _shown(value) + (f" {unit.name}" if unit and named else "")
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, tuple | list):
+        items = [_shown(item) for item in value]
+        few = items if len(items) <= MOST_ITEMS else [*items[: MOST_ITEMS // 2], "…", *items[-MOST_ITEMS // 2 :]]
+        return ", ".join(few) + (f" ({len(items)} in all)" if few != items else "")
+    return str(value)

@@ -13,7 +13,7 @@ from contact1d.workflow.errors import RunError
 from contact1d.workflow.judging.runs import there
 from contact1d.workflow.runs.finished import Run, read_run
 from contact1d.workflow.runs.many import completed
-from contact1d.workflow.runs.pool import pool
+from contact1d.workflow.runs.processors import pool
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]

@@ -33,8 +33,8 @@ from contact1d.workflow.reproduce.record import RECORD, Record, StudyRecord, rea
 from contact1d.workflow.reproduce.runs import finish
 from contact1d.workflow.reproduce.study import Scenes, Study
 from contact1d.workflow.runs.campaign import LOCK, alone
-from contact1d.workflow.runs.cores import cores
 from contact1d.workflow.runs.finished import Run
+from contact1d.workflow.runs.processors import cores
 from contact1d.workflow.runs.report import versions
 from contact1d.workflow.scene import Scene
 

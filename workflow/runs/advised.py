@@ -1,27 +1,31 @@
-"""A scene to a finished run folder, or to an error that says what was tried against it and helps."""
+"""A scene to a finished run folder, or to an error that says what helps: the first change that it carries is tried."""
 
 from __future__ import annotations
 
 import json
-import time
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.engine.progress import Progress, Silent
-from contact1d.workflow.errors import Contact1dError, RunError
+from contact1d.workflow.errors import Contact1dError, RunError, SceneEdit, UntrustedError
 from contact1d.workflow.experiments.spacing import with_spacing
 from contact1d.workflow.runs import campaign
 from contact1d.workflow.runs.finished import Run
-from contact1d.workflow.runs.remedies import Attempt, Reader, Tried, tried
 from contact1d.workflow.runs.report import RESULTS, write_results
+from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import AnyScene, Scene, SceneError, read_scene
-from contact1d.workflow.scene.problems import Problem
+from contact1d.workflow.scene.problems import as_toml
+from contact1d.workflow.scene.quantities import places
 from contact1d.workflow.settings.settings import Settings, SettingsError, settings_for
+from contact1d.workflow.units import NUMBER
 
-TRIAL, PATIENCE = 60.0, 90.0
-"""Wall time [s] of LAMMPS in one trial, and of all trials: at least, and never less than the run that failed took, or
-twice that. On an idle machine a trial takes a few tenths with 200 particles and five seconds with 900."""
+TRIAL = 4.0
+"""Wall time [s] of LAMMPS in the one trial, for each pass. With 200 particles a pass takes a few tenths."""
+
+Reader = Callable[[SceneEdit], Scene]
+"""The scene with an edit. Raises SceneError."""
 
 
 def run(
@@ -34,73 +38,104 @@ def run(
     workers: int | None = None,
     ranks: int = 1,
 ) -> Run:
-    """As `workflow.runs.campaign.run`; where it fails, changes of the scene are tried.
+    """As `workflow.runs.campaign.run`; where it fails, the first change that the error carries is tried.
 
-    Arguments and errors are the same; an error says with which changes the scene gives a result.
+    Arguments and errors are the same; an error says whether the scene gives a result with that change.
     """
-    progress, started = progress or Silent(), time.monotonic()
+    progress = progress or Silent()
+
+    def edited(edit: SceneEdit) -> Scene:
+        return read_scene(scene, overrides(edit), edit.without)
+
     try:
         return campaign.run(scene, folder, figures, progress, time_limit, settings, workers=workers, ranks=ranks)
     except SceneError as error:
-        raise mended(lambda change: read_scene(scene, change.overrides, change.without), error, progress) from None
+        raise mended(edited, error, progress) from None
     except SettingsError as error:
-        found = _tried(scene, error, progress, 0.0)
-        raise SettingsError(f"{error}. {found}" if str(found) else str(error)) from error.__cause__
+        found = _tried(edited, error, progress)
+        raise SettingsError(f"{error}. {found}" if found else str(error), changes=error.changes) from error.__cause__
     except RunError as error:
-        if not isinstance(error.__cause__, UntrustedError):
-            raise
-        raise _said(
-            error, error.__cause__, _tried(scene, error, progress, time.monotonic() - started)
-        ) from error.__cause__
+        cause = error.__cause__
+        if isinstance(cause, UntrustedError) and (found := _tried(edited, cause, progress)):
+            raise _reported(error, cause, found) from cause
+        raise
 
 
 def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
-    """The error of a scene, and which of the ways to mend it give a result.
+    """The error of a scene, and whether the first way to mend it gives a result.
 
     Args:
-        reader: gives the scene with a change.
+        reader: gives the scene with an edit.
         error: the scene's, without.
-        progress: told of every trial.
+        progress: told of the trial.
     """
-    found = tried(reader, error, _attempt(TRIAL), progress.note, PATIENCE)
-    if not str(found):
+    found = _tried(reader, error, progress)
+    if not found:
         return error
     first, *others = error.problems
-    hint = f"{first.hint}. {found}" if first.hint else str(found)
-    return SceneError([Problem(first.path, first.message, first.given, hint, first.ways), *others])
+    return SceneError([replace(first, hint=". ".join(filter(None, (first.hint, found)))), *others])
 
 
-def _tried(source: AnyScene, error: Contact1dError, progress: Progress, took: float) -> Tried:
-    """What helps a scene whose run `took` so many seconds to fail."""
-    attempt = _attempt(max(TRIAL, took))
-    return tried(
-        lambda change: read_scene(source, change.overrides, change.without),
-        error,
-        attempt,
-        progress.note,
-        max(PATIENCE, 2.0 * took),
-    )
+def overrides(edit: SceneEdit) -> tuple[str, ...]:
+    """The values of an edit as `read_scene` and `--set` take them."""
+    return tuple(f"{key}={value if isinstance(value, str) else as_toml(value)}" for key, value in edit.values.items())
 
 
-def _attempt(limit: float) -> Attempt:
-    """Runs a scene once, without refinement and second tries, for at most so many seconds."""
-
-    def attempt(scene: Scene) -> None:
-        with TemporaryDirectory() as folder:
-            chosen = with_spacing(scene)
-            settings = settings_for(chosen)
-            campaign.run(chosen, Path(folder) / "trial", False, time_limit=limit, settings=settings, retries=False)
-
-    return attempt
+def in_words(edit: SceneEdit) -> str:
+    """An edit as options of `contact1d run`."""
+    return " ".join([*(f"--without {name}" for name in edit.without), *(f"--set {one}" for one in overrides(edit))])
 
 
-def _said(error: RunError, cause: UntrustedError, found: Tried) -> RunError:
-    """The error with what was found in place of advice that nobody tried; results.json says the same."""
+def _tried(reader: Reader, error: Contact1dError, progress: Progress) -> str:
+    """What is said of the changes that an error carries, the first of which is tried; "" where it carries none."""
+    edits = []
+    for edit in error.changes:
+        try:
+            scene = reader(edit)
+        except SceneError:  # the same failure of another experiment, which has no such key
+            continue
+        edits.append((_in_si(scene, edit), scene))
+    if not edits:
+        return ""
+    (first, scene), *others = edits
+    progress.note(f"trying what helps: {in_words(first)}")
+    try:
+        _attempt(scene)
+    except Contact1dError:
+        untried = f". Not tried: {', or '.join(in_words(edit) for edit, _ in others)} may help" if others else ""
+        return f"Tried without a result within {TRIAL:g} s: {in_words(first)}{untried}"
+    return f"Tried: {in_words(first)} gives a result"
+
+
+def _attempt(scene: Scene) -> None:
+    """Run a scene once, without refinement and second tries, for at most a few seconds."""
+    with TemporaryDirectory() as folder:
+        chosen = with_spacing(scene)
+        settings = settings_for(chosen)
+        campaign.run(chosen, Path(folder) / "trial", False, time_limit=TRIAL, settings=settings, retries=False)
+
+
+def _in_si(scene: Scene, edit: SceneEdit) -> SceneEdit:
+    """The edit with units, "33.3pN", where LU and FU are known: a scene file that has them takes no plain number."""
+    material, scales = scene.material, scales_of(scene, {})
+    if scales is None or material is None or material.length_unit is None or material.force_unit is None:
+        return edit
+    tables = scene.model_dump(by_alias=True, exclude_none=True)
+    units = {".".join(map(str, place.keys)): place.unit.name for place in places(Scene, tables)}
+    values = dict(edit.values)
+    for key, value in values.items():
+        unit = units.get(key, NUMBER)
+        if isinstance(value, float) and unit != NUMBER and scales.know(unit):
+            factor, name = scales.written(value, unit)
+            values[key] = f"{value * factor:.3g}{name}"
+    return replace(edit, values=values)
+
+
+def _reported(error: RunError, cause: UntrustedError, found: str) -> RunError:
+    """The error with what the trial found, before advice that nobody tried; results.json says the same."""
     document = json.loads((error.folder / RESULTS).read_text(encoding="utf-8"))
     facts = document["error"]
-    advice = f". {found}" if found.helped else f": {cause.advice}" if cause.advice else ""
-    facts["message"] = f"{cause.message}{advice}"
-    if found.failed and not found.helped:
-        facts["message"] += f". {found}"
+    advice = f": {cause.advice}" if cause.advice and "gives a result" not in found else ""
+    facts["message"] = f"{cause.message}{advice}. {found}"
     write_results(error.folder, document)
     return RunError(f"{facts['message']} [phase {facts['phase']}, step {facts['step']}]", error.folder)

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import fcntl
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from contact1d.analysis.curve import DETACHMENTS, Curve
 from contact1d.files import PART, write_whole
-from contact1d.workflow.body.implied import formulas, with_implied
-from contact1d.workflow.body.pressure import with_body
+from contact1d.workflow.body.derived import formulas, with_body, with_implied
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.trust import UntrustedError
@@ -27,10 +27,9 @@ from contact1d.workflow.engine.session import EngineError
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments import perform, planned
 from contact1d.workflow.experiments.spacing import with_spacing
-from contact1d.workflow.runs.cores import cores
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.runs.plausibility import implausible
-from contact1d.workflow.runs.ranks import require_ranks
+from contact1d.workflow.runs.processors import cores, require_ranks
 from contact1d.workflow.runs.refinement import Refined, refined
 from contact1d.workflow.runs.report import FILES, FORMATS, curve_of, failure, results, write_results, write_tables
 from contact1d.workflow.runs.scales import scales_of
@@ -122,33 +121,32 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
     write_whole(folder / "in.lammps", last.deck.text(outcome.phases))
     curve = curve_of(last.deck.scene, outcome)
     write_tables(folder, scene, outcome, curve)
-    friction = _friction(outcome)
-    _draw(folder, scene, outcome, curve, figures)
     document = results(scene, outcome, timing()) | formulas(scene, outcome.quantities)
+    finished = _finished(folder, document, scene, curve, outcome)
+    _draw(finished, figures)
+    document["timing"] = timing()  # with the figures
     write_results(folder, document)
-    detachments = {name: np.asarray(column) for name, column in outcome.tables.get(DETACHMENTS, {}).items()}
-    return Run(folder, document, scene, curve, outcome.profiles, friction, detachments, outcome)
+    return finished
 
 
 def _write_what_is_left(outcome: Outcome, scene: Scene, folder: Path, figures: bool | str) -> None:
     """Tables and figures of a run that gives no numbers, to see why."""
     left, curve = replace(outcome, results={}), curve_of(scene, outcome)
     write_tables(folder, scene, left, curve)
-    _draw(folder, scene, left, curve, figures)
+    _draw(_finished(folder, {}, scene, curve, left), figures)
 
 
-def _draw(folder: Path, scene: Scene, outcome: Outcome, curve: Curve, figures: bool | str) -> None:
-    """The figures of a run, in the format that `figures` names, if they are wanted."""
-    if not figures:
-        return
-    from contact1d.workflow.runs.drawing import draw
-
-    form = figures if isinstance(figures, str) else FORMATS[0]
-    values = {name: quantity.value for name, quantity in outcome.quantities.items()}
-    friction = _friction(outcome)
+def _finished(folder: Path, document: Mapping[str, Any], scene: Scene, curve: Curve, outcome: Outcome) -> Run:
     detachments = {name: np.asarray(column) for name, column in outcome.tables.get(DETACHMENTS, {}).items()}
-    scales = scales_of(scene, outcome.quantities)
-    draw(folder, scene, values, curve, outcome.profiles, friction, detachments, scales, form)
+    return Run(folder, document, scene, curve, outcome.profiles, _friction(outcome), detachments, outcome)
+
+
+def _draw(run: Run, figures: bool | str) -> None:
+    """The figures of a run, in the format that `figures` names, if they are wanted."""
+    if figures:
+        from contact1d.workflow.runs.drawing import draw
+
+        draw(run, figures if isinstance(figures, str) else FORMATS[0], scales_of(run.scene, run.results))
 
 
 def _friction(outcome: Outcome) -> dict[str, np.ndarray]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import partial
 from math import nan
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,16 +16,18 @@ from contact1d.analysis.pressure import Profile
 from contact1d.analysis.reference.mindlin import mindlin_path, sliding_displacement
 from contact1d.analysis.slip import stick_margin
 from contact1d.analysis.time_plots import samples_figure
-from contact1d.workflow.body.closed_form import Case
-from contact1d.workflow.body.pressure import REPORTED, body_pressures
-from contact1d.workflow.body.shear import body_shears, row_of
-from contact1d.workflow.body.theory import applying
+from contact1d.workflow.body.derived import REPORTED
+from contact1d.workflow.body.reading import IMAGE
+from contact1d.workflow.body.theory import Case, applying
+from contact1d.workflow.body.traction import row_of
 from contact1d.workflow.continuation.state import RadiusRule
-from contact1d.workflow.scene import Scene, Tangential
-from contact1d.workflow.units import Quantity, Scales
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.units import Scales
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from contact1d.workflow.runs.finished import Run
 
 Array = NDArray[np.float64]
 MEASURED = ("sampling", "unloading", "pulling")
@@ -38,109 +39,88 @@ SAME_LOAD = 1e-9
 """Change of a load over the load up to which it is one: round-off."""
 
 
-def drawings(
-    scene: Scene,
-    values: Mapping[str, float],
-    curve: Curve,
-    profiles: Mapping[str, Profile],
-    friction: Mapping[str, Array],
-    detachments: Mapping[str, Array],
-    scales: Scales | None = None,
-    folder: Path | None = None,
-) -> Drawings:
-    """What draws each figure, by the names of the files, the main one first.
+def drawings(run: Run, scales: Scales | None = None) -> Drawings:
+    """What draws each figure of a run, by the names of the files, the main one first.
 
     Args:
-        scene: what ran.
-        values: of the results.
-        curve, profiles, friction, detachments: as in `Run`.
-        scales: of the run, where its units are known: the figures are in SI then.
-        folder: of the run, where samples.csv is, if it has one.
+        run: finished, or as far as it came.
+        scales: in place of the run's own: where they are known the figures are in SI.
     """
-    title = f"{scene.title}\n(reduction {scene.bodies.reduction})"
+    title, scales = f"{run.scene.title}\n(reduction {run.scene.bodies.reduction})", scales or run.scales
 
     def dressed(draw: Callable[[], Figure]) -> Figure:
         figure = body_plots.entitled(draw(), title)
         return figure if scales is None else body_plots.in_si(figure, scales.written)
 
-    plain = _drawings(scene, values, curve, profiles, friction, detachments)
-    if folder is not None and (kept := folder / f"{SAMPLE_TABLE}.csv").is_file():
-        traces = partial(
-            samples_figure, read_samples(kept), np.isin(curve.branch, MEASURED), values.get("displacement")
-        )
+    plain = _drawings(run)
+    if (kept := run.folder / f"{SAMPLE_TABLE}.csv").is_file():
+        measured = np.isin(run.curve.branch, MEASURED)
+        traces = partial(samples_figure, read_samples(kept), measured, _values(run).get("displacement"))
         plain = plain | {SAMPLE_TABLE: traces} if DETACHMENTS in plain else {SAMPLE_TABLE: traces} | plain
     return {name: partial(dressed, draw) for name, draw in plain.items()}
 
 
-def _drawings(
-    scene: Scene,
-    values: Mapping[str, float],
-    curve: Curve,
-    profiles: Mapping[str, Profile],
-    friction: Mapping[str, Array],
-    detachments: Mapping[str, Array],
-) -> Drawings:
+def draw(run: Run, form: str, scales: Scales | None = None) -> None:
+    """Save every figure of a run in its folder; `form`: png, svg or pdf."""
+    for name, figure in drawings(run, scales).items():
+        plots.save_figure(figure(), run.folder / f"{name}.{form}")
+
+
+def _drawings(run: Run) -> Drawings:
     """The figures without title, in model units."""
-    radii = {state: _radius(scene, profile) for state, profile in profiles.items()}
+    scene, curve, profiles = run.scene, run.curve, run.profiles
     pressure: Drawings = {}
     if all(profile.x.size > 1 for profile in profiles.values()):  # one particle has no pressure over x
+        radii = {state: _radius(scene, profile) for state, profile in profiles.items()}
         pressure["pressure"] = partial(plots.pressure_figure, profiles, radii)
-    if isinstance(scene.experiment, Tangential):
-        theory = _mindlin(scene, curve, friction)
-        loop = partial(slip_plots.tangential_figure, friction, curve.branch, theory)
-        sheared: Drawings = {"tangential": loop, "stick_slip": _stick_slip(scene, profiles, friction)}
-        if shears := body_shears(scene, profiles, friction, curve.contact_radius):
-            lines = {name: (one.r, one.shear, one.edge, one.stick) for name, one in shears.items()}
-            sheared["shear_3d"] = partial(slip_plots.body_shear_figure, lines)
-        return sheared | pressure | _body_pressure(scene, values, profiles)
-    if friction:
-        return {"friction": partial(plots.friction_figure, friction), **pressure}
-    if detachments and detachments["force"].size > 1:
-        return {DETACHMENTS: partial(plots.detachments_figure, detachments["force"]), **pressure}
+    if scene.experiment.goes_along:
+        return _sheared(run) | pressure | _body_pressure(run)
+    if run.friction:
+        return {"friction": partial(plots.friction_figure, run.friction), **pressure}
+    if run.detachments and run.detachments["force"].size > 1:
+        return {DETACHMENTS: partial(plots.detachments_figure, run.detachments["force"]), **pressure}
     if scene.noise is not None and not scene.experiment.way_is_given:
         return pressure
-    forces = partial(
-        plots.force_displacement_figure, curve, values, _theory(scene, values, float(curve.displacement.max()))
-    )
-    found: Drawings = {"force_displacement": forces}
+    values = _values(run)
+    found: Drawings = {
+        "force_displacement": partial(plots.force_displacement_figure, curve, values, _theory(scene, values, curve))
+    }
     if _adheres_over_a_width(values):
         marks = values["adhesion_force"], values["zero_load_radius"]
         found["force_radius"] = partial(plots.force_radius_figure, curve, *marks)
     elif np.unique(curve.contact_radius[curve.contact_radius > 0.0]).size > 1:
         found["force_radius"] = partial(plots.load_radius_figure, curve, _hertz_over_radius(scene, curve))
-    return found | pressure | _body_pressure(scene, values, profiles)
+    return found | pressure | _body_pressure(run)
 
 
-def draw(
-    folder: Path,
-    scene: Scene,
-    values: Mapping[str, float],
-    curve: Curve,
-    profiles: Mapping[str, Profile],
-    friction: Mapping[str, Array],
-    detachments: Mapping[str, Array],
-    scales: Scales | None,
-    form: str,
-) -> None:
-    """Save every figure of a run in its folder; `form`: png, svg or pdf."""
-    for name, figure in drawings(scene, values, curve, profiles, friction, detachments, scales, folder).items():
-        plots.save_figure(figure(), folder / f"{name}.{form}")
+def _values(run: Run) -> dict[str, float]:
+    """The results by name, of lengths those of the image: they belong to the curve."""
+    values = {name: quantity.value for name, quantity in run.results.items()}
+    return values | {name.removeprefix(IMAGE): value for name, value in values.items() if name.startswith(IMAGE)}
 
 
-def _body_pressure(scene: Scene, values: Mapping[str, float], profiles: Mapping[str, Profile]) -> Drawings:
+def _sheared(run: Run) -> Drawings:
+    """Force over displacement along x, the stick zone and q(r)."""
+    theory = _mindlin(run.scene, run.curve, run.friction)
+    loop = partial(slip_plots.tangential_figure, run.friction, run.curve.branch, theory)
+    found: Drawings = {"tangential": loop, "stick_slip": _stick_slip(run.scene, run.profiles, run.friction)}
+    if shears := run.body_shears:
+        lines = {name: (one.r, one.shear, one.edge, one.stick) for name, one in shears.items()}
+        found["shear_3d"] = partial(slip_plots.body_shear_figure, lines)
+    return found
+
+
+def _body_pressure(run: Run) -> Drawings:
     """p(r) of the body, where there is one, and the closed form beside it for the state that it speaks of."""
-    pressures = body_pressures(scene, profiles)
-    if not pressures:
-        return {}
-    case = Case(scene, {name: Quantity(value, 0.0, "") for name, value in values.items()})
+    pressures, case = run.body_pressures, Case(run.scene, run.results)
     theories: dict[str, tuple[str, Array, Array]] = {}
-    state = next((name for name in REPORTED if name in pressures), "")
-    for form in applying(case) if state else []:
-        if form.pressure is not None and state not in theories:
-            r = pressures[state].contact_radius * np.sin(np.linspace(0.005, 0.4999 * np.pi, FINE))
-            theories[state] = form.name, r, form.pressure(case, r)
+    state = next((name for name in REPORTED if name in pressures), None)
+    forms = [form for form in applying(case) if form.pressure is not None] if state is not None else []
+    if state is not None and forms and (pressure := forms[0].pressure):
+        r = pressures[state].contact_radius * np.sin(np.linspace(0.005, 0.4999 * np.pi, FINE))
+        theories[state] = forms[0].name, r, pressure(case, r)
     drawn = {name: (one.r, one.pressure, one.contact_radius) for name, one in pressures.items()}
-    return {"pressure_3d": partial(body_plots.body_pressure_figure, drawn, theories)}
+    return {"pressure_3d": partial(body_plots.body_pressure_figure, drawn, theories)} if drawn else {}
 
 
 def _stick_slip(scene: Scene, profiles: Mapping[str, Profile], columns: Mapping[str, Array]) -> Callable[[], Figure]:
@@ -188,7 +168,7 @@ def _adheres_over_a_width(values: Mapping[str, float]) -> bool:
     return "adhesion_force" in values and values.get("zero_load_radius", 0.0) > 0.0
 
 
-def _theory(scene: Scene, values: Mapping[str, float], deepest: float) -> tuple[str, Array, Array] | None:
+def _theory(scene: Scene, values: Mapping[str, float], curve: Curve) -> tuple[str, Array, Array] | None:
     """JKR, with the run's own F_A and a₀ or on a rigid plane with nothing fitted; Hertz there; else none."""
     bodies, radius = scene.bodies, scene.bodies.plane_radius
     if radius is None:
@@ -196,8 +176,10 @@ def _theory(scene: Scene, values: Mapping[str, float], deepest: float) -> tuple[
     if scene.adhesion is not None and scene.adheres:
         return "JKR", *plots.jkr_on_plane(2.0 * radius, scene.bulk_stiffness / bodies.spacing, scene.adhesion.work)
     if _adheres_over_a_width(values):
-        curve = plots.jkr_curve(values["adhesion_force"], values["zero_load_radius"], radius)
-        return "JKR, same $F_A$ and $a_0$", *curve
+        jkr = plots.jkr_curve(values["adhesion_force"], values["zero_load_radius"], radius)
+        return "JKR, same $F_A$ and $a_0$", *jkr
     if scene.interaction is None:
-        return "Hertz", *plots.hertz_curve(deepest, radius, scene.bulk_stiffness / bodies.spacing)
+        return "Hertz", *plots.hertz_curve(
+            float(curve.displacement.max()), radius, scene.bulk_stiffness / bodies.spacing
+        )
     return None

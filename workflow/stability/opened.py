@@ -8,11 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from contact1d.workflow.experiments.running.contact import Contact
+from contact1d.workflow.experiments.running.run_context import RunContext
+
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
-from contact1d.workflow.experiments.running.contact import Contact
-from contact1d.workflow.experiments.running.run_context import RunContext
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 

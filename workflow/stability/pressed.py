@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from contact1d.workflow.experiments.running.contact import Contact
 from scipy.optimize import brentq
 
 from contact1d.workflow.deck.steps import Displace
-from contact1d.workflow.experiments.running.contact import Contact
 from contact1d.workflow.judging.check import Check
 from contact1d.workflow.judging.figures import Series
 from contact1d.workflow.stability.case import Bench, Class, Findings, Refused, at_most, over_claim, said

@@ -16,7 +16,7 @@ from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import FolderError
 from contact1d.workflow.judging.check import Check
 from contact1d.workflow.judging.machine import machine
-from contact1d.workflow.runs.cores import cores
+from contact1d.workflow.runs.processors import cores
 from contact1d.workflow.runs.report import versions
 from contact1d.workflow.stability import (
     extremes,

@@ -1,10 +1,16 @@
-"""A sweep file: a base scene and axes of values; its points are their product, or the axes side by side (zip)."""
+"""A sweep file: a base scene and axes of values; its points are their product, or the axes side by side (zip).
+
+Each point is a checked scene, named by the hash of what is in it.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import itertools
+import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -12,8 +18,9 @@ from typing import Any
 
 import numpy as np
 
-from contact1d.workflow.scene import Problem, SceneError, read_tables
+from contact1d.workflow.scene import Problem, Scene, SceneError, read_tables, scene_from_dict
 from contact1d.workflow.scene.problems import nearest, shown
+from contact1d.workflow.scene.read import set_values
 from contact1d.workflow.scene.si_text import UnitTextError, split
 
 AnySweep = str | PathLike[str] | Mapping[str, Any]
@@ -75,6 +82,25 @@ class SweepPlan:
         return itertools.product(*columns) if self.combine == "product" else iter(zip(*columns, strict=True))
 
 
+Rule = tuple[bool, str, str, object, str]
+"""A row of a table of rules: whether it is broken, where, what must be, what is given (None: nothing), what to do."""
+
+
+def _broken(rules: Iterable[Rule]) -> list[Problem]:
+    return [
+        Problem(path, message, None if given is None else shown(given), hint)
+        for broken, path, message, given, hint in rules
+        if broken
+    ]
+
+
+def _unknown(table: Mapping[str, Any], allowed: Sequence[str], where: str = "") -> Iterator[Rule]:
+    for key in table:
+        meant = nearest(key, allowed)
+        hint = f'did you mean "{meant}"? ' if meant else ""
+        yield key not in allowed, where + key, "unknown key", None, f"{hint}allowed here: {', '.join(allowed)}"
+
+
 def read_sweep(source: AnySweep) -> SweepPlan:
     """The sweep that a TOML file, its path given, or a mapping with the same keys describes.
 
@@ -83,110 +109,104 @@ def read_sweep(source: AnySweep) -> SweepPlan:
     """
     tables = dict(source) if isinstance(source, Mapping) else read_tables(source)
     folder = Path.cwd() if isinstance(source, Mapping) else Path(source).parent
-    problems = [_unknown(key, KEYS) for key in tables if key not in KEYS]
-    title, combine = tables.get("title", ""), tables.get("combine", "product")
-    if not isinstance(title, str):
-        problems.append(Problem("title", "must be text", shown(title)))
-    if combine not in COMBINATIONS:
-        problems.append(Problem("combine", 'must be "product" or "zip"', shown(combine)))
-    axes = list(_axes(tables.get("axes"), problems))
-    if not problems:
-        problems += _shape(axes, combine)
-    base, home = _base(tables, folder, problems)
+    title, combine, given = tables.get("title", ""), tables.get("combine", "product"), tables.get("axes")
+    scene, base = tables.get("scene"), tables.get("base")
+    listed = isinstance(given, Sequence) and not isinstance(given, str)
+    problems = _broken(
+        [
+            *_unknown(tables, KEYS),
+            (not isinstance(title, str), "title", "must be text", title, ""),
+            (combine not in COMBINATIONS, "combine", 'must be "product" or "zip"', combine, ""),
+            (given is None or given == [], "axes", "missing", None,
+             'write [[axes]] with key = "bodies.profile.radius" and values'),
+            (given is not None and not listed, "axes", "must be written as [[axes]], in double brackets, once for each",
+             given, ""),
+            (scene is not None and base is not None, "scene", "not together with [base]", None,
+             "give a scene file, or the scene's tables under [base]"),
+            (scene is None and base is None, "scene", "missing", None,
+             "give a scene file, or the scene's tables under [base]"),
+            (not isinstance(scene, str | None), "scene", "must be the name of a scene file", scene, ""),
+            (not isinstance(base, Mapping | None), "base", "must be a table of a scene's tables", base,
+             "write [base.bodies], …"),
+        ]
+    )  # fmt: skip
+    axes = [_axis(table, f"axes[{i}]", problems) for i, table in enumerate(given if listed and given else ())]
+    problems += _broken(_shape(axes, combine)) if not problems else []
     if problems:
         raise SceneError(problems)
-    return SweepPlan(title, base, home, tuple(axes), combine)
+    if isinstance(scene, str):
+        base, folder = read_tables(folder / scene), (folder / scene).parent
+    assert base is not None
+    return SweepPlan(title, base, folder, tuple(axes), combine)
 
 
-def _unknown(key: str, allowed: Sequence[str], where: str = "") -> Problem:
-    meant = nearest(key, allowed)
-    hint = f'did you mean "{meant}"? ' if meant else ""
-    return Problem(where + key, "unknown key", hint=f"{hint}allowed here: {', '.join(allowed)}")
+def _shape(axes: Sequence[Axis], combine: str) -> Iterator[Rule]:
+    """What must hold of the axes together."""
+    keys, lengths = [axis.key for axis in axes], [len(axis.values) for axis in axes]
+    for i, key in enumerate(keys):
+        yield key in keys[:i], f"axes[{i}].key", "another axis has the same key", key, ""
+    words = ", ".join(map(str, lengths))
+    uneven = combine == "zip" and len(set(lengths)) > 1
+    yield uneven, "combine", f'"zip" needs axes of one length, they have {words} values', None, ""
+    count, product = math.prod(lengths), " × ".join(map(str, lengths))
+    many = combine == "product" and count > MOST_POINTS
+    yield many, "axes", f"{product} = {count} points are more than {MOST_POINTS}", None, "take coarser axes"
 
 
-def _base(tables: Mapping[str, Any], folder: Path, problems: list[Problem]) -> tuple[Mapping[str, Any], Path]:
-    """Tables of the base scene, and the folder that its files are looked for in."""
-    scene, base = tables.get("scene"), tables.get("base")
-    if (scene is None) == (base is None):
-        both = "not together with [base]" if scene is not None else "missing"
-        problems.append(Problem("scene", both, hint="give a scene file, or the scene's tables under [base]"))
-    elif base is not None:
-        if isinstance(base, Mapping):
-            return base, folder
-        problems.append(Problem("base", "must be a table of a scene's tables", shown(base), "write [base.bodies], …"))
-    elif isinstance(scene, str):
-        return read_tables(folder / scene), (folder / scene).parent
-    else:
-        problems.append(Problem("scene", "must be the name of a scene file", shown(scene)))
-    return {}, folder
-
-
-def _axes(given: Any, problems: list[Problem]) -> Iterator[Axis]:
-    if given is None or given == []:
-        problems.append(Problem("axes", "missing", hint='write [[axes]] with key = "bodies.profile.radius" and values'))
-        return
-    if not isinstance(given, Sequence) or isinstance(given, str):
-        problems.append(Problem("axes", "must be written as [[axes]], in double brackets, once for each", shown(given)))
-        return
-    for number, table in enumerate(given):
-        where = f"axes[{number}]"
-        if not isinstance(table, Mapping):
-            problems.append(Problem(where, "must be a table with key and values", shown(table)))
-            continue
-        found = [
-            _unknown(key, ("key", "values", *SPAN_KEYS), f"{where}.")
-            for key in table
-            if key not in ("key", "values", *SPAN_KEYS)
+def _axis(table: Any, where: str, problems: list[Problem]) -> Axis:
+    """An axis, and what is wrong with it; without values then."""
+    if not isinstance(table, Mapping):
+        problems += _broken([(True, where, "must be a table with key and values", table, "")])
+        return Axis("", ())
+    key, named = table.get("key"), [name for name in SPAN_KEYS if name in table]
+    values: Any = table.get("values")
+    values = values.tolist() if hasattr(values, "tolist") else values
+    listed = isinstance(values, Sequence) and not isinstance(values, str)
+    must = "missing" if key is None else "must be a key of the scene"
+    missing = [name for name in ("from", "to", "steps") if name not in table]
+    at = f"{where}.values"
+    found = _broken(
+        [
+            *_unknown(table, ("key", "values", *SPAN_KEYS), f"{where}."),
+            (not isinstance(key, str) or not key, f"{where}.key", must, key, "such as noise.seed"),
+            (values is not None and bool(named), at, f"not together with {', '.join(named)}", None, "give the one"),
+            (values is not None and not listed, at, "must be a list", values, ""),
+            (listed and not values, at, "is empty: the sweep would have no point", None, ""),
+            (values is None and bool(missing), where, f"lacks {', '.join(missing)}", None,
+             "give values, or from, to and steps"),
         ]
-        key = table.get("key")
-        if not isinstance(key, str) or not key:
-            what = "missing" if key is None else "must be a key of the scene"
-            found.append(Problem(f"{where}.key", what, None if key is None else shown(key), "such as noise.seed"))
-        values = _values(table, where, found)
-        problems += found
-        if not found:
-            yield Axis(str(key), values)
+    )  # fmt: skip
+    if not found and values is None:
+        values = _span(table, where, found)
+    problems += found
+    return Axis(str(key), tuple(values) if values is not None and not found else ())
 
 
-def _values(table: Mapping[str, Any], where: str, problems: list[Problem]) -> tuple[Any, ...]:
-    span = [key for key in SPAN_KEYS if key in table]
-    if "values" in table:
-        values = table["values"].tolist() if hasattr(table["values"], "tolist") else table["values"]
-        if span:
-            problems.append(Problem(f"{where}.values", f"not together with {', '.join(span)}", hint="give the one"))
-        elif not isinstance(values, Sequence) or isinstance(values, str):
-            problems.append(Problem(f"{where}.values", "must be a list", shown(values)))
-        elif not values:
-            problems.append(Problem(f"{where}.values", "is empty: the sweep would have no point"))
-        else:
-            return tuple(values)
-        return ()
-    if missing := [key for key in ("from", "to", "steps") if key not in table]:
-        problems.append(Problem(f"{where}", f"lacks {', '.join(missing)}", hint="give values, or from, to and steps"))
-        return ()
+def _span(table: Mapping[str, Any], where: str, problems: list[Problem]) -> tuple[Any, ...]:
+    """steps + 1 values, both ends exact; whole numbers where all of a linear span are; texts where the ends are."""
     start, end, unit = _without_unit(table["from"], table["to"])
-    steps = table["steps"]
-    scale = table.get("scale", "linear")
-    wrong = [name for name, number in (("from", start), ("to", end)) if not _is_number(number)]
-    problems += [Problem(f"{where}.{name}", _must(start, end), shown(table[name])) for name in wrong]
-    if isinstance(steps, bool) or not isinstance(steps, int) or not 1 <= steps < MOST_POINTS:
-        problems.append(Problem(f"{where}.steps", f"must be a whole number from 1 to {MOST_POINTS - 1}", shown(steps)))
+    steps, scale = table["steps"], table.get("scale", "linear")
+    texts = isinstance(start, str) and isinstance(end, str)
+    must = 'must have the same unit at both ends, such as "1 mm" and "5 mm"' if texts else "must be a finite number"
+    numbers = _is_number(start) and _is_number(end)
+    whole = isinstance(steps, int) and not isinstance(steps, bool) and 1 <= steps < MOST_POINTS
+    problems += _broken(
+        [
+            (not _is_number(start), f"{where}.from", must, table["from"], ""),
+            (not _is_number(end), f"{where}.to", must, table["to"], ""),
+            (not whole, f"{where}.steps", f"must be a whole number from 1 to {MOST_POINTS - 1}", steps, ""),
+            (scale not in SCALES, f"{where}.scale", 'must be "linear" or "log"', scale, ""),
+            (scale == "log" and numbers and min(start, end) <= 0.0, f"{where}.scale",
+             "log needs from and to above 0", scale, ""),
+        ]
+    )  # fmt: skip
+    if problems:
         return ()
-    if scale not in SCALES:
-        problems.append(Problem(f"{where}.scale", 'must be "linear" or "log"', shown(scale)))
-    elif scale == "log" and not wrong and min(start, end) <= 0.0:
-        problems.append(Problem(f"{where}.scale", "log needs from and to above 0", shown(scale)))
-    elif not wrong:
-        found = _span(start, end, steps, scale)
-        return tuple(f"{value!r} {unit}" for value in found) if unit else found
-    return ()
-
-
-def _must(start: Any, end: Any) -> str:
-    """What the ends of a span must be."""
-    if isinstance(start, str) and isinstance(end, str):
-        return 'must have the same unit at both ends, such as "1 mm" and "5 mm"'
-    return "must be a finite number"
+    if scale == "linear" and isinstance(start, int) and isinstance(end, int) and (end - start) % steps == 0:
+        return tuple(start + i * ((end - start) // steps) for i in range(steps + 1))
+    inner = (np.linspace if scale == "linear" else np.geomspace)(start, end, steps + 1)[1:-1]
+    values = (float(start), *inner.tolist(), float(end))
+    return tuple(f"{value!r} {unit}" for value in values) if unit else values
 
 
 def _without_unit(start: Any, end: Any) -> tuple[Any, Any, str]:
@@ -200,27 +220,64 @@ def _without_unit(start: Any, end: Any) -> tuple[Any, Any, str]:
     return (float(first), float(last), unit) if unit == other else (start, end, "")
 
 
-def _span(start: float, end: float, steps: int, scale: str) -> tuple[Any, ...]:
-    """steps + 1 values, both ends exact; whole numbers where all of a linear span are."""
-    if scale == "linear" and isinstance(start, int) and isinstance(end, int) and (end - start) % steps == 0:
-        return tuple(start + i * ((end - start) // steps) for i in range(steps + 1))
-    make = np.linspace if scale == "linear" else np.geomspace
-    inner = make(start, end, steps + 1)[1:-1]
-    return (float(start), *inner.tolist(), float(end))
-
-
 def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def _shape(axes: Sequence[Axis], combine: str) -> Iterator[Problem]:
-    """What is wrong with the axes together."""
-    for number, axis in enumerate(axes):
-        if axis.key in [other.key for other in axes[:number]]:
-            yield Problem(f"axes[{number}].key", "another axis has the same key", shown(axis.key))
-    lengths = [len(axis.values) for axis in axes]
-    if combine == "zip" and len(set(lengths)) > 1:
-        yield Problem("combine", f'"zip" needs axes of one length, they have {", ".join(map(str, lengths))} values')
-    elif combine == "product" and (count := math.prod(lengths)) > MOST_POINTS:
-        product = " × ".join(map(str, lengths))
-        yield Problem("axes", f"{product} = {count} points are more than {MOST_POINTS}", hint="take coarser axes")
+NAME_LENGTH = 16
+"""Hexadecimal digits of a point's name: of a million points two are alike with a chance of 3e-8."""
+UNKNOWN = ("unknown key", "unknown table", "not a path of keys")
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point: the value of each axis, its scene, its name; or, without a scene, why it can't be one."""
+
+    values: tuple[Any, ...]
+    scene: Scene | None
+    name: str
+    reason: str = ""
+
+
+def points(plan: SweepPlan) -> Iterator[Point]:
+    """The points in order, made one by one."""
+    for values in plan.values():
+        try:
+            scene = _scene(plan, values)
+        except SceneError as error:
+            yield Point(values, None, "", "; ".join(str(problem) for problem in error.problems))
+        else:
+            yield Point(values, scene, name_of(scene))
+
+
+def require_keys(plan: SweepPlan) -> None:
+    """See that each axis is a key of the scene. Raises SceneError; values that are wrong are a point's own matter."""
+    try:
+        _scene(plan, next(plan.values()))
+    except SceneError as error:
+        keys = [axis.key for axis in plan.axes]
+        wrong = [
+            problem
+            for problem in error.problems
+            if problem.path.startswith("set ") or (problem.message in UNKNOWN and _is_of_axis(problem.path, keys))
+        ]
+        if wrong:
+            raise SceneError(wrong) from None
+
+
+def name_of(scene: Scene) -> str:
+    """SHA-256 of everything in the scene that is more than a title, shortened."""
+    content: Mapping[str, Any] = scene.model_dump(mode="json", by_alias=True, exclude_none=True, exclude={"title"})
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:NAME_LENGTH]
+
+
+def _scene(plan: SweepPlan, values: tuple[Any, ...]) -> Scene:
+    tables = deepcopy(dict(plan.base))
+    keys = [axis.key for axis in plan.axes]
+    if problems := set_values(tables, dict(zip(keys, values, strict=True))):
+        raise SceneError(problems)
+    return scene_from_dict(tables, folder=plan.folder)
+
+
+def _is_of_axis(path: str, keys: list[str]) -> bool:
+    return any(key == path or key.startswith(f"{path}.") for key in keys)

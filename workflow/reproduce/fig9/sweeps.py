@@ -8,8 +8,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.sweep.axes import read_sweep
-from contact1d.workflow.sweep.points import points
+from contact1d.workflow.sweep.axes import points, read_sweep
 
 LOAD, RADIUS = "friction_over_load", "friction_over_radius"
 PARTICLE, VELOCITY, STIFFNESS = "friction_of_one_particle", "friction_over_velocity", "friction_over_stiffness"

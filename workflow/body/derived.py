@@ -1,0 +1,176 @@
+"""Results that follow from others: the work of adhesion that an interaction implies, and what is the body's own.
+
+One particle parts from the row of opposite ones, s apart, by the work w = ∫ −f dr from its force-free distance on, so
+that a length of chain holds w/s. Where the edge of a contact of radius a recedes by da, both ends of the chain part by
+da, and the ring 2πa da of the body's surface parts:
+
+    mdr:           2 (w/s) da = W 2πa da                          W = w/(π s a)
+    geike_popov:   two equal spheres, half as wide as the image   W = 4w/(π s a),   a the image's
+
+JKR's body has one W for every a, and the chain one w/s: they are alike at one radius only, that of the run. How far the
+two are apart is told by the force, F_A = (3/2) πWR_e, R_e = R with the MDR and R/2 for the two spheres.
+
+Stiffness: springs E* per length that touch over 2a make dF/dd = 2E*a, which is Galin's and Sneddon's relation of any
+axisymmetric body.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.potentials import DoubleExponential
+from contact1d.workflow.body.theory import Case
+from contact1d.workflow.body.traction import body_pressures, is_of_a_body
+from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.estimate import row_force
+from contact1d.workflow.settings.settings import Settings
+from contact1d.workflow.units import ENERGY, FORCE, LINE_PRESSURE, MEAN_PRESSURE, Quantity
+
+REPORTED = ("deepest", "final", "zero_load")
+"""States whose pressure is a result, the first that a run has."""
+ERRORS = ("displacement", "contact_radius", "largest_force", "largest_radius", "zero_load_radius")
+"""Results whose relative uncertainty, that of the lattice included, is the pressure's, too."""
+WIDER = {"mdr": 1.0, "geike_popov": 4.0}
+"""W π s a/w."""
+EFFECTIVE = {"mdr": 1.0, "geike_popov": 0.5}
+"""R_e/R."""
+TAIL, POINTS = 1e-10, 8000
+"""Force at the last distance over that at the force-free one, and how many distances."""
+FORMULAS = {
+    "mdr": "W = w/(π s a), a the contact radius: where it shrinks by da, two lengths da of chain and the ring 2πa da "
+    "of the body's surface part (mdr). Uncertain by what F_A = (3/2)πWR has instead",
+    "geike_popov": "W = 4w/(π s a), a the image's half-width, twice the contact radius of the two equal spheres that "
+    "geike_popov stands for: where it shrinks by da, two lengths da of chain and the ring (π/2)a da of their surface "
+    "part. Uncertain by what F_A = (3/4)πWR has instead",
+}
+"""How W is made, by reduction."""
+
+
+def first_of(found: Mapping[str, Quantity], *names: str) -> Quantity | None:
+    """The first of the named results that a run has."""
+    return next((found[name] for name in names if name in found), None)
+
+
+def with_implied(scene: Scene, settings: Settings, outcome: Outcome) -> Outcome:
+    """The outcome of a run, and what its interaction implies; it counts as derived."""
+    return _with(outcome, implied(scene, settings, outcome.quantities))
+
+
+def _with(outcome: Outcome, made: Mapping[str, Quantity]) -> Outcome:
+    return replace(outcome, derived={**outcome.derived, **made})
+
+
+def implied(scene: Scene, settings: Settings, found: Mapping[str, Quantity]) -> dict[str, Quantity]:
+    """`separation_energy`, w/s [FU], and of a sphere `work_of_adhesion` [FU/LU]; nothing without an attraction.
+
+    Args:
+        scene: that ran.
+        settings: that it ran with.
+        found: its results; without a radius there is no W.
+    """
+    if settings.law is None or settings.law.attraction is None:
+        return {}
+    work, error = _work(settings.law, scene.bodies.spacing)
+    line = work / scene.bodies.spacing
+    quantities = {"separation_energy": Quantity(line, error / scene.bodies.spacing, FORCE)}
+    radius, curvature = first_of(found, "zero_load_radius", "contact_radius"), scene.bodies.profile.curvature_radius
+    if radius is None or curvature is None or not radius.value > 0.0:
+        return quantities
+    reduction = scene.bodies.reduction
+    energy = WIDER[reduction] * line / (math.pi * radius.value)
+    tension = found["adhesion_force"].value if "adhesion_force" in found else settings.estimate.pull_off_force()
+    by_force = tension / (1.5 * math.pi * EFFECTIVE[reduction] * curvature)
+    spread = abs(energy - by_force) + energy * (radius.uncertainty / radius.value + error / work)
+    return quantities | {"work_of_adhesion": Quantity(energy, spread, LINE_PRESSURE)}
+
+
+def formulas(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, dict[str, str]]:
+    """For results.json, `formulas`: in words, how a number was made that has more than one reading."""
+    made = {
+        "separation_energy": "w/s: w = ∫ −f dr parts one particle from the opposite row, s is the spacing; energy per "
+        "length of chain",
+        "work_of_adhesion": FORMULAS[scene.bodies.reduction],
+    }
+    said = {name: text for name, text in made.items() if name in quantities}
+    return {"formulas": said} if said else {}
+
+
+@lru_cache(maxsize=16)  # scenes run one after the other mostly share their law
+def _work(law: DoubleExponential, spacing: float) -> tuple[float, float]:
+    """w [FU·LU] by the trapezoid, and its error: the difference from twice the step."""
+    end = law.cutoff_for(TAIL)
+    r = np.linspace(end / POINTS, end, POINTS)
+    force = row_force(law, r, spacing, end)
+
+    def work(values: NDArray[np.float64], step: float) -> float:
+        inwards = np.cumsum(0.5 * (values[1:] + values[:-1])[::-1]) * step
+        return float(max(-inwards.min(), 0.0))
+
+    fine = work(force, end / POINTS)
+    return fine, abs(fine - work(force[1::2], 2.0 * end / POINTS))
+
+
+def with_body(scene: Scene, outcome: Outcome) -> Outcome:
+    """The outcome with what is the body's own: p(0), the largest pressure, mean pressure, stiffness, adhesion energy.
+
+    A pressure that has no bound is left out.
+    """
+    if not is_of_a_body(scene):
+        return outcome
+    found = outcome.quantities
+    return _with(outcome, _pressures(scene, outcome) | _of_the_contact(scene, found) | _adhesion_energy(scene, found))
+
+
+def _pressures(scene: Scene, outcome: Outcome) -> dict[str, Quantity]:
+    """p(0) and the largest pressure of the reported state."""
+    found = outcome.quantities
+    unknown = sum(
+        found[name].uncertainty / abs(found[name].value) for name in ERRORS if name in found and found[name].value
+    )
+    state = next((name for name in REPORTED if name in outcome.profiles), None)
+    if state is None:
+        return {}
+    pressure = body_pressures(scene, {state: outcome.profiles[state]}).get(state)
+    named = {} if pressure is None else {"central_pressure": pressure.central, "peak_pressure": pressure.peak}
+    return {
+        name: Quantity(p.value, p.uncertainty + unknown * abs(p.value), p.unit)
+        for name, p in named.items()
+        if p is not None
+    }
+
+
+def _of_the_contact(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:
+    """F/πa² where the experiment has none, and dF/dd = 2E*a of elastic bodies."""
+    force, radius = first_of(found, "force", "largest_force"), first_of(found, "contact_radius", "largest_radius")
+    made: dict[str, Quantity] = {}
+    if radius is None or force is None or not radius.value > 0.0:
+        return made
+    if "mean_pressure" not in found:
+        area = math.pi * radius.value**2
+        spread = (2.0 * abs(force.value) * radius.uncertainty / radius.value + force.uncertainty) / area
+        made["mean_pressure"] = Quantity(force.value / area, spread, MEAN_PRESSURE)
+    if scene.interaction is None and Case(scene, found).is_elastic:
+        twice = 2.0 * scene.bulk_stiffness / (scene.chains * scene.bodies.spacing)
+        made["contact_stiffness"] = Quantity(twice * radius.value, twice * radius.uncertainty, LINE_PRESSURE)
+    return made
+
+
+def _adhesion_energy(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:
+    """πa²W on a plane with adhesion; 2a w/s where an interaction holds the bodies."""
+    a, line = first_of(found, "zero_load_radius", "contact_radius"), found.get("separation_energy")
+    if a is None:
+        return {}
+    if scene.adhesion is not None:
+        ring = math.pi * scene.adhesion.work * a.value
+        return {"adhesion_energy": Quantity(ring * a.value, 2.0 * ring * a.uncertainty, ENERGY)}
+    if line is None:
+        return {}
+    spread = 2.0 * (a.value * line.uncertainty + a.uncertainty * line.value)
+    return {"adhesion_energy": Quantity(2.0 * a.value * line.value, spread, ENERGY)}
