@@ -41,7 +41,7 @@ docs: $(READY) ## build the site in site/; the tutorial runs on the way
 	@$(BIN)/python -m mkdocs build --strict --quiet
 
 mutants: $(READY) ## put small faults into the code and see whether the tests notice, a night: ARGS='--part 0.1'
-	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks.mutants $(ARGS)
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m validation.tools.mutants $(ARGS)
 
 validation: $(READY) ## reproduce the paper anew: VALIDATION.md, docs/reproduced and the README's table
 	@rm -rf reproduced  # runs of an older state of the program would be taken over

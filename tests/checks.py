@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from contact1d.workflow.judging.check import Check
-from contact1d.workflow.reproduce.record import Record, StudyRecord
+from validation.judging.check import Check
+from validation.paper.record import Record, StudyRecord
 
 FORCE = Check(
     study="table1",

@@ -21,10 +21,10 @@ from matplotlib.figure import Figure
 
 from contact1d.analysis.curve import Curve
 from contact1d.analysis.pressure import Profile
-from contact1d.workflow.reproduce import fig6
-from contact1d.workflow.reproduce.fig9 import warmth
 from contact1d.workflow.runs.finished import Run, read_run
 from contact1d.workflow.scene import Scene, scene_from_dict
+from validation.paper import fig6
+from validation.paper.fig9 import warmth
 
 KEPT = Path(__file__).parents[1] / "docs" / "reproduced" / "runs.json.gz"
 DIGITS, WHOLE, SHORT = 12, 17, 200

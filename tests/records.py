@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from contact1d.workflow.judging.machine import machine
-from contact1d.workflow.judging.markdown import table
-from contact1d.workflow.judging.words import duration
+from validation.judging.machine import machine
+from validation.judging.markdown import table
+from validation.judging.words import duration
 
 SLOW = Path(__file__).parents[1] / "docs" / "slow.json"
 COMMAND = "make test ARGS='-m slow'"

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from contact1d import run
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.pair_lattice import PairLattice
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.pair_lattice import PairLattice
 from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.stability.pairs import TENSION, PairCase, reach, shaped
+from validation.hard.cases import TENSION, PairCase, reach, shaped
 
 RANGE = 0.03
 LAW = PairInteraction(Exponential(0.0024, 0.015), Exponential(0.0012, RANGE))

@@ -12,10 +12,10 @@ from typing import Any
 import pytest
 
 from contact1d import run
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.pair_lattice import PairLattice
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.pair_lattice import PairLattice
 from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.stability.pairs import TENSION, PairCase, reach, shaped
+from validation.hard.cases import TENSION, PairCase, reach, shaped
 
 LAW = PairInteraction(Exponential(0.011, 0.015), Exponential(0.01, 0.03))
 """Short against the spacing, so that a particle feels its opposite alone."""

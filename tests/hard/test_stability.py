@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from contact1d.workflow.judging.check import Check
-from contact1d.workflow.stability.case import Class, Findings, at_most
-from contact1d.workflow.stability.record import RECORD, Answer, Stability, stability_markdown
-from contact1d.workflow.stability.suite import CLASSES, NAMES, earlier, measured, written
+from validation.hard.case import Class, Findings, at_most
+from validation.hard.record import RECORD, Answer, Stability, stability_markdown
+from validation.hard.suite import CLASSES, NAMES, earlier, measured, written
+from validation.judging.check import Check
 
 FAILS: dict[str, set[str]] = {}
 """Rows that fail since the program is wrong there, by class."""

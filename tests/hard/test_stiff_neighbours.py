@@ -12,11 +12,11 @@ import pytest
 from scipy.optimize import brentq
 
 from contact1d import run
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.solver import ChainSolver
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.model import ChainModel
+from validation.references.solver import ChainSolver
 
 TOLERANCE, FORCE = 1e-2, 0.5
 ASKED: dict[str, Any] = {

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.integrate import quad
 
 from contact1d.analysis.abel import FEWEST, LineLoad, line_load
-from contact1d.analysis.reference.mdr import ReducedContact
+from validation.references.mdr import ReducedContact
 
 Array = NDArray[np.float64]
 ROUND_OFF = 1e-12

@@ -1,4 +1,4 @@
-"""`benchmarks.alternatives`: its decks are what they say, and its numbers come out."""
+"""`validation.speed.alternatives`: its decks are what they say, and its numbers come out."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.alternatives import SCENES, samplings, table_style
 from contact1d.potentials.table import Table
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.scene import Scene, read_scene
 from contact1d.workflow.settings.settings import settings_for
+from validation.speed.alternatives import SCENES, samplings, table_style
 
 
 @pytest.mark.parametrize(("style", "size"), [("linear", "8192"), ("bitmap", "13")])

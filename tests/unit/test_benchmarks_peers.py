@@ -1,4 +1,4 @@
-"""What of benchmarks/peers runs without the other solvers: the contacts, their errors, and the record's table."""
+"""What of validation/speed/peers runs without the other solvers: the contacts, their errors, and the record's table."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmarks.pages import between
-from benchmarks.peers.contacts import (
+from validation.speed.pages import between
+from validation.speed.peers.contacts import (
     A_0,
     DEPTH,
     F_A,
@@ -21,7 +21,7 @@ from benchmarks.peers.contacts import (
     law_range,
     reduced_distance,
 )  # fmt: skip
-from benchmarks.peers.table import quickest, ratios, section, write_section
+from validation.speed.peers.table import quickest, ratios, section, write_section
 
 INTERPOLATION = 1e-8  # of F_A, between 50000 radii
 ROUND_OFF = 1e-15

@@ -1,4 +1,4 @@
-"""The table of ratios of docs/performance.md is made from benchmarks/results, so that neither can drift."""
+"""The table of ratios of docs/performance.md is made from validation/speed/results, so that neither can drift."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.pages import between, write_between
-from benchmarks.ratios import HEAD, PAGE, markdown, read_results
+from validation.speed.pages import between, write_between
+from validation.speed.ratios import HEAD, PAGE, markdown, read_results
 
 MOST_ROWS = 16
 
 
 def test_the_table_of_the_page_is_what_the_results_say() -> None:
-    """Renew it with `python -m benchmarks.ratios`, or with WRITE_DOCS=1 pytest this file."""
+    """Renew it with `python -m validation.speed.ratios`, or with WRITE_DOCS=1 pytest this file."""
     made = markdown(read_results())
     if os.environ.get("WRITE_DOCS"):
         write_between(PAGE, "ratios", made)

@@ -1,4 +1,4 @@
-"""What of benchmarks/scaling.py can be said without a clock: its scenes, its counts and its verdict."""
+"""What of validation/speed/scaling.py can be said without a clock: its scenes, its counts and its verdict."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmarks.scaling import ROWS, missed, scaled_scene, spread, steps_of
 from contact1d.workflow.deck.lattice import places
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.settings.settings import settings_for
+from validation.speed.scaling import ROWS, missed, scaled_scene, spread, steps_of
 
 ROUND_OFF = 1e-12
 

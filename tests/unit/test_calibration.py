@@ -10,8 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.calibration import LADDERS, SCENES
-from benchmarks.calibration_choice import (
+from contact1d.workflow.cost.advice import TARGETS
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.settings.calibration import CALIBRATION, FILE, Calibration, calibration_of
+from contact1d.workflow.settings.settings import settings_for
+from validation.speed.pages import between
+from validation.tools.calibration import LADDERS, SCENES
+from validation.tools.calibration_choice import (
     PART,
     PROMISED,
     TOGETHER,
@@ -20,11 +25,6 @@ from benchmarks.calibration_choice import (
     chosen_values,
     read_rows,
 )
-from benchmarks.pages import between
-from contact1d.workflow.cost.advice import TARGETS
-from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.calibration import CALIBRATION, FILE, Calibration, calibration_of
-from contact1d.workflow.settings.settings import settings_for
 
 MakeScene = Callable[..., Scene]
 ROOT = Path(__file__).parents[2]
@@ -32,7 +32,7 @@ AT_ALL_TOLERANCES = 4
 
 
 def test_the_file_in_use_follows_from_the_kept_study() -> None:
-    """Renew both with `python -m benchmarks.calibration`; never by hand."""
+    """Renew both with `python -m validation.tools.calibration`; never by hand."""
     kept = json.loads(FILE.read_text(encoding="utf-8"))
     assert kept == chosen_values(read_rows())
     assert calibration_of(kept) == CALIBRATION

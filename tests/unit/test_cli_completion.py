@@ -11,8 +11,8 @@ import pytest
 
 from contact1d.workflow.cli.app import app
 from contact1d.workflow.cli.arguments import scene_files
-from contact1d.workflow.reproduce.studies import NAMES
 from contact1d.workflow.scene import EFFECTS
+from validation.paper.studies import NAMES
 
 PROGRAM = "import sys; from contact1d.workflow.cli.app import main; main()"
 

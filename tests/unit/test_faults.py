@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.faults import FAULTS, Fault
+from validation.tools.faults import FAULTS, Fault
 
 ROOT = Path(__file__).parents[2]
 

@@ -19,14 +19,14 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from contact1d.analysis.reference.slide import Trace
-from contact1d.workflow.judging.check import Check
-from contact1d.workflow.reproduce import fig9
-from contact1d.workflow.reproduce.record import read_record
-from contact1d.workflow.reproduce.studies import NAMES, STUDIES
-from contact1d.workflow.reproduce.study import Findings
 from contact1d.workflow.scene import Scene
 from tests.kept_runs import KEPT, drawn, keep, keep_figures, kept_figures, kept_paper, kept_runs, solved_once
+from validation.judging.check import Check
+from validation.paper import fig9
+from validation.paper.record import read_record
+from validation.paper.studies import NAMES, STUDIES
+from validation.paper.study import Findings
+from validation.references.slide import Trace
 
 ROOT = Path(__file__).parents[2]
 SAME = 1e-6

@@ -20,8 +20,8 @@ from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.centring import expected, left_by_centring
 from contact1d.workflow.settings.estimate import particles_estimate
 from contact1d.workflow.settings.settings import settings_for
-from contact1d.workflow.stability.pairs import ATTRACTION, LAW, REPULSION, STEEPEST
 from tests.scenes import chains
+from validation.hard.pairs import ATTRACTION, LAW, REPULSION, STEEPEST
 
 Array = NDArray[np.float64]
 RADIUS, SPACING, SPRING = 40.0, 0.8, 0.7

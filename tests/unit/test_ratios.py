@@ -13,15 +13,15 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks import deck_overhead, plain
-from benchmarks.peers.table import ratios
-from benchmarks.scaling import spread
 from contact1d.workflow.cost import per_step
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.progress import Lines
 from contact1d.workflow.scene import Scene, read_scene
 from tests.unit.test_benchmarks_peers import record
 from tests.unit.test_benchmarks_scaling import sized
+from validation.speed import deck_overhead, plain
+from validation.speed.peers.table import ratios
+from validation.speed.scaling import spread
 
 MakeScene = Callable[..., Scene]
 ROUND_OFF = 1e-12

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from contact1d.analysis.reference.adhesive_power import AdhesivePower
-from contact1d.analysis.reference.jkr import Jkr
-from contact1d.analysis.reference.mdr import ReducedContact
-from contact1d.analysis.reference.sneddon import AdhesiveCone
+from contact1d.analysis.theory.adhesive_power import AdhesivePower
+from contact1d.analysis.theory.jkr import Jkr
+from contact1d.analysis.theory.sneddon import AdhesiveCone
+from validation.references.mdr import ReducedContact
 
 E, W, R = 2.0, 0.03, 70.0
 ROUND_OFF = 1e-12

@@ -9,9 +9,10 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq, minimize_scalar
 
-from contact1d.analysis.reference import hertz, jkr, line_adhesion, winkler
-from contact1d.analysis.reference.independent_pairs import IndependentPairs
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
+from contact1d.analysis.theory import jkr, line_adhesion, winkler
+from validation.references import hertz
+from validation.references.independent_pairs import IndependentPairs
+from validation.references.interaction import Exponential, PairInteraction
 
 ROUND_OFF = 1e-12
 QUADRATURE = 1e-9

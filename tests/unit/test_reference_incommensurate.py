@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact1d.analysis.reference.incommensurate import shared_corrugation, threshold
-from contact1d.analysis.reference.prandtl_tomlinson import corrugation, slow_friction
+from validation.references.incommensurate import shared_corrugation, threshold
+from validation.references.prandtl_tomlinson import corrugation, slow_friction
 
 LAW, LOAD = (1.0, 0.5, 0.5, 1.0), 0.2
 STIFF, BELOW = 0.2, 0.06

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from contact1d.analysis.reference.mindlin import (
+from contact1d.analysis.theory.mindlin import (
     mindlin_force,
     mindlin_loop_area,
     mindlin_path,
@@ -19,7 +19,7 @@ from contact1d.analysis.reference.mindlin import (
     sliding_displacement,
     stiffness_ratio,
 )
-from contact1d.analysis.reference.spring_sliders import SpringSliders, displacement_under
+from validation.references.spring_sliders import SpringSliders, displacement_under
 
 N, MU, SLIDING = 40.0, 0.3, 0.36
 QUADRATURE = 1e-10

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from contact1d.analysis.reference.released_plate import SHARE, ReleasedPlate
+from validation.references.released_plate import SHARE, ReleasedPlate
 
 # F(d) = d² (d + 3/2) − 1/2 … a cubic with F(0) = −1/2 its minimum, F → 0⁻ at its foot d = −1, F = 0 at d = 1/2
 FOLD, FOOT = -0.5, -1.0

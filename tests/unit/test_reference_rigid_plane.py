@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.rigid_plane import contact_on_rigid_plane
-from contact1d.analysis.reference.solver import trace
-from contact1d.analysis.reference.winkler import rigid_plane_sum, winkler_force
+from contact1d.analysis.theory.winkler import rigid_plane_sum, winkler_force
+from validation.references.model import ChainModel
+from validation.references.rigid_plane import contact_on_rigid_plane
+from validation.references.solver import trace
 
 ROUND_OFF = 1e-12
 """Linear systems of at most 200 equations with a condition of at most 1e4."""

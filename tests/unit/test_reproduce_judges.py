@@ -16,15 +16,15 @@ import pytest
 
 from contact1d.analysis.curve import TANGENTIAL_COLUMNS, Curve
 from contact1d.analysis.pressure import Profile
-from contact1d.analysis.reference.line_adhesion import barquins_reduced_force
-from contact1d.analysis.reference.slide import Trace
-from contact1d.workflow.reproduce import fig9, tangential
-from contact1d.workflow.reproduce.record import read_record
-from contact1d.workflow.reproduce.studies import STUDIES
-from contact1d.workflow.reproduce.study import Study
+from contact1d.analysis.theory.line_adhesion import barquins_reduced_force
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene, read_scene
 from tests.kept_runs import solved_once
+from validation.paper import fig9, tangential
+from validation.paper.record import read_record
+from validation.paper.studies import STUDIES
+from validation.paper.study import Study
+from validation.references.slide import Trace
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 ABOUT = {

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from contact1d.workflow.judging.markdown import cell
 from contact1d.workflow.pages.parts import paragraphs, symbols
-from contact1d.workflow.reproduce.markdown import readme_table, validation_markdown
-from contact1d.workflow.reproduce.page import html_page
-from contact1d.workflow.reproduce.record import Record, StudyRecord
 from tests.checks import BOUND, FORCE, NOTHING, record
+from validation.judging.markdown import cell
+from validation.paper.markdown import readme_table, validation_markdown
+from validation.paper.page import html_page
+from validation.paper.record import Record, StudyRecord
 
 VOID = {"meta", "link", "img", "br", "hr", "input"}
 PNG = base64.b64decode(

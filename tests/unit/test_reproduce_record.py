@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from contact1d.workflow.judging.check import Check, Comparison, Verdict
-from contact1d.workflow.judging.words import duration, measured, number, printed, ratio, share, tolerance
-from contact1d.workflow.reproduce.record import RECORD, read_record
 from tests.checks import BOUND, FORCE, record
+from validation.judging.check import Check, Comparison, Verdict
+from validation.judging.words import duration, measured, number, printed, ratio, share, tolerance
+from validation.paper.record import RECORD, read_record
 
 
 @pytest.mark.parametrize(

@@ -11,17 +11,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d.analysis.reference.solver import ChainSolver
-from contact1d.workflow.judging.check import Check
-from contact1d.workflow.judging.words import agreement, limits, outcome, ratio, worst_deviation
-from contact1d.workflow.reproduce import adhesive, fig6, fig7, table1
-from contact1d.workflow.reproduce.oracles import chain_model, equilibrium_under
-from contact1d.workflow.reproduce.paper import TABLE_1
-from contact1d.workflow.reproduce.record import read_record
-from contact1d.workflow.reproduce.section2 import Case
-from contact1d.workflow.reproduce.study import Rows, warnings
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.units import Quantity
+from validation.judging.check import Check
+from validation.judging.words import agreement, limits, outcome, ratio, worst_deviation
+from validation.paper import adhesive, fig6, fig7, table1
+from validation.paper.oracles import chain_model, equilibrium_under
+from validation.paper.paper import TABLE_1
+from validation.paper.record import read_record
+from validation.paper.section2 import Case
+from validation.paper.study import Rows, warnings
+from validation.references.solver import ChainSolver
 
 KEPT = Path(__file__).parents[2] / "docs" / "reproduced" / "reproduce.json"
 CHECK = Check("study", "F_A", 1.0, 0.01, "FU", 1.001, "theory", "closed form", 0.01, "lattice")

@@ -10,14 +10,14 @@ import pytest
 
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.errors import RunError
-from contact1d.workflow.judging.machine import family, machine
-from contact1d.workflow.judging.runs import found, there
-from contact1d.workflow.reproduce import studies
-from contact1d.workflow.reproduce.paper import HALF_DIGIT, TABLE_1
-from contact1d.workflow.reproduce.record import RECORD, Record, StudyRecord, read_record
-from contact1d.workflow.reproduce.runs import finish
 from contact1d.workflow.runs.report import versions
 from tests.conftest import MakeScene
+from validation.judging.machine import family, machine
+from validation.judging.runs import found, there
+from validation.paper import studies
+from validation.paper.paper import HALF_DIGIT, TABLE_1
+from validation.paper.record import RECORD, Record, StudyRecord, read_record
+from validation.paper.runs import finish
 
 KEPT = Path(__file__).parents[2] / "docs" / "reproduced" / "reproduce.json"
 

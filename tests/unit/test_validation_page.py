@@ -11,12 +11,12 @@ import os
 from pathlib import Path
 from typing import Any
 
-from contact1d.workflow.reproduce.markdown import readme_table, validation_markdown
-from contact1d.workflow.reproduce.record import Record, read_record
-from contact1d.workflow.reproduce.studies import NAMES
-from contact1d.workflow.stability.record import RECORD, stability_markdown
-from contact1d.workflow.stability.suite import NAMES as CLASSES
 from tests.records import slow_markdown
+from validation.hard.record import RECORD, stability_markdown
+from validation.hard.suite import NAMES as CLASSES
+from validation.paper.markdown import readme_table, validation_markdown
+from validation.paper.record import Record, read_record
+from validation.paper.studies import NAMES
 
 ROOT = Path(__file__).parents[2]
 KEPT, HARD = ROOT / "docs" / "reproduced", ROOT / "docs" / "stability"

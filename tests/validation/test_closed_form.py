@@ -20,10 +20,10 @@ import numpy as np
 import pytest
 
 from contact1d import Run
-from contact1d.analysis.reference.independent_pairs import IndependentPairs
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.workflow.units import Quantity
 from tests.scenes import LAW, chains
+from validation.references.independent_pairs import IndependentPairs
+from validation.references.interaction import Exponential, PairInteraction
 
 FORCE = 2e-6
 """Relative; measured 4e-7: table, cutoff and rows, each chosen for far less than the tolerance of 1e-3."""

@@ -20,11 +20,11 @@ import pytest
 from scipy.optimize import brentq
 
 from contact1d import Run
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.pull_off import pull_off
-from contact1d.analysis.reference.solver import ChainSolver, State, trace
-from contact1d.analysis.reference.tension_radius import tension_radius
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.model import ChainModel
+from validation.references.pull_off import pull_off
+from validation.references.solver import ChainSolver, State, trace
+from validation.references.tension_radius import tension_radius
 from contact1d.workflow.continuation.outcome import Result
 from tests.scenes import chains
 

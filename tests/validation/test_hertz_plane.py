@@ -28,9 +28,9 @@ import pytest
 from numpy.typing import NDArray
 
 from contact1d import Run
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.solver import trace
-from contact1d.analysis.reference.winkler import rigid_plane_sum, winkler_force, winkler_half_width
+from validation.references.model import ChainModel
+from validation.references.solver import trace
+from contact1d.analysis.theory.winkler import rigid_plane_sum, winkler_force, winkler_half_width
 from contact1d.workflow.continuation.state import State
 from tests.scenes import chains
 

@@ -19,13 +19,13 @@ from typing import Any
 
 import pytest
 
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.pull_off import pull_off
-from contact1d.analysis.reference.solver import State
-from contact1d.analysis.reference.tension_radius import tension_radius
 from contact1d.workflow.units import Quantity
 from tests.scenes import chains
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.model import ChainModel
+from validation.references.pull_off import pull_off
+from validation.references.solver import State
+from validation.references.tension_radius import tension_radius
 
 FORCE = 2e-5
 """Relative; measured 1.2e-5: mostly the tail of the attraction beyond the automatic cutoff."""

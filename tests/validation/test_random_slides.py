@@ -18,7 +18,7 @@ from contact1d import Run, RunError, run_many
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
-from contact1d.workflow.stability.random_slides import SEED, integrated, mean_friction, random_slide
+from validation.hard.random_slides import SEED, integrated, mean_friction, random_slide
 
 TRACE = 3e-4
 """Of the peak, at a tolerance of 1e-3: the table of the law, the rest from which a slide starts."""

@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 from contact1d import Run, run
-from contact1d.analysis.reference.mdr import ReducedContact
+from validation.references.mdr import ReducedContact
 from contact1d.workflow.scene import SceneError, scene_from_dict
 
 ASKED = 0.01

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from contact1d import FolderError
-from contact1d.workflow.reproduce.studies import NAMES, reproduce
 from contact1d.workflow.runs.campaign import alone
+from validation.paper.studies import NAMES, reproduce
 
 QUICK = ("eq3", "fig4", "exponents", "table1", "mean_pressure", "tangential")
 

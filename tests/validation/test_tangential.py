@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 
 from contact1d import Run
-from contact1d.analysis.reference.mindlin import (
+from contact1d.analysis.theory.mindlin import (
     mindlin_force,
     mindlin_loop_area,
     mindlin_path,
@@ -30,7 +30,7 @@ from contact1d.analysis.reference.mindlin import (
     sliding_displacement,
     stiffness_ratio,
 )
-from contact1d.analysis.reference.spring_sliders import SpringSliders, displacement_under
+from validation.references.spring_sliders import SpringSliders, displacement_under
 
 RunTables = Callable[[dict[str, Any]], Run]
 

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from contact1d.analysis.reference.jkr import Jkr
-from contact1d.analysis.reference.mdr import ReducedContact, edge_elongation
-from contact1d.analysis.reference.sneddon import AdhesiveCone, FlatPunch
+from contact1d.analysis.theory.jkr import Jkr
+from contact1d.analysis.theory.sneddon import AdhesiveCone, FlatPunch
+from validation.references.mdr import ReducedContact, edge_elongation
 
 ROUND_OFF = 1e-12
 QUADRATURE = 1e-10

@@ -12,9 +12,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from contact1d.analysis.reference.hertz import hertz_contact_radius, hertz_force, hertz_peak_pressure
-from contact1d.analysis.reference.mdr import ReducedContact
-from contact1d.analysis.reference.sneddon import (
+from contact1d.analysis.theory.sneddon import (
     FlatPunch,
     PowerLaw,
     Sphere,
@@ -23,6 +21,8 @@ from contact1d.analysis.reference.sneddon import (
     galin_factor,
     paraboloid,
 )
+from validation.references.hertz import hertz_contact_radius, hertz_force, hertz_peak_pressure
+from validation.references.mdr import ReducedContact
 
 ROUND_OFF = 1e-12
 QUADRATURE = 1e-10

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.reference.adhesive_power import AdhesivePower
+from contact1d.analysis.theory.adhesive_power import AdhesivePower
 from contact1d.workflow.body.closed_form import Case, ClosedForm
 from contact1d.workflow.scene import Cone, FlatPunch, Parabola, Power
 
@@ -106,7 +106,7 @@ def _with_a_range(case: Case) -> str:
     """Tabor's number and what follows from it."""
     if (tabor := _tabor(case)) == 0.0 or not isinstance(case.scene.bodies.profile, Parabola):
         return ""
-    from contact1d.analysis.reference.tabor import valid_theory  # scipy's solvers take longer than a small run
+    from contact1d.analysis.theory.tabor import valid_theory  # scipy's solvers take longer than a small run
 
     verdict = valid_theory(tabor, 0.0)
     return f"a paraboloid with a range; Tabor's number is {tabor:.3g}, where {verdict.theory} holds"
@@ -114,7 +114,7 @@ def _with_a_range(case: Case) -> str:
 
 def _values_with_a_range(case: Case) -> Mapping[str, float]:
     """Maugis and Dugdale's results in the scene's units: πWR, and (πWR²/K)^{1/3} with K = 4E*/3."""
-    from contact1d.analysis.reference.maugis_dugdale import MaugisDugdale, maugis_parameter_of_tabor
+    from contact1d.analysis.theory.maugis_dugdale import MaugisDugdale, maugis_parameter_of_tabor
 
     contact = MaugisDugdale(maugis_parameter_of_tabor(_tabor(case)))
     assert case.radius is not None

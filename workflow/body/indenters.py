@@ -13,7 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.reference import sneddon
+from contact1d.analysis.theory import sneddon
 from contact1d.workflow.body.closed_form import Case, ClosedForm
 from contact1d.workflow.scene import Circle, Cone, Ellipsoid, FlatPunch, Parabola, Power
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from contact1d.analysis.reference import mindlin
+from contact1d.analysis.theory import mindlin
 from contact1d.workflow.body.closed_form import Case, ClosedForm
 from contact1d.workflow.scene import Parabola, Tangential
 

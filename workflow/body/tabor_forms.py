@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 
-from contact1d.analysis.reference.dmt import Dmt
-from contact1d.analysis.reference.jkr import Jkr
+from contact1d.analysis.theory.dmt import Dmt
+from contact1d.analysis.theory.jkr import Jkr
 from contact1d.workflow.body.closed_form import Case, ClosedForm
 from contact1d.workflow.scene import Parabola
 
@@ -83,7 +83,7 @@ def _dmt_values(case: Case) -> Mapping[str, float]:
 
 def _maugis_values(case: Case) -> Mapping[str, float]:
     """In the units of Maugis: a/(πWR²/K)^{1/3}, F/πWR."""
-    from contact1d.analysis.reference.maugis_dugdale import MaugisDugdale, maugis_parameter_of_tabor
+    from contact1d.analysis.theory.maugis_dugdale import MaugisDugdale, maugis_parameter_of_tabor
 
     mu, sphere = tabor(case), _jkr(case)
     assert mu is not None

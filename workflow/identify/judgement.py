@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from contact1d.analysis.reference.jkr import Jkr
+from contact1d.analysis.theory.jkr import Jkr
 from contact1d.workflow.identify.contact import AskedContact
 from contact1d.workflow.identify.material import LARGEST_RADIUS_SHARE
 from contact1d.workflow.identify.target import IdentifyError

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contact1d.analysis.reference.jkr import Jkr, work_of_adhesion
+from contact1d.analysis.theory.jkr import Jkr, work_of_adhesion
 from contact1d.workflow.identify.target import IdentifyError, Target, require_held
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.scene.material import PARABOLA_SHARE

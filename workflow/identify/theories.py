@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from contact1d.analysis.reference.dmt import Dmt
-from contact1d.analysis.reference.jkr import Jkr
-from contact1d.analysis.reference.maugis_dugdale import MaugisDugdale, maugis_parameter_of_tabor
-from contact1d.analysis.reference.tabor import DMT_TABOR, JKR_TABOR, Verdict, tabor_number, valid_theory
+from contact1d.analysis.theory.dmt import Dmt
+from contact1d.analysis.theory.jkr import Jkr
+from contact1d.analysis.theory.maugis_dugdale import MaugisDugdale, maugis_parameter_of_tabor
+from contact1d.analysis.theory.tabor import DMT_TABOR, JKR_TABOR, Verdict, tabor_number, valid_theory
 
 
 @dataclass(frozen=True)

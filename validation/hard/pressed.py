@@ -1,0 +1,163 @@
+"""Compression up to and past the core, and aligned pairs that buckle sideways.
+
+A pair at the distance r that repels with f is pushed sideways by f u/r for an offset u of its particles, and held by
+both springs in series, k_t/2: unstable where k_t < 2 f/r.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+from contact1d.workflow.deck.steps import Displace
+from contact1d.workflow.experiments.running.contact import Contact
+from validation.hard.case import Bench, Class, Findings, Refused, at_most, over_claim, said
+from validation.hard.figures import points_figure
+from validation.hard.opened import contact_of
+from validation.hard.pairs import CORE, LAW, PairCase, shaped
+from validation.judging.check import Check
+from validation.judging.figures import Series
+
+CORE_CLASS, BUCKLING = "core", "buckling"
+RATIO, PUNCH = 0.5, 10
+SHARES, PAST = (0.1, 0.5, 0.85), (1.02, 10.0)
+BUCKLED = (0.9, 0.98, 1.02, 1.1)
+"""Force of a pair over that at which it buckles."""
+PATIENCE = 20
+"""For a refusal [s]."""
+TANGENTIAL = 4.0
+"""Tangential stiffness [FU/LU]: a pair then buckles at a third of its core's force."""
+PUSH = 1e-5
+"""Offset that is given to the pairs [LU]."""
+
+
+def measure_core(bench: Bench, folder: Path) -> Findings:
+    """d under shares of what N cores carry over its claim; loads past that are refused in words of this program."""
+    case = PairCase("core", RATIO, shaped("flat_punch", PUNCH, 0.0), PUNCH, 0.0)
+    pairs = case.exact()
+    checks: list[Check] = []
+    drawn = []
+    for method in ("quasistatic", "dynamic"):
+        timed = PairCase("core", RATIO, case.profile, PUNCH, 0.0, 1e-3, method == "dynamic").scene()
+        for share in SHARES:
+            load = share * PUNCH * CORE
+            exact = pairs.deepest(load)
+            found = bench.run(
+                f"{method}_{share:g}", timed | {"experiment": {"kind": "load", "force": load, "method": method}}
+            )
+            over = math.nan if isinstance(found, Refused) else over_claim(found, "displacement", exact)
+            checks.append(
+                at_most(
+                    CORE_CLASS,
+                    f"d off over its claim at {share:g} of the core's force, {method}",
+                    over,
+                    1.0,
+                    "independent pairs",
+                    said("what the run claims", found),
+                )
+            )
+            drawn.append((share, max(over, 1e-6)))
+        bad, soon = 0, replace(bench, patience=PATIENCE)
+        for share in PAST:
+            load = share * PUNCH * CORE
+            found = soon.run(
+                f"{method}_{share:g}", timed | {"experiment": {"kind": "load", "force": load, "method": method}}
+            )
+            ended = "" if not isinstance(found, Refused) else found.words
+            bad += not ended or any(words in ended for words in ("LAMMPS", "time limit", "nothing was said"))
+        checks.append(
+            at_most(
+                CORE_CLASS,
+                f"loads of {PAST} core forces that are held, hang, or end in words of LAMMPS, {method}",
+                bad,
+                0.0,
+                "the core carries no more",
+                "–",
+            )
+        )
+    points_figure(
+        folder / f"{CORE_CLASS}.png",
+        [Series("runs", *np.array(drawn).T)],
+        ("load over the core's force", "error of d over its claim"),
+        bound=1.0,
+    )
+    return Findings(checks, f"{CORE_CLASS}.png", "Error over claim up to the core; dashed: the bound")
+
+
+def measure_buckling(bench: Bench, folder: Path) -> Findings:
+    """Pairs that are pushed aside a little: below the critical force they come back, above it they go on."""
+    critical = float(brentq(lambda r: 2.0 * float(LAW.force(np.array(r))) / r - TANGENTIAL, 1e-4, 0.023))
+    most = float(LAW.force(np.array(critical)))
+    checks, drawn = [], []
+    for share in BUCKLED:
+        r = float(brentq(lambda r, f=share * most: float(LAW.force(np.array(r))) - f, 1e-5, 0.0236, xtol=1e-16))
+        case = PairCase("buckling", RATIO, shaped("flat_punch", 3, 0.0), 3, 0.0)
+        d = LAW.force_free_distance() - (r - 2.0 * share * most / case.stiffness)
+        bodies = case.scene()["bodies"] | {"bulk_stiffness_tangential": TANGENTIAL}
+        tables: dict[str, Any] = case.scene() | {
+            "bodies": bodies,
+            "horizontal": {},
+            "experiment": {"kind": "path", "displacements": [d]},
+        }
+        with contact_of(tables, bench.folder / f"pushed_{share:g}") as contact:
+            offset = _pushed(contact, d)
+        stays = share < 1.0
+        value = offset / PUSH if stays else PUSH / max(offset, 1e-300)
+        words = "left of the push" if stays else "push over where it ends"
+        checks.append(
+            at_most(
+                BUCKLING,
+                f"{words}, pair at {share:g} of the force at which it buckles",
+                value,
+                0.5,
+                "k_t = 2 f/r",
+                "where the minimiser stops: some of the push",
+            )
+        )
+        drawn.append((share, max(offset / PUSH, 1e-9)))
+    points_figure(
+        folder / f"{BUCKLING}.png",
+        [Series("runs", *np.array(drawn).T)],
+        ("force over the critical one", "offset over the push"),
+        bound=1.0,
+        log="y",
+    )
+    return Findings(checks, f"{BUCKLING}.png", "What becomes of a small push sideways; dashed: nothing")
+
+
+def _pushed(contact: Contact, d: float) -> float:
+    """How far particles are in the end from where they stood aligned at the displacement d [LU], after a push.
+
+    Sideways or in height: pairs that buckle may slip past each other until they are aligned again.
+    """
+    contact.begin("loading")
+    moves = math.ceil(d / contact.settings.longest_move)
+    for i in range(moves):  # in one move they would pass each other
+        contact.row(Displace(d * (i + 1) / moves))
+    contact.finish()
+    before = contact.session.atoms("x")["x"][:6]
+    contact.session.execute(f"displace_atoms upper move {PUSH!r} 0 0 units box\n", phase="pushed")
+    contact.session.execute("min_style fire\nminimize 0.0 1e-13 20000 20000\n")
+    return float(np.max(np.abs(contact.session.atoms("x")["x"][:6] - before)))
+
+
+CLASSES = (
+    Class(
+        CORE_CLASS,
+        "Compression up to and past the core",
+        "The core is finite: beyond its force one body goes through the other, and what comes then is no contact.",
+        measure_core,
+    ),
+    Class(
+        BUCKLING,
+        "Buckling of aligned chains",
+        "Opposite particles under load stand on their heads: exact symmetry keeps them there in a program that never "
+        "pushes, although they are unstable.",
+        measure_buckling,
+    ),
+)

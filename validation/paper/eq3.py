@@ -1,0 +1,237 @@
+"""Section 2: the contact without adhesion, as Geike and Popov reduce it and as the MDR does, in SI beside Hertz.
+
+    geike_popov   two equal spheres R:  U = (4√2 G/15(1−ν)) √(R d⁵)  (Eq. 1),  c_n = G/2(1−ν)  (Eq. 3)
+    mdr           a sphere R on a half space, profile x²/R:  U = (8/15) E* √(R d⁵),  springs E*
+
+Both from the sum over springs of LAMMPS runs on a rigid plane (`section2`).
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from contact1d.analysis.theory import sneddon
+from contact1d.workflow.scene import Reduction, Scene
+from validation.judging.check import Check
+from validation.judging.figures import save
+from validation.judging.runs import found
+from validation.judging.words import agreement, number, share
+from validation.paper.figures import ReductionPanel, reductions_figure
+from validation.paper.section2 import (
+    BASE,
+    DEPTH,
+    EDGE,
+    EXPONENT,
+    FORCE_UNIT,
+    LENGTH_UNIT,
+    PUNCH,
+    REDUCTIONS,
+    SHAPES,
+    SLOPE,
+    SWEEPS,
+    WORDS,
+    claimed,
+    energy,
+    rate_cases,
+    ratio,
+    scenes,
+    shape_scene,
+    sweep,
+)
+from validation.paper.study import Findings, Rows, Runs, Study
+from validation.references import hertz
+
+LATTICE = "lattice: the edge lies anywhere between two particles; the run's claim"
+BY_CHANCE = "the bound is that of the worst place of the edge between two particles, and here it lies well"
+LEVEL = "tip and edge lie alike between particles, so that their errors cancel"
+TABLE_STEP = 1.0
+"""Of the tabulated shape c r⁴ [LU]: the slopes of monotone cubics are off by 5 c r step², heights by 0.1 step of it."""
+NAMED = {"reduction": "the row is about the reduction itself, and names it"}
+"""Why a row stands beside the warning of a run that chose the paper's reduction."""
+EXACT = "the claim is for any profile; between particles a parabola, a power or an even end is met exactly"
+
+
+def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
+    """Every sweep by its worst run, the rates, half-widths, the factor of Eq. (2), and the other shapes."""
+    row = Rows("eq3", runs)
+    over_hertz: list[Check] = []
+    rest: list[Check] = []
+    for reduction in REDUCTIONS:
+        for name in SWEEPS:
+            over_hertz += _sweep_checks(row, reduction, name)
+        rest += [*_rate_checks(row, reduction), _width_check(row, reduction)]
+    factors = _factor_checks(row)
+    shapes = [check for kind in SHAPES for check in _shape_checks(row, kind)]
+    drawn = _drawn_cone(row)
+    save(reductions_figure([_panel(reduction, runs) for reduction in REDUCTIONS]), folder / "eq3.png")
+    worst = max(
+        abs(ratio(case, runs[case.name], what)[0] - 1.0)
+        for reduction in REDUCTIONS
+        for name in SWEEPS
+        for case in sweep(reduction, name)
+        for what in ("force", "energy")
+    )
+    widths = [check for check in rest if "half-width" in check.name]
+    orders = [check for check in rest if "order" in check.name]
+    finding = (
+        f"Force and energy of both reductions are Hertz's within {share(worst)} over two decades "
+        f"of displacement and radius: {agreement(over_hertz)}. They converge with the orders "
+        f"{number(orders[0].value, 3)} and {number(orders[1].value, 3)} in the spacing: {agreement(orders)}. The sum "
+        "over "
+        f"the springs is {number(factors[1].value / factors[1].reference, 4)} times what Eq. (2) has as printed: with "
+        "its 2√2/15 the stiffness of Eq. (3) would not follow; 8√2/15 is what it needs.\n\nThe reduction of the paper "
+        f"has {number(widths[0].value, 4)} times the contact radius of the two spheres, that of the MDR "
+        f"{number(widths[1].value, 4)} times. The former holds for a parabola: a cone taken as it is drawn has "
+        f"{number(drawn.value, 4)} times its force. The transform of the MDR has force, displacement and radius of "
+        f"{len(SHAPES)} other shapes: {agreement(shapes)}. All this is without adhesion; with it see the last study."
+    )
+    return Findings(
+        finding,
+        [*over_hertz, *rest, *factors, *shapes, drawn],
+        {"eq3.png": "Force over displacement of both reductions beside Hertz, and error of the force over the spacing"},
+    )
+
+
+def _sweep_checks(row: Rows, reduction: Reduction, name: str) -> list[Check]:
+    """Of the runs in which one value changes the one that is farthest off for what its lattice allows."""
+    cases = sweep(reduction, name)
+    checks = []
+    for what, source in (("force", "F = dU/dd"), ("energy", "Eq. (1)")):
+        found_here = [(ratio(case, row.runs[case.name], what), case.off(what)) for case in cases]
+        (value, claim), bound = max(found_here, key=lambda one: abs(one[0][0] - 1.0) / (one[0][1] + one[1]))
+        checks.append(
+            row(f"{what} over Hertz's, worst of {len(cases)} for its lattice: "
+                f"{WORDS[name]} ({reduction})", value, claim, "1", 1.0,
+                f"Hertz in SI, {source}", "closed form", bound + claim, LATTICE, on=[case.name for case in cases],
+                despite=NAMED, wide=BY_CHANCE, standing="repeats" if name == "R" else "judged")
+        )  # fmt: skip
+    return checks
+
+
+def _rate_checks(row: Rows, reduction: Reduction) -> list[Check]:
+    """Fitted orders; their uncertainty is that of the fit and of the runs, δp = Σ |c_i| claim_i/error_i."""
+    cases = rate_cases(reduction)
+    spacing = np.log([case.values["h"] for case in cases])
+    weight = np.abs(spacing - spacing.mean()) / float(np.sum((spacing - spacing.mean()) ** 2))
+    checks = []
+    for what, order, first in (("force", 2.0, "first"), ("energy", 4.0, "third")):
+        values, claims = np.array([ratio(case, row.runs[case.name], what) for case in cases]).T
+        errors = np.abs(values - 1.0)
+        fitted, covariance = np.polyfit(spacing, np.log(errors), 1, cov=True)
+        spread = float(np.sqrt(covariance[0, 0]) + weight @ (claims / errors))
+        checks.append(
+            row(f"order of convergence of the {what} in the spacing ({reduction})", float(fitted[0]), spread, "1",
+                order, f"Euler and Maclaurin: the first derivative at the edge that does not vanish is the {first}",
+                "closed form", 0.0, "residual forces of the minimisation: the series of a parabola ends here",
+                on=[case.name for case in cases], despite=NAMED, comparison="uncertainty",
+                wide="the claim takes each run at its worst, and a sum over springs in place leaves round-off")
+        )  # fmt: skip
+    return checks
+
+
+def _width_check(row: Rows, reduction: Reduction) -> Check:
+    case = rate_cases(reduction)[-1]
+    R, _ = case.sphere()
+    twice = reduction == "geike_popov"
+    radius = row.runs[case.name].document["image_largest_radius" if twice else "largest_radius"]["si"]
+    hertzian = float(hertz.hertz_contact_radius(case.values["d"] * LENGTH_UNIT, R))
+    return row(
+        f"half-width over Hertz's contact radius ({reduction})", radius["value"] / hertzian,
+        radius["uncertainty"] / hertzian, "1", 2.0 if twice else 1.0,
+        "closed form of the springs, √(2Rd) beside √(Rd/2)" if twice else "the MDR's transform keeps the radius",
+        "closed form", 0.0, "round-off, residual forces", on=[case.name], despite=NAMED,
+        comparison="uncertainty", wide=EXACT,
+    )  # fmt: skip
+
+
+def _factor_checks(row: Rows) -> list[Check]:
+    """The factor of Eq. (2), beside the integral and beside the print."""
+    case = sweep("geike_popov", "h")[-1]
+    scene, run = case.scene(), row.runs[case.name]
+    layer = scene.bulk_stiffness / scene.bodies.spacing * FORCE_UNIT / LENGTH_UNIT**2
+    scale = layer * math.sqrt(case.values["R"] * LENGTH_UNIT * (case.values["d"] * LENGTH_UNIT) ** 5)
+    value, claim = energy(case, run) / scale, ratio(case, run, "energy")[1]
+    share_off, printed = case.off("energy") + claim, 2.0 * math.sqrt(2.0) / 15.0
+    name = "factor in U = factor · c_n √(R d^5), Eq. (2)"
+    return [
+        row(name, value, value * claim, "1", 4.0 * printed, "integral over the springs, 8√2/15", "closed form",
+            share_off, LATTICE, on=[case.name], despite=NAMED, paper=printed, standing="repeats", wide=BY_CHANCE),
+        row(f"{name}, as printed", value, value * claim, "1", printed, "Eq. (2) of the paper, 2√2/15: a misprint",
+            "printed value", share_off, LATTICE, on=[case.name], despite=NAMED, paper=printed, differs=True),
+    ]  # fmt: skip
+
+
+def _indenter(kind: str, modulus: float) -> sneddon.PowerLaw | sneddon.Sphere:
+    if kind == "circle":
+        return sneddon.Sphere(200.0, modulus)
+    return sneddon.cone(SLOPE, modulus) if kind == "cone" else sneddon.PowerLaw(2.0 / 40.0**EXPONENT, EXPONENT, modulus)
+
+
+def _shape_checks(row: Rows, kind: str) -> list[Check]:
+    """Force and radius of a shape beside Sneddon or Galin, in model units."""
+    scene, name = shape_scene(kind), f"eq3_shape_{kind}"
+    run, h = row.runs[name], scene.bodies.spacing
+    modulus = scene.bulk_stiffness / h
+    if kind == "flat_punch":
+        force, radius, lattice = float(sneddon.FlatPunch(PUNCH, modulus).force(DEPTH)), PUNCH, 0.0
+    else:
+        indenter = _indenter(kind, modulus)
+        radius = float(indenter.contact_radius(DEPTH))
+        force = float(indenter.force(radius))
+        step = 1e-4 * radius
+        slope = float(indenter.force(radius + step) - indenter.force(radius - step)) / (2.0 * step)
+        edges = 2.0 if kind == "cone" else 1.0  # its tip is as much of an edge
+        lattice = edges * h**2 / 6.0 * slope / (2.0 * radius) / force
+    source = "Galin, r^4" if kind in ("power", "table") else "Sneddon"
+    words = {"table": "table of 81 points of r^4", "power": "power r^4"}.get(kind, kind.replace("_", " "))
+    between = 0.5 * 2.0 / 40.0**EXPONENT * radius * TABLE_STEP**3 / DEPTH if kind == "table" else 0.0
+    limit = f"points of the table, 1 LU apart; {LATTICE}" if kind == "table" else LATTICE
+    ours, width = found(run, "largest_force"), found(run, "largest_radius")
+    return [
+        row(f"force of a {words} (mdr)", ours.value, ours.uncertainty, "FU", force, source, "closed form",
+            lattice + between + claimed(run, "largest_force"), limit, on=[name], wide=BY_CHANCE),
+        row(f"contact radius of a {words} (mdr)", width.value, width.uncertainty, "LU", radius, source, "closed form",
+            0.0, limit, on=[name], comparison="uncertainty", wide=EXACT,
+            standing="by construction" if kind == "flat_punch" else "judged"),
+    ]  # fmt: skip
+
+
+def _drawn_cone(row: Rows) -> Check:
+    """Two equal cones as drawn, F = (E*/2) d²/s, over Sneddon's E* d²/πs for both together (slope 2s)."""
+    name, scene = "eq3_shape_cone_as_drawn", shape_scene("cone", "geike_popov")
+    cone = sneddon.cone(2.0 * SLOPE, 2.0 * scene.bulk_stiffness / scene.bodies.spacing)
+    expected = float(cone.force(cone.contact_radius(DEPTH)))
+    ours = found(row.runs[name], "largest_force")
+    return row(
+        "force of two equal cones as drawn over Sneddon's (geike_popov)", ours.value / expected,
+        ours.uncertainty / expected, "1", 0.5 * math.pi,
+        "closed form of the springs: the reduction as drawn is for parabolas only", "closed form",
+        (BASE["h"] * SLOPE / DEPTH) ** 2 / 3.0 + claimed(row.runs[name], "largest_force"), LATTICE, on=[name],
+        despite=NAMED, wide=LEVEL,
+    )  # fmt: skip
+
+
+def _panel(reduction: Reduction, runs: Runs) -> ReductionPanel:
+    cases, rates = sweep(reduction, "d"), rate_cases(reduction)
+    return ReductionPanel(
+        reduction,
+        np.array([case.values["d"] * LENGTH_UNIT for case in cases]),
+        np.array([case.force * ratio(case, runs[case.name], "force")[0] for case in cases]),
+        np.array([case.force for case in cases]),
+        np.array([case.values["h"] / EDGE for case in rates]),
+        np.array([abs(ratio(case, runs[case.name], "force")[0] - 1.0) for case in rates]),
+    )
+
+
+STUDY_EQ3 = Study(
+    "eq3",
+    "Section 2: normal contact without adhesion",
+    "The elastic energy of two spheres, Eq. (1), is that of a curved layer of independent springs, Eq. (2), if the "
+    "layer's stiffness per length is c_n = G/2(1 − ν), Eq. (3): both contacts then have the same force at every "
+    "displacement.",
+    scenes,
+    judge,
+)
