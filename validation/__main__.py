@@ -1,4 +1,4 @@
-"""`python -m validation paper|hard`: in a checkout, since nothing of this is installed."""
+"""`python -m validation paper|hard|speed`, in a checkout: nothing of this is installed."""
 
 from __future__ import annotations
 
@@ -7,43 +7,76 @@ from typing import Annotated
 
 import typer
 
-from contact1d.workflow.cli.ending import CALL_IS_WRONG, FAILS, RUN_FAILED, command, stop
+from validation.doors import FolderError
 
 app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__)
+ROOT = Path(__file__).parents[1]
+RESULTS = Path(__file__).parent / "results"
+FAILS, CALL_IS_WRONG = 1, 2
 Only = Annotated[list[str] | None, typer.Option(metavar="NAME", help="One study, as often as needed.")]
-Workers = Annotated[int | None, typer.Option(min=1, help="At a time; as many as there are processors.")]
+Out = Annotated[Path | None, typer.Option(help="Folder for record, figures and runs; finished runs are reused.")]
+Full = Annotated[bool, typer.Option("--full", help="The long form: hours in place of minutes.")]
+Workers = Annotated[int | None, typer.Option(min=1, help="At a time.", show_default="processors")]
 
 
 @app.command()
-def paper(only: Only = None, out: Path = Path("reproduced"), workers: Workers = None) -> None:
+def paper(only: Only = None, out: Out = None, full: Full = False, workers: Workers = None) -> None:
     """Every quantitative statement of the paper, beside the printed value and beside theory. Exit code 1: a row fails."""
-    with command("the reproduction", kept=f"finished runs are kept in {out}", blame=RUN_FAILED) as progress:
-        from validation.judging.words import outcome
-        from validation.paper.studies import NAMES, PAGE, reproduce
+    from validation.paper import STUDIES
 
-        for name in only or ():
-            if name not in NAMES:
-                stop(f"--only {name}: no such study; there are {', '.join(NAMES)}", CALL_IS_WRONG)
-        record = reproduce(out, only or (), workers, progress)
-    typer.echo(f"{outcome(record.checks)}, in {record.wall_s:.0f} s; {out / PAGE}")
-    if record.failed:
-        raise typer.Exit(FAILS)
+    _conduct(STUDIES, out or Path("reproduced"), only, full, workers)
 
 
 @app.command()
-def hard(only: Only = None, full: bool = False, out: Path = Path("stability"), workers: Workers = None) -> None:
-    """Hard cases, each against a bound from theory or from an independent solver. Exit code 1: a row fails."""
-    with command("the suite", kept=f"finished runs are kept in {out}", blame=RUN_FAILED) as progress:
-        from validation.hard.record import TABLE
-        from validation.hard.suite import NAMES, stability
+def hard(only: Only = None, out: Out = None, full: Full = False, workers: Workers = None) -> None:
+    """Hard cases, each against a bound that is not the program's own. Exit code 1: a row fails."""
+    from validation.hard import STUDIES
 
-        for name in only or ():
-            if name not in NAMES:
-                stop(f"--only {name}: no such class; there are {', '.join(NAMES)}", CALL_IS_WRONG)
-        record = stability(out, only or (), full, workers, progress)
-    count = len(record.checks)
-    typer.echo(f"{count - len(record.failed)} of {count} rows pass, in {record.wall_s:.0f} s; {out / TABLE}")
-    if record.failed:
+    _conduct(STUDIES, out or Path("stability"), only, full, workers)
+
+
+@app.command()
+def speed(only: Only = None, out: Out = None, full: Full = False, workers: Workers = 1) -> None:
+    """Times side by side in one run, one study after the other. Exit code 1: an asked figure is not reached."""
+    from validation.speed import STUDIES
+
+    _conduct(STUDIES, out or Path("speed"), only, full, workers)
+
+
+@app.command()
+def pages() -> None:
+    """VALIDATION.md, the tables and the README's table from the records in validation/results."""
+    from validation.page import readme_table, summary, tables_page, write_between
+    from validation.study import read_record
+
+    records = {name: read_record(RESULTS / f"{name}.json") for name in ("paper", "hard")}
+    (ROOT / "VALIDATION.md").write_text(summary(records["paper"], records["hard"]), encoding="utf-8")
+    (RESULTS / "tables.md").write_text(tables_page(records.values()), encoding="utf-8")
+    write_between(ROOT / "README.md", "reproduced", readme_table(records["paper"]))
+
+
+def _conduct(studies: object, out: Path, only: list[str] | None, full: bool, workers: int | None) -> None:
+    from validation.page import agreement, duration, number
+    from validation.study import RECORD, Study, conduct
+
+    assert isinstance(studies, tuple)
+    chosen: tuple[Study, ...] = studies
+    try:
+        record = conduct(chosen, out, only or (), full, workers, typer.echo)
+    except KeyError as error:
+        typer.echo(f"--only {error}: no such study; there are {', '.join(one.name for one in chosen)}", err=True)
+        raise typer.Exit(CALL_IS_WRONG) from None
+    except FolderError as error:
+        typer.echo(str(error), err=True)
+        raise typer.Exit(CALL_IS_WRONG) from None
+    for answer in record.answers:
+        typer.echo(f"{answer.name:<16} {agreement(answer.rows)}, in {duration(answer.wall_s)}")
+        for row in answer.rows:
+            if row.verdict == "FAIL":
+                found, wanted = number(row.value), number(row.reference.value)
+                typer.secho(f"  FAIL {row.name}: {found} {row.unit}, {wanted}", fg="red")
+    typer.echo(f"{agreement(record.rows)}; {out / RECORD}")
+    if any(row.verdict == "FAIL" for row in record.rows):
         raise typer.Exit(FAILS)
 
 

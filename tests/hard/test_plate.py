@@ -17,7 +17,7 @@ from contact1d.workflow.experiments import planned
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import chains
-from validation.hard.pairs import TENSION, PairCase, reach, shaped
+from validation.hard.cases import TENSION, PairCase, reach, shaped
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
 from validation.references.pull_off import pull_off

@@ -21,7 +21,7 @@ from contact1d.workflow.settings.centring import expected, left_by_centring
 from contact1d.workflow.settings.estimate import particles_estimate
 from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import chains
-from validation.hard.pairs import ATTRACTION, LAW, REPULSION, STEEPEST
+from validation.hard.cases import ATTRACTION, LAW, REPULSION, STEEPEST
 
 Array = NDArray[np.float64]
 RADIUS, SPACING, SPRING = 40.0, 0.8, 0.7

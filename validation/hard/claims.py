@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from contact1d.workflow.runs.finished import Run
-from validation.hard.case import LONGEST, Refused, at_most
-from validation.judging.check import Check
-from validation.judging.figures import Series
+from validation.doors import Run
+from validation.figures import Series
+from validation.row import Row, at_most
+from validation.study import LONGEST, Refused
 
 INSIDE = 0.95
 """Share of the numbers that is to be within its claim, and of the scenes that is to run."""
@@ -67,7 +67,7 @@ class Tally:
             return
         self.errors += errors_of(scene, found, exact, slack)
 
-    def checks(self, kind: str, source: str) -> list[Check]:
+    def checks(self, kind: str, source: str) -> list[Row]:
         """The three rows of a kind of scenes."""
         count, numbers = sum(self.scenes.values()), len(self.errors)
         outside = [e for e in self.errors if not e.over_claim <= 1.0]
@@ -76,7 +76,6 @@ class Tally:
         refused = next(iter(self.refused.values()), "–")
         return [
             at_most(
-                kind,
                 f"share of {numbers} numbers of {count} scenes ({groups}) outside of their claim",
                 len(outside) / numbers if numbers else float("nan"),
                 1.0 - INSIDE,
@@ -84,7 +83,6 @@ class Tally:
                 _worst(outside),
             ),
             at_most(
-                kind,
                 f"of {numbers} numbers, those outside of the tolerance without a warning that names them",
                 len(silent),
                 0.0,
@@ -92,7 +90,6 @@ class Tally:
                 _worst(silent),
             ),
             at_most(
-                kind,
                 f"share refused of {count} scenes that the reference carries",
                 len(self.refused) / count if count else float("nan"),
                 1.0 - INSIDE,

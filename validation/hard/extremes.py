@@ -7,19 +7,16 @@ motion stretches; and a rigid plane carries F = k Σ max(0, d − h_i).
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
-from contact1d.analysis.theory.winkler import rigid_plane_sum
-from validation.hard.case import Bench, Class, Findings, Refused, at_most, over_claim, said
-from validation.hard.figures import points_figure
-from validation.hard.pairs import TENSION, PairCase, shaped
-from validation.judging.check import Check
-from validation.judging.figures import Series
-from validation.judging.runs import found as result
+from validation.figures import Panel, Series, figure
+from validation.hard.cases import TENSION, PairCase, shaped
+from validation.row import Row, at_most
+from validation.study import Bench, Findings, Refused, Study, over_claim, said
+from validation.study import found as result
 
 NAME = "extremes"
 RADII = (1.0, 1e3, 1e6, 1e9)
@@ -35,17 +32,16 @@ WIDTH = 10.3
 RATIO, PUNCH = 0.3, 10
 
 
-def measure(bench: Bench, folder: Path) -> Findings:
+def measure(bench: Bench) -> Findings:
     """One row for each extreme; a refusal before anything runs is an answer where the row says so."""
-    checks: list[Check] = []
+    checks: list[Row] = []
     for radius in RADII:
         d = WIDTH**2 / radius
         places = np.arange(-30.0, 31.0)
-        exact = rigid_plane_sum(d, places, 0.5 * radius, 0.5)
+        exact = 0.5 * float(np.sum(np.maximum(0.0, d - places**2 / radius)))
         off = _on_plane(bench, f"radius_{radius:g}", {"kind": "parabola", "radius": radius}, 61, d, exact)
         checks.append(
             at_most(
-                NAME,
                 f"force on a plane off, R = {radius:g} LU",
                 off,
                 PLANE,
@@ -58,7 +54,6 @@ def measure(bench: Bench, folder: Path) -> Findings:
         off = _on_plane(bench, f"count_{count}", punch, count, 0.1, 0.5 * 0.1 * count)
         checks.append(
             at_most(
-                NAME,
                 f"force on a plane off, N = {count}",
                 off,
                 PLANE,
@@ -69,10 +64,13 @@ def measure(bench: Bench, folder: Path) -> Findings:
     checks.append(_too_few(bench))
     drawn = [_masses(bench, checks)]
     drawn += [_springs(bench, checks, kind) for kind in ("neighbour", "tangential")]
-    points_figure(
-        folder / f"{NAME}.png", drawn, ("plate over particle mass, or stiffness over k", "error over claim"), bound=1.0
+    return Findings(
+        checks,
+        figure(
+            "Error over claim far from the usual numbers; dashed: the bound",
+            Panel("plate over particle mass, or stiffness over k", "error over claim", drawn, log="xy", bound=1.0),
+        ),
     )
-    return Findings(checks, f"{NAME}.png", "Error over claim far from the usual numbers; dashed: the bound")
 
 
 def _on_plane(bench: Bench, name: str, profile: dict[str, Any], count: int, d: float, exact: float) -> float:
@@ -92,7 +90,7 @@ def _on_plane(bench: Bench, name: str, profile: dict[str, Any], count: int, d: f
     return math.nan if isinstance(found, Refused) else abs(result(found, "largest_force").value / exact - 1.0)
 
 
-def _too_few(bench: Bench) -> Check:
+def _too_few(bench: Bench) -> Row:
     """A body of one particle or two has no width that could be measured: a sentence before anything runs."""
     wrong = 0
     for count in REFUSED_COUNTS:
@@ -100,10 +98,10 @@ def _too_few(bench: Bench) -> Check:
         found = bench.run(f"few_{count}", case.scene())
         wrong += not (isinstance(found, Refused) and found.before and "bodies.particles" in found.words)
     name = f"scenes of N in {REFUSED_COUNTS} that run, or end without naming bodies.particles"
-    return at_most(NAME, name, wrong, 0.0, "three particles make the least width", "–", "set bound")
+    return at_most(name, wrong, 0.0, "three particles make the least width", evidence="set bound")
 
 
-def _masses(bench: Bench, checks: list[Check]) -> Series:
+def _masses(bench: Bench, checks: list[Row]) -> Series:
     case = PairCase("masses", RATIO, shaped("flat_punch", PUNCH, 0.0), PUNCH, 0.0, 1e-3, dynamic=True)
     load = 0.5 * PUNCH * TENSION
     exact = case.exact().deepest(load)
@@ -117,7 +115,6 @@ def _masses(bench: Bench, checks: list[Check]) -> Series:
         found.append((mass, over))
         checks.append(
             at_most(
-                NAME,
                 f"d under a load off over its claim, plate of {mass:g} particle masses",
                 over,
                 1.0,
@@ -128,7 +125,7 @@ def _masses(bench: Bench, checks: list[Check]) -> Series:
     return Series("mass of the plate", *np.array([(m, max(o, 1e-6)) for m, o in found if o == o]).T)
 
 
-def _springs(bench: Bench, checks: list[Check], kind: str) -> Series:
+def _springs(bench: Bench, checks: list[Row], kind: str) -> Series:
     """F_A of a punch with neighbour springs; d of it under a tension with another stiffness along x."""
     case = PairCase("springs", RATIO, shaped("flat_punch", PUNCH, 0.0), PUNCH, TENSION)
     load = -0.5 * PUNCH * TENSION
@@ -151,7 +148,6 @@ def _springs(bench: Bench, checks: list[Check], kind: str) -> Series:
         found.append((factor, over))
         checks.append(
             at_most(
-                NAME,
                 f"{name} of a punch off over its claim, {kind} springs of {factor:g} k",
                 over,
                 1.0,
@@ -162,7 +158,7 @@ def _springs(bench: Bench, checks: list[Check], kind: str) -> Series:
     return Series(f"{kind} springs", *np.array([(f, max(o, 1e-6)) for f, o in found if o == o]).T)
 
 
-EXTREMES = Class(
+EXTREMES = Study(
     NAME,
     "Stiffness ratios 1e-6 to 1e6, radii to 1e9, 1 to 10⁶ particles, plate masses 1e-3 to 1e9",
     "Where numbers are far apart one of them is lost in the other's rounding, a time step is chosen for the wrong one, "

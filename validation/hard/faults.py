@@ -12,11 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
-from contact1d.workflow.scene import scene_from_dict, scene_to_toml
-from validation.hard.case import Bench, Class, Findings, at_most
-from validation.hard.figures import points_figure
-from validation.hard.opened import LAW
-from validation.judging.figures import Series
+from validation.doors import scene_from_dict, scene_to_toml
+from validation.figures import Panel, Series, figure
+from validation.hard.cases import PAPER_LAW
+from validation.row import at_most
+from validation.study import Bench, Findings, Study
 
 NAME = "faults"
 COMMAND = (sys.executable, "-m", "contact1d.workflow.cli.app", "run")
@@ -31,14 +31,14 @@ SCENE = {
         "profile": {"kind": "parabola", "radius": 1000.0},
         "bulk_stiffness": 0.83,
     },
-    "interaction": LAW,
+    "interaction": PAPER_LAW,
     "neighbours": {"stiffness": 0.3},
     "horizontal": {},
     "experiment": {"kind": "pull_off", "method": "quasistatic", "preload": 1.0},
 }
 
 
-def measure(bench: Bench, folder: Path) -> Findings:
+def measure(bench: Bench) -> Findings:
     """All three kinds; the reference is the same run undisturbed, whose phases and files are those of the others."""
     scene = bench.folder / "scene.toml"
     scene.write_text(scene_to_toml(scene_from_dict(SCENE)), encoding="utf-8")
@@ -49,11 +49,9 @@ def measure(bench: Bench, folder: Path) -> Findings:
     moments = [(phases.index(line) + 1, "", f'at "{line.split(":")[0]}"') for line in dict.fromkeys(phases)]
     moments += [(0, name, f"when {name} appears") for name in (sizes if bench.full else [RESULTS])]
     checks = [
-        at_most(
-            NAME, f"killed {words}: a torn results.json, or another F_A when it is run again in that folder",
+        at_most(f"killed {words}: a torn results.json, or another F_A when it is run again in that folder",
             _killed(scene, bench.folder / f"killed_{index}_{name}", index, name, undisturbed), 0.0,
-            "the same scene undisturbed, to the last digit", "–", "set bound",
-        )
+            "the same scene undisturbed, to the last digit", evidence="set bound")
         for index, name, words in moments
     ]  # fmt: skip
     codes = []
@@ -64,30 +62,26 @@ def measure(bench: Bench, folder: Path) -> Findings:
         bad = code not in CODES or "Traceback" in words or (code == 0 and _force(run) != undisturbed)
         codes.append((most, code))
         checks.append(
-            at_most(
-                NAME, f"disk full at the last byte of {name}: a traceback, another exit code than 0, 2, 3, another F_A",
-                float(bad), 0.0, f"exit 0, 2 or 3 and no traceback; it is {code}", "–", "set bound",
-            )
+            at_most(f"disk full at the last byte of {name}: a traceback, another exit code than 0, 2, 3, another F_A",
+                float(bad), 0.0, f"exit 0, 2 or 3 and no traceback; it is {code}", evidence="set bound")
         )  # fmt: skip
     checks.append(
         at_most(
-            NAME,
             "second run in a folder at work that is not refused with exit 2",
             _second(scene, bench),
             0.0,
             "one run for each folder",
-            "–",
-            "set bound",
+            evidence="set bound",
         )
     )
     x, y = np.array(codes, dtype=float).T
-    points_figure(
-        folder / f"{NAME}.png",
-        [Series("disk full", x + 1.0, y)],
-        ("bytes that a file may have", "exit code"),
-        log="x",
+    return Findings(
+        checks,
+        figure(
+            "Exit code where no file may grow beyond so many bytes",
+            Panel("bytes that a file may have", "exit code", [Series("disk full", x + 1.0, y)], log="x"),
+        ),
     )
-    return Findings(checks, f"{NAME}.png", "Exit code where no file may grow beyond so many bytes")
 
 
 def _killed(scene: Path, run: Path, lines: int, file: str, undisturbed: float | None) -> float:
@@ -167,7 +161,7 @@ def _second(scene: Path, bench: Bench) -> float:
     return float(code != 2 or "Traceback" in words or _force(run) is None)
 
 
-FAULTS = Class(
+FAULTS = Study(
     NAME,
     "Killed, disk full, two runs in one folder",
     "A run that was cut off must not leave a number, or a folder in which the next run ends otherwise.",

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from contact1d.workflow.deck.steps import Displace
-from contact1d.workflow.experiments.running.contact import Contact
-from validation.hard.case import Bench, Class, Findings, at_most
-from validation.hard.figures import points_figure
-from validation.hard.opened import BODIES, LAW, contact_of
-from validation.judging.figures import Series
+from validation.doors import Contact, Displace, contact_of
+from validation.figures import Panel, Series, figure
+from validation.hard.cases import BODIES, PAPER_LAW
 from validation.references.interaction import Floats
+from validation.row import at_most
+from validation.study import Bench, Findings, Study
 
 NAME = "forces"
 STEP = 1e-4
@@ -21,7 +19,12 @@ STEP = 1e-4
 ALLOWED, EXACT = 1e-4, 1e-6
 """Of the largest force: with a table the tolerance of the scene, which its law may be off by; else the differences."""
 PATH: dict[str, Any] = {"kind": "path", "displacements": [0.02]}
-PARTICLES: dict[str, Any] = {"bodies": BODIES, "interaction": LAW, "experiment": PATH, "accuracy": {"tolerance": 1e-4}}
+PARTICLES: dict[str, Any] = {
+    "bodies": BODIES,
+    "interaction": PAPER_LAW,
+    "experiment": PATH,
+    "accuracy": {"tolerance": 1e-4},
+}
 SHEARED = BODIES | {"bulk_stiffness_tangential": 0.6}
 PLANE = {"particles": 12, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 40.0}, "bulk_stiffness": 0.83}
 DECKS: dict[str, dict[str, Any]] = {
@@ -38,7 +41,7 @@ DECKS: dict[str, dict[str, Any]] = {
 }
 
 
-def measure(bench: Bench, folder: Path) -> Findings:
+def measure(bench: Bench) -> Findings:
     """Every particle of each deck in each free direction, and the plate."""
     checks, drawn = [], []
     for words, tables in DECKS.items():
@@ -53,7 +56,6 @@ def measure(bench: Bench, folder: Path) -> Findings:
         allowed = ALLOWED if "interaction" in tables else EXACT
         checks.append(
             at_most(
-                NAME,
                 f"force on a particle off over the largest, worst of {force.size}, {words}",
                 off,
                 allowed,
@@ -63,7 +65,6 @@ def measure(bench: Bench, folder: Path) -> Findings:
         )
         checks.append(
             at_most(
-                NAME,
                 f"force on the plate off over the largest, {words}",
                 abs(plate[0] - plate[1]) / scale,
                 EXACT,
@@ -72,8 +73,13 @@ def measure(bench: Bench, folder: Path) -> Findings:
             )
         )
         drawn.append(Series(words, np.abs(slope), np.maximum(np.abs(force - slope) / scale, 1e-12)))
-    points_figure(folder / f"{NAME}.png", drawn, ("force by differences (FU)", "error over the largest"), bound=ALLOWED)
-    return Findings(checks, f"{NAME}.png", "Error of the force on each particle")
+    return Findings(
+        checks,
+        figure(
+            "Error of the force on each particle",
+            Panel("force by differences (FU)", "error over the largest", drawn, log="xy", bound=ALLOWED),
+        ),
+    )
 
 
 def _stir(contact: Contact) -> None:
@@ -120,7 +126,7 @@ def _forces(contact: Contact) -> tuple[Floats, Floats, tuple[float, float]]:
     return force.ravel(), slopes.ravel(), (reading.values[0], slope("plate", 2))
 
 
-FORCES = Class(
+FORCES = Study(
     NAME,
     "Forces of a whole deck",
     "Each fragment may be right alone and wrong together: a bond type taken for another, an excluded pair, an anchor "

@@ -1,7 +1,7 @@
 """Friction and adhesion on the rigid plane: no friction and endless friction, no way, no load, edges, few particles.
 
 A chain on a plane is a row of springs of its own, so that every number has an exact sum beside it: springs whose ends
-slide, s_i <- clip(s_i + k_t du, ±μ f_i), particle by particle in plain numbers (`analysis.reference.spring_sliders`).
+slide, s_i <- clip(s_i + k_t du, ±μ f_i), particle by particle in plain numbers (`references.spring_sliders`).
 Mindlin's and JKR's closed forms judge the claims of random scenes (`plane_scenes`).
 """
 
@@ -10,20 +10,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from contact1d.analysis.theory.jkr import Jkr
-from contact1d.analysis.theory.winkler import rigid_plane_sum
-from contact1d.workflow.runs.finished import Run
+from validation.doors import Run
+from validation.figures import Panel, figure
 from validation.hard import plane_scenes
-from validation.hard.case import Bench, Class, Findings, Refused, at_most, said, worst
-from validation.hard.figures import points_figure
-from validation.judging.check import Check
-from validation.judging.runs import found as result
+from validation.references.indenters import jkr
 from validation.references.spring_sliders import SpringSliders
+from validation.row import Row, at_most, worst
+from validation.study import Bench, Findings, Refused, Study, said
+from validation.study import found as result
 
 NAME = "friction"
 RADIUS, NORMAL, TANGENTIAL, MU, DEPTH = 1000.0, 1.0, 0.8, 0.3, 0.9
@@ -135,7 +133,7 @@ def refusals() -> list[tuple[str, dict[str, Any]]]:
 def _adhesive(scale: float, work: float = ENERGY) -> dict[str, Any]:
     """A pull-off of the same body; energies × `scale`."""
     bodies = Way("adhesive", [(DEPTH, 0.0)], scale=(1.0, scale)).scene()["bodies"]
-    preload = Jkr(RADIUS, NORMAL, ENERGY).pull_off_force() * scale
+    preload = jkr(RADIUS, NORMAL, ENERGY).pull_off_force() * scale
     return {
         "bodies": bodies,
         "adhesion": {"work_of_adhesion": work * scale},
@@ -149,29 +147,28 @@ def _limited() -> dict[str, Any]:
     return bodies | {"profile": {"kind": "circle", "radius": RADIUS}}
 
 
-def measure(bench: Bench, folder: Path) -> Findings:
+def measure(bench: Bench) -> Findings:
     """Rows for each way, refusals, adhesion, and the claims of random scenes."""
-    checks: list[Check] = []
+    checks: list[Row] = []
     for number, way in enumerate(ways(bench.full)):
         run = bench.run(f"way_{number}", way.scene())
         bound = EXACT if way.scale == (1.0, 1.0) else EQUAL
         limit = said("round-off of a history", run)
-        checks.append(at_most(NAME, f"{way.name}: F_x and work off, over μF_N", way.off(run), bound, SUM, limit))
+        checks.append(at_most(f"{way.name}: F_x and work off, over μF_N", way.off(run), bound, SUM, limit))
     for number, (name, scene) in enumerate(refusals()):
         answer = bench.run(f"refused_{number}", scene)
         silent = 0.0 if isinstance(answer, Refused) and answer.before else 1.0
         limit = said("a number where there is none", answer)
-        checks.append(at_most(NAME, f"{name}: not refused before it ran", silent, 0.0, "–", limit, "set bound"))
+        checks.append(at_most(f"{name}: not refused before it ran", silent, 0.0, "–", limit, "set bound"))
     checks += adhesive_checks(bench)
     tally = plane_scenes.tally(bench)
     checks += tally.checks(NAME, "Galin, Mindlin, Maugis and Barquins")
     labels = ("share of the numbers", "error over the claim")
-    points_figure(folder / f"{NAME}.png", tally.series(), labels, bound=1.0, log="y")
     caption = "Errors over claims of random scenes on the plane, in order; dashed: the bound"
-    return Findings(checks, f"{NAME}.png", caption)
+    return Findings(checks, figure(caption, Panel(*labels, tally.series(), log="y", bound=1.0)))
 
 
-def adhesive_checks(bench: Bench) -> list[Check]:
+def adhesive_checks(bench: Bench) -> list[Row]:
     """W = 0 is Hertz's sum; with energies scaled F_A is JKR's as nearly as it is without."""
     checks = []
     path = {"kind": "path", "displacements": [-0.1, 0.0, 0.1, DEPTH, 0.2, -0.1]}
@@ -179,10 +176,10 @@ def adhesive_checks(bench: Bench) -> list[Check]:
     off = math.nan
     if not isinstance(run, Refused):
         x, curve = run.profiles["final"].x, run.curve
-        exact = [rigid_plane_sum(max(d, 0.0), x, 0.5 * RADIUS, NORMAL) for d in curve.displacement]
+        exact = [NORMAL * float(np.sum(np.maximum(0.0, d - x**2 / RADIUS))) for d in curve.displacement]
         off = float(np.abs(np.asarray(curve.force) - exact).max() / max(exact))
     limit = said("round-off", run)
-    checks.append(at_most(NAME, "W = 0: F(d) off, over the largest", off, EXACT, "the sum over particles", limit))
+    checks.append(at_most("W = 0: F(d) off, over the largest", off, EXACT, "the sum over particles", limit))
     base = bench.run("energies_1", _adhesive(1.0))
     for factor in SCALES:
         other = bench.run(f"energies_{factor:g}", _adhesive(factor))
@@ -190,11 +187,11 @@ def adhesive_checks(bench: Bench) -> list[Check]:
         if not isinstance(other, Refused) and not isinstance(base, Refused):
             off = abs(result(other, "adhesion_force").value / factor / result(base, "adhesion_force").value - 1.0)
         limit = said("rounding", other)
-        checks.append(at_most(NAME, f"F_A/e off, energies × {factor:g}", off, EQUAL, "the same, not scaled", limit))
+        checks.append(at_most(f"F_A/e off, energies × {factor:g}", off, EQUAL, "the same, not scaled", limit))
     return checks
 
 
-FRICTION = Class(
+FRICTION = Study(
     NAME,
     "Friction and adhesion on the rigid plane",
     "A history is lost where a load goes and comes, drifts over many cycles, and is another one where a particle is on "

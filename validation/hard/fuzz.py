@@ -13,21 +13,15 @@ import re
 import warnings
 from collections import Counter
 from dataclasses import dataclass, field
-from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
 
-from contact1d.files import write_whole
-from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.errors import RunError
-from contact1d.workflow.experiments import planned
-from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.scene import SceneError, read_scene
-from contact1d.workflow.settings.settings import SettingsError, settings_for
-from validation.hard.case import Bench, Class, Findings, LateError, at_most, at_most_seconds
-from validation.hard.figures import points_figure
-from validation.judging.figures import Series
+from validation import doors
+from validation.doors import RunError, SceneError, SettingsError, read_scene, write_whole
+from validation.figures import Panel, Series, figure
+from validation.row import at_most
+from validation.study import Bench, Findings, LateError, Study, at_most_seconds
 
 NAME = "fuzz"
 QUICK, FULL = 2_000, 20_000
@@ -38,29 +32,31 @@ PIECE = 1000
 SLOW, RUN, HANGS = 10, 60, 600
 """Seconds of work for a scene to become a deck or a sentence, of LAMMPS in a run, and of the clock for what hangs."""
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
-VALUES = (
-    "0",
-    "-1",
-    "1e-300",
-    "1e300",
-    "1e20",
-    "1e-6",
-    "1e6",
-    "nan",
-    "inf",
-    "-inf",
-    "true",
-    '"auto"',
-    '"x"',
-    "[]",
-    "{}",
-    "3",
-    "1e-3",
-    "0.5",
-    "2.0",
-    "1000000",
-    "10.0",
-    "7",
+VALUES = tuple(
+    [
+        "0",
+        "-1",
+        "1e-300",
+        "1e300",
+        "1e20",
+        "1e-6",
+        "1e6",
+        "nan",
+        "inf",
+        "-inf",
+        "true",
+        '"auto"',
+        '"x"',
+        "[]",
+        "{}",
+        "3",
+        "1e-3",
+        "0.5",
+        "2.0",
+        "1000000",
+        "10.0",
+        "7",
+    ]
 )
 SPOILT = "\"'[]{}=#.,\\\0é\n -"
 
@@ -78,7 +74,7 @@ class Ends:
         self.said = other.said | self.said
 
 
-def measure(bench: Bench, folder: Path) -> Findings:
+def measure(bench: Bench) -> Findings:
     """How many scenes end how; one row for each way that must not be. A piece that is there is not made again."""
     count = FULL if bench.full else QUICK
     ends = Ends()
@@ -88,12 +84,12 @@ def measure(bench: Bench, folder: Path) -> Findings:
             write_whole(path, json.dumps(vars(_piece(bench.folder, seed))))
         kept = json.loads(path.read_text(encoding="utf-8"))
         ends.add(Ends(Counter(kept["counts"]), kept["said"]))
-    return _findings(ends, count, folder)
+    return _findings(ends, count)
 
 
 def _piece(folder: Path, seed: int) -> Ends:
     """PIECE scenes of one seed; the first that ends in each way is kept as a file."""
-    sources = [path.read_text(encoding="utf-8") for path in _scenes()]
+    sources = [path.read_text(encoding="utf-8") for path in sorted(doors.shipped("scenes").glob("*.toml"))]
     draw, found, decks = random.Random(seed), Ends(), 0
     path = folder / "scene.toml"
     for _ in range(PIECE):
@@ -107,13 +103,12 @@ def _piece(folder: Path, seed: int) -> Ends:
     return found
 
 
-def _findings(found: Ends, count: int, folder: Path) -> Findings:
+def _findings(found: Ends, count: int) -> Findings:
     ends, said = found.counts, found.said
     bad = {end: found for end, found in ends.items() if end.startswith("a traceback")}
     worst = "; ".join(f"{found} × {said[end]}" for end, found in bad.items())
     checks = [
         at_most(
-            NAME,
             f"tracebacks of {count} random scenes",
             sum(bad.values()),
             0.0,
@@ -122,23 +117,26 @@ def _findings(found: Ends, count: int, folder: Path) -> Findings:
             "set bound",
         ),
         at_most(
-            NAME,
             f"of {count} random scenes, those that are neither deck nor sentence after {SLOW} s",
             ends["late"],
             0.0,
             "a deck, a result or a sentence",
-            "–",
-            "set bound",
+            evidence="set bound",
         ),
     ]
     names = sorted(ends)
-    points_figure(
-        folder / f"{NAME}.png",
-        [Series(f"{i}: {name}"[:60], np.array([i]), np.array([ends[name]])) for i, name in enumerate(names)],
-        ("end", "scenes"),
-        log="y",
+    return Findings(
+        checks,
+        figure(
+            "How many random scenes end how",
+            Panel(
+                "end",
+                "scenes",
+                [Series(f"{i}: {name}"[:60], np.array([i]), np.array([ends[name]])) for i, name in enumerate(names)],
+                log="y",
+            ),
+        ),
     )
-    return Findings(checks, f"{NAME}.png", "How many random scenes end how")
 
 
 def edited(text: str, draw: random.Random) -> str:
@@ -170,11 +168,10 @@ def _become(path: Path, folder: Path, go_on: bool) -> tuple[str, str]:
             warnings.simplefilter("error")
             with at_most_seconds(SLOW, of_processor=True):
                 scene = read_scene(path)
-                settings = settings_for(scene)
-                Deck(scene, settings).text(planned(scene, settings))
+                doors.deck_text(scene)
             if go_on:
                 with at_most_seconds(HANGS):
-                    run(scene, folder, figures=False, time_limit=RUN)
+                    doors.run(scene, folder, RUN)
                 return "ran", ""
     except (SceneError, SettingsError) as error:
         return "a sentence", str(error)
@@ -187,12 +184,7 @@ def _become(path: Path, folder: Path, go_on: bool) -> tuple[str, str]:
     return "a deck", ""
 
 
-def _scenes() -> list[Path]:
-    folder = Path(str(files("contact1d.lammps_inputs"))) / "scenes"
-    return sorted(folder.glob("*.toml"))
-
-
-FUZZ = Class(
+FUZZ = Study(
     NAME,
     "Random edits of scenes",
     "What nobody thought of.",

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 from scipy.optimize import brentq
 
-from validation.hard.case import Bench, Class, Findings, Refused, at_most, over_claim, warned
-from validation.hard.figures import points_figure
-from validation.hard.pairs import PairCase, reach, shaped
-from validation.judging.check import Check
-from validation.judging.figures import Series
-from validation.judging.runs import found as result
+from validation.figures import Panel, Series, figure
+from validation.hard.cases import PairCase, reach, shaped
+from validation.row import Reference, Row, absolute, at_most
+from validation.study import Bench, Findings, Refused, Study, over_claim
+from validation.study import found as result
 
 NAME = "loads"
 RATIO, PARTICLES, TOLERANCE = 0.5, 41, 1e-3
@@ -34,11 +31,11 @@ def _case(method: str, share: float) -> PairCase:
     )
 
 
-def measure(bench: Bench, folder: Path) -> Findings:
+def measure(bench: Bench) -> Findings:
     """d under each load below F_A over its claim, the exponent of d − d_cr, and what becomes of loads above."""
     pairs = _case("quasistatic", 0.0).exact()
     largest, place = pairs.adhesion(0.0)
-    checks: list[Check] = []
+    checks: list[Row] = []
     drawn = []
     for method in METHODS:
         shares, ways, off = [], [], []
@@ -50,12 +47,11 @@ def measure(bench: Bench, folder: Path) -> Findings:
             load = -largest * (1.0 - share)
             exact = float(brentq(lambda d, f=load: float(pairs.unloading(d, 0.05)) - f, place, 0.02, xtol=1e-15))
             over = over_claim(found, "displacement", exact)
-            off.append(0.0 if share < TOLERANCE and warned(found) and over > 1.0 else over)
+            off.append(0.0 if share < TOLERANCE and found.warnings and over > 1.0 else over)
             shares.append(share)
             ways.append(result(found, "displacement").value - place)
         checks += [
             at_most(
-                NAME,
                 f"d off over its claim under (1 − {share:g}) F_A, {method}; within the tolerance of F_A a "
                 "named warning does as well",
                 value,
@@ -69,18 +65,11 @@ def measure(bench: Bench, folder: Path) -> Findings:
         x, y = np.log(np.array(known or [(1.0, 1.0)])).T
         slope = float("nan") if len(known) < 2 else float(np.polyfit(x, y, 1)[0])
         checks.append(
-            Check(
-                NAME,
+            Row(
                 f"exponent of d − d_cr over 1 − F/F_A, {method}",
                 slope,
-                0.0,
-                "1",
-                0.5,
-                "the fold: square root",
-                "closed form",
-                EXPONENT,
-                "next term of the fold",
-                "absolute",
+                Reference(0.5, "the fold: square root"),
+                absolute(EXPONENT, "next term of the fold"),
             )
         )
         drawn.append(Series(method, np.array(shares), np.maximum(np.array(ways), 1e-12)))
@@ -90,8 +79,13 @@ def measure(bench: Bench, folder: Path) -> Findings:
         float(pairs.unloading(place + 1e-4, 0.05)) + float(pairs.unloading(place - 1e-4, 0.05)) + 2 * largest
     ) / 1e-8
     law = Series("square root", near, np.sqrt(2.0 * near * largest / curvature))
-    points_figure(folder / f"{NAME}.png", drawn, ("$1 - F/F_A$", "$d - d_{cr}$ (LU)"), [law])
-    return Findings(checks, f"{NAME}.png", "Way from the fold over the distance from F_A")
+    return Findings(
+        checks,
+        figure(
+            "Way from the fold over the distance from F_A",
+            Panel("$1 - F/F_A$", "$d - d_{cr}$ (LU)", drawn, [law], log="xy"),
+        ),
+    )
 
 
 def _scene(method: str, force: float) -> dict[str, object]:
@@ -99,7 +93,7 @@ def _scene(method: str, force: float) -> dict[str, object]:
     return case.scene() | {"experiment": {"kind": "load", "method": method, "force": force}}
 
 
-def _above(bench: Bench, method: str, largest: float) -> list[Check]:
+def _above(bench: Bench, method: str, largest: float) -> list[Row]:
     held, silent = 0, 0
     for share in ABOVE:
         held += not isinstance(
@@ -107,11 +101,10 @@ def _above(bench: Bench, method: str, largest: float) -> list[Check]:
         )
     for share in UNSURE:
         found = bench.run(f"{method}_above_{share:g}", _scene(method, -largest * (1.0 + share)))
-        silent += not isinstance(found, Refused) and not warned(found)
+        silent += not isinstance(found, Refused) and not found.warnings
     said = f"independent pairs: F_A = {largest:.6g} FU"
     return [
         at_most(
-            NAME,
             f"loads held of (1 + {ABOVE[0]:g}) and (1 + {ABOVE[1]:g}) F_A, {method}",
             held,
             0.0,
@@ -119,7 +112,6 @@ def _above(bench: Bench, method: str, largest: float) -> list[Check]:
             "beyond the tolerance there is no state",
         ),
         at_most(
-            NAME,
             f"loads held without a warning of (1 + 1e-4 … 1e-5) F_A, {method}",
             silent,
             0.0,
@@ -129,7 +121,7 @@ def _above(bench: Bench, method: str, largest: float) -> list[Check]:
     ]
 
 
-LOADS = Class(
+LOADS = Study(
     NAME,
     "Loads of (1 ± 1e-5 … 1e-2) F_A",
     "The stiffness of the contact goes to zero with the square root of what is left of F_A, so that a small error of "

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 
-from contact1d.workflow.runs.finished import Run
-from validation.hard.case import Bench, Class, Findings, Refused, at_most, over_claim, said
-from validation.hard.figures import points_figure
-from validation.hard.pairs import ATTRACTION, PairCase, reach, shaped
-from validation.judging.check import Check
-from validation.judging.figures import Series
+from validation.doors import Run
+from validation.figures import Panel, Series, figure
+from validation.hard.cases import ATTRACTION, PairCase, reach, shaped
 from validation.references.folded_pairs import FoldedPairs
 from validation.references.interaction import Floats
+from validation.row import Reference, Row, absolute, at_most
+from validation.study import Bench, Findings, Refused, Study, over_claim, said
 
 NAME = "loops"
 RATIOS, FULL_RATIOS = (1.5, 10.0), (1.1, 1.5, 3.0, 10.0, 30.0)
@@ -31,9 +29,9 @@ NEAR = 1e-3
 """A row this near to a snap, over the width of a row, may be on either side of it."""
 
 
-def measure(bench: Bench, folder: Path) -> Findings:
+def measure(bench: Bench) -> Findings:
     """Both widths of rows for each ratio."""
-    checks: list[Check] = []
+    checks: list[Row] = []
     drawn: list[Series] = []
     lines: list[Series] = []
     for ratio in FULL_RATIOS if bench.full else RATIOS:
@@ -61,11 +59,16 @@ def measure(bench: Bench, folder: Path) -> Findings:
                     )
                 ]
         checks.append(_beside_snaps(bench, ratio))
-    points_figure(folder / f"{NAME}.png", drawn, ("displacement (LU)", "force (FU)"), lines, log="")
-    return Findings(checks, f"{NAME}.png", f"A loop at ratio {RATIOS[0]:g}: every row of the run on the closed form")
+    return Findings(
+        checks,
+        figure(
+            f"A loop at ratio {RATIOS[0]:g}: every row of the run on the closed form",
+            Panel("displacement (LU)", "force (FU)", drawn, lines),
+        ),
+    )
 
 
-def _beside_snaps(bench: Bench, ratio: float) -> Check:
+def _beside_snaps(bench: Bench, ratio: float) -> Row:
     """Equal pairs at rows just before and just behind each of their two snaps, there and back."""
     case = PairCase("snaps", ratio, shaped("flat_punch", PUNCH, 0.0), PUNCH, 0.0, SHARP)
     pairs = case.exact()
@@ -81,13 +84,13 @@ def _beside_snaps(bench: Bench, ratio: float) -> Check:
         exact = np.concatenate([pairs.loading(d[:6]), pairs.unloading(d[6:], there[-1])])
         value = float(np.max(np.abs(force - exact))) / float(np.max(np.abs(exact)))
     name = f"force off over the largest, worst row {SIDE:g} of the range beside snap-in and snap-off, ratio {ratio:g}"
-    return at_most(NAME, name, value, SHARP, "independent pairs with their folds", said("where a pair snaps", found))
+    return at_most(name, value, SHARP, "independent pairs with their folds", said("where a pair snaps", found))
 
 
-def _rows(words: str, found: Run | Refused, pairs: FoldedPairs) -> list[Check]:
+def _rows(words: str, found: Run | Refused, pairs: FoldedPairs) -> list[Row]:
     source = "independent pairs with their folds"
     if isinstance(found, Refused):
-        return [at_most(NAME, f"path, {words}", float("nan"), 0.0, source, said("–", found))]
+        return [at_most(f"path, {words}", float("nan"), 0.0, source, said("–", found))]
     curve = found.curve
     d, force = np.asarray(curve.displacement), np.asarray(curve.force)
     back = int(np.argmax(d)) + 1
@@ -100,25 +103,22 @@ def _rows(words: str, found: Run | Refused, pairs: FoldedPairs) -> list[Check]:
         for values in (force, exact)
     )
     rows = [
-        at_most(NAME, f"force off over the largest, worst row, {words}", off, FORCE, source, "the tolerance asked for"),
-        Check(
-            NAME,
+        at_most(f"force off over the largest, worst row, {words}", off, FORCE, source, "the tolerance asked for"),
+        Row(
             f"area of the loop, {words}",
             area,
-            0.0,
-            "FU·LU",
-            true,
-            source + ", at the same rows",
-            "closed form",
-            FORCE * max(abs(true), scale * abs(float(d[1] - d[0]))),
-            "the tolerance asked for, of the area or, where rows miss the loop, of a force over a row",
-            "absolute",
+            Reference(true, source + ", at the same rows"),
+            absolute(
+                FORCE * max(abs(true), scale * abs(float(d[1] - d[0]))),
+                "the tolerance asked for, of the area or, where rows miss the loop, of a force over a row",
+            ),
+            unit="FU·LU",
         ),
     ]
     if "adhesion_force" in found.results:
         largest = -float(np.min(pairs.unloading(np.linspace(float(d[-1]), DEEPEST, 20000), DEEPEST)))
         over = over_claim(found, "adhesion_force", largest)
-        rows.append(at_most(NAME, f"F_A of the path off over its claim, {words}", over, 1.0, source, "what is claimed"))
+        rows.append(at_most(f"F_A of the path off over its claim, {words}", over, 1.0, source, "what is claimed"))
     return rows
 
 
@@ -134,7 +134,7 @@ def _snap_distance(d: Floats, pairs: FoldedPairs) -> Floats:
     return np.asarray(np.min(np.abs(d[:, None] - places[None, :]), axis=1))
 
 
-LOOPS = Class(
+LOOPS = Study(
     NAME,
     "Snap-in, snap-off and the area of the loop",
     "A path with rows as wide as the range steps over the places where particles snap: if they are left in the wrong "

@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from validation.hard.case import Bench, Class, Findings, at_most
-from validation.hard.figures import points_figure
-from validation.hard.opened import LAW, contact_of
+from validation.doors import contact_of
+from validation.figures import Panel, Series, figure
+from validation.hard.cases import PAPER_LAW
 from validation.hard.statistics import SIGMAS, block_mean, chi_square_bound
-from validation.judging.check import Check
-from validation.judging.figures import Series
 from validation.references.interaction import Floats
+from validation.row import Reference, Row, at_most, claim
+from validation.study import Bench, Findings, Study
 
 MODES = "modes"
 TEMPERATURE, STIFFNESS, NEIGHBOURS, MASS, DAMPING = 0.01, 0.83, 0.3, 1.0, 1.5
@@ -25,7 +25,7 @@ PARTICLES, APART, INTERVAL = 20, 30.0, 3.0
 PLATE_MASS = 5.0
 
 
-def measure_modes(bench: Bench, folder: Path) -> Findings:
+def measure_modes(bench: Bench) -> Findings:
     """Variances of all modes of both chains far apart, and of the plate's velocity under a load."""
     samples = 4000 if bench.full else 800
     moved, velocity = _sampled(bench.folder / "modes", samples, 0.0)
@@ -41,43 +41,33 @@ def measure_modes(bench: Bench, folder: Path) -> Findings:
     source, limit = "equipartition: κ_q ⟨q²⟩ = kT", f"statistics: {samples} samples"
     checks = [
         at_most(
-            MODES,
             f"variance of a mode off over its standard error, worst of {PARTICLES}",
             float(sigmas.max()),
             SIGMAS,
             source,
             limit,
         ),
-        at_most(
-            MODES, f"χ² of the variances of all {PARTICLES} modes", off, chi_square_bound(PARTICLES), source, limit
-        ),
+        at_most(f"χ² of the variances of all {PARTICLES} modes", off, chi_square_bound(PARTICLES), source, limit),
     ]
     for words, speeds in (("no drag of its own", velocity), ('damping = "auto"', dragged)):
         kinetic, spread = block_mean(speeds[:, None] ** 2 * PLATE_MASS / TEMPERATURE)
         checks.append(
-            Check(
-                MODES,
+            Row(
                 f"M ⟨V²⟩/kT of the plate, {words}",
                 float(kinetic[0]),
-                SIGMAS * float(spread[0]),
-                "1",
-                1.0,
-                "equipartition: M ⟨V²⟩ = kT",
-                "closed form",
-                0.0,
-                limit + ", 4 standard errors",
-                "uncertainty",
+                Reference(1.0, "equipartition: M ⟨V²⟩ = kT"),
+                claim(limit + ", 4 standard errors"),
+                uncertainty=SIGMAS * float(spread[0]),
             )
         )
     exact = Series("kT", stiffness, np.ones(PARTICLES))
-    points_figure(
-        folder / f"{MODES}.png",
-        [Series("run", stiffness, ratio)],
-        ("stiffness of the mode", "κ⟨q²⟩/kT"),
-        [exact],
-        log="x",
+    return Findings(
+        checks,
+        figure(
+            "Energy of each mode over kT/2",
+            Panel("stiffness of the mode", "κ⟨q²⟩/kT", [Series("run", stiffness, ratio)], [exact], log="x"),
+        ),
     )
-    return Findings(checks, f"{MODES}.png", "Energy of each mode over kT/2")
 
 
 def _sampled(folder: Path, samples: int, drag: float | str) -> tuple[Floats, Floats]:
@@ -90,7 +80,7 @@ def _sampled(folder: Path, samples: int, drag: float | str) -> tuple[Floats, Flo
             "bulk_stiffness": STIFFNESS,
             "mass": MASS,
         },
-        "interaction": LAW,
+        "interaction": PAPER_LAW,
         "neighbours": {"stiffness": NEIGHBOURS},
         "damping": {"coefficient": DAMPING},
         "noise": {"temperature": TEMPERATURE, "seed": 20},
@@ -113,7 +103,7 @@ def _sampled(folder: Path, samples: int, drag: float | str) -> tuple[Floats, Flo
     return np.array(moved), np.array(velocity)
 
 
-EQUIPARTITION = Class(
+EQUIPARTITION = Study(
     MODES,
     "Equipartition of every mode and of the plate",
     "A thermostat may have the right mean temperature and the wrong share for one mode.",

@@ -14,18 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-from contact1d.workflow.engine.session import EngineError, Session
-from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
-from validation.hard.case import Bench, Class, Findings, at_most
-from validation.hard.figures import points_figure
-from validation.hard.opened import BODIES, LAW, contact_of
-from validation.judging.check import Check
-from validation.judging.figures import Series
+from validation.doors import EngineError, Session, contact_of, scene_from_dict, settings_for
+from validation.figures import Panel, Series, figure
+from validation.hard.cases import BODIES, PAPER_LAW
 from validation.references.energy import EnergySurface
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
 from validation.references.solver import ChainSolver
+from validation.row import Reference, Row, absolute, at_most
+from validation.study import Bench, Findings, Study
 
 NAME = "motion"
 SHARES = (0.1, 0.5, 0.9, 0.99, 0.999)
@@ -40,12 +37,12 @@ TIME_STEPS = (0.08, 0.04, 0.02)
 ORDER = 0.1
 """Of the order 2: the next term in Δt is the fourth power."""
 LOOKS = 400
-TIMED: dict[str, Any] = {"damping": {"coefficient": 0.5}, "interaction": LAW, "bodies": BODIES}
+TIMED: dict[str, Any] = {"damping": {"coefficient": 0.5}, "interaction": PAPER_LAW, "bodies": BODIES}
 PATH: dict[str, Any] = {"experiment": {"kind": "path", "method": "dynamic", "displacements": [0.05]}}
 LOADED: dict[str, Any] = {"plate": {}, "experiment": {"kind": "load", "force": 1.0}}
 
 
-def measure(bench: Bench, folder: Path) -> Findings:
+def measure(bench: Bench) -> Findings:
     """Oscillators, energy, and the program's own time step against the stiffest motion of the independent solver."""
     checks = [_oscillator(bench.folder, share) for share in SHARES]
     checks += _beyond(bench.folder)
@@ -53,36 +50,32 @@ def measure(bench: Bench, folder: Path) -> Findings:
     fitted = float(np.polyfit(np.log(TIME_STEPS), np.log(swings), 1)[0])
     count = 10**6 if bench.full else 10**5
     checks.append(
-        Check(
-            NAME,
+        Row(
             "order of the swing of the energy in Δt, no damping",
             fitted,
-            0.0,
-            "1",
-            2.0,
-            "velocity Verlet",
-            "closed form",
-            ORDER,
-            "next order",
-            "absolute",
+            Reference(2.0, "velocity Verlet"),
+            absolute(ORDER, "next order"),
         )
     )
     checks.append(
         at_most(
-            NAME,
             f"drift of the energy over its swing, {count:g} steps without damping",
             drift,
             1.0,
             "velocity Verlet is symplectic: no drift",
             "sampling of the swing",
-            "closed form",
         )
     )
     checks += [_time_step(tables, words) for words, tables in (("", {}), (", neighbours 100 k", _stiff(83.0)))]
     dt = np.array(TIME_STEPS)
     law = Series("Δt²", dt, swings[0] * (dt / dt[0]) ** 2)
-    points_figure(folder / f"{NAME}.png", [Series("swing", dt, np.array(swings))], ("Δt (TU)", "energy (FU·LU)"), [law])
-    return Findings(checks, f"{NAME}.png", "Swing of the energy without damping over the time step")
+    return Findings(
+        checks,
+        figure(
+            "Swing of the energy without damping over the time step",
+            Panel("Δt (TU)", "energy (FU·LU)", [Series("swing", dt, np.array(swings))], [law], log="xy"),
+        ),
+    )
 
 
 def _stiff(stiffness: float) -> dict[str, Any]:
@@ -103,7 +96,7 @@ def _heights(session: Session) -> NDArray[np.float64]:
     return session.atoms("x")["x"][:24, 2]
 
 
-def _oscillator(folder: Path, share: float) -> Check:
+def _oscillator(folder: Path, share: float) -> Row:
     omega = math.sqrt(0.83)
     step = 2.0 * share / omega
     with contact_of(TIMED | PATH, folder / f"verlet_{share:g}", time_step=step) as contact:
@@ -114,7 +107,6 @@ def _oscillator(folder: Path, share: float) -> Check:
     angle = math.acos(1.0 - 0.5 * (2.0 * share) ** 2)
     off = float(np.max(np.abs(moved / AMPLITUDE - math.cos(STEPS * angle))))
     return at_most(
-        NAME,
         f"place over the amplitude off after {STEPS} steps, ωΔt = {2 * share:g}",
         off,
         EXACT,
@@ -123,7 +115,7 @@ def _oscillator(folder: Path, share: float) -> Check:
     )
 
 
-def _beyond(folder: Path) -> list[Check]:
+def _beyond(folder: Path) -> list[Row]:
     """Past the limit: it grows as it must, and a run that goes on ends in one sentence."""
     step, few = 2.0 * BEYOND / math.sqrt(0.83), 10
     words, moved = "", math.nan
@@ -141,21 +133,14 @@ def _beyond(folder: Path) -> list[Check]:
     said = float(not words or "\n" in words or "Traceback" in words)
     return [
         at_most(
-            NAME,
-            f"growth off after {few} steps, ωΔt = {2 * BEYOND:g}",
-            off,
-            EXACT,
-            "x_n = (−1)ⁿ A cosh(nκ)",
-            "round-off",
+            f"growth off after {few} steps, ωΔt = {2 * BEYOND:g}", off, EXACT, "x_n = (−1)ⁿ A cosh(nκ)", "round-off"
         ),
         at_most(
-            NAME,
             f"a run at ωΔt = {2 * BEYOND:g} that ends otherwise than in a sentence",
             said,
             0.0,
             "no number from what flies apart",
-            "–",
-            "set bound",
+            evidence="set bound",
         ),
     ]
 
@@ -188,11 +173,11 @@ def _energy(folder: Path, step: float, steps: int, looks: int) -> Any:
     return np.array(energy)
 
 
-def _time_step(more: dict[str, Any], words: str) -> Check:
+def _time_step(more: dict[str, Any], words: str) -> Row:
     """ωΔt/2 of the time step that the program chooses, ω from the solver's Hessian under the load."""
     tables = TIMED | LOADED | more
     step = settings_for(scene_from_dict({"title": "time step"} | tables)).time_step
-    law = PairInteraction(Exponential(**LAW["repulsion"]), Exponential(**LAW["attraction"]))
+    law = PairInteraction(Exponential(**PAPER_LAW["repulsion"]), Exponential(**PAPER_LAW["attraction"]))
     neighbours = more.get("neighbours", {"stiffness": 0.0})["stiffness"]
     model = ChainModel(12, 0.83, law, radius=40.0, neighbour_stiffness=neighbours)
     solver = ChainSolver(model)
@@ -208,17 +193,15 @@ def _time_step(more: dict[str, Any], words: str) -> Check:
         dense[rows + offset, rows] = dense[rows, rows + offset] = band[offset, : rows.size]
     omega = math.sqrt(float(eigh(dense, eigvals_only=True)[-1]))
     return at_most(
-        NAME,
         f"ωΔt/2 of the chosen time step under load{words}",
         0.5 * omega * step,
         1.0,
         "largest eigenvalue of the solver's Hessian",
-        "–",
-        "independent solver",
+        evidence="independent solver",
     )
 
 
-MOTION = Class(
+MOTION = Study(
     NAME,
     "Time steps from 0.1 to 1.01 of Verlet's limit, and energy without damping",
     "Too long a time step makes heat from nothing, just below the limit so little that it is not noticed; a damping "

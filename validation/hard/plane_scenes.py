@@ -15,10 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from contact1d.analysis.theory.adhesive_power import AdhesivePower
-from contact1d.analysis.theory.sneddon import PowerLaw
-from validation.hard.case import Bench
 from validation.hard.claims import Tally
+from validation.references.indenters import Indenter, with_zero_load_radius
+from validation.study import Bench
 
 QUICK, FULL = 20, 200
 SEED = 14
@@ -47,7 +46,7 @@ def drawn(rng: np.random.Generator) -> tuple[str, dict[str, Any], Exact]:
     kind = str(rng.choice(["load", "pull_off", "tangential"]))
     exponent, radius = float(rng.choice([1.0, 2.0, 4.0])), float(10.0 ** rng.uniform(0.0, 2.0))
     slope = float(10.0 ** rng.uniform(-3.0, -1.0))
-    law = PowerLaw(slope * radius ** (1.0 - exponent), exponent, MODULUS)
+    law = Indenter(slope * radius ** (1.0 - exponent), exponent, MODULUS)
     spacing = radius / float(np.exp(rng.uniform(math.log(NARROW), math.log(WIDE))))
     tables: dict[str, Any] = {"accuracy": {"tolerance": float(10.0 ** rng.uniform(-4.0, -2.0))}}
     if kind == "load":
@@ -63,7 +62,7 @@ def drawn(rng: np.random.Generator) -> tuple[str, dict[str, Any], Exact]:
     return kind, tables | more | {"bodies": bodies, "experiment": experiment}, exact
 
 
-def _profile(law: PowerLaw) -> dict[str, Any]:
+def _profile(law: Indenter) -> dict[str, Any]:
     match law.exponent:
         case 1.0:
             return {"kind": "cone", "slope": law.coefficient}
@@ -72,12 +71,12 @@ def _profile(law: PowerLaw) -> dict[str, Any]:
     return {"kind": "power", "height": law.coefficient, "radius": 1.0, "exponent": law.exponent}
 
 
-def _pressed(law: PowerLaw, radius: float) -> Drawn:
+def _pressed(law: Indenter, radius: float) -> Drawn:
     exact = {"displacement": float(law.displacement(radius)), "contact_radius": radius}
     return {}, {"kind": "load", "force": float(law.force(radius))}, exact
 
 
-def _drawn_along(rng: np.random.Generator, law: PowerLaw, radius: float, spacing: float) -> Drawn:
+def _drawn_along(rng: np.random.Generator, law: Indenter, radius: float, spacing: float) -> Drawn:
     friction, ratio = float(rng.uniform(0.05, 1.0)), float(rng.uniform(0.67, 1.0))
     stick = radius * float(rng.uniform(0.2, 0.9))
     normal, depth = float(law.force(radius)), float(law.displacement(radius))
@@ -91,9 +90,9 @@ def _drawn_along(rng: np.random.Generator, law: PowerLaw, radius: float, spacing
     return tables, experiment, {"tangential_force": drawn, "contact_radius": radius, "stick_radius": stick}
 
 
-def _adhesive(law: PowerLaw, radius: float) -> Drawn:
+def _adhesive(law: Indenter, radius: float) -> Drawn:
     """W is such that the contact radius without a load is `radius`."""
-    adhesive = AdhesivePower.with_zero_load_radius(law.coefficient, law.exponent, MODULUS, radius)
+    adhesive = with_zero_load_radius(law.coefficient, law.exponent, MODULUS, radius)
     exact = {
         "adhesion_force": adhesive.pull_off_force(),
         "critical_radius": adhesive.critical_radius(),

@@ -8,20 +8,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
-from contact1d.workflow.deck.steps import Displace
-from contact1d.workflow.experiments.running.contact import Contact
-from validation.hard.case import Bench, Class, Findings, Refused, at_most, over_claim, said
-from validation.hard.figures import points_figure
-from validation.hard.opened import contact_of
-from validation.hard.pairs import CORE, LAW, PairCase, shaped
-from validation.judging.check import Check
-from validation.judging.figures import Series
+from validation.doors import Contact, Displace, contact_of
+from validation.figures import Panel, Series, figure
+from validation.hard.cases import CORE, LAW, PairCase, shaped
+from validation.row import Row, at_most
+from validation.study import Bench, Findings, Refused, Study, over_claim, said
 
 CORE_CLASS, BUCKLING = "core", "buckling"
 RATIO, PUNCH = 0.5, 10
@@ -36,11 +32,11 @@ PUSH = 1e-5
 """Offset that is given to the pairs [LU]."""
 
 
-def measure_core(bench: Bench, folder: Path) -> Findings:
+def measure_core(bench: Bench) -> Findings:
     """d under shares of what N cores carry over its claim; loads past that are refused in words of this program."""
     case = PairCase("core", RATIO, shaped("flat_punch", PUNCH, 0.0), PUNCH, 0.0)
     pairs = case.exact()
-    checks: list[Check] = []
+    checks: list[Row] = []
     drawn = []
     for method in ("quasistatic", "dynamic"):
         timed = PairCase("core", RATIO, case.profile, PUNCH, 0.0, 1e-3, method == "dynamic").scene()
@@ -53,7 +49,6 @@ def measure_core(bench: Bench, folder: Path) -> Findings:
             over = math.nan if isinstance(found, Refused) else over_claim(found, "displacement", exact)
             checks.append(
                 at_most(
-                    CORE_CLASS,
                     f"d off over its claim at {share:g} of the core's force, {method}",
                     over,
                     1.0,
@@ -72,24 +67,28 @@ def measure_core(bench: Bench, folder: Path) -> Findings:
             bad += not ended or any(words in ended for words in ("LAMMPS", "time limit", "nothing was said"))
         checks.append(
             at_most(
-                CORE_CLASS,
                 f"loads of {PAST} core forces that are held, hang, or end in words of LAMMPS, {method}",
                 bad,
                 0.0,
                 "the core carries no more",
-                "–",
             )
         )
-    points_figure(
-        folder / f"{CORE_CLASS}.png",
-        [Series("runs", *np.array(drawn).T)],
-        ("load over the core's force", "error of d over its claim"),
-        bound=1.0,
+    return Findings(
+        checks,
+        figure(
+            "Error over claim up to the core; dashed: the bound",
+            Panel(
+                "load over the core's force",
+                "error of d over its claim",
+                [Series("runs", *np.array(drawn).T)],
+                log="xy",
+                bound=1.0,
+            ),
+        ),
     )
-    return Findings(checks, f"{CORE_CLASS}.png", "Error over claim up to the core; dashed: the bound")
 
 
-def measure_buckling(bench: Bench, folder: Path) -> Findings:
+def measure_buckling(bench: Bench) -> Findings:
     """Pairs that are pushed aside a little: below the critical force they come back, above it they go on."""
     critical = float(brentq(lambda r: 2.0 * float(LAW.force(np.array(r))) / r - TANGENTIAL, 1e-4, 0.023))
     most = float(LAW.force(np.array(critical)))
@@ -111,7 +110,6 @@ def measure_buckling(bench: Bench, folder: Path) -> Findings:
         words = "left of the push" if stays else "push over where it ends"
         checks.append(
             at_most(
-                BUCKLING,
                 f"{words}, pair at {share:g} of the force at which it buckles",
                 value,
                 0.5,
@@ -120,14 +118,19 @@ def measure_buckling(bench: Bench, folder: Path) -> Findings:
             )
         )
         drawn.append((share, max(offset / PUSH, 1e-9)))
-    points_figure(
-        folder / f"{BUCKLING}.png",
-        [Series("runs", *np.array(drawn).T)],
-        ("force over the critical one", "offset over the push"),
-        bound=1.0,
-        log="y",
+    return Findings(
+        checks,
+        figure(
+            "What becomes of a small push sideways; dashed: nothing",
+            Panel(
+                "force over the critical one",
+                "offset over the push",
+                [Series("runs", *np.array(drawn).T)],
+                log="y",
+                bound=1.0,
+            ),
+        ),
     )
-    return Findings(checks, f"{BUCKLING}.png", "What becomes of a small push sideways; dashed: nothing")
 
 
 def _pushed(contact: Contact, d: float) -> float:
@@ -147,13 +150,13 @@ def _pushed(contact: Contact, d: float) -> float:
 
 
 CLASSES = (
-    Class(
+    Study(
         CORE_CLASS,
         "Compression up to and past the core",
         "The core is finite: beyond its force one body goes through the other, and what comes then is no contact.",
         measure_core,
     ),
-    Class(
+    Study(
         BUCKLING,
         "Buckling of aligned chains",
         "Opposite particles under load stand on their heads: exact symmetry keeps them there in a program that never "

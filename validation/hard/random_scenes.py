@@ -4,23 +4,20 @@ by the independent solver."""
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from random import Random
 from typing import Any
 
 import numpy as np
 
-from contact1d.workflow.runs.finished import Run
-from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
-from validation.hard.case import Bench, Class, Findings, Refused
+from validation.doors import Run, scene_from_dict, settings_for
+from validation.figures import Panel, figure
 from validation.hard.claims import Tally
-from validation.hard.figures import points_figure
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
 from validation.references.pull_off import pull_off
 from validation.references.solver import ChainSolver, State
 from validation.references.tension_radius import band_limited_radius
+from validation.study import Bench, Findings, Refused, Study
 
 NAME = "random"
 QUICK, FULL = 10, 200
@@ -37,7 +34,7 @@ APART = 12.0
 """Where a path begins and ends, over the range of the attraction."""
 
 
-def measure(bench: Bench, folder: Path) -> Findings:
+def measure(bench: Bench) -> Findings:
     """Three rows: claims, tolerances, refusals."""
     random, tally = Random(SEED), Tally()
     for number in range(FULL if bench.full else QUICK):
@@ -52,8 +49,13 @@ def measure(bench: Bench, folder: Path) -> Findings:
             continue
     checks = tally.checks(NAME, "the independent solver")
     labels = ("share of the numbers", "error over the claim")
-    points_figure(folder / f"{NAME}.png", tally.series(), labels, bound=1.0, log="y")
-    return Findings(checks, f"{NAME}.png", "Errors over claims of random scenes, in order; dashed: the bound")
+    return Findings(
+        checks,
+        figure(
+            "Errors over claims of random scenes, in order; dashed: the bound",
+            Panel(*labels, tally.series(), log="y", bound=1.0),
+        ),
+    )
 
 
 def varied(scene: dict[str, Any], random: Random) -> dict[str, Any]:
@@ -209,7 +211,7 @@ def _exact(scene: dict[str, Any], run: Run | Refused) -> dict[str, float]:
     return exact_results(scene, model_of(scene, next(iter(run.profiles.values())).x.size), near)
 
 
-RANDOM = Class(
+RANDOM = Study(
     NAME,
     "Random scenes",
     "Chosen cases are those that somebody thought of. Is every number of two hundred random scenes inside its claim?",

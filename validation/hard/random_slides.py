@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 
 from contact1d.analysis import friction
-from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import Settings
-from validation.judging.slide_model import slide_model
+from validation.doors import Scene, Settings
 from validation.references.slide import Integrator, Trace
+from validation.slides import slide_model
 
 SEED = 5
 CURVED = 0.5

@@ -9,23 +9,19 @@ under the load W. Near the fold both times go as |1 − W/F_A|^(−1/2).
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from contact1d.workflow.deck.steps import UnderLoad
-from contact1d.workflow.settings.settings import Settings
-from validation.hard.case import Bench, Class, Findings, at_most
-from validation.hard.figures import points_figure
-from validation.hard.opened import contact_of
-from validation.hard.pairs import ATTRACTION, LAW, PairCase, reach, shaped
-from validation.judging.check import Check
-from validation.judging.figures import Series
+from validation.doors import Settings, UnderLoad, contact_of
+from validation.figures import Panel, Series, figure
+from validation.hard.cases import ATTRACTION, LAW, PairCase, reach, shaped
 from validation.references.folded_pairs import FoldedPairs
 from validation.references.interaction import Floats
+from validation.row import Reference, Row, at_most, relative
+from validation.study import Bench, Findings, Study
 
 NAME = "settling"
 RATIO, PARTICLES, TOLERANCE = 0.5, 41, 1e-5
@@ -49,14 +45,14 @@ LOOKS = 300
 SOURCE = "motion of plate and pairs in closed form, by scipy"
 
 
-def measure(bench: Bench, folder: Path) -> Findings:
+def measure(bench: Bench) -> Findings:
     """Both times at each share against the reduced motion, and their exponents."""
     case = PairCase("settling", RATIO, shaped("parabola", PARTICLES, reach(RATIO)), PARTICLES, 0.0, TOLERANCE, True)
     each = math.sqrt(case.stiffness)
     scene = case.scene() | {"damping": {"coefficient": DRAG * each}, "plate": {"damping": PARTICLES * each}}
     pairs = case.exact()
     largest, fold = pairs.adhesion(0.0)
-    checks: list[Check] = []
+    checks: list[Row] = []
     drawn, lines = [], []
     for words, sign in (("settle", -1.0), ("part", 1.0)):
         found, exact = [], []
@@ -87,17 +83,14 @@ def measure(bench: Bench, folder: Path) -> Findings:
             found.append(taken)
             exact.append(expected)
             checks.append(
-                Check(
-                    NAME, f"time to {words} under (1 {'+−'[sign < 0]} {share:g}) F_A", taken, 0.0, "TU", expected,
-                    SOURCE, "closed form", TIMES, "particles that lag behind; the table's share of F_A",
-                )
+                Row(f"time to {words} under (1 {'+−'[sign < 0]} {share:g}) F_A", taken, Reference(expected, SOURCE),
+                    relative(TIMES, "particles that lag behind; the table's share of F_A"), unit="TU")
             )  # fmt: skip
         shares = np.array(FULL_SHARES if bench.full else SHARES)
         near = shares <= NEAR
         slope = float(np.polyfit(np.log(shares[near]), np.log(np.maximum(np.array(found)[near], 1e-300)), 1)[0])
         checks.append(
             at_most(
-                NAME,
                 f"exponent of the time to {words} over |1 − W/F_A|, from −1/2",
                 abs(slope + 0.5),
                 EXPONENT,
@@ -107,8 +100,13 @@ def measure(bench: Bench, folder: Path) -> Findings:
         )
         drawn.append(Series(f"run: {words}", shares, np.array(found)))
         lines.append(Series(f"closed form: {words}", shares, np.array(exact)))
-    points_figure(folder / f"{NAME}.png", drawn, ("$|1 - W/F_A|$", "time (TU)"), lines)
-    return Findings(checks, f"{NAME}.png", "Time to settle below F_A and to part above it, over the distance from it")
+    return Findings(
+        checks,
+        figure(
+            "Time to settle below F_A and to part above it, over the distance from it",
+            Panel("$|1 - W/F_A|$", "time (TU)", drawn, lines, log="xy"),
+        ),
+    )
 
 
 def _place(pairs: FoldedPairs, load: float, fold: float) -> float:
@@ -144,7 +142,7 @@ def _moved(pairs: FoldedPairs, places: Floats) -> Floats:
     return np.asarray(np.sum(0.5 * (1.0 + s**2), axis=1))
 
 
-SETTLING = Class(
+SETTLING = Study(
     NAME,
     "Times just below and just above F_A",
     "Close to F_A a contact creeps: one that settles and one that parts look alike for a time that goes as the inverse "

@@ -8,17 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
-from validation.hard.case import Bench, Class, Findings
+from validation.figures import Panel, figure
+from validation.hard.cases import ATTRACTION, LAW, TENSION, PairCase, reach, shaped
 from validation.hard.claims import Tally
-from validation.hard.figures import points_figure
-from validation.hard.pairs import ATTRACTION, LAW, TENSION, PairCase, reach, shaped
 from validation.references.folded_pairs import FoldedPairs
+from validation.study import Bench, Findings, Study
 
 NAME = "sharp"
 QUICK, FULL = 20, 100
@@ -32,7 +31,7 @@ load lands where its momentum takes it."""
 LOOKS = 4000
 
 
-def measure(bench: Bench, folder: Path) -> Findings:
+def measure(bench: Bench) -> Findings:
     """Three rows: claims, tolerances, refusals."""
     rng, tally = np.random.default_rng(SEED), Tally()
     wanted = FULL if bench.full else QUICK
@@ -42,8 +41,13 @@ def measure(bench: Bench, folder: Path) -> Findings:
             tally.add(case.name, group, bench.run(case.name, case.scene()), exact(), REFERENCE)
     checks = tally.checks(NAME, "independent pairs with their folds")
     labels = ("share of the numbers", "error over the claim")
-    points_figure(folder / f"{NAME}.png", tally.series(), labels, bound=1.0, log="y")
-    return Findings(checks, f"{NAME}.png", "Errors over claims of random sharp scenes, in order; dashed: the bound")
+    return Findings(
+        checks,
+        figure(
+            "Errors over claims of random sharp scenes, in order; dashed: the bound",
+            Panel(*labels, tally.series(), log="y", bound=1.0),
+        ),
+    )
 
 
 def drawn(rng: np.random.Generator, number: int) -> tuple[PairCase, str, Callable[[], dict[str, float]]]:
@@ -154,7 +158,7 @@ def _inverse(profile: dict[str, Any], height: float) -> float:
     return float(profile["radius"]) * math.pow(height / float(profile["height"]), 1.0 / float(profile["exponent"]))
 
 
-SHARP = Class(
+SHARP = Study(
     NAME,
     "Random sharp scenes",
     "Few particles and pairs about to snap: every search finds the wrong tooth in some of them, and a claim that holds "

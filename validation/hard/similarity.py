@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from validation.hard.case import Bench, Class, Findings, Refused, at_most, said
-from validation.hard.figures import points_figure
-from validation.hard.pairs import TENSION, PairCase, reach, shaped
-from validation.judging.check import Check
-from validation.judging.figures import Series
-from validation.judging.runs import found as result
+from validation.figures import Panel, Series, figure
+from validation.hard.cases import TENSION, PairCase, reach, shaped
+from validation.row import Row, at_most
+from validation.study import Bench, Findings, Refused, Study, said
+from validation.study import found as result
 
 NAME = "similarity"
 LENGTHS = (1e-9, 1e-6, 1e-3, 1e3, 1e6)
@@ -24,9 +22,9 @@ stops elsewhere within its own share of the tolerance."""
 BY_FORCE = {"quasistatic": False, "dynamic": True}
 
 
-def measure(bench: Bench, folder: Path) -> Findings:
+def measure(bench: Bench) -> Findings:
     """F_A and a_cr of every scaled scene against those of the scene as it is, which the closed form judges."""
-    checks: list[Check] = []
+    checks: list[Row] = []
     drawn = []
     for method, dynamic in BY_FORCE.items():
         case = PairCase("base", RATIO, shaped("parabola", PARTICLES, reach(RATIO)), PARTICLES, TENSION, 1e-3, dynamic)
@@ -45,7 +43,6 @@ def measure(bench: Bench, folder: Path) -> Findings:
                 found.append((factor, off))
                 checks.append(
                     at_most(
-                        NAME,
                         f"F_A·s/e off, {what} × {factor:g}, {method}",
                         off,
                         equal,
@@ -54,8 +51,13 @@ def measure(bench: Bench, folder: Path) -> Findings:
                     )
                 )
             drawn.append(Series(f"{what}, {method}", *np.array([(f, max(o, 1e-12)) for f, o in found if o == o]).T))
-    points_figure(folder / f"{NAME}.png", drawn, ("factor", "deviation of the reduced $F_A$"), bound=EQUAL)
-    return Findings(checks, f"{NAME}.png", "Deviation of the reduced F_A over the factor")
+    return Findings(
+        checks,
+        figure(
+            "Deviation of the reduced F_A over the factor",
+            Panel("factor", "deviation of the reduced $F_A$", drawn, log="xy", bound=EQUAL),
+        ),
+    )
 
 
 def scaled(scene: dict[str, Any], s: float, e: float) -> dict[str, Any]:
@@ -75,7 +77,7 @@ def scaled(scene: dict[str, Any], s: float, e: float) -> dict[str, Any]:
     return scene | {"bodies": bodies, "interaction": law, "experiment": experiment}
 
 
-SIMILARITY = Class(
+SIMILARITY = Study(
     NAME,
     "Similarity: lengths × 1e-9 … 1e6, energies × 1e-9 … 1e9",
     "A program with an absolute threshold somewhere gives other reduced numbers for metres than for nanometres, or "

@@ -7,22 +7,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from contact1d.workflow.runs.finished import Run
-from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
-from validation.hard.case import Bench, Class, Findings, Refused, at_most, over_claim, said, warned
-from validation.hard.figures import points_figure
+from validation.doors import Run, scene_from_dict, settings_for
+from validation.figures import Panel, Series, figure
 from validation.hard.random_slides import integrated, mean_friction
-from validation.judging.check import Check
-from validation.judging.figures import Series
-from validation.judging.runs import found as result
 from validation.references.prandtl_tomlinson import corrugation
 from validation.references.slide import Trace
+from validation.row import Row, at_most, so
+from validation.study import Bench, Findings, Refused, Study, over_claim, said
+from validation.study import found as result
 
 NAME = "slides"
 TRACE = 1e-3
@@ -102,15 +98,15 @@ FAST, BACK, REST = "faster than the particles follow", "drive reversed", "drive 
 STICKY = ("no load", "a pull")
 
 
-def measure(bench: Bench, folder: Path) -> Findings:
+def measure(bench: Bench) -> Findings:
     """Three rows of each slide, what is special of each, and two that end nowhere."""
-    checks: list[Check] = []
+    checks: list[Row] = []
     drawn, lines = [], []
     for name, tables in CASES.items():
         scene = scene_from_dict({"title": name} | _clean(tables))
         found = bench.run(name.replace(" ", "_"), _clean(tables))
         if isinstance(found, Refused):
-            checks.append(at_most(NAME, f"trace, {name}", math.nan, 0.0, SOURCE, said("–", found)))
+            checks.append(at_most(f"trace, {name}", math.nan, 0.0, SOURCE, said("–", found)))
             continue
         trace = integrated(scene, settings_for(scene))
         checks += [*_rows(name, found, trace), *_special(name, found, trace)]
@@ -119,8 +115,9 @@ def measure(bench: Bench, folder: Path) -> Findings:
             lines.append(Series("integrator", trace.place, trace.friction))
     checks += _ends(bench)
     labels = ("place of the plate (LU)", "friction (FU)")
-    points_figure(folder / f"{NAME}.png", drawn, labels, lines, log="")
-    return Findings(checks, f"{NAME}.png", "A slide that is reversed: friction over the place of the plate")
+    return Findings(
+        checks, figure("A slide that is reversed: friction over the place of the plate", Panel(*labels, drawn, lines))
+    )
 
 
 def _clean(tables: dict[str, Any]) -> dict[str, Any]:
@@ -128,18 +125,15 @@ def _clean(tables: dict[str, Any]) -> dict[str, Any]:
     return tables | {"experiment": experiment}
 
 
-def _rows(name: str, found: Run, trace: Trace) -> Iterator[Check]:
+def _rows(name: str, found: Run, trace: Trace) -> Iterator[Row]:
     peak = float(np.abs(trace.friction).max())
     off = float(np.abs(found.friction["friction"] - trace.friction).max()) / peak
-    yield at_most(
-        NAME, f"trace off over the peak, {name}", off, TRACE, SOURCE, "table of the law", "independent solver"
-    )
+    yield at_most(f"trace off over the peak, {name}", off, TRACE, SOURCE, "table of the law", "independent solver")
     work, lost, stored = (
         result(found, f"{n}").value for n in ("cantilever_work", "dissipated_energy", "stored_energy")
     )
     largest = max(map(abs, (work, lost, stored)))
     yield at_most(
-        NAME,
         f"energy that is lost over the largest, {name}",
         abs(work - lost - stored) / largest,
         CLOSED,
@@ -150,47 +144,43 @@ def _rows(name: str, found: Run, trace: Trace) -> Iterator[Check]:
         velocity = found.scene.cantilever.velocity if found.scene.cantilever else math.nan
         mean = mean_friction(trace, 1.0 / velocity)
         over = over_claim(found, "mean_friction", mean)
-        yield at_most(
-            NAME, f"mean friction off over its claim, {name}", over, 1.0, SOURCE, "run-in", "independent solver"
-        )
+        yield at_most(f"mean friction off over its claim, {name}", over, 1.0, SOURCE, "run-in", "independent solver")
 
 
-def _special(name: str, found: Run, trace: Trace) -> Iterator[Check]:
+def _special(name: str, found: Run, trace: Trace) -> Iterator[Row]:
     """What a case is there for; 0 where it is so."""
     friction, slips = found.friction["friction"], result(found, "slips").value
     if name == BACK:
         half = friction.size // 3
         wrong = not (friction[half // 2 : half].mean() > 0.0 > friction[2 * half :].mean())
-        yield _so("friction of the wrong sign there or back", wrong)
+        yield so("friction of the wrong sign there or back", wrong)
         drive = found.friction["drive"]
         loop = float(np.trapezoid(found.friction["cantilever_force"], drive))
-        yield _so("loop of the cantilever that gives work", not loop > 0.0)
+        yield so("loop of the cantilever that gives work", not loop > 0.0)
     if name == REST:
         balance = abs(friction[-1] - found.friction["cantilever_force"][-1]) / float(np.abs(friction).max())
         own = abs(trace.friction[-1] - trace.cantilever_force[-1]) / float(np.abs(trace.friction).max())
-        yield at_most(
-            NAME, "force left at rest over the peak, beside the integrator's", balance, own + TRACE, SOURCE, "–"
-        )
-        yield _so("a mean friction of a drive at rest that is not that of the leg before", slips < 0.0)
+        yield at_most("force left at rest over the peak, beside the integrator's", balance, own + TRACE, SOURCE)
+        yield so("a mean friction of a drive at rest that is not that of the leg before", slips < 0.0)
     if name == FAST:
-        yield _so("a drive past 2π v/s = √(k/m) that is not warned about", "fast" not in warned(found))
+        yield so("a drive past 2π v/s = √(k/m) that is not warned about", "fast" not in found.warnings)
     if name == SMOOTH:
-        yield _so("slips of a plate that follows its drive", slips > 0.0)
+        yield so("slips of a plate that follows its drive", slips > 0.0)
     if name in STICKY:
-        yield _so(f"no friction where adhesion holds, {name}", not result(found, "mean_friction").value > 0.0)
+        yield so(f"no friction where adhesion holds, {name}", not result(found, "mean_friction").value > 0.0)
     if name == ONE:
         exact = corrugation((1.0, 0.5, 0.5, 1.0), 1.0, LOAD).largest_force
         off = abs(result(found, "static_friction").value / exact - 1.0)
-        yield at_most(NAME, "static friction of one particle off", off, STATIC, "max of U′ of its corrugation", "slip")
+        yield at_most("static friction of one particle off", off, STATIC, "max of U′ of its corrugation", "slip")
     if name == ALONE:
-        yield _so("slips of the plate where its particles slip in turn", slips > 0.0)
+        yield so("slips of the plate where its particles slip in turn", slips > 0.0)
 
 
-def _ends(bench: Bench) -> Iterator[Check]:
+def _ends(bench: Bench) -> Iterator[Row]:
     """A chain that is too short for the way, and a plate that is thrown off a chain that is long enough for it."""
     short = bench.run("too_short", curved(bodies={"particles": 26}))
     refused = isinstance(short, Refused) and short.before and "too short for the way" in short.words
-    yield _so("a way off the end that is not refused beforehand", not refused)
+    yield so("a way off the end that is not refused beforehand", not refused)
     bodies = {"particles": 68, "upper_particles": 36, "bulk_stiffness": 2.0}
     thrown = bench.run(
         "thrown_off",
@@ -204,16 +194,12 @@ def _ends(bench: Bench) -> Iterator[Check]:
         ),
     )
     told = isinstance(thrown, Refused) and not thrown.before and "ran off the lower body" in thrown.words
-    yield _so("a plate thrown off the end that is not told", not told)
+    yield so("a plate thrown off the end that is not told", not told)
     left = all((bench.folder / "thrown_off" / name).is_file() for name in ("friction.csv", "curve.csv", "results.json"))
-    yield _so("a trace that is not left of it", not left)
+    yield so("a trace that is not left of it", not left)
 
 
-def _so(name: str, wrong: bool) -> Check:
-    return at_most(NAME, name, float(wrong), 0.0, "what must be", "–", "set bound")
-
-
-SLIDES = Class(
+SLIDES = Study(
     NAME,
     "Slides back, at rest, too fast, smooth, unloaded, one by one, off the end",
     "A drive that turns or rests, slips that fall into one row, an integrator that lags by half a step, or a plate "

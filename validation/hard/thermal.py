@@ -3,27 +3,25 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2
 
-from contact1d.workflow.runs.finished import Run
-from validation.hard.case import Bench, Class, Findings, Refused, at_most, over_claim, said, warned
-from validation.hard.figures import points_figure
-from validation.hard.opened import LAW
+from validation.doors import Run
+from validation.figures import Panel, Series, figure
+from validation.hard.cases import PAPER_LAW
 from validation.hard.statistics import CHANCE, SIGMAS, block_mean, chi_square_bound
-from validation.judging.check import Check
-from validation.judging.figures import Series
-from validation.judging.runs import found as result
 from validation.references.boltzmann_pairs import BoltzmannPairs
 from validation.references.folded_pairs import FoldedPairs
 from validation.references.interaction import Exponential, Floats, PairInteraction
 from validation.references.model import ChainModel
 from validation.references.solver import ChainSolver
 from validation.references.thermal_chain import displacement_under
+from validation.row import Reference, Row, at_most, claim
+from validation.study import Bench, Findings, Refused, Study, over_claim, said
+from validation.study import found as result
 
 THERMAL, SEEDS = "boltzmann", "seeds"
 FORGOTTEN = 60
@@ -36,7 +34,7 @@ WIDE_BODIES: dict[str, Any] = BODIES | {"particles": 200, "spacing": 1.0}
 WIDE_LOAD, WIDE_NEAR, WIDE_WIDTH = 1.0, 0.255, 0.1
 """The load [FU], and the interval of displacements of its average [LU]: ten standard deviations."""
 WIDE_TEMPERATURES, FULL_WIDE_TEMPERATURES, WIDE_TOLERANCE = (0.0, 1e-3), (0.0, 1e-4, 1e-3), 1e-3
-LAW_HERE = PairInteraction(Exponential(**LAW["repulsion"]), Exponential(**LAW["attraction"]))
+LAW_HERE = PairInteraction(Exponential(**PAPER_LAW["repulsion"]), Exponential(**PAPER_LAW["attraction"]))
 HEIGHTS: Floats = np.asarray((4.0 * np.arange(-20.0, 21.0)) ** 2 / 2000.0)
 NEAR, WIDTH = 0.24, {1e-4: 0.05, 1e-3: 0.13, 3e-3: 0.22}
 """Interval of displacements of the integral [LU]: eight standard deviations."""
@@ -46,7 +44,7 @@ def thermal_scene(temperature: float, seed: int, tolerance: float = 2e-3) -> dic
     """A load under noise; without, at temperature 0, the same at rest."""
     scene: dict[str, Any] = {
         "bodies": BODIES,
-        "interaction": LAW,
+        "interaction": PAPER_LAW,
         "accuracy": {"tolerance": tolerance},
         "experiment": {"kind": "load", "force": LOAD},
     }
@@ -55,14 +53,14 @@ def thermal_scene(temperature: float, seed: int, tolerance: float = 2e-3) -> dic
     return scene
 
 
-def measure_boltzmann(bench: Bench, folder: Path) -> Findings:
+def measure_boltzmann(bench: Bench) -> Findings:
     """⟨d⟩ under a load at three temperatures, and how much of it is thermal."""
-    checks: list[Check] = []
+    checks: list[Row] = []
     rest = FoldedPairs(LAW_HERE, 0.83, HEIGHTS).deepest(LOAD)
     still = bench.run("rest", thermal_scene(0.0, 0))
     source = "independent pairs"
     value = math.nan if isinstance(still, Refused) else over_claim(still, "displacement", rest)
-    checks.append(at_most(THERMAL, "d at kT = 0 off over its claim", value, 1.0, source, "what the run claims"))
+    checks.append(at_most("d at kT = 0 off over its claim", value, 1.0, source, "what the run claims"))
     drawn, exacts = [], []
     for temperature in TEMPERATURES:
         exact, swing = BoltzmannPairs(LAW_HERE, 0.83, HEIGHTS, temperature).displacement(LOAD, NEAR, WIDTH[temperature])
@@ -70,36 +68,22 @@ def measure_boltzmann(bench: Bench, folder: Path) -> Findings:
         source, limit = "Boltzmann's integral over distances and plate", "statistics: 4 of the run's standard errors"
         if isinstance(found, Refused):
             checks.append(
-                at_most(
-                    THERMAL,
-                    f"d at kT = {temperature:g} off over its claim",
-                    math.nan,
-                    SIGMAS,
-                    source,
-                    said(limit, found),
-                )
+                at_most(f"d at kT = {temperature:g} off over its claim", math.nan, SIGMAS, source, said(limit, found))
             )
             continue
         d, error = result(found, "displacement").value, result(found, "displacement").uncertainty
         checks.append(
-            at_most(
-                THERMAL, f"d at kT = {temperature:g} off over its claim", abs(d - exact) / error, SIGMAS, source, limit
-            )
+            at_most(f"d at kT = {temperature:g} off over its claim", abs(d - exact) / error, SIGMAS, source, limit)
         )
         if temperature > TEMPERATURES[0]:  # there the mean cannot tell the temperature from 0, and the variance does
             checks.append(
-                Check(
-                    THERMAL,
+                Row(
                     f"d(kT = {temperature:g}) − d(0)",
                     d - rest,
-                    SIGMAS * error,
-                    "LU",
-                    exact - rest,
-                    source,
-                    "closed form",
-                    0.0,
-                    limit,
-                    "uncertainty",
+                    Reference(exact - rest, source),
+                    claim(limit),
+                    uncertainty=SIGMAS * error,
+                    unit="LU",
                 )
             )
         checks.append(_swing_row(found, temperature, swing))
@@ -107,17 +91,22 @@ def measure_boltzmann(bench: Bench, folder: Path) -> Findings:
         exacts.append((temperature, exact))
     checks += _shipped(bench)
     x, y = np.array(drawn).T
-    points_figure(
-        folder / f"{THERMAL}.png",
-        [Series("run", x, y)],
-        ("kT (FU·LU)", "mean displacement (LU)"),
-        [Series("Boltzmann", *np.array(exacts).T)],
-        log="x",
+    return Findings(
+        checks,
+        figure(
+            "Mean displacement under a load over the temperature",
+            Panel(
+                "kT (FU·LU)",
+                "mean displacement (LU)",
+                [Series("run", x, y)],
+                [Series("Boltzmann", *np.array(exacts).T)],
+                log="x",
+            ),
+        ),
     )
-    return Findings(checks, f"{THERMAL}.png", "Mean displacement under a load over the temperature")
 
 
-def _shipped(bench: Bench) -> list[Check]:
+def _shipped(bench: Bench) -> list[Row]:
     """⟨d⟩ of pull_off.toml's bodies without neighbours, held along x, under 1 FU: all pairs, to first order in kT."""
     model = ChainModel(WIDE_BODIES["particles"], WIDE_BODIES["bulk_stiffness"], LAW_HERE, radius=1000.0)
     places = np.linspace(WIDE_NEAR - WIDE_WIDTH, WIDE_NEAR + WIDE_WIDTH, 27)
@@ -134,17 +123,16 @@ def _shipped(bench: Bench) -> list[Check]:
         over = math.nan if isinstance(found, Refused) else over_claim(found, "displacement", exact)
         name = f"d of pull_off.toml's bodies without neighbours under 1 FU at kT = {temperature:g}, off over its claim"
         limit = f"statistics: {SIGMAS:g} of the run's standard errors" if temperature else "what the run claims"
-        checks.append(at_most(THERMAL, name, over, SIGMAS if temperature else 1.0, source, said(limit, found)))
+        checks.append(at_most(name, over, SIGMAS if temperature else 1.0, source, said(limit, found)))
     return checks
 
 
-def _swing_row(found: Run, temperature: float, swing: float) -> Check:
+def _swing_row(found: Run, temperature: float, swing: float) -> Row:
     """The variance of d in time: it tells the temperature where the mean does not."""
     sampled = np.asarray(found.curve.displacement)[FORGOTTEN:]
     ratio, error = block_mean(((sampled - sampled.mean()) ** 2 / swing**2)[:, None])
     off = float(abs(ratio[0] - 1.0) / error[0])
     return at_most(
-        THERMAL,
         f"variance of d in time at kT = {temperature:g} off over its standard error",
         off,
         SIGMAS,
@@ -153,7 +141,7 @@ def _swing_row(found: Run, temperature: float, swing: float) -> Check:
     )
 
 
-def measure_seeds(bench: Bench, folder: Path) -> Findings:
+def measure_seeds(bench: Bench) -> Findings:
     """(d − exact)/claim of each seed: its χ² neither too large nor too small."""
     count, temperature = (24, 1e-4) if bench.full else (6, 1e-4)
     exact, _ = BoltzmannPairs(LAW_HERE, 0.83, HEIGHTS, temperature).displacement(LOAD, NEAR, WIDTH[temperature])
@@ -162,15 +150,12 @@ def measure_seeds(bench: Bench, folder: Path) -> Findings:
         found = bench.run(f"seed_{seed}", thermal_scene(temperature, seed, 5e-3))
         if isinstance(found, Run):
             sigmas.append((result(found, "displacement").value - exact) / result(found, "displacement").uncertainty)
-            silent += abs(sigmas[-1]) > SIGMAS and not warned(found)
+            silent += abs(sigmas[-1]) > SIGMAS and not found.warnings
     square = float(np.sum(np.square(sigmas))) if len(sigmas) == count else math.nan
     source, limit = "Boltzmann's integral; χ² of as many independent seeds", "statistics"
     checks = [
+        at_most(f"χ² of {count} seeds by their claims: not too large", square, chi_square_bound(count), source, limit),
         at_most(
-            SEEDS, f"χ² of {count} seeds by their claims: not too large", square, chi_square_bound(count), source, limit
-        ),
-        at_most(
-            SEEDS,
             f"least χ² that chance allows over χ² of {count} seeds: claims not too wide",
             float(chi2.ppf(CHANCE, count)) / square,
             1.0,
@@ -178,7 +163,6 @@ def measure_seeds(bench: Bench, folder: Path) -> Findings:
             limit,
         ),
         at_most(
-            SEEDS,
             f"mean of {count} seeds off, in standard errors of it",
             abs(float(np.mean(sigmas))) * math.sqrt(count),
             SIGMAS,
@@ -186,24 +170,26 @@ def measure_seeds(bench: Bench, folder: Path) -> Findings:
             limit,
         ),
     ]
-    points_figure(
-        folder / f"{SEEDS}.png",
-        [Series("seeds", 1.0 + np.arange(float(len(sigmas))), np.array(sigmas))],
-        ("seed", "(d − exact)/claim"),
-        log="",
+    return Findings(
+        checks,
+        figure(
+            "Deviation of each seed over its claim",
+            Panel(
+                "seed", "(d − exact)/claim", [Series("seeds", 1.0 + np.arange(float(len(sigmas))), np.array(sigmas))]
+            ),
+        ),
     )
-    return Findings(checks, f"{SEEDS}.png", "Deviation of each seed over its claim")
 
 
 CLASSES = (
-    Class(
+    Study(
         THERMAL,
         "Thermal averages against Boltzmann's integral",
         "A thermal number can be right at 0 and wrong in what the noise adds: the part that is thermal has a row of "
         "its own.",
         measure_boltzmann,
     ),
-    Class(
+    Study(
         SEEDS,
         "Scatter over seeds against the claim",
         "A standard error that is too small is a wrong number; one that is too large hides one.",

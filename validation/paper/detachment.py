@@ -8,24 +8,21 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact1d.workflow.scene import Scene, scene_from_dict
-from validation.judging.check import Check
-from validation.judging.figures import Array, Series, save
-from validation.judging.runs import found
-from validation.judging.words import agreement, number
-from validation.paper.figures import detachment_figure
-from validation.paper.study import Findings, Rows, Runs, Scenes, Study
+from validation.doors import Scene, scene_from_dict
+from validation.figures import Array, Panel, Series, figure
+from validation.page import agreement, number
 from validation.references.boltzmann_pairs import BoltzmannPairs
 from validation.references.detachment import detachment_in_time, drag_of_pairs, garg
 from validation.references.interaction import Exponential, PairInteraction
+from validation.row import Reference, Row, absolute, relative, solver
+from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    pass
 
 NAME = "detachment"
 PAIRS, APART, STIFFNESS, DRAG, TEMPERATURE = 9, 3.0, 2.0, 0.5, 5e-3
@@ -116,17 +113,16 @@ def by_garg(rate: float) -> float:
     return garg(strongest, bend, PAIRS * DRAG, TEMPERATURE, rate)
 
 
-def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
+def judge(bench: Bench) -> Findings:
     """Means and spreads within their errors, and all means together."""
-    row = Rows(NAME, runs)
+    runs = bench.runs
+    row = Rows(runs)
     means, spreads = [_mean(row, rate) for rate in REPEATS], [_spread(row, rate) for rate in REPEATS]
-    off = [SIGMAS * (one.value - one.reference) / one.tolerance for one in means]
-    together = row(
-        "deviation over standard error, rms of the means at all rates", math.hypot(*off) / len(off) ** 0.5, 0.0, "1",
-        MOST_RMS, "chance, 1 in 1000", "set bound", 0.0, "statistics", on=[run_name(rate) for rate in REPEATS],
-        comparison="at most", despite=LAGGING,
-    )  # fmt: skip
-    save(_figure(runs), folder / "detachment.png")
+    off = [SIGMAS * (one.value - one.reference.value) / one.bound.size for one in means]
+    together = row.at_most("deviation over standard error, rms of the means at all rates",
+                   math.hypot(*off) / len(off) ** 0.5, Reference(MOST_RMS, "chance, 1 in 1000", "set bound"),
+                   "statistics", on=[run_name(rate) for rate in REPEATS], despite=LAGGING)  # fmt: skip
+    figures = figure("Detachment force over the loading rate; bars: standard error", _panel(runs))
     slow = [rate for rate in REPEATS if math.isfinite(by_garg(rate))]
     worst = max(abs(by_garg(rate) / expected(rate)[0] - 1.0) for rate in slow)
     rows = [*means, *spreads, together]
@@ -137,38 +133,38 @@ def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
         f"Garg's closed form, for slow pulls and high barriers, is off by {number(100.0 * worst, 2)} % up to "
         f"{number(max(slow))} FU/TU and has no value beyond."
     )
-    return Findings(finding, rows, {"detachment.png": "Detachment force over the loading rate; bars: standard error"})
+    return Findings(rows, figures, text=finding)
 
 
-def _mean(row: Rows, rate: float) -> Check:
+def _mean(row: Rows, rate: float) -> Row:
     ours, (mean, spread) = found(row.runs[run_name(rate)], "detachment_force"), expected(rate)
-    return row(
-        f"mean detachment force, Ḟ = {rate:g} FU/TU, {REPEATS[rate]} pulls", ours.value, ours.uncertainty, "FU", mean,
-        "Smoluchowski's equation", "independent solver", SIGMAS * spread / math.sqrt(REPEATS[rate]), STATISTICS,
-        on=[run_name(rate)], comparison="absolute", despite=LAGGING, wide=BY_CHANCE,
-    )  # fmt: skip
+    return row(f"mean detachment force, Ḟ = {rate:g} FU/TU, {REPEATS[rate]} pulls", ours,
+               solver(mean, "Smoluchowski's equation"),
+               absolute(SIGMAS * spread / math.sqrt(REPEATS[rate]), STATISTICS), on=[run_name(rate)], despite=LAGGING,
+               wide=BY_CHANCE)  # fmt: skip
 
 
-def _spread(row: Rows, rate: float) -> Check:
+def _spread(row: Rows, rate: float) -> Row:
     ours = found(row.runs[run_name(rate)], "detachment_force_spread")
-    return row(
-        f"spread of the detachment force, Ḟ = {rate:g} FU/TU", ours.value, ours.uncertainty, "FU", expected(rate)[1],
-        "Smoluchowski's equation", "independent solver", SIGMAS / math.sqrt(2.0 * (REPEATS[rate] - 1)), STATISTICS,
-        on=[run_name(rate)], despite=LAGGING, wide=BY_CHANCE,
-    )  # fmt: skip
+    return row(f"spread of the detachment force, Ḟ = {rate:g} FU/TU", ours,
+               solver(expected(rate)[1], "Smoluchowski's equation"),
+               relative(SIGMAS / math.sqrt(2.0 * (REPEATS[rate] - 1)), STATISTICS), on=[run_name(rate)],
+               despite=LAGGING, wide=BY_CHANCE)  # fmt: skip
 
 
-def _figure(runs: Runs) -> Figure:
+def _panel(runs: Runs) -> Panel:
     rates = np.asarray(list(REPEATS))
     line = np.geomspace(rates.min(), rates.max(), 10)
     ours = [found(runs[run_name(rate)], "detachment_force") for rate in REPEATS]
     theory = np.asarray([expected(float(rate)) for rate in line])
-    return detachment_figure(
-        Series("runs", rates, np.asarray([q.value for q in ours]), np.asarray([q.uncertainty for q in ours])),
-        Series("Smoluchowski; shaded: spread", line, theory[:, 0], theory[:, 1]),
-        Series("Garg", line, np.asarray([by_garg(float(rate)) for rate in line])),
-        largest()[0],
-    )
+    mean, spread = theory.T
+    return Panel(
+        "loading rate (FU/TU)", "detachment force (FU)",
+        [Series("runs", rates, np.asarray([q.value for q in ours]), np.asarray([q.uncertainty for q in ours]))],
+        [Series("Smoluchowski", line, mean), Series("Garg", line, np.asarray([by_garg(float(v)) for v in line])),
+         Series("Smoluchowski ± its spread", line, mean + spread), Series("", line, mean - spread)],
+        log="x", bound=largest()[0], title="dashed: $F_A(T)$",
+    )  # fmt: skip
 
 
 STUDY = Study(
@@ -176,6 +172,6 @@ STUDY = Study(
     "Detachment under heat",
     "The paper's model has stochastic forces on the particles (Section 3); its adhesion force is found without them. "
     "Under heat a contact lets go at a force that scatters, and that is the larger the faster it is pulled.",
-    scenes,
     judge,
+    scenes,
 )

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from dataclasses import replace
 
-from contact1d.workflow.scene import PullOff, Scene
-from validation.judging.words import agreement, share, worst_deviation
+from validation.doors import PullOff, Scene
+from validation.page import agreement, share, worst_deviation
 from validation.paper.fig4 import RUN, STENCIL, against_solver
 from validation.paper.oracles import chain_model
-from validation.paper.paper import changed
-from validation.paper.study import Findings, Rows, Runs, Scenes, Study, repeated
+from validation.paper.scenes import changed
 from validation.references.pull_off import pull_off
+from validation.study import Bench, Findings, Rows, Scenes, Study
 
 ITERATION = "pull_off_dynamic"
 NEIGHBOURS = (0.0, 3.0, 30.0)
@@ -34,26 +34,28 @@ def neighbour_scenes(paper: Scene) -> Scenes:
     return scenes | {RUN: paper}
 
 
-def judge_iteration(paper: Scene, runs: Runs, folder: Path) -> Findings:
+def judge_iteration(bench: Bench) -> Findings:
     """F_A, a_0 and a_cr of tensions that are held or not."""
+    paper, runs = bench.paper, bench.runs
     solved = pull_off(chain_model(paper), _preload(paper), stencil=STENCIL)
-    checks = against_solver(Rows("fig5", runs), paper, runs[ITERATION], solved, ITERATION)
+    checks = against_solver(Rows(runs), paper, runs[ITERATION], solved, ITERATION)
     finding = (
         "A plate with mass, pressed on by F_D and then pulled by ever narrower tensions until it rests or parts, finds "
         f"what energy minimisation finds within {share(worst_deviation(checks))}: {agreement(checks)}."
     )
-    return Findings(finding, checks, {})
+    return Findings(checks, text=finding)
 
 
-def judge_neighbours(paper: Scene, runs: Runs, folder: Path) -> Findings:
+def judge_neighbours(bench: Bench) -> Findings:
     """F_A, a_0 and a_cr for each stiffness."""
-    row, checks, forces = Rows("neighbours", runs), [], []
+    paper, runs = bench.paper, bench.runs
+    row, checks, forces = Rows(runs), [], []
     for name, scene in sorted(neighbour_scenes(paper).items(), key=lambda entry: _stiffness(entry[1])):
         solved = pull_off(chain_model(scene), _preload(scene), stencil=STENCIL)
         rows = against_solver(
             row, scene, runs[name], solved, name, f", neighbour springs of {_stiffness(scene):g} FU/LU"
         )
-        checks += rows if name != RUN else [repeated(check) for check in rows]
+        checks += rows if name != RUN else [replace(check, standing="repeats") for check in rows]
         forces.append(rows[0].value)
     finding = (
         f"Springs between neighbours of {_stiffness(paper):g} FU/LU change F_A by "
@@ -62,7 +64,7 @@ def judge_neighbours(paper: Scene, runs: Runs, folder: Path) -> Findings:
         "same: "
         f"{agreement(checks)}."
     )
-    return Findings(finding, checks, {})
+    return Findings(checks, text=finding)
 
 
 def _preload(scene: Scene) -> float:
@@ -80,13 +82,13 @@ FIG5 = Study(
     "A compressive force is applied and the plate comes to rest; then a tensile force: where an equilibrium is "
     "reached it "
     "is smaller than the adhesion force. Iterating yields the adhesion force and the critical radius.",
-    iteration_scenes,
     judge_iteration,
+    iteration_scenes,
 )
 NEIGHBOURS_STUDY = Study(
     "neighbours",
     "Fig. 3b: springs between neighbours",
     "Neighbouring particles are connected by linear springs that have transverse rigidity.",
-    neighbour_scenes,
     judge_neighbours,
+    neighbour_scenes,
 )

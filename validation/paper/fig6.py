@@ -2,31 +2,27 @@
 
 An opposite pair at the distance r, pressed together with the force f, gives way sideways where f/r exceeds the two
 tangential springs in series, k/2. Independent pairs reach that at the displacement d* = r₀ − r + 2f/k.
-What could scatter in the paper is computed beside it: momentum (`analysis.reference.released_plate`), and an iteration
+What could scatter in the paper is computed beside it: momentum (`references.released_plate`), and an iteration
 that ends with a share δ of F_A left, where the radius is that of F = −(1 − δ) F_A.
 """
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from contact1d.workflow.scene import Scene
-from validation.judging.check import Check
-from validation.judging.figures import Series, save
-from validation.judging.runs import found
-from validation.judging.words import agreement, number, share
+from validation.doors import Scene
+from validation.figures import Panel, Series, figure
+from validation.page import agreement, number, share
 from validation.paper.fig4 import STENCIL, against_solver
-from validation.paper.figures import history_figure
 from validation.paper.oracles import chain_model, independent_pairs, interaction
-from validation.paper.paper import changed, local
-from validation.paper.study import Findings, Rows, Runs, Scenes, Study
+from validation.paper.scenes import changed, local
 from validation.paper.table1 import printed_scatter
 from validation.references.pull_off import pull_off
 from validation.references.released_plate import ReleasedPlate
+from validation.row import Reference, Row, relative
+from validation.study import Bench, Findings, Rows, Scenes, Study, found
 
 NAME = "fig6"
 PRELOADS = (0.25, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0)
@@ -88,10 +84,11 @@ def slip_displacement(paper: Scene) -> float:
     return law.force_free_distance() - r + r * k / paper.bulk_stiffness
 
 
-def judge(paper: Scene, runs: Runs, folder: Path) -> Findings:
+def judge(bench: Bench) -> Findings:
     """F_A and a_cr after each F_D, where horizontal freedom ends the model, and what could scatter in the paper."""
-    row = Rows(NAME, runs)
-    spreads: list[Check] = []
+    paper, runs = bench.paper, bench.runs
+    row = Rows(runs)
+    spreads: list[Row] = []
     force: list[Series] = []
     radius: list[Series] = []
     kinds = {
@@ -104,13 +101,13 @@ def judge(paper: Scene, runs: Runs, folder: Path) -> Findings:
         why = SAME_TENSIONS if kind.startswith("dynamic") else SAME_STATES
         for quantity, symbol, series in (("adhesion_force", "F_A", force), ("critical_radius", "a_cr", radius)):
             values = np.array([found(runs[name], quantity).value for _, name in held])
-            claim = float(max(found(runs[name], quantity).uncertainty for _, name in held) / values.mean())
+            stated = float(max(found(runs[name], quantity).uncertainty for _, name in held) / values.mean())
             spread = float(np.abs(values / values.mean() - 1.0).max())
             reach = f"{min(p for p, _ in held):g} to {max(p for p, _ in held):g} FU"
             series.append(Series(kind, np.array([p for p, _ in held]), values / values.mean()))
             spreads.append(
-                row(f"largest deviation of {symbol} from its mean, F_D = {reach}: {kind}", spread, 0.0, "1", claim,
-                    "what the runs claim", "set bound", 0.0, why, on=[name for _, name in held], comparison="at most",
+                row.at_most(f"largest deviation of {symbol} from its mean, F_D = {reach}: {kind}", spread,
+                    Reference(stated, "what the runs claim", "set bound"), why, on=[name for _, name in held],
                     standing="by construction")
             )  # fmt: skip
     solved = [
@@ -128,7 +125,6 @@ def judge(paper: Scene, runs: Runs, folder: Path) -> Findings:
         force.append(
             Series(f"tension at once, {ratio:g} of critical damping", np.array(RELEASED), tensions / tensions.mean())
         )
-    save(history_figure(force, radius, limit), folder / "fig6.png")
     swings = ", ".join(f"{share(float(np.ptp(v) / v.mean()))} at {r:g}" for r, v in momentum.items())
     finding = (
         f"{_scatter(spreads)} At rest the largest deviations of F_A and a_cr from their means are "
@@ -151,11 +147,15 @@ def judge(paper: Scene, runs: Runs, folder: Path) -> Findings:
         "so much an "
         "iteration seems to have left open."
     )
-    caption = (
+    along = "preload $F_D$ (FU)"
+    panels = (Panel(along, r"$F_A/\bar F_A$", force, mark=limit, view=(0.9, 1.1)),
+              Panel(along, r"$a_{cr}/\bar a_{cr}$", radius, mark=limit, view=(0.9, 1.1)))  # fmt: skip
+    figures = figure(
         "Adhesion force and critical radius over the preload, each over its mean; dotted: where chains slip past. "
-        "The plate on which the tension acts at once is computed, not run"
+        "The plate on which the tension acts at once is computed, not run",
+        *panels,
     )
-    return Findings(finding, [*spreads, *solved, *slipped], {"fig6.png": caption})
+    return Findings([*spreads, *solved, *slipped], figures, text=finding)
 
 
 SAME_STATES = "unloading passes through the same states after every preload, since no pair snaps"
@@ -176,7 +176,7 @@ def _left_open(paper: Scene) -> float:
     return pairs.contact_radius(place) / pairs.critical_radius() - 1.0
 
 
-def _scatter(spreads: list[Check]) -> str:
+def _scatter(spreads: list[Row]) -> str:
     """Whether any of the three kinds of run depends on F_D by more than it claims."""
     found_here = [check.name for check in spreads if check.verdict == "FAIL"]
     return (
@@ -184,19 +184,19 @@ def _scatter(spreads: list[Check]) -> str:
     )
 
 
-def _ending(slipped: list[Check]) -> str:
+def _ending(slipped: list[Row]) -> str:
     if not slipped:
         return "No preload made the chains slip past each other."
     return (
         f"It does so up to a displacement of {number(slipped[0].value, 3)} LU, where an aligned pair gives way "
         "sideways "
-        f"(independent pairs: {number(slipped[0].reference, 3)} LU); beyond it the bodies go through each other and "
+        f"(independent pairs: {number(slipped[0].reference.value, 3)} LU); beyond it the bodies go through each other and "
         "the "
         "run says so and gives no number."
     )
 
 
-def _slips(paper: Scene, row: Rows) -> tuple[list[Check], float]:
+def _slips(paper: Scene, row: Rows) -> tuple[list[Row], float]:
     """The displacement at which horizontal runs end, and the preload between the last good and the first bad one."""
     failed = [p for p in PRELOADS if row.runs[_still(True, p)].status != "done"]
     if not failed:
@@ -204,11 +204,10 @@ def _slips(paper: Scene, row: Rows) -> tuple[list[Check], float]:
     name = _still(True, min(failed))
     message = str(row.runs[name].document["error"]["message"])
     place = float(message.split("at displacement ")[1].split(" LU")[0]) if "went through" in message else float("nan")
-    check = row(
-        "displacement at which horizontal freedom lets the chains slip past each other", place, 0.0, "LU",
-        slip_displacement(paper), "closed form of an independent pair, f/r = k/2", "closed form", SLIP,
-        "neighbour springs, non-opposite particles, increments of the displacement", on=[name],
-    )  # fmt: skip
+    check = row("displacement at which horizontal freedom lets the chains slip past each other", place,
+                Reference(slip_displacement(paper), "closed form of an independent pair, f/r = k/2"),
+                relative(SLIP, "neighbour springs, non-opposite particles, increments of the displacement"),
+                unit="LU", on=[name])  # fmt: skip
     good = [p for p in PRELOADS if p < min(failed)]
     return [check], 0.5 * (max(good) + min(failed))
 
@@ -218,6 +217,6 @@ STUDY = Study(
     "Fig. 6: adhesion force and critical radius over the preload",
     "JKR's F_A and a_cr do not depend on the compressive force F_D that was applied before; the numerical experiments "
     "show a weak dependence.",
-    scenes,
     judge,
+    scenes,
 )

@@ -8,22 +8,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import linregress, t
 
-from contact1d.workflow.scene import Scene
-from contact1d.workflow.units import Quantity
-from validation.judging.check import Check, Evidence
-from validation.judging.figures import Series, save
-from validation.judging.runs import found
-from validation.judging.words import agreement, measured, number, share, worst_deviation
-from validation.paper.figures import scaling_figure
+from validation.doors import Quantity, Scene
+from validation.figures import Panel, Series, figure
+from validation.page import agreement, measured, number, share, worst_deviation
 from validation.paper.oracles import independent_pairs
-from validation.paper.paper import HALF_DIGIT, TABLE_1, changed, local, with_radius
-from validation.paper.study import Findings, Rows, Runs, Scenes, Study
+from validation.paper.scenes import HALF_DIGIT, TABLE_1, changed, local, with_radius
+from validation.row import Evidence, Reference, Row, absolute, claim
+from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
 
 RADII = (500.0, 1000.0, 1600.0, 2000.0, 3000.0, 4000.0)
 """R [LU], those of Table 1 among them."""
@@ -80,31 +76,33 @@ def fitted(radii: Sequence[float], found_values: Sequence[Quantity]) -> Fit:
     return Fit(float(result.slope), half_width + float(weights @ claims))
 
 
-def exponents(row: Rows, radii: Sequence[float], name: Callable[[float], str], words: str) -> list[Check]:
+def exponents(
+    row: Rows, is_printed: bool, radii: Sequence[float], name: Callable[[float], str], words: str
+) -> list[Row]:
     """Exponents of F_A, a_0 and a_cr, and of what Eq. (9) makes of them: γ ∝ F_A/R, E* ∝ F_A R/a_0³."""
     on = [name(R) for R in radii]
     fits = {q: fitted(radii, [found(row.runs[run], q) for run in on]) for q in QUANTITIES}
-    printed = row.study == "fig7"
-    digits = print_resolution() if printed else dict.fromkeys(QUANTITIES, 0.0)
-    source = "Sections 3.3 and 4: the square root of R" if printed else "closed form of independent pairs"
-    kind: Evidence = "printed value" if printed else "closed form"
-    limit = f"{'digits of Table 1; ' if printed else ''}interval of the fit, what the runs claim"
+    digits = print_resolution() if is_printed else dict.fromkeys(QUANTITIES, 0.0)
+    source = "Sections 3.3 and 4: the square root of R" if is_printed else "closed form of independent pairs"
+    kind: Evidence = "printed value" if is_printed else "closed form"
+    limit = f"{'digits of Table 1; ' if is_printed else ''}interval of the fit, what the runs claim"
     checks = [
-        row(f"exponent of {QUANTITIES[q]} over R {words} ({THEORY[q]})", fit.exponent, fit.spread, "1", 0.5, source,
-            kind, digits[q] + min(fit.spread, LARGEST_SPREAD), limit, on=on, comparison="absolute", paper=0.5,
-            wide=DIGITS if printed else ALIKE)
+        row(f"exponent of {QUANTITIES[q]} over R {words} ({THEORY[q]})", fit.exponent, Reference(0.5, source, kind),
+            absolute(digits[q] + min(fit.spread, LARGEST_SPREAD), limit), uncertainty=fit.spread, on=on,
+            wide=DIGITS if is_printed else ALIKE)
         for q, fit in fits.items()
     ]  # fmt: skip
     force, radius = checks[:2]
     derived = (
-        ("γ", force.value - 1.0, force.uncertainty, force.tolerance, -0.5, "γ depends on R, by Eq. (9) as R^{-1/2}"),
+        ("γ", force.value - 1.0, force.uncertainty, force.bound.size, -0.5, "γ depends on R, by Eq. (9) as R^{-1/2}"),
         ("E*", force.value + 1.0 - 3.0 * radius.value, force.uncertainty + 3.0 * radius.uncertainty,
-         force.tolerance + 3.0 * radius.tolerance, 0.0, "the modulus does not depend on R"),
+         force.bound.size + 3.0 * radius.bound.size, 0.0, "the modulus does not depend on R"),
     )  # fmt: skip
     return checks + [
-        row(f"exponent of {symbol} by Eq. (9) over R {words}", value, spread, "1", reference, f"Section 4: {said}",
-            "paper's words", tolerance, f"{limit}; follows from F_A and a_0", on=on, comparison="absolute",
-            standing="repeats", wide=DIGITS if printed else ALIKE)
+        row(f"exponent of {symbol} by Eq. (9) over R {words}", value,
+            Reference(reference, f"Section 4: {said}", "paper's words"),
+            absolute(tolerance, f"{limit}; follows from F_A and a_0"), uncertainty=spread, on=on, standing="repeats",
+            wide=DIGITS if is_printed else ALIKE)
         for symbol, value, spread, tolerance, reference, said in derived
     ]  # fmt: skip
 
@@ -120,9 +118,10 @@ def print_resolution() -> dict[str, float]:
     return {"adhesion_force": force, "zero_load_radius": radius, "critical_radius": radius}
 
 
-def judge_fig7(paper: Scene, runs: Runs, folder: Path) -> Findings:
+def judge_fig7(bench: Bench) -> Findings:
     """Exponents of the paper's chain, beside JKR's and Barquins'."""
-    checks = exponents(Rows("fig7", runs), RADII, chain_run, "from 500 to 4000 LU")
+    runs = bench.runs
+    checks = exponents(Rows(runs), True, RADII, chain_run, "from 500 to 4000 LU")
     series = {
         q: [
             Series("paper's chain", np.array(RADII), _values(runs, chain_run, RADII, q)),
@@ -130,7 +129,18 @@ def judge_fig7(paper: Scene, runs: Runs, folder: Path) -> Findings:
         ]
         for q in ("adhesion_force", "zero_load_radius")
     }
-    save(scaling_figure(series["adhesion_force"], series["zero_load_radius"]), folder / "fig7.png")
+    powers = ({"square root": 0.5, "JKR, 1": 1.0, "Barquins, 1/3": 1.0 / 3.0},
+              {"square root": 0.5, "JKR and Barquins, 2/3": 2.0 / 3.0})  # fmt: skip
+    panels = [
+        Panel("radius of curvature $R$ (LU)", words, shown, [
+            Series(label, shown[0].x, shown[0].y[0] * (shown[0].x / shown[0].x[0]) ** power)
+            for label, power in lines.items()
+        ], log="xy")
+        for words, shown, lines in zip(
+            ("adhesion force $F_A$ (FU)", "zero-load radius $a_0$ (LU)"), series.values(), powers, strict=True
+        )
+    ]  # fmt: skip
+    figures = figure("Adhesion force and zero-load radius over R; lines: powers of theory", *panels)
     force, radius, critical, energy, modulus = checks
     finding = (
         f"F_A goes with the power {_said(force)} of R, a_0 with {_said(radius)} and a_cr with {_said(critical)}; by "
@@ -141,10 +151,10 @@ def judge_fig7(paper: Scene, runs: Runs, folder: Path) -> Findings:
         f"and a_0, Barquins 1/3 and 2/3: {_far(force, (1.0, 1.0 / 3.0))} and {_far(radius, (2.0 / 3.0,))} of these "
         "uncertainties away at least."
     )
-    return Findings(finding, checks, {"fig7.png": "Adhesion force and zero-load radius over R; lines: square root"})
+    return Findings(checks, figures, text=finding)
 
 
-def _departures(checks: Sequence[Check]) -> str:
+def _departures(checks: Sequence[Row]) -> str:
     off = [f"{c.name.split()[2]} by {number(c.value - 0.5, 2)}" for c in checks if c.off > c.uncertainty]
     if not off:
         return "None of the first three departs from 1/2 by more than that."
@@ -152,39 +162,40 @@ def _departures(checks: Sequence[Check]) -> str:
     return f"Beyond these intervals depart from 1/2 {', '.join(off)}: {why}."
 
 
-def _said(check: Check) -> str:
+def _said(check: Row) -> str:
     return measured(check.value, check.uncertainty, "1")
 
 
-def _far(check: Check, others: Sequence[float]) -> str:
+def _far(check: Row, others: Sequence[float]) -> str:
     return number(min(abs(check.value - other) for other in others) / check.uncertainty, 2)
 
 
-def judge_exponents(paper: Scene, runs: Runs, folder: Path) -> Findings:
+def judge_exponents(bench: Bench) -> Findings:
     """Exponents and values in the local limit, beside the closed form."""
-    row = Rows("exponents", runs)
-    slopes = exponents(row, LOCAL_RADII, local_run, "in the local limit")
-    values: list[Check] = []
+    paper, runs = bench.paper, bench.runs
+    row = Rows(runs)
+    slopes = exponents(row, False, LOCAL_RADII, local_run, "in the local limit")
+    values: list[Row] = []
     for radius in LOCAL_RADII:
         scene = with_radius(local(paper), radius)
         law = independent_pairs(scene)
-        for quantity, symbol, unit, expected in (
-            ("adhesion_force", "F_A", "FU", law.adhesion_force()),
-            ("zero_load_radius", "a_0", "LU", law.zero_load_radius()),
-            ("critical_radius", "a_cr", "LU", law.critical_radius()),
+        for quantity, symbol, expected in (
+            ("adhesion_force", "F_A", law.adhesion_force()),
+            ("zero_load_radius", "a_0", law.zero_load_radius()),
+            ("critical_radius", "a_cr", law.critical_radius()),
         ):
             ours = found(runs[local_run(radius)], quantity)
             values.append(
-                row(f"{symbol} in the local limit, R = {radius:g} LU", ours.value, ours.uncertainty, unit, expected,
-                    "closed form of independent pairs", "closed form", scene.accuracy.tolerance, "what the run claims",
-                    on=[local_run(radius)], comparison="uncertainty", wide=HALVED)
+                row(f"{symbol} in the local limit, R = {radius:g} LU", ours,
+                    Reference(expected, "closed form of independent pairs"),
+                    claim("what the run claims", scene.accuracy.tolerance), on=[local_run(radius)], wide=HALVED)
             )  # fmt: skip
     finding = (
         "Where only opposite particles meet, the exponents are 1/2 by the closed form, whatever the law; the runs have "
         f"{', '.join(number(check.value, 5) for check in slopes[:3])} for F_A, a_0 and a_cr: {agreement(slopes)}. The "
         f"values themselves agree with the closed form within {share(worst_deviation(values))}: {agreement(values)}."
     )
-    return Findings(finding, slopes + values, {})
+    return Findings(slopes + values, text=finding)
 
 
 def _values(runs: Runs, name: Callable[[float], str], radii: Sequence[float], quantity: str) -> NDArray[np.float64]:
@@ -196,13 +207,13 @@ FIG7 = Study(
     "Fig. 7: adhesion force and zero-load radius over R",
     "F_A and a_0 both go with the square root of R, while JKR (3D) has the exponents 1 and 2/3 and Barquins (2D) 1/3 "
     "and 2/3.",
-    lambda paper: local_scenes(paper) | chain_scenes(paper),
     judge_fig7,
+    lambda paper: local_scenes(paper) | chain_scenes(paper),
 )
 EXPONENTS = Study(
     "exponents",
     "The exponents in the local limit",
     "F_A ∝ √R and a_0 ∝ √R, so that the work of adhesion that is identified depends on R, and the modulus does not.",
-    local_scenes,
     judge_exponents,
+    local_scenes,
 )

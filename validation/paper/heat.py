@@ -8,24 +8,21 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contact1d.workflow.scene import Scene, scene_from_dict
-from validation.judging.check import Check
-from validation.judging.figures import Series, save
-from validation.judging.runs import found
-from validation.judging.words import agreement, number
-from validation.paper.figures import heat_figure
-from validation.paper.study import Findings, Rows, Runs, Scenes, Study
+from validation.doors import Scene, scene_from_dict
+from validation.figures import Panel, Series, figure
+from validation.page import agreement, number
 from validation.references.langevin_ensemble import PulledParticle, ensemble_friction
 from validation.references.prandtl_tomlinson import corrugation, slow_friction
 from validation.references.thermal_friction import free_corrugation, textbook_friction, thermal_friction
+from validation.row import Reference, Row, absolute, solver
+from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    pass
 
 NAME = "heat"
 LAW, LOAD, SPACING = (2.0, 0.5, 1.0, 1.0), 0.5, 1.0
@@ -151,25 +148,29 @@ def expected(share: float, velocity: float) -> tuple[float, float]:
     return (smoluchowski(share, velocity), 0.0) if velocity < SLOW else ensemble(share, velocity)
 
 
-def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
+def judge(bench: Bench) -> Findings:
     """Every mean within its errors, all of them together, and the temperature of a plate that drag of its own cools."""
-    row = Rows(NAME, runs)
+    runs = bench.runs
+    row = Rows(runs)
     rows = [_friction(row, share, velocity) for share in SHARES for velocity in DRIVES]
     names = [run_name(share, velocity) for share in SHARES for velocity in DRIVES]
-    off = [SIGMAS * (one.value - one.reference) / one.tolerance for one in rows]
+    off = [SIGMAS * (one.value - one.reference.value) / one.bound.size for one in rows]
     rows.append(
-        row("deviation over standard error, rms of all velocities and temperatures", math.hypot(*off) / len(off) ** 0.5,
-            0.0, "1", MOST_RMS, "chance, 1 in 1000", "set bound", 0.0, "statistics", on=names, comparison="at most",
-            despite=DRAGGED)
+        row.at_most("deviation over standard error, rms of all velocities and temperatures",
+            math.hypot(*off) / len(off) ** 0.5, Reference(MOST_RMS, "chance, 1 in 1000", "set bound"), "statistics",
+            on=names, despite=DRAGGED)
     )  # fmt: skip
     plate = found(runs["heat_plate"], "plate_temperature")
     sigma = plate.uncertainty / INTERVAL / TEMPERATURE
     rows.append(
-        row("temperature of a plate with drag of its own over that of the particles", plate.value / TEMPERATURE, sigma,
-            "1", 1.0, "equipartition", "closed form", RATIO * sigma if math.isfinite(sigma) else 0.0,
-            "statistics: three standard errors", on=["heat_plate"], comparison="absolute", despite=AT_REST)
+        row("temperature of a plate with drag of its own over that of the particles", plate.value / TEMPERATURE,
+            Reference(1.0, "equipartition"),
+            absolute(RATIO * sigma if math.isfinite(sigma) else 0.0, "statistics: three standard errors"),
+            uncertainty=sigma, on=["heat_plate"], despite=AT_REST)
     )  # fmt: skip
-    save(_figure(runs), folder / "heat.png")
+    figures = figure(
+        "Mean friction over velocity under heat: runs, references, and the (ln v)^(2/3) law", *_panels(runs)
+    )
     slowest = min(DRIVES)
     top = WELLS.largest_force
     laws = [number(_textbook(share, slowest) / top, 2) for share in SHARES]
@@ -182,44 +183,41 @@ def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
         f"gives {laws[0]} of F_max at kT = {SHARES[0]:g} of the barrier, and {laws[1]} at {SHARES[1]:g}, where the "
         f"reference has {means[0]} and {means[1]}."
     )
-    return Findings(finding, rows, {"heat.png": "Mean friction over velocity under heat; dashed: the (ln v)^(2/3) law"})
+    return Findings(rows, figures, text=finding)
 
 
-def _friction(row: Rows, share: float, velocity: float) -> Check:
+def _friction(row: Rows, share: float, velocity: float) -> Row:
     name, (mean, error) = run_name(share, velocity), expected(share, velocity)
     ours = found(row.runs[name], "mean_friction")
     top = WELLS.largest_force
     sigma = math.hypot(ours.uncertainty / INTERVAL, error) / top
-    return row(
-        f"⟨F⟩/F_max, kT = {share:g} of the barrier, v = {velocity:g} LU/TU", ours.value / top, ours.uncertainty / top,
-        "1", mean / top, "Smoluchowski's equation" if velocity < SLOW else f"ensemble of {COPIES} equations of motion",
-        "independent solver", SIGMAS * sigma if math.isfinite(sigma) else 0.0, STATISTICS, on=[name],
-        comparison="absolute", despite=DRAGGED,
-        wide="four standard errors, and by chance it is near",
-    )  # fmt: skip
+    return row(f"⟨F⟩/F_max, kT = {share:g} of the barrier, v = {velocity:g} LU/TU", ours.value / top,
+               solver(mean / top, "Smoluchowski's equation" if velocity < SLOW else f"ensemble of {COPIES} equations of motion"),
+               absolute(SIGMAS * sigma if math.isfinite(sigma) else 0.0, STATISTICS),
+               uncertainty=ours.uncertainty / top, on=[name], despite=DRAGGED,
+               wide="four standard errors, and by chance it is near")  # fmt: skip
 
 
 def _textbook(share: float, velocity: float) -> float:
     return textbook_friction(WELLS, SPRING, DRAG, share * BARRIER, velocity)
 
 
-def _figure(runs: Runs) -> Figure:
-    """⟨F⟩/F_max over v: runs, references, the textbook's law."""
+def _panels(runs: Runs) -> list[Panel]:
+    """⟨F⟩/F_max over v, a panel for each temperature: runs, references, the textbook's law."""
     top, drives = WELLS.largest_force, np.asarray(list(DRIVES))
-    slow = drives[drives < SLOW]
-    line = np.sort([*slow, math.sqrt(slow[0] * slow[1]), SLOW])
     fine = np.geomspace(drives[0], SLOW, 60)
-    points, solved, moving, laws = [], [], [], []
+    panels = []
     for share in SHARES:
         means = [found(runs[run_name(share, velocity)], "mean_friction") for velocity in DRIVES]
-        label = f"kT = {share:g} of the barrier"
         values, spreads = (np.asarray([getattr(one, key) for one in means]) / top for key in ("value", "uncertainty"))
-        points.append(Series(label, drives, values, spreads))
-        solved.append(Series("", line, np.asarray([smoluchowski(share, float(v)) for v in line]) / top))
-        fast = drives[drives >= SLOW]
-        moving.append(Series("", fast, np.asarray([ensemble(share, float(v))[0] for v in fast]) / top))
-        laws.append(Series("", fine, np.asarray([_textbook(share, float(v)) for v in fine]) / top))
-    return heat_figure(points, solved, moving, laws, slow_friction(WELLS, SPRING) / top)
+        known = np.asarray([expected(share, float(v))[0] for v in drives]) / top
+        law = np.asarray([_textbook(share, float(v)) for v in fine]) / top
+        lines = [Series("Smoluchowski, then an ensemble", drives, known), Series("$(\\ln v)^{2/3}$", fine, law)]
+        panels.append(
+            Panel("velocity (LU/TU)", r"mean friction over $F_{max}$", [Series("runs", drives, values, spreads)], lines,
+                  log="x", bound=slow_friction(WELLS, SPRING) / top, title=f"kT = {share:g} of the barrier")
+        )  # fmt: skip
+    return panels
 
 
 STUDY = Study(
@@ -227,6 +225,6 @@ STUDY = Study(
     "Friction under heat",
     "The paper's model has stochastic forces on the particles and a cantilever that pulls the plate (Section 3), and "
     "gives no result with either. What a single particle does under both is known.",
-    scenes,
     judge,
+    scenes,
 )

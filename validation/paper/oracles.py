@@ -8,9 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from contact1d.analysis.theory.jkr import jkr_reduced_force
-from contact1d.analysis.theory.line_adhesion import barquins_reduced_force
-from contact1d.workflow.scene import Parabola, Scene
+from validation.doors import Parabola, Scene
 from validation.references.independent_pairs import IndependentPairs
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
@@ -88,6 +86,17 @@ def row_tension(scene: Scene) -> float:
     return float(-(law.force(distance) * r[:, None] / distance).sum(axis=1).min())
 
 
+def jkr_reduced(a: Array | float) -> Array:
+    """F/F_A = 4 ã³ − 4 ã^{3/2} at ã = a/a₀ (Eq. 8)."""
+    return np.asarray(4.0 * np.asarray(a) ** 3 - 4.0 * np.asarray(a) ** 1.5)
+
+
+def barquins_reduced(a: Array | float) -> Array:
+    """F/F_A of a cylinder, ∝ ã² − √ã with the minimum −1 (Barquins 1988)."""
+    lowest = 4.0 ** (-2.0 / 3.0)  # where 2ã = 1/(2√ã)
+    return np.asarray((np.asarray(a) ** 2 - np.sqrt(a)) / (lowest**0.5 - lowest**2))
+
+
 def reduced(force: Array, contact_radius: Array) -> tuple[Array, Array]:
     """F/F_A and a/a₀ of a branch, with its own F_A, the largest tension, and its own a₀, where F = 0."""
     largest = int(np.argmin(force))
@@ -101,6 +110,6 @@ def distances(force: Array, contact_radius: Array) -> tuple[float, float]:
     """Rms distance of F/F_A to JKR's and to Barquins' at the same a/a₀, from a_cr up to F/F_A = 1.5."""
     tension, a = reduced(force, contact_radius)
     compared = (np.arange(len(a)) <= int(np.argmin(tension))) & (tension <= HIGHEST)
-    theories = (jkr_reduced_force, barquins_reduced_force)
+    theories = (jkr_reduced, barquins_reduced)
     jkr, barquins = (float(np.sqrt(np.mean((tension - law(a))[compared] ** 2))) for law in theories)
     return jkr, barquins

@@ -8,25 +8,29 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.theory.jkr import jkr_reduced_force
-from contact1d.workflow.identify import Target, estimated
-from contact1d.workflow.scene import Scene
-from contact1d.workflow.units import MEAN_PRESSURE
-from validation.judging.figures import save
-from validation.judging.runs import found
-from validation.judging.words import share
-from validation.paper.curves import DEEPEST, READ, STEPS, lengthened_run, scenes_8a
+from validation.doors import Scene, Target, estimated
+from validation.figures import Panel, Series, figure
+from validation.page import share
 from validation.paper.fig8 import ASKED
-from validation.paper.figures import pressure_radius_figure
-from validation.paper.paper import TABLE_1, changed, curve_scene
-from validation.paper.runs import branch
-from validation.paper.study import Findings, Rows, Runs, Scenes, Study
+from validation.paper.oracles import jkr_reduced
+from validation.paper.scenes import (
+    DEEPEST,
+    READ,
+    STEPS,
+    TABLE_1,
+    branch,
+    changed,
+    curve_scene,
+    lengthened_run,
+    scenes_8a,
+)
 from validation.paper.table1 import pull_off_run, scales
+from validation.row import Reference, absolute, printed, relative
+from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
 
 Array = NDArray[np.float64]
 PLACE, PRINTED, DIGIT = 35.0, 800.0, 50.0
@@ -63,40 +67,46 @@ def _stable(runs: Runs, name: str) -> tuple[Array, Array]:
     return a[stable][order], force[stable][order]
 
 
-def judge_pressure(_: Scene, runs: Runs, folder: Path) -> Findings:
+def judge_pressure(bench: Bench) -> Findings:
     """Mean pressure over the contact radius, by the run and by Eq. (8)."""
-    row, first = Rows("mean_pressure", runs), TABLE_1[0]
+    runs = bench.runs
+    row, first = Rows(runs), TABLE_1[0]
     pull_off, curve = pull_off_run(first.radius), lengthened_run(200)
     units = scales(runs, first.radius)
-    mega = 1e-6 * units.factor(MEAN_PRESSURE)
+    mega = 1e-6 * units.force / units.length**2
     force_scale, radius_scale = (found(runs[pull_off], q).value for q in ("adhesion_force", "zero_load_radius"))
 
     def at_place(a: Array, force: Array) -> float:
-        return float(np.interp(PLACE, a, force)) / (math.pi * PLACE**2) * mega
+        return float(np.interp(PLACE, a, force) / (math.pi * PLACE**2) * mega)
 
     a, force = _stable(runs, curve)
     ours = at_place(a, force)
     bend = abs(ours - at_place(a[::2], force[::2]))
-    jkr = force_scale * jkr_reduced_force(a / radius_scale) / (math.pi * a**2) * mega
-    reduced = float(jkr_reduced_force(PLACE / radius_scale))
+    jkr = force_scale * jkr_reduced(a / radius_scale) / (math.pi * a**2) * mega
+    reduced = float(jkr_reduced(PLACE / radius_scale))
     by_law = force_scale * reduced / (math.pi * PLACE**2) * mega
     spread = ours * (units.force_uncertainty / units.force + 2.0 * units.length_uncertainty / units.length) + bend
     place = f"at R = {first.radius:g} LU, a = {PLACE:g} LU"
     checks = [
-        row(f"mean pressure {place}, by the run's own force", ours, spread, "MPa", PRINTED, "Section 4: about 800 MPa",
-            "printed value", DIGIT, "print: one digit", on=[curve, pull_off], despite=READ, comparison="absolute",
-            paper=PRINTED),
-        row("the same over that of Eq. (8) with the run's F_A and a_0", ours / by_law, spread / by_law, "1", 1.0,
-            "Eq. (8); bound as for the curves of Fig. 8, over F/F_A here", "set bound", ASKED / reduced,
-            "range of the interaction: the curve is near JKR's and not on it; chosen by the stiffness",
-            on=[curve, pull_off], despite=READ),
-        row(f"mean pressure {place}, by Eq. (8) with the run's F_A and a_0", by_law, spread, "MPa", PRINTED,
-            "Section 4: about 800 MPa", "printed value", DIGIT, "print: one digit; F_A and a_0 are those of Table 1",
-            on=[pull_off], comparison="absolute", paper=PRINTED, standing="by construction"),
+        row(f"mean pressure {place}, by the run's own force", ours, printed(PRINTED, "Section 4: about 800 MPa"),
+            absolute(DIGIT, "print: one digit"), uncertainty=spread, unit="MPa", on=[curve, pull_off], despite=READ),
+        row("the same over that of Eq. (8) with the run's F_A and a_0", ours / by_law,
+            Reference(1.0, "Eq. (8); bound as for the curves of Fig. 8, over F/F_A here", "set bound"),
+            relative(ASKED / reduced, "range of the interaction: the curve is near JKR's and not on it; chosen by the stiffness"),
+            uncertainty=spread / by_law, on=[curve, pull_off], despite=READ),
+        row(f"mean pressure {place}, by Eq. (8) with the run's F_A and a_0", by_law,
+            printed(PRINTED, "Section 4: about 800 MPa"),
+            absolute(DIGIT, "print: one digit; F_A and a_0 are those of Table 1"), uncertainty=spread, unit="MPa",
+            on=[pull_off], standing="by construction"),
     ]  # fmt: skip
     pressure = force / (math.pi * a**2) * mega
     shown = a > 0.55 * radius_scale
-    save(pressure_radius_figure(a[shown], pressure[shown], jkr[shown], (PLACE, PRINTED)), folder / "mean_pressure.png")
+    panel = Panel(
+        "contact radius $a$ (LU)", r"mean pressure $F/\pi a^2$ (MPa)",
+        [Series("this program", a[shown], pressure[shown]), Series("the paper", np.array([PLACE]), np.array([PRINTED]))],
+        [Series("JKR, Eq. (8), with the same $F_A$ and $a_0$", a[shown], jkr[shown])],
+    )  # fmt: skip
+    figures = figure("Mean pressure over the contact radius, R = 1000 LU", panel)
     others = [at_place(*_stable(runs, stiffness_run(k))) for k in STIFFNESSES]
     said = ", ".join(f"{value:.0f} MPa with {k:g}" for k, value in zip(STIFFNESSES, others, strict=True))
     beyond = [k for k, value in zip(STIFFNESSES, others, strict=True) if abs(value - PRINTED) > DIGIT]
@@ -109,7 +119,7 @@ def judge_pressure(_: Scene, runs: Runs, folder: Path) -> Findings:
         f"what 'about {PRINTED:.0f}' leaves, and {_which(outside)} be farther from Eq. (8) than "
         f"{share(ASKED / reduced)}. The stiffness of 1 FU/LU was chosen by the nearness of the curve to JKR's."
     )
-    return Findings(finding, checks, {"mean_pressure.png": "Mean pressure over the contact radius, R = 1000 LU"})
+    return Findings(checks, figures, text=finding)
 
 
 def _passes(verdict: str) -> str:
@@ -124,6 +134,6 @@ MEAN_PRESSURE_STUDY = Study(
     "mean_pressure",
     "The mean pressure at R = 1000, a = 35",
     "For R = 1000 and a = 35 the mean pressure is about 800 MPa.",
-    pressure_scenes,
     judge_pressure,
+    pressure_scenes,
 )

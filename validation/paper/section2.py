@@ -14,11 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact1d.workflow.runs.finished import Run
-from contact1d.workflow.scene import Reduction, Scene, scene_from_dict
-from validation.judging.runs import found
-from validation.paper.study import Scenes
+from validation.doors import Reduction, Run, Scene, scene_from_dict
 from validation.references import hertz
+from validation.study import Scenes, found
 
 MODULUS = 210e9
 """Young's modulus of both bodies [Pa]."""

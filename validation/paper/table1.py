@@ -7,18 +7,19 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
+from typing import Any
 
-from contact1d.workflow.runs.scales import jkr_scales
-from contact1d.workflow.scene import Scene
-from contact1d.workflow.units import Scales
-from validation.judging.runs import found
-from validation.judging.words import agreement, number, share, worst_deviation
-from validation.paper.paper import CONTACT_MODULUS, HALF_DIGIT, SURFACE_ENERGY, TABLE_1, with_radius
-from validation.paper.study import Findings, Rows, Runs, Scenes, Study
+from validation import doors
+from validation.doors import Scene
+from validation.page import agreement, number, share, worst_deviation
+from validation.paper.scenes import CONTACT_MODULUS, HALF_DIGIT, SURFACE_ENERGY, TABLE_1, with_radius
+from validation.row import Known, printed, relative
+from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
 
 GOES_WITH = {"a_0": (1, 0), "F_A": (0, 1), "one LU": (3, 0), "one FU": (3, 1)}
 """Powers of the first row's a₀ and F_A in a prediction."""
+POWERS = {"a_0": 0.5, "one FU": 1.0}
+"""Of R, in the model: a_0 ∝ √R whatever the law, and the force unit with R."""
 AT_ODDS = {(1600.0, "a_0"), (1600.0, "one FU"), (2000.0, "one FU")}
 """Printed numbers that no law can have together with the first row's: see the finding."""
 
@@ -33,17 +34,21 @@ def scenes(paper: Scene) -> Scenes:
     return {pull_off_run(row.radius): with_radius(paper, row.radius) for row in TABLE_1}
 
 
-def scales(runs: Runs, radius: float) -> Scales:
+def scales(runs: Runs, radius: float) -> Any:
     """LU and FU that a run with this R [LU] gives the paper's material."""
     results = runs[pull_off_run(radius)].results
-    return jkr_scales(results["adhesion_force"], results["zero_load_radius"], radius, CONTACT_MODULUS, SURFACE_ENERGY)
+    return doors.jkr_scales(
+        results["adhesion_force"], results["zero_load_radius"], radius, CONTACT_MODULUS, SURFACE_ENERGY
+    )
 
 
-def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
+def judge(bench: Bench) -> Findings:
     """Every number of the table."""
-    row, checks = Rows("table1", runs), []
+    runs = bench.runs
+    row, checks = Rows(runs), []
     basis = TABLE_1[0]
     rounding = (HALF_DIGIT["a_0"] / basis.zero_load_radius, HALF_DIGIT["F_A"] / basis.adhesion_force)
+    basis_of = {"a_0": basis.zero_load_radius, "one FU": 1e6 * basis.force_unit}
     for entry in TABLE_1:
         name = pull_off_run(entry.radius)
         units = scales(runs, entry.radius)
@@ -57,14 +62,19 @@ def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
             fixed = entry is basis and unit in ("LU", "FU")
             tolerance = HALF_DIGIT[symbol] / expected
             tolerance += 0.0 if fixed else sum(n * part for n, part in zip(GOES_WITH[symbol], rounding, strict=True))
+            known = None
+            if (entry.radius, symbol) in AT_ODDS:
+                law = basis_of[symbol] * (entry.radius / basis.radius) ** POWERS[symbol]
+                known = Known(law, tolerance * law, "the first row's, as the model has it for any law")
             checks.append(
-                row(f"{symbol}, R = {entry.radius:g} LU", value, spread, unit, expected,
-                    "Table 1, first row: identified by it" if fixed else "Table 1", "printed value", tolerance,
-                    "print, of this number" + ("" if fixed else " and of the first row"), on=[name], paper=expected,
-                    standing="by construction" if fixed else "judged", differs=(entry.radius, symbol) in AT_ODDS)
+                row(f"{symbol}, R = {entry.radius:g} LU", value,
+                    printed(expected, "Table 1, first row: identified by it" if fixed else "Table 1"),
+                    relative(tolerance, "print, of this number" + ("" if fixed else " and of the first row")),
+                    uncertainty=spread, unit=unit, on=[name], standing="by construction" if fixed else "judged",
+                    known=known)
             )  # fmt: skip
     predicted = [c for c in checks if f"R = {basis.radius:g} LU" not in c.name]
-    within = [c for c in predicted if not c.differs]
+    within = [c for c in predicted if c.known is None]
     apart = [c for c in predicted if c.verdict == "DIFFERS"]
     finding = (
         "The interaction is identified by F_A and a_0 of the first row. The numbers of the other rows are predictions, "
@@ -76,7 +86,7 @@ def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
         "with more digits than F_A: what they say of it scatters about the square root of R by "
         f"{share(printed_scatter())}."
     )
-    return Findings(finding, checks, {})
+    return Findings(checks, text=finding)
 
 
 def _odd() -> str:
@@ -114,6 +124,6 @@ TABLE1 = Study(
     "Table 1: internal length and force",
     "For E* = 200 GPa and γ = 1 J/m² the length and the force unit follow from F_A and a_0 for every radius of "
     "curvature.",
-    scenes,
     judge,
+    scenes,
 )

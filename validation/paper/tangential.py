@@ -11,21 +11,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.integrate import quad
 
-from contact1d.analysis.theory import mindlin
-from contact1d.workflow.runs.finished import Run
-from contact1d.workflow.scene import Reduction, Scene, scene_from_dict
-from validation.judging.check import Check
-from validation.judging.figures import Array, Series, save
-from validation.judging.words import agreement, number, share
-from validation.paper.figures import slip_figure
+from validation.doors import Reduction, Run, Scene, scene_from_dict
+from validation.figures import Array, Panel, Series, figure
+from validation.page import agreement, number, share
 from validation.paper.section2 import FORCE_UNIT, LENGTH_UNIT, MODULUS
-from validation.paper.study import Findings, Rows, Runs, Scenes, Study
 from validation.references.hertz import hertz_force
+from validation.row import Reference, Row, absolute, relative
+from validation.study import Bench, Findings, Rows, Runs, Scenes, Study
 
 NAME = "tangential"
 RADIUS, DEPTH, SPACING, FRICTION = 1000.0, 1.0, 0.5, 0.3
@@ -60,11 +57,11 @@ class Case:
     @property
     def ratio(self) -> float:
         """G*/E*."""
-        return mindlin.stiffness_ratio(self.moduli, self.poisson_ratios)
+        return stiffness_ratio(self.moduli, self.poisson_ratios)
 
     def sliding(self, depth: float = DEPTH) -> float:
         """u* [LU]."""
-        return mindlin.sliding_displacement(FRICTION, self.ratio, depth)
+        return FRICTION * depth / self.ratio
 
     def load(self, depth: float = DEPTH) -> float:
         """N of Hertz [FU]: two spheres R for the reduction of the paper, one and a flat for the MDR."""
@@ -96,6 +93,22 @@ class Case:
                 "experiment": experiment,
             }
         )
+
+
+def stiffness_ratio(moduli: tuple[float, float], poisson_ratios: tuple[float, float]) -> float:
+    """G*/E*, 1/G* = Σ (2 − ν)/4G, 1/E* = Σ (1 − ν²)/E, G = E/2(1 + ν)."""
+    pairs = list(zip(moduli, poisson_ratios, strict=True))
+    return sum((1.0 - nu**2) / E for E, nu in pairs) / sum((2.0 - nu) * (1.0 + nu) / (2.0 * E) for E, nu in pairs)
+
+
+def way_out(u: float) -> float:
+    """F_x/μN at u/u* ≤ 1."""
+    return math.copysign(1.0 - (1.0 - abs(u)) ** 1.5, u)
+
+
+def loop_force(u: float) -> float:
+    """F_x/μN on the way back from TURN, at u/u*: the way out at twice its size (Masing)."""
+    return way_out(TURN) - 2.0 * way_out(0.5 * (TURN - u))
 
 
 def _equal(reduction: Reduction, nu: float) -> Case:
@@ -136,19 +149,20 @@ def scenes(_: Scene) -> Scenes:
     return loops | {"tangential_raised": BASE.scene(places, depths)} | _order_runs()
 
 
-def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
+def judge(bench: Bench) -> Findings:
     """Every quantity by its worst pair of bodies, then the raised load and the order."""
-    row = Rows(NAME, runs)
+    runs = bench.runs
+    row = Rows(runs)
     rows = [*_loop_checks(row), *_raised_checks(row), _order_check(row)]
-    save(slip_figure(_series(runs), _sticking(runs), _theory()), folder / "tangential.png")
-    worst = max(abs(check.value - check.reference) for check in rows[:4])
+    figures = figure("F_x and stick radius over the way, beside Cattaneo and Mindlin", *_panels(runs))
+    worst = max(abs(check.value - check.reference.value) for check in rows[:4])
     finding = (
         f"For {len(CASES)} pairs of bodies, equal and unequal, in both reductions, F_x on the way out and back, the "
         f"stick radius and the area of the loop are those of Cattaneo and Mindlin within {share(worst)}: "
         f"{agreement(rows[:4])}. The error of F_x is of the order {number(rows[-1].value, 3)} in the spacing. A load "
         f"that is raised while some particles slip has Mindlin's and Deresiewicz's force: {agreement(rows[4:-1])}."
     )
-    return Findings(finding, rows, {"tangential.png": "F_x and stick radius over the way, beside Cattaneo and Mindlin"})
+    return Findings(rows, figures, text=finding)
 
 
 def _worst(found: list[tuple[float, float, float]]) -> tuple[float, float, float]:
@@ -160,71 +174,82 @@ def _fineness(case: Case) -> float:
     return (SPACING / case.half_width) ** 2
 
 
-def _loop_checks(row: Rows) -> list[Check]:
+def _loop_checks(row: Rows) -> list[Row]:
     half, back = OUT[HALF], len(OUT) + 15
     names = [case.name for case in CASES]
     out, returned, stuck, area = [], [], [], []
     for case in CASES:
         run, unit = row.runs[case.name], FRICTION * case.load()
         force, sliding = run.friction["tangential_force"], case.sliding()
-        theory = mindlin.mindlin_path((sliding * np.concatenate([OUT, LOOP[1:]])).tolist(), 1.0, 1.0, sliding)
         lattice = _fineness(case)
-        out.append((float(force[HALF]) / unit, theory[HALF], 0.5 * lattice))
-        returned.append((float(force[back]) / unit, theory[back], 1.5 * lattice))
+        out.append((float(force[HALF]) / unit, way_out(half), 0.5 * lattice))
+        returned.append((float(force[back]) / unit, loop_force(0.0), 1.5 * lattice))
         radius = run.friction["stick_radius"][HALF] / run.curve.contact_radius[HALF]
         stuck.append((float(radius), math.sqrt(1.0 - half), ROUND_OFF))
         energy = run.friction["dissipated_energy"]
-        loop = mindlin.mindlin_loop_area(TURN * sliding, unit / FRICTION, FRICTION, sliding)
+        loop = -2.0 * float(quad(loop_force, -TURN, TURN)[0]) * sliding * unit
         way = 4.0 * TURN * sliding * unit
         area.append((float(energy[-1] - energy[len(OUT) - 1]) / loop, 1.0, 1.5 * lattice * way / loop))
     (a, ref_a, tol_a), (b, ref_b, tol_b), (c, ref_c, tol_c), (d, ref_d, tol_d) = map(
         _worst, (out, returned, stuck, area)
     )
     of = f"worst of {len(CASES)} pairs of bodies for its lattice"
-    both: dict[str, Any] = {"on": names, "comparison": "absolute", "despite": OTHER}
+    both: dict[str, Any] = {"on": names, "despite": OTHER}
     more, exact = both | {"wide": BY_CHANCE}, both | {"wide": "a parabola is met to round-off"}
     book = "Cattaneo and Mindlin, N of Hertz in SI"
     return [
-        row(f"F_x over μN at u*/2, {of}", a, 0.0, "1", ref_a, book, "closed form", tol_a, LATTICE, **more),
-        row(f"F_x over μN on the way back from {TURN:g} u*, at u = 0, {of}", b, 0.0, "1", ref_b,
-            "Mindlin and Deresiewicz: the way back is the way out at twice its size", "closed form", tol_b, LATTICE,
-            **more),
-        row(f"c/a at u*/2, worst of {len(CASES)} pairs of bodies", c, 0.0, "1", ref_c, "Cattaneo and Mindlin",
-            "closed form", tol_c, "round-off", **exact),
-        row(f"energy of a loop between ±{TURN:g} u* over its area, {of}", d, 0.0, "1", ref_d,
-            "Mindlin and Deresiewicz", "closed form", tol_d, LATTICE, **more),
+        row(f"F_x over μN at u*/2, {of}", a, Reference(ref_a, book), absolute(tol_a, LATTICE), **more),
+        row(f"F_x over μN on the way back from {TURN:g} u*, at u = 0, {of}", b,
+            Reference(ref_b, "Mindlin and Deresiewicz: the way back is the way out at twice its size"),
+            absolute(tol_b, LATTICE), **more),
+        row(f"c/a at u*/2, worst of {len(CASES)} pairs of bodies", c, Reference(ref_c, "Cattaneo and Mindlin"),
+            absolute(tol_c, "round-off"), **exact),
+        row(f"energy of a loop between ±{TURN:g} u* over its area, {of}", d,
+            Reference(ref_d, "Mindlin and Deresiewicz"), absolute(tol_d, LATTICE), **more),
     ]  # fmt: skip
 
 
-def _raised_checks(row: Rows) -> list[Check]:
+def _raised_checks(row: Rows) -> list[Row]:
     run, unit = row.runs["tangential_raised"], FRICTION * BASE.load()
     places, _ = _raised()
     force = run.friction["tangential_force"]
-    loads, slidings = ((measure(FIRST * DEPTH), measure(DEPTH)) for measure in (BASE.load, BASE.sliding))
     checks = []
     for i, words in ((2, "half of the way"), (4, "one and a half times the way")):
-        expected = mindlin.raised_load_force(float(places[i]), float(places[0]), loads, slidings, FRICTION) / unit
+        expected = _raised_force(float(places[i]), float(places[0]))
         checks.append(
-            row(f"F_x over μN, load raised by {1.0 / FIRST**1.5 - 1.0:.0%} at {RAISED:g} u*, {words} to the old edge "
-                "on", float(force[i]) / unit, 0.0, "1", expected, "Mindlin and Deresiewicz: what slipped sticks anew",
-                "closed form", 1.5 * _fineness(BASE) / FIRST, LATTICE, on=["tangential_raised"],
-                comparison="absolute", wide=BY_CHANCE)
+            row(f"F_x over μN, load raised by {1.0 / FIRST**1.5 - 1.0:.0%} at {RAISED:g} u*, {words} to the old edge " "on",
+                float(force[i]) / unit, Reference(expected, "Mindlin and Deresiewicz: what slipped sticks anew"),
+                absolute(1.5 * _fineness(BASE) / FIRST, LATTICE), on=["tangential_raised"], wide=BY_CHANCE)
         )  # fmt: skip
     return checks
 
 
-def _order_check(row: Rows) -> Check:
+def _raised_force(place: float, turn: float) -> float:
+    """F_x/μN of springs without end beside each other: those that slip at `turn` stick anew under the raised load.
+
+    A spring at x carries min(u k_t, μ k_n (d − x²/R)) at the turn; what it may carry rises with d.
+    """
+
+    def spring(x: float) -> float:
+        low, high = (max(0.0, FRICTION * (d - x**2 / RADIUS)) for d in (FIRST * DEPTH, DEPTH))
+        return min(min(BASE.ratio * turn, low) + BASE.ratio * (place - turn), high)
+
+    edge, kinks = math.sqrt(RADIUS * DEPTH), [math.sqrt(RADIUS * FIRST * DEPTH)]
+    carried = float(quad(spring, 0.0, edge, points=kinks, limit=400, epsabs=1e-11)[0])
+    return carried / (FRICTION * 2.0 / 3.0 * DEPTH * edge)
+
+
+def _order_check(row: Rows) -> Row:
     """The fitted order, uncertain by the fit."""
     names = list(_order_runs())
     depth = EDGE**2 / RADIUS
     exact = FRICTION * BASE.load(depth) * (1.0 - STUCK**3)
     errors = [abs(_last(row.runs[name]) / exact - 1.0) for name in names]
     fitted, covariance = np.polyfit(np.log(ORDER_SPACINGS), np.log(errors), 1, cov=True)
-    return row(
-        "order of convergence of F_x in the spacing", float(fitted[0]), float(np.sqrt(covariance[0, 0])), "1", 2.0,
-        "Euler and Maclaurin: both edges are kinks of a sum", "closed form", ROUND_OFF, "round-off", on=names,
-        wide="edges midway between particles: the series of a parabola ends after its first term",
-    )  # fmt: skip
+    return row("order of convergence of F_x in the spacing", float(fitted[0]),
+               Reference(2.0, "Euler and Maclaurin: both edges are kinks of a sum"), relative(ROUND_OFF, "round-off"),
+               uncertainty=float(np.sqrt(covariance[0, 0])), on=names,
+               wide="edges midway between particles: the series of a parabola ends after its first term")  # fmt: skip
 
 
 def _last(run: Run) -> float:
@@ -262,18 +287,24 @@ def _words(case: Case) -> str:
     return f"{case.reduction}, {materials}"
 
 
-def _theory() -> tuple[Series, Series]:
+def _panels(runs: Runs) -> tuple[Panel, Panel]:
     """F_x/μN around the loop and c/a on the way out, over u/u*."""
-    way = np.concatenate([np.linspace(0.0, TURN, 100), np.linspace(TURN, -TURN, 200), np.linspace(-TURN, TURN, 200)])
-    force = np.asarray(mindlin.mindlin_path(way.tolist(), 1.0, 1.0, 1.0))
-    out = np.linspace(0.0, 1.0, 200)
-    return Series("Mindlin", way, force), Series("Mindlin", out, mindlin.mindlin_stick_radius(out, 1.0, 1.0))
+    way = np.linspace(-TURN, TURN, 200)
+    back = [loop_force(u) for u in way.tolist()]
+    out = np.linspace(0.0, TURN, 100)
+    return (
+        Panel("displacement over $u^*$", r"$F_x/\mu N$", _series(runs),
+              [Series("way out", out, 1.0 - (1.0 - out) ** 1.5), Series("loop", way, np.asarray(back)),
+               Series("", -way, -np.asarray(back))]),
+        Panel("displacement over $u^*$", "stick radius over contact radius", _sticking(runs),
+              [Series("Mindlin", out, np.sqrt(1.0 - out))]),
+    )  # fmt: skip
 
 
 STUDY = Study(
     NAME,
     "The tangential contact beside Cattaneo and Mindlin",
     "The reduction is valid for the tangential contact, too, with the tangential stiffness in place of the normal one.",
-    scenes,
     judge,
+    scenes,
 )

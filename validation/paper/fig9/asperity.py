@@ -7,16 +7,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from contact1d.workflow.scene import Scene, Slide
-from contact1d.workflow.settings.settings import settings_for
-from validation.judging.check import Check
-from validation.judging.figures import Array, Series
-from validation.judging.slide_model import law_of
-from validation.paper.fig9.figures import Panel
+from validation.doors import Scene, Slide, settings_for
+from validation.figures import Array, Panel, Series
 from validation.paper.fig9.reading import CRITICAL, SLIDES, exponent, mean, slow_limit, static, threshold
 from validation.paper.fig9.sweeps import PARTICLE, STIFFNESS, VELOCITY, slides
-from validation.paper.study import Rows
 from validation.references.prandtl_tomlinson import Corrugation, corrugation, moving_friction, slow_friction
+from validation.row import Reference, Row, absolute, claim, relative, solver
+from validation.slides import law_of
+from validation.study import Rows
 
 SINUSOID = {1.0: 0.0, 2.0: 0.2015, 5.0: 0.5710}
 """⟨F⟩/F_max of a sinusoid at η, for v → 0."""
@@ -51,7 +49,7 @@ def series_stiffness(scene: Scene) -> float:
     return 1.0 / (1.0 / scene.cantilever.stiffness + 1.0 / scene.tangential_stiffness)
 
 
-def load_checks(row: Rows) -> tuple[list[Check], Panel]:
+def load_checks(row: Rows) -> tuple[list[Row], Panel]:
     """The largest friction over the load, beside the largest slope of U."""
     points = slides(PARTICLE)
     loads = [load for (load,) in points.names]
@@ -62,13 +60,13 @@ def load_checks(row: Rows) -> tuple[list[Check], Panel]:
     rise = [(of[step[1]] - of[step[0]]) / (step[1] - step[0]) for of in (ours, theory)]
     law = "largest slope of the energy of a rigid row"
     checks = [
-        row("largest friction of one particle without a load", ours[0.0], 0.0, "FU", theory[0.0], law, "closed form",
-            OF_LARGEST, BETWEEN, on=[points.names[0.0,]]),
-        row(f"the same over that of the row, worst of {len(loads)} loads from {loads[0]:g} to {loads[-1]:g} FU, at "
-            f"{worst:g} FU", ours[worst] / theory[worst], 0.0, "1", 1.0, law, "closed form", OF_LARGEST, BETWEEN,
-            on=points.every, despite=EITHER),
-        row("what it rises by with the load, between -0.1 and 0.1 FU", rise[0], 0.0, "1", rise[1], law, "closed form",
-            OF_LARGEST, BETWEEN, on=[points.names[load,] for load in step], despite=EITHER),
+        row("largest friction of one particle without a load", ours[0.0], Reference(theory[0.0], law),
+            relative(OF_LARGEST, BETWEEN), unit="FU", on=[points.names[0.0,]]),
+        row(f"the same over that of the row, worst of {len(loads)} loads from {loads[0]:g} to {loads[-1]:g} FU, at " f"{worst:g} FU",
+            ours[worst] / theory[worst], Reference(1.0, law), relative(OF_LARGEST, BETWEEN), on=points.every,
+            despite=EITHER),
+        row("what it rises by with the load, between -0.1 and 0.1 FU", rise[0], Reference(rise[1], law),
+            relative(OF_LARGEST, BETWEEN), on=[points.names[load,] for load in step], despite=EITHER),
     ]  # fmt: skip
     fine = np.linspace(loads[0], loads[-1], 33)
     line = [corrugation(law_of(points.scenes[0.0,]), 1.0, load).largest_force for load in fine.tolist()]
@@ -82,7 +80,7 @@ def load_checks(row: Rows) -> tuple[list[Check], Panel]:
     return checks, panel
 
 
-def velocity_checks(row: Rows) -> tuple[list[Check], Panel]:
+def velocity_checks(row: Rows) -> tuple[list[Row], Panel]:
     """⟨F⟩ of a sinusoid over the velocity, at η = 1, 2, 5."""
     points = slides(VELOCITY)
     velocities = sorted({velocity for velocity, _ in points.names})
@@ -100,29 +98,26 @@ def velocity_checks(row: Rows) -> tuple[list[Check], Panel]:
             moving = moving_friction(wells, series_stiffness(scene), inertia, drag, velocity, 4, 2, 0.2)
             off.append((value / (moving / wells.largest_force), velocity, eta))
         limit = slow_limit(over, CRITICAL if eta == 1.0 else 2.0 / 3.0)
-        absolute = {"tolerance": NONE, "comparison": "absolute"} if expected == 0.0 else {"tolerance": ASKED}
+        bound = absolute(NONE, LIMIT) if expected == 0.0 else relative(ASKED, LIMIT)
         checks.append(
-            row(f"⟨F⟩/F_max of a sinusoid at η = {eta:g}, slow limit", limit.value, limit.uncertainty, "1", expected,
-                "Prandtl and Tomlinson", "closed form", limited_by=LIMIT, on=names,
-                despite=EDGE, wide=BY_CHANCE, **absolute)
+            row(f"⟨F⟩/F_max of a sinusoid at η = {eta:g}, slow limit", limit.value,
+                Reference(expected, "Prandtl and Tomlinson"), bound, uncertainty=limit.uncertainty, on=names,
+                despite=EDGE, wide=BY_CHANCE)
         )  # fmt: skip
         power = np.asarray(velocities) ** (2.0 / 3.0)
         shown.append(Series(f"η = {eta:g}", power, np.asarray(list(over.values()))))
         limits.append(Series("" if limits else "theory for v → 0", np.zeros(1), np.asarray([expected])))
     worst, velocity, eta = max(off, key=lambda one: abs(one[0] - 1.0))
     checks.append(
-        row(f"⟨F⟩ over that of the equation of motion at the same velocity, worst of {len(off)}, at η = {eta:g} and "
-            f"{velocity:g} LU/TU", worst, 0.0, "1", 1.0, "equation of motion of one particle over the corrugation",
-            "independent solver", ASKED, "particle and plate are two masses, the equation has one", on=points.every,
-            despite=EDGE)
+        row(f"⟨F⟩ over that of the equation of motion at the same velocity, worst of {len(off)}, at η = {eta:g} and " f"{velocity:g} LU/TU",
+            worst, solver(1.0, "equation of motion of one particle over the corrugation"),
+            relative(ASKED, "particle and plate are two masses, the equation has one"), on=points.every, despite=EDGE)
     )  # fmt: skip
-    panel = Panel(
-        "velocity to the power 2/3 (LU/TU)$^{2/3}$", r"$\langle F\rangle/F_{max}$", shown, limits, joined=True
-    )
+    panel = Panel("velocity to the power 2/3 (LU/TU)$^{2/3}$", r"$\langle F\rangle/F_{max}$", shown, limits)
     return checks, panel
 
 
-def stiffness_checks(row: Rows) -> tuple[list[Check], tuple[Panel, Panel]]:
+def stiffness_checks(row: Rows) -> tuple[list[Row], tuple[Panel, Panel]]:
     """From stick-slip to smooth sliding: slow limits, how ⟨F⟩ falls with v, and the threshold."""
     points = slides(STIFFNESS)
     cantilevers = sorted({stiffness for stiffness, _ in points.names})
@@ -139,18 +134,19 @@ def stiffness_checks(row: Rows) -> tuple[list[Check], tuple[Panel, Panel]]:
     checks = []
     for i in (0, 1):
         checks.append(
-            row(f"⟨F⟩ at k = {share[i]:.2g} max(−U″), slow limit", limits[i].value, limits[i].uncertainty, "FU",
-                slow_friction(wells, share[i] * kappa), PRANDTL, "closed form", ASKED, LIMIT,
+            row(f"⟨F⟩ at k = {share[i]:.2g} max(−U″), slow limit", limits[i],
+                Reference(slow_friction(wells, share[i] * kappa), PRANDTL), relative(ASKED, LIMIT),
                 on=names[cantilevers[i]], despite=EDGE)
         )  # fmt: skip
     where = threshold(share, powers)
     checks += [
-        row("k at which stick-slip ends, over max(−U″): ⟨F⟩ falls as v^{4/5} there", where.value, where.uncertainty,
-            "1", 1.0, "Prandtl and Tomlinson: η = 1", "closed form", 0.1, "steps of the stiffness", on=points.every,
-            comparison="uncertainty", despite=EDGE, wide=MIDDLE),
-        row(f"d ln⟨F⟩/d ln v at k = {share[-1]:.3g} max(−U″)", powers[-1], 0.0, "1", SLIDES,
-            "nothing slips: ⟨F⟩ is what the drag takes", "closed form", VISCOUS, "the drag's higher orders in v",
-            on=names[cantilevers[-1]], despite=EDGE, wide="the higher orders are small at so stiff a spring"),
+        row("k at which stick-slip ends, over max(−U″): ⟨F⟩ falls as v^{4/5} there", where,
+            Reference(1.0, "Prandtl and Tomlinson: η = 1"), claim("steps of the stiffness", 0.1), on=points.every,
+            despite=EDGE, wide=MIDDLE),
+        row(f"d ln⟨F⟩/d ln v at k = {share[-1]:.3g} max(−U″)", powers[-1],
+            Reference(SLIDES, "nothing slips: ⟨F⟩ is what the drag takes"),
+            relative(VISCOUS, "the drag's higher orders in v"), on=names[cantilevers[-1]], despite=EDGE,
+            wide="the higher orders are small at so stiff a spring"),
     ]  # fmt: skip
     fine = np.linspace(0.15, 2.1, 60)
     line = np.asarray([slow_friction(wells, k * kappa) for k in fine.tolist()]) / wells.largest_force

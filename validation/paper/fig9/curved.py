@@ -7,17 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import settings_for
-from validation.judging.check import Check, Evidence
-from validation.judging.figures import Series
-from validation.judging.runs import found
-from validation.judging.slide_model import slide_model
-from validation.paper.fig9.figures import Panel
+from validation.doors import Scene, settings_for
+from validation.figures import Panel, Series
 from validation.paper.fig9.reading import mean, static
 from validation.paper.fig9.sweeps import LOAD, RADIUS, slides
-from validation.paper.study import Rows
 from validation.references.slide import Integrator, Trace
+from validation.row import Evidence, Reference, Row, relative, solver
+from validation.slides import slide_model
+from validation.study import Rows, found
 
 INTEGRATED = {LOAD: (-0.4, 0.0, 1.2), RADIUS: (10.0, 80.0)}
 """Loads [FU] and radii [LU] of which the integrator does as much as it needs."""
@@ -66,7 +63,7 @@ def off_trace(row: Rows, name: str, known: Integrated) -> float:
     return float(np.abs(ours - wanted).max() / np.abs(wanted).max())
 
 
-def curved_checks(row: Rows) -> tuple[list[Check], Panel, Panel]:
+def curved_checks(row: Rows) -> tuple[list[Row], Panel, Panel]:
     """Friction over load and radius."""
     known = {
         sweep: {value: integrated(slides(sweep).scenes[value,]) for value in values}
@@ -89,10 +86,11 @@ def curved_checks(row: Rows) -> tuple[list[Check], Panel, Panel]:
     ]  # fmt: skip
     checks += [
         row("largest friction of a curved body without a load", static(row.runs[names[0.0,]]),
-            found(row.runs[names[0.0,]], "static_friction").uncertainty, "FU", load[0.0].static, SOURCE, SOLVER,
-            LARGEST, BETWEEN, on=[names[0.0,]], wide=SAME_ROWS),
-        row(f"what it rises by with the load, from 0 to {high:g} FU", rise[0], 0.0, "1", rise[1], SOURCE, SOLVER,
-            LARGEST, BETWEEN, on=[names[0.0,], names[high,]], wide=SAME_ROWS),
+            solver(load[0.0].static, SOURCE), relative(LARGEST, BETWEEN),
+            uncertainty=found(row.runs[names[0.0,]], "static_friction").uncertainty, unit="FU", on=[names[0.0,]],
+            wide=SAME_ROWS),
+        row(f"what it rises by with the load, from 0 to {high:g} FU", rise[0], solver(rise[1], SOURCE),
+            relative(LARGEST, BETWEEN), on=[names[0.0,], names[high,]], wide=SAME_ROWS),
     ]  # fmt: skip
     worst = {
         names_of: off_trace(row, names_of, one)
@@ -100,21 +98,18 @@ def curved_checks(row: Rows) -> tuple[list[Check], Panel, Panel]:
         for names_of, one in ((slides(sweep).names[value,], one) for value, one in values.items())
     }
     checks.append(
-        row(f"friction at every row of the trace off that of the integrator, over its peak, worst of {len(worst)} "
-            "slides", max(worst.values()), 0.0, "1", TRACE, "bound that was asked for", "set bound", 0.0,
+        row.at_most(f"friction at every row of the trace off that of the integrator, over its peak, worst of {len(worst)} " "slides",
+            max(worst.values()), Reference(TRACE, "bound that was asked for", "set bound"),
             "table of the law, order of the sums, the rest from which it starts", on=list(worst),
-            comparison="at most", wide="what was asked for leaves room for heat and neighbours")
+            wide="what was asked for leaves room for heat and neighbours")
     )  # fmt: skip
     return checks, _panel(row, LOAD, known, "normal force (FU)"), _panel(row, RADIUS, known, "radius (LU)")
 
 
-def _mean_row(row: Rows, name: str, words: str, known: Integrated) -> Check:
+def _mean_row(row: Rows, name: str, words: str, known: Integrated) -> Row:
     result = found(row.runs[name], "mean_friction")
-    return row(
-        f"⟨F⟩ of a curved body, {words}", result.value, result.uncertainty, "FU", known.mean, SOURCE, SOLVER, MEAN,
-        RUN_IN, on=[name],
-        wide="the run-in is over sooner than the bound allows for",
-    )  # fmt: skip
+    return row(f"⟨F⟩ of a curved body, {words}", result, solver(known.mean, SOURCE), relative(MEAN, RUN_IN),
+               on=[name], wide="the run-in is over sooner than the bound allows for")  # fmt: skip
 
 
 def _panel(row: Rows, sweep: str, known: dict[str, dict[float, Integrated]], along: str) -> Panel:
@@ -130,7 +125,7 @@ def _panel(row: Rows, sweep: str, known: dict[str, dict[float, Integrated]], alo
         label = "" if value != min(known[sweep]) else "integrator"
         shown.append(Series(label, np.full(2, value), np.asarray([one.static, one.mean])))
     return Panel(along, "friction (FU)", shown[:2], _stars(shown[2:]), title="curved on flat",
-                 logarithmic=sweep == RADIUS)  # fmt: skip
+                 log="x" * (sweep == RADIUS))  # fmt: skip
 
 
 def _stars(shown: Sequence[Series]) -> list[Series]:

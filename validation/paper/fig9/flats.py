@@ -10,19 +10,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from contact1d.workflow.scene import Scene, Slide
-from validation.judging.check import Check
-from validation.judging.figures import Series
-from validation.judging.slide_model import law_of
+from validation.doors import Scene, Slide
+from validation.figures import Panel, Series
 from validation.paper.fig9.asperity import BETWEEN, MIDDLE, OF_LARGEST, wells_of
-from validation.paper.fig9.figures import Panel
 from validation.paper.fig9.reading import exponent, mean, slow_limit, static, threshold
 from validation.paper.fig9.sweeps import FLATS, LATTICES, slides
-from validation.paper.study import Rows
 from validation.references.flat_chain import FlatChain
 from validation.references.incommensurate import shared_corrugation
 from validation.references.incommensurate import threshold as law_threshold
 from validation.references.prandtl_tomlinson import slow_friction
+from validation.row import Reference, Row, claim, relative, solver
+from validation.slides import law_of
+from validation.study import Rows
 
 SLOW = 0.05
 """Of ⟨F⟩: the most that its limit may be uncertain by."""
@@ -42,16 +41,15 @@ def load_of(scene: Scene) -> float:
     return scene.experiment.normal_force / scene.bodies.upper_particles
 
 
-def lattice_checks(row: Rows) -> tuple[list[Check], Panel]:
+def lattice_checks(row: Rows) -> tuple[list[Row], Panel]:
     """The largest friction of a commensurate pair, and both traces."""
     points = slides(LATTICES)
     (alike, same), (other, _) = points.scenes.items()
     count, wells = same.bodies.upper_particles or 0, wells_of(same)
-    check = row(
-        f"largest friction of a commensurate pair over that of its {count} particles",
-        static(row.runs[points.names[alike]]) / count / wells.largest_force, 0.0, "1", 1.0,
-        "a commensurate chain is so many particles", "closed form", OF_LARGEST, BETWEEN, on=[points.names[alike]],
-    )  # fmt: skip
+    check = row(f"largest friction of a commensurate pair over that of its {count} particles",
+                static(row.runs[points.names[alike]]) / count / wells.largest_force,
+                Reference(1.0, "a commensurate chain is so many particles"), relative(OF_LARGEST, BETWEEN),
+                on=[points.names[alike]])  # fmt: skip
     traces = []
     for place, words in ((alike, "spacings 1 : 1"), (other, "spacings 21 : 13")):
         trace = row.runs[points.names[place]].friction
@@ -61,7 +59,7 @@ def lattice_checks(row: Rows) -> tuple[list[Check], Panel]:
     )
 
 
-def flat_checks(row: Rows) -> tuple[list[Check], Panel]:
+def flat_checks(row: Rows) -> tuple[list[Row], Panel]:
     """The incommensurate pair over the stiffness of its springs along x."""
     points = slides(FLATS)
     springs = sorted({stiffness for stiffness, _ in points.names})
@@ -78,17 +76,16 @@ def flat_checks(row: Rows) -> tuple[list[Check], Panel]:
     assert isinstance(below, int)
     pinned = [FlatChain(law, 1.0, count, below, load, normal, k).friction() for k in springs[:PINNED]]
     checks = [
-        row(f"⟨F⟩ of a particle of an incommensurate pair, k_t = {k:g} FU/LU, slow limit", limit.value,
-            limit.uncertainty, "FU", expected, CHAIN, "independent solver", SLOW,
-            "the power of v that follows v^{2/3}", on=names[k], despite=EDGE, comparison="uncertainty")
+        row(f"⟨F⟩ of a particle of an incommensurate pair, k_t = {k:g} FU/LU, slow limit", limit,
+            solver(expected, CHAIN), claim("the power of v that follows v^{2/3}", SLOW), on=names[k], despite=EDGE)
         for k, limit, expected in zip(springs[:PINNED], limits[:PINNED], pinned, strict=True)
     ]  # fmt: skip
-    where = threshold(springs, [exponent(over[k]) for k in springs])
+    where = threshold(springs, [exponent(over[k]) for k in springs], "FU/LU")
     kappa = law_threshold(law, 1.0, load, normal)
     checks.append(
-        row("k_t at which an incommensurate pair is no longer pinned: ⟨F⟩ falls as v^{4/5} there", where.value,
-            where.uncertainty, "FU/LU", kappa, "max(−U″) of a particle, all at one height", "closed form", 0.1,
-            "steps of the stiffness", on=points.every, comparison="uncertainty", despite=EDGE, wide=MIDDLE)
+        row("k_t at which an incommensurate pair is no longer pinned: ⟨F⟩ falls as v^{4/5} there", where,
+            Reference(kappa, "max(−U″) of a particle, all at one height"), claim("steps of the stiffness", 0.1),
+            on=points.every, despite=EDGE, wide=MIDDLE)
     )  # fmt: skip
     stiffness, spread = np.asarray(springs), np.asarray([limit.uncertainty for limit in limits])
     shown = [Series("v → 0", stiffness, np.asarray([limit.value for limit in limits]), spread)]

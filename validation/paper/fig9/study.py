@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-from importlib.resources import files
-from pathlib import Path
-
-from contact1d.workflow.runs.finished import Run
-from contact1d.workflow.scene import Scene, read_scene
-from validation.judging.check import Check
-from validation.judging.figures import save
-from validation.judging.runs import found
-from validation.judging.words import agreement, number, share
+from validation.doors import Run, Scene, read_scene, shipped
+from validation.figures import Drawing
+from validation.page import agreement, number, share
 from validation.paper.fig9.asperity import load_checks, stiffness_checks, velocity_checks
 from validation.paper.fig9.curved import curved_checks
-from validation.paper.fig9.figures import panels_figure
 from validation.paper.fig9.flats import flat_checks, lattice_checks
 from validation.paper.fig9.sweeps import SWEEPS, slides
 from validation.paper.fig9.warmth import temperature_checks
-from validation.paper.study import Findings, Rows, Runs, Scenes, Study
+from validation.row import Reference, Row
+from validation.study import Bench, Findings, Rows, Scenes, Study, found
 
 NAME = "fig9"
 SHIPPED = ("slide", "prandtl_tomlinson")
@@ -25,30 +19,28 @@ SHIPPED = ("slide", "prandtl_tomlinson")
 CLOSED = 5e-3
 """Work that is neither dissipated nor stored, over the largest of the three: the bound that was asked for."""
 CAPTIONS = {
-    "fig9_load.png": "Friction over the normal load: adhesion leaves some at no load, and some under a pull",
-    "fig9_radius.png": "Friction over the radius under one load: the flatter the body, the more particles take part",
-    "fig9_velocity.png": "Friction over the velocity: a straight line over v^{2/3} where the particle sticks and slips",
-    "fig9_temperature.png": "Friction over the temperature: heat carries the particle over what is left of a barrier",
-    "fig9_stiffness.png": "From stick-slip to smooth sliding: a stiffer cantilever ends the slips, and slow friction",
-    "fig9_flats.png": "Flat on flat: of one spacing it sticks; of others its friction is steady, and ends with stiff "
-    "springs",
+    "load": "Friction over the normal load: adhesion leaves some at no load, and some under a pull",
+    "radius": "Friction over the radius under one load: the flatter the body, the more particles take part",
+    "velocity": "Friction over the velocity: a straight line over v^{2/3} where the particle sticks and slips",
+    "temperature": "Friction over the temperature: heat carries the particle over what is left of a barrier",
+    "stiffness": "From stick-slip to smooth sliding: a stiffer cantilever ends the slips, and slow friction",
+    "flats": "Flat on flat: of one spacing it sticks; of others its friction is steady, and ends with stiff springs",
 }
 
 
 def scenes(_: Scene) -> Scenes:
     """The points of all sweeps, and the shipped slides."""
-    needed = {
-        name: read_scene(Path(str(files("contact1d.lammps_inputs") / "scenes" / f"{name}.toml"))) for name in SHIPPED
-    }
+    needed = {name: read_scene(shipped(f"scenes/{name}.toml")) for name in SHIPPED}
     for sweep in SWEEPS:
         points = slides(sweep)
         needed |= {points.names[place]: scene for place, scene in points.scenes.items()}
     return needed
 
 
-def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
+def judge(bench: Bench) -> Findings:
     """One law after the other."""
-    row = Rows(NAME, runs)
+    runs = bench.runs
+    row = Rows(runs)
     particle, of_particle = load_checks(row)
     velocity, over_velocity = velocity_checks(row)
     warmth, over_temperature = temperature_checks(row)
@@ -64,8 +56,7 @@ def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
         over_stiffness,
         (traces, over_springs),
     )
-    for name, shown in zip(CAPTIONS, panels, strict=True):
-        save(panels_figure(shown), folder / name)
+    figures = {name: Drawing(caption, shown) for (name, caption), shown in zip(CAPTIONS.items(), panels, strict=True)}
     energy = energy_checks(row)
     checks = [*curved, *particle, *velocity, *warmth, *stiffness, *lattices, *flats, *energy]
     offset, rise = (next(check for check in curved if check.name.startswith(words)) for words in ("largest", "what it"))
@@ -77,21 +68,21 @@ def judge(_: Scene, runs: Runs, folder: Path) -> Findings:
         f"stiffness: {agreement([*particle, *velocity, *stiffness])}; heat lowers its friction by as much as "
         f"Smoluchowski's equation says: {agreement(warmth)}. A commensurate flat is so many particles, and an "
         f"incommensurate one is free above {number(threshold.value, 3)} FU/LU, where particles that share one height "
-        f"should be from {number(threshold.reference, 4)} on: {agreement([*lattices, *flats])}. Of the cantilever's "
+        f"should be from {number(threshold.reference.value, 4)} on: {agreement([*lattices, *flats])}. Of the cantilever's "
         f"work {share(energy[-1].value)} at most are neither dissipated nor stored: {agreement(energy)}."
     )
-    return Findings(finding, checks, CAPTIONS)
+    return Findings(checks, figures, text=finding)
 
 
-def energy_checks(row: Rows) -> list[Check]:
+def energy_checks(row: Rows) -> list[Row]:
     """Work of the cantilever beside what is dissipated and stored: both shipped slides, and the worst of all others."""
     names = [name for sweep in SWEEPS for name in slides(sweep).every]
     source, limit = "bound that was asked for", "the drag is sampled at every fifth step"
 
-    def closed(words: str, value: float, on: list[str]) -> Check:
+    def closed(words: str, value: float, on: list[str]) -> Row:
         answers = dict.fromkeys(("tolerance", "drag", "fast", "energy"), "the energies are asked for, and no mean")
-        return row(words, value, 0.0, "1", CLOSED, source, "set bound", 0.0, limit, on=on, comparison="at most",
-                   despite=answers, wide="timesteps are chosen for the means, and the energy follows")  # fmt: skip
+        return row.at_most(words, value, Reference(CLOSED, source, "set bound"), limit, on=on, despite=answers,
+                   wide="timesteps are chosen for the means, and the energy follows")  # fmt: skip
 
     checks = [closed(f"work that is neither dissipated nor stored, {name}.toml", open_energy(row.runs[name]), [name])
               for name in SHIPPED]  # fmt: skip
@@ -111,6 +102,6 @@ STUDY = Study(
     "Fig. 9 shows the set-up of a friction experiment, a normal force and a cantilever that pulls, and no result. "
     "So this is an outlook: its rows hold what the program makes of the set-up against theory and an independent "
     "integrator, none against the paper.",
-    scenes,
     judge,
+    scenes,
 )

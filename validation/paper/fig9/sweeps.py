@@ -4,12 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
-from pathlib import Path
 
-from contact1d.workflow.scene import Scene
-from contact1d.workflow.sweep.axes import read_sweep
-from contact1d.workflow.sweep.points import points
+from validation.doors import Scene, sweep_points
 
 LOAD, RADIUS = "friction_over_load", "friction_over_radius"
 PARTICLE, VELOCITY, STIFFNESS = "friction_of_one_particle", "friction_over_velocity", "friction_over_stiffness"
@@ -35,12 +31,5 @@ class Slides:
 @cache
 def slides(sweep: str) -> Slides:
     """The slides of a shipped sweep."""
-    plan = read_sweep(Path(str(files("contact1d.lammps_inputs") / "sweeps" / f"{sweep}.toml")))
-    varied = [i for i, axis in enumerate(plan.axes) if len(axis.values) > 1]
-    names, scenes = {}, {}
-    for point in points(plan):
-        assert point.scene is not None, point.reason
-        place = tuple(float(point.values[i]) for i in varied)
-        names[place] = "_".join([sweep, *(f"{value:g}" for value in place)])
-        scenes[place] = point.scene
-    return Slides(names, scenes)
+    scenes = sweep_points(sweep)
+    return Slides({place: "_".join([sweep, *(f"{value:g}" for value in place)]) for place in scenes}, scenes)

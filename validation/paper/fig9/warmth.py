@@ -6,18 +6,15 @@ import math
 
 import numpy as np
 
-from contact1d.workflow.scene import Scene, Slide
-from contact1d.workflow.settings.settings import settings_for
-from validation.judging.check import Check
-from validation.judging.figures import Series
-from validation.judging.runs import found
-from validation.judging.slide_model import law_of
+from validation.doors import Scene, Slide, settings_for
+from validation.figures import Panel, Series
 from validation.paper.fig9.asperity import series_stiffness, wells_of
-from validation.paper.fig9.figures import Panel
 from validation.paper.fig9.sweeps import TEMPERATURE, slides
-from validation.paper.study import Rows
 from validation.references.prandtl_tomlinson import slow_friction
 from validation.references.thermal_friction import free_corrugation, thermal_friction
+from validation.row import Row, absolute, solver
+from validation.slides import law_of
+from validation.study import Rows, found
 
 SIGMAS, INTERVAL = 4.0, 1.96
 """Standard errors that a row allows; half-width of a run's interval of 95 % over its standard error."""
@@ -37,7 +34,7 @@ def smoluchowski(scene: Scene, temperature: float) -> float:
     return thermal_friction(*wells, series_stiffness(scene), drag, temperature, scene.cantilever.velocity, mass)
 
 
-def temperature_checks(row: Rows) -> tuple[list[Check], Panel]:
+def temperature_checks(row: Rows) -> tuple[list[Row], Panel]:
     """⟨F⟩ at each temperature, and a line of the equation between them."""
     points = slides(TEMPERATURE)
     temperatures = [kT for (kT,) in points.names]
@@ -51,10 +48,10 @@ def temperature_checks(row: Rows) -> tuple[list[Check], Panel]:
         sigma = ours.uncertainty / INTERVAL / top
         checks.append(
             row(f"⟨F⟩/F_max of one particle, kT = {kT / barrier:.2g} of the barrier", ours.value / top,
-                ours.uncertainty / top, "1", smoluchowski(scene, kT) / top, "Smoluchowski's equation",
-                "independent solver", SIGMAS * sigma if math.isfinite(sigma) else 0.0,
-                "statistics: four standard errors of the run", on=[points.names[kT,]], comparison="absolute",
-                despite=DRAGGED, wide="four standard errors, and by chance it is near")
+                solver(smoluchowski(scene, kT) / top, "Smoluchowski's equation"),
+                absolute(SIGMAS * sigma if math.isfinite(sigma) else 0.0, "statistics: four standard errors of the run"),
+                uncertainty=ours.uncertainty / top, on=[points.names[kT,]], despite=DRAGGED,
+                wide="four standard errors, and by chance it is near")
         )  # fmt: skip
     fine = np.linspace(0.6 * temperatures[0], 1.05 * temperatures[-1], 12)
     line = np.asarray([smoluchowski(scene, kT) for kT in fine.tolist()]) / top

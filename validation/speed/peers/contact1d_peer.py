@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from validation.speed.peers.clock import spent
+from validation.speed.clock import spent
 from validation.speed.peers.contacts import (
     A_0,
     CHAIN_WAY,
@@ -25,7 +25,7 @@ from validation.speed.peers.contacts import (
 )  # fmt: skip
 
 if TYPE_CHECKING:
-    from contact1d.workflow.scene import Scene
+    from validation.doors import Scene
     from validation.references.interaction import PairInteraction
 
 NAME = "contact1d"
@@ -55,7 +55,7 @@ def load() -> None:
 def curve(contact: str, setting: Setting) -> Curve:
     """Return the curve of one run."""
     from contact1d import run
-    from contact1d.workflow.scene import scene_from_dict
+    from validation.doors import scene_from_dict
 
     on_plane = contact == "hertz" or setting.name.startswith(PLANE)
     d = displacements(contact) if on_plane else displacements(contact, CHAIN_WAY)
@@ -92,7 +92,7 @@ def plane_tables(contact: str, setting: Setting) -> dict[str, object]:
 @lru_cache(maxsize=16)
 def identified(setting: Setting) -> tuple[Scene, float, float]:
     """Return the scene with which independent pairs have JKR's F_A and a_0, LU [nm] and FU [µN]."""
-    from contact1d.workflow.identify import estimated, jkr_target, material_scene
+    from validation.doors import estimated, jkr_target, material_scene
 
     modulus, energy = CONTACT_MODULUS * PA, 0.5 * WORK_OF_ADHESION * NEWTON / METRE
     unit = A_0 / setting.grid
@@ -110,13 +110,14 @@ def pair_law(scene: Scene) -> PairInteraction:
     assert scene.interaction is not None
     assert scene.interaction.attraction is not None
     terms = scene.interaction.repulsion, scene.interaction.attraction
-    return PairInteraction(*(Exponential(term.amplitude, term.range) for term in terms))
+    near, far = (Exponential(term.amplitude, term.range) for term in terms)
+    return PairInteraction(near, far)
 
 
 def own_limit(scene: Scene, unit: float, force_unit: float, displacement: Array) -> tuple[Array, Array]:
     """Return F [µN] and a [nm] of many aligned pairs, each of which feels the whole opposite row.
 
-    As `analysis.reference.independent_pairs`, with the force of a row, sum_j f(rho_j) r/rho_j, rho_j² = r² + (j s)²,
+    As `references.independent_pairs`, with the force of a row, sum_j f(rho_j) r/rho_j, rho_j² = r² + (j s)²,
     in place of one opposite particle's: the ranges are not short against the spacing. G = r - 2 f/k, F = (2/s) int f dx
     over G = G_0 + x²/2R_1, R_1 = R/2, the parabola x²/R of the mdr. The opposite row counts as level, which the runs
     bear out within 2e-4 of F_A.
@@ -139,11 +140,3 @@ def own_limit(scene: Scene, unit: float, force_unit: float, displacement: Array)
         force.append(2.0 / spacing * np.trapezoid(places, x))
         edge.append(math.sqrt(2.0 * radius * max(widest - apex, 0.0)))
     return np.array(force) * force_unit, np.array(edge) * unit
-
-
-def effective_tabor(scene: Scene, unit: float) -> float:
-    """Return µ with the range of the attraction for z_0: how long-ranged the identified law is."""
-    assert scene.interaction is not None
-    assert scene.interaction.attraction is not None
-    reach = scene.interaction.attraction.range * unit
-    return math.cbrt(RADIUS * WORK_OF_ADHESION**2 / CONTACT_MODULUS**2) / reach

@@ -8,10 +8,12 @@ gradients of NuMPI diverge from these starts, since the adhesive Hessian is not 
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
+from validation.speed.clock import spent
 from validation.speed.peers.axisymmetric import limit
-from validation.speed.peers.clock import spent
 from validation.speed.peers.contacts import (
     A_0,
     CONTACT_MODULUS,
@@ -69,7 +71,7 @@ def curve(contact: str, setting: Setting) -> Curve:
     return Curve(d, force, np.sqrt(area / np.pi), seconds, start_up, reference)
 
 
-def _hertz(space: object, surface: object, setting: Setting, places: Array, pixel: float) -> tuple[Array, Array]:
+def _hertz(space: Any, surface: Any, setting: Setting, places: Array, pixel: float) -> tuple[Array, Array]:
     """Return F [µN] and the area of the pixels in contact [nm²]; the tolerance is of the gap in contact, over d_max."""
     from ContactMechanics.Systems import NonSmoothContactSystem
 
@@ -90,7 +92,7 @@ def _hertz(space: object, surface: object, setting: Setting, places: Array, pixe
     return np.array(force), np.array(area)
 
 
-def _jkr(space: object, surface: object, setting: Setting, places: Array, pixel: float) -> tuple[Array, Array]:
+def _jkr(space: Any, surface: Any, setting: Setting, places: Array, pixel: float) -> tuple[Array, Array]:
     """Return F [µN] and the area of the closed pixels [nm²]; the tolerance is of the pressure, over W/z_0."""
     from Adhesion.Interactions import Exponential
     from Adhesion.System import BoundedSmoothContactSystem

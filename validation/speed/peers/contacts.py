@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from contact1d.analysis.theory.jkr import FIXED_GRIPS_RADIUS_RATIO, Jkr
 from validation.references.hertz import hertz_contact_radius, hertz_force
+from validation.references.indenters import jkr
 
 Array = NDArray[np.float64]
 
@@ -26,7 +26,7 @@ WORK_OF_ADHESION = 2e-3
 """W = 2 gamma [µN/nm]."""
 POINTS = 50
 """Displacements of a curve."""
-JKR = Jkr(RADIUS, CONTACT_MODULUS, WORK_OF_ADHESION)
+JKR = jkr(RADIUS, CONTACT_MODULUS, WORK_OF_ADHESION)
 F_A, A_0 = JKR.pull_off_force(), JKR.zero_load_radius()
 DEPTH = A_0**2 / RADIUS
 """Unit of displacement a_0²/R [nm]: 4.96. JKR has F = 0 at 1/3 of it, F_A at -0.132; fixed grips let go at -0.276."""
@@ -92,7 +92,7 @@ def closed_form(contact: str, displacement: Array) -> tuple[Array, Array]:
         return hertz_force(displacement, RADIUS, CONTACT_MODULUS), hertz_contact_radius(displacement, RADIUS)
     if contact != "jkr":
         raise ValueError(f"the contacts are hertz and jkr, not {contact!r}")
-    a = np.linspace(FIXED_GRIPS_RADIUS_RATIO, 2.0, 50_000) * A_0  # between these, linear interpolation costs 1e-8 F_A
+    a = np.linspace(JKR.fixed_grips_radius(), 2.0 * A_0, 50_000)  # between these, linear interpolation costs 1e-8 F_A
     d = JKR.displacement(a)
     if np.min(displacement) < d[0] or np.max(displacement) > d[-1]:
         raise ValueError(f"JKR's stable branch is taken from {d[0]:.4g} to {d[-1]:.4g} nm")

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.speed.peers.clock import spent
+from validation.speed.clock import spent
 from validation.speed.peers.contacts import (
     CONTACT_MODULUS,
     POINTS,
@@ -59,7 +59,7 @@ def load() -> None:
 
 def curve(contact: str, setting: Setting) -> Curve:
     """Return the curve; `seconds` is LAMMPS's own loop time, the rest of the session is start-up."""
-    from contact1d.workflow.engine.session import Engine
+    from validation.doors import Engine
 
     d = displacements(contact)
     modulus, energy = 2.0 * CONTACT_MODULUS, 0.5 * WORK_OF_ADHESION

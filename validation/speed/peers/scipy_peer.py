@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.speed.peers.clock import spent
+from validation.speed.clock import spent
 from validation.speed.peers.contacts import (
     A_0,
     CHAIN_WAY,

@@ -9,10 +9,12 @@ do to the curvature, 0.4 % of it under F_A.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
+from validation.speed.clock import spent
 from validation.speed.peers.axisymmetric import limit
-from validation.speed.peers.clock import spent
 from validation.speed.peers.contact_mechanics_peer import heights
 from validation.speed.peers.contacts import (
     A_0,
@@ -68,7 +70,7 @@ def curve(contact: str, setting: Setting) -> Curve:
     return Curve(d, force, np.sqrt(area / np.pi), seconds, start_up, reference)
 
 
-def _solver(model: object, surface: Array, contact: str, setting: Setting) -> tuple[object, object]:
+def _solver(model: Any, surface: Array, contact: str, setting: Setting) -> tuple[Any, Any]:
     import tamaas
 
     kind = tamaas.PolonskyKeerRey
@@ -86,7 +88,7 @@ def _solver(model: object, surface: Array, contact: str, setting: Setting) -> tu
     return solver, adhesion
 
 
-def _hertz(model: object, solver: object, surface: Array, side: float) -> tuple[Array, Array, Array]:
+def _hertz(model: Any, solver: Any, surface: Array, side: float) -> tuple[Array, Array, Array]:
     """Return d [nm], F [µN] and the area of the loaded pixels [nm²]; the loads are Hertz's of the prescribed d."""
     pixel = side**2 / surface.size
     points = []
@@ -99,7 +101,7 @@ def _hertz(model: object, solver: object, surface: Array, side: float) -> tuple[
     return tuple(np.array(points).T)
 
 
-def _jkr(model: object, solver: object, surface: Array, side: float) -> tuple[Array, Array, Array]:
+def _jkr(model: Any, solver: Any, surface: Array, side: float) -> tuple[Array, Array, Array]:
     """Return d [nm], F [µN] and the area of the closed pixels [nm²]."""
     pixel, images = side**2 / surface.size, MADELUNG / (np.pi * CONTACT_MODULUS * side)
     wanted = displacements("jkr")

@@ -23,6 +23,13 @@ TENSION = float(-LAW.force(np.array(LAW.extremum_distance(1))))
 """Largest tension of a pair [FU]."""
 CORE = float(LAW.force(np.array(0.0)))
 """Force of a pair at no distance [FU]."""
+PAPER_LAW = {
+    "repulsion": {"amplitude": 0.18, "range": 0.13},
+    "attraction": {"amplitude": 0.09, "range": 0.26},
+}
+"""The paper's kind of contact: ranges near the spacing, so that particles feel several opposite ones."""
+BODIES = {"particles": 12, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 40.0}, "bulk_stiffness": 0.83}
+"""A few particles, for decks under the hand."""
 CAPACITY = 0.9
 """Share of the core's force up to which a case counts as solvable."""
 

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from contact1d.workflow.deck.lattice import start_offset
-from contact1d.workflow.scene import Scene, Slide
-from contact1d.workflow.settings.settings import Settings
-from validation.judging.figures import Array
+from validation.doors import Scene, Settings, Slide, start_offset
+from validation.figures import Array
 from validation.references.slide import SlideModel
 
 
