@@ -1,10 +1,9 @@
 """The cost study behind `[accuracy] tolerance`: what each setting may use up of it, in many scenes.
 
     python -m validation.tools.calibration             # twenty minutes: all runs, then the same as with --choose
-    python -m validation.tools.calibration --choose    # a minute: the choice from the runs that are kept, and runs of it
+    python -m validation.tools.calibration --choose    # a minute: the choice from kept runs
 
-The runs are kept in results/calibration.csv, the choice in workflow/settings/calibration.json, a table of it in
-validation/speed/README.md.
+The runs are kept in validation/results/calibration.csv, the choice in workflow/settings/calibration.json.
 
 Every scene runs at every tolerance with one share after the other at each value of its LADDER, all others as they are.
 A value is good where it adds no more than PART of the tolerance to the error of any main result, and brings no warning
@@ -146,7 +145,6 @@ def main(arguments: Sequence[str]) -> None:
     rows = [row for row in read_rows() if row.share != TOGETHER]
     chosen = {TOGETHER: [write_choice(rows)]}
     write_rows([*rows, *(row for name in SCENES for row in studied(name, chosen))])
-    write_choice(read_rows())
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""From the runs of `validation.tools.calibration` to what every run uses, `settings/calibration.json`, and to a table."""
+"""From the runs of `validation.tools.calibration` to what every run uses, `settings/calibration.json`."""
 
 from __future__ import annotations
 
@@ -12,11 +12,8 @@ from typing import Any
 
 from contact1d.workflow.cost.advice import TARGETS, power
 from contact1d.workflow.settings.calibration import FILE, Calibration, calibration_of, meanings
-from validation.judging.markdown import table
-from validation.speed.pages import write_between
 
-HERE = Path(__file__).parents[1] / "speed"
-RECORD = HERE / "results" / "calibration.csv"
+RECORD = Path(__file__).parents[1] / "results" / "calibration.csv"
 PART = 0.1
 """Of the tolerance, that one share may add to the error of a main result."""
 SAME_COST = 0.03
@@ -53,7 +50,7 @@ def chosen_values(rows: Sequence[Row]) -> dict[str, Any]:
     """The contents of `calibration.json`: of each setting what it is, its value, and what that was chosen by."""
     document: dict[str, Any] = {
         "made_by": "python -m validation.tools.calibration",
-        "record": "validation/speed/results/calibration.csv",
+        "record": "validation/results/calibration.csv",
         "tolerances": list(TARGETS),
         "adds_at_most": PART,
         "values": {},
@@ -115,21 +112,6 @@ def _next(ladder: Sequence[float], value: float, refusals: Mapping[float, str], 
     return f"{coarser:.3g}: {refusals[coarser] or f'is no cheaper ({costs[coarser]:.3g} of the finest)'}"
 
 
-def calibration_markdown(document: Mapping[str, Any], rows: Sequence[Row]) -> str:
-    """The table between the markers of validation/speed/README.md, with what all settings come to together."""
-    head = ("setting", "value", "error that it adds, over the tolerance", "CPU over the finest", "next coarser value")
-    cells = []
-    for name, one in document["values"].items():
-        adds, cpu = f"{one['adds']:.2g} ({one['most_in']})", f"{one['cpu_over_finest']:.2f}"
-        cells.append((f"`{name}`", f"{one['value']:.3g}", adds, cpu, one["next"]))
-    together = [row for row in rows if row.share == TOGETHER]
-    worst = max(together, key=lambda row: row.error)
-    return table(head, cells) + (
-        f"\nWith all of them together, the largest error against the reference in {len(together)} runs is "
-        f"{worst.error:.2g} of the tolerance ({worst.scene} at {power(worst.tolerance)}).\n"
-    )
-
-
 def read_rows(path: Path = RECORD) -> list[Row]:
     """The rows of results/calibration.csv."""
     kinds: dict[str, Any] = {"scene": str, "share": str, "trouble": str, "steps": int}
@@ -147,9 +129,7 @@ def write_rows(rows: Sequence[Row], path: Path = RECORD) -> None:
 
 
 def write_choice(rows: Sequence[Row]) -> Calibration:
-    """Write workflow/settings/calibration.json and the table of validation/speed/README.md; returns the chosen values."""
+    """Write workflow/settings/calibration.json ; returns the chosen values."""
     document = chosen_values(rows)
     FILE.write_text(json.dumps(document, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    if any(row.share == TOGETHER for row in rows):
-        write_between(HERE / "README.md", "calibration", calibration_markdown(document, rows))
     return calibration_of(document)
