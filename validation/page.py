@@ -169,8 +169,8 @@ def summary(paper: Record, hard: Record) -> str:
         "studies": readme_table(paper),
         "classes": table(("class", "what goes wrong in a program that is not careful", "rows", "smallest margin"),
                          [_class(answer) for answer in hard.answers]),
-        "made": f"Made with {made}, the paper's studies from {sum(one.runs for one in paper.answers)} runs in "
-        f"{duration(paper.wall_s)}, the hard cases in {duration(hard.wall_s)} on {hard.machine}.",
+        "made": f"Made with {made}, the paper's studies from {sum(one.runs for one in paper.answers)} runs, "
+        f"the hard cases in {duration(hard.wall_s)} on {hard.machine}.",
     }  # fmt: skip
     return (Path(__file__).parent / "validation.md").read_text(encoding="utf-8").format(**filled)
 
@@ -178,6 +178,13 @@ def summary(paper: Record, hard: Record) -> str:
 def readme_table(record: Record) -> str:
     """A row for each study: its name, what was asked, what came out, the verdict."""
     return table(("study", "asked", "result", "verdict"), [_study(answer) for answer in record.answers])
+
+
+def speed_table(record: Record) -> str:
+    """A row for each comparison of times."""
+    rows = [(f"`{one.name}`", row.name, number(row.value, 3), allowed(row) + " **not reached**" * (row.verdict == "FAIL"))
+            for one in record.answers for row in one.rows]  # fmt: skip
+    return table(("study", "measured", "found", "asked"), rows)
 
 
 def write_between(page: Path, name: str, text: str) -> None:

@@ -14,14 +14,12 @@ from contact1d.workflow.cost.advice import TARGETS
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.calibration import CALIBRATION, FILE, Calibration, calibration_of
 from contact1d.workflow.settings.settings import settings_for
-from validation.speed.pages import between
 from validation.tools.calibration import LADDERS, SCENES
 from validation.tools.calibration_choice import (
     PART,
     PROMISED,
     TOGETHER,
     Row,
-    calibration_markdown,
     chosen_values,
     read_rows,
 )
@@ -36,13 +34,6 @@ def test_the_file_in_use_follows_from_the_kept_study() -> None:
     kept = json.loads(FILE.read_text(encoding="utf-8"))
     assert kept == chosen_values(read_rows())
     assert calibration_of(kept) == CALIBRATION
-
-
-def test_the_table_in_benchmarks_follows_from_the_kept_study() -> None:
-    rows = read_rows()
-    assert between(ROOT / "benchmarks" / "README.md", "calibration")[1] == calibration_markdown(
-        chosen_values(rows), rows
-    )
 
 
 def test_every_share_was_studied_at_every_tolerance_and_every_scene_has_a_part() -> None:
