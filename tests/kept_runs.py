@@ -1,4 +1,4 @@
-"""The runs behind validation/results/paper.json, as far as its judges read them: scenes, results, warnings, the columns of some.
+"""The runs behind validation/results/paper.json, as far as its studies read them: scenes, results, some columns.
 
 With them a row can be judged again in seconds, without a run.
 """

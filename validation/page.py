@@ -23,7 +23,7 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 EVIDENCE: dict[Evidence, str] = {
     "closed form": "an equation that is evaluated without any part of this program",
     "independent solver": "a solver in validation/references, which shares no code with the program",
-    "printed value": "a number that the paper prints, good to its digits: the model is the paper's, not that it is right",
+    "printed value": "a number that the paper prints, good to its digits; not whether the model is right",
     "paper's words": "something that the paper says without a number for it, put into one",
     "set bound": "a limit that was set beforehand where nobody gives a number",
 }
@@ -182,8 +182,11 @@ def readme_table(record: Record) -> str:
 
 def speed_table(record: Record) -> str:
     """A row for each comparison of times."""
-    rows = [(f"`{one.name}`", row.name, number(row.value, 3), allowed(row) + " **not reached**" * (row.verdict == "FAIL"))
-            for one in record.answers for row in one.rows]  # fmt: skip
+    rows = [
+        (f"`{one.name}`", row.name, number(row.value, 3), allowed(row) + " **not reached**" * (row.verdict == "FAIL"))
+        for one in record.answers
+        for row in one.rows
+    ]
     return table(("study", "measured", "found", "asked"), rows)
 
 

@@ -24,7 +24,7 @@ from typing import Any
 from validation import doors
 from validation.doors import Quantity, Run, Scene
 from validation.figures import Drawing, save
-from validation.row import Bound, Reference, Row, at_most
+from validation.row import Bound, Reference, Row, at_most, verdicts
 
 Scenes = dict[str, Scene]
 RECORD = "record.json"
@@ -281,9 +281,7 @@ def conduct(
             for future in as_completed(futures):
                 answer = future.result()
                 known[answer.name] = answer
-                tell(
-                    f"{answer.name}: {sum(row.verdict == 'FAIL' for row in answer.rows)} of {len(answer.rows)} rows fail"
-                )
+                tell(f"{answer.name}: {len(verdicts(answer.rows, 'FAIL'))} of {len(answer.rows)} rows fail")
                 record = _written(studies, folder, known, time.perf_counter() - started)
         except BaseException:
             executor.shutdown(wait=False, cancel_futures=True)

@@ -50,7 +50,8 @@ def test_rows_are_counted_apart_from_their_repeats() -> None:
 
 
 @pytest.mark.parametrize(
-    ("number", "text"), [((1.48341, 0.00012, "FU"), "1.48341 ± 0.00012 FU"), ((3.1e-7, 4e-8, "1"), "(3.1 ± 0.4) × 10⁻⁷")]
+    ("number", "text"),
+    [((1.48341, 0.00012, "FU"), "1.48341 ± 0.00012 FU"), ((3.1e-7, 4e-8, "1"), "(3.1 ± 0.4) × 10⁻⁷")],
 )
 def test_numbers_are_written_for_people(number: tuple[float, float, str], text: str) -> None:
     assert measured(*number) == text.replace("0.4)", "0.40)").replace("(3.1 ", "(3.10 ") if "10⁻⁷" in text else text

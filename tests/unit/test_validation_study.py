@@ -55,7 +55,9 @@ def test_a_study_runs_its_scenes_once_and_a_refusal_is_a_row_that_fails(tmp_path
     made = results.stat().st_mtime_ns
     again = conduct([SMALL], tmp_path, workers=1)
     assert results.stat().st_mtime_ns == made
-    assert [row.as_data() for row in read_record(tmp_path / "record.json").rows] == [row.as_data() for row in again.rows]
+    assert [row.as_data() for row in read_record(tmp_path / "record.json").rows] == [
+        row.as_data() for row in again.rows
+    ]
 
 
 def test_a_study_that_breaks_has_a_row_that_fails(tmp_path: Path) -> None:

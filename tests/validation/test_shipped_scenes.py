@@ -16,7 +16,6 @@ from contact1d.analysis.theory.winkler import rigid_plane_sum
 from contact1d.workflow.deck.lattice import start_offset
 from contact1d.workflow.scene import Tangential
 from contact1d.workflow.settings.settings import settings_for
-from validation.judging.slide_model import slide_model
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
 from validation.references.pull_off import pull_off
@@ -25,6 +24,7 @@ from validation.references.solver import ChainSolver, trace
 from validation.references.spring_sliders import SpringSliders
 from validation.references.spring_sliders import displacement_under as displacement_carrying
 from validation.references.thermal_chain import displacement_under
+from validation.slides import slide_model
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 

@@ -32,31 +32,29 @@ PIECE = 1000
 SLOW, RUN, HANGS = 10, 60, 600
 """Seconds of work for a scene to become a deck or a sentence, of LAMMPS in a run, and of the clock for what hangs."""
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
-VALUES = tuple(
-    [
-        "0",
-        "-1",
-        "1e-300",
-        "1e300",
-        "1e20",
-        "1e-6",
-        "1e6",
-        "nan",
-        "inf",
-        "-inf",
-        "true",
-        '"auto"',
-        '"x"',
-        "[]",
-        "{}",
-        "3",
-        "1e-3",
-        "0.5",
-        "2.0",
-        "1000000",
-        "10.0",
-        "7",
-    ]
+VALUES = (
+    "0",
+    "-1",
+    "1e-300",
+    "1e300",
+    "1e20",
+    "1e-6",
+    "1e6",
+    "nan",
+    "inf",
+    "-inf",
+    "true",
+    '"auto"',
+    '"x"',
+    "[]",
+    "{}",
+    "3",
+    "1e-3",
+    "0.5",
+    "2.0",
+    "1000000",
+    "10.0",
+    "7",
 )
 SPOILT = "\"'[]{}=#.,\\\0é\n -"
 

@@ -83,7 +83,8 @@ def judge(bench: Bench) -> Findings:
         f"of displacement and radius: {agreement(over_hertz)}. They converge with the orders "
         f"{number(orders[0].value, 3)} and {number(orders[1].value, 3)} in the spacing: {agreement(orders)}. The sum "
         "over "
-        f"the springs is {number(factors[1].value / factors[1].reference.value, 4)} times what Eq. (2) has as printed: with "
+        f"the springs is {number(factors[1].value / factors[1].reference.value, 4)} times what Eq. (2) has as printed: "
+        "with "
         "its 2√2/15 the stiffness of Eq. (3) would not follow; 8√2/15 is what it needs.\n\nThe reduction of the paper "
         f"has {number(widths[0].value, 4)} times the contact radius of the two spheres, that of the MDR "
         f"{number(widths[1].value, 4)} times. The former holds for a parabola: a cone taken as it is drawn has "
@@ -121,12 +122,19 @@ def _rate_checks(row: Rows, reduction: Reduction) -> list[Row]:
         fitted, covariance = np.polyfit(spacing, np.log(errors), 1, cov=True)
         spread = float(np.sqrt(covariance[0, 0]) + weight @ (claims / errors))
         checks.append(
-            row(f"order of convergence of the {what} in the spacing ({reduction})", float(fitted[0]),
-                Reference(order, f"Euler and Maclaurin: the first derivative at the edge that does not vanish is the {first}"),
-                claim("residual forces of the minimisation: the series of a parabola ends here"), uncertainty=spread,
-                on=[case.name for case in cases], despite=NAMED,
-                wide="the claim takes each run at its worst, and a sum over springs in place leaves round-off")
-        )  # fmt: skip
+            row(
+                f"order of convergence of the {what} in the spacing ({reduction})",
+                float(fitted[0]),
+                Reference(
+                    order, f"Euler and Maclaurin: the first derivative at the edge that does not vanish is the {first}"
+                ),
+                claim("residual forces of the minimisation: the series of a parabola ends here"),
+                uncertainty=spread,
+                on=[case.name for case in cases],
+                despite=NAMED,
+                wide="the claim takes each run at its worst, and a sum over springs in place leaves round-off",
+            )
+        )
     return checks
 
 
@@ -136,10 +144,19 @@ def _width_check(row: Rows, reduction: Reduction) -> Row:
     twice = reduction == "geike_popov"
     radius = row.runs[case.name].document["image_largest_radius" if twice else "largest_radius"]["si"]
     hertzian = float(hertz.hertz_contact_radius(case.values["d"] * LENGTH_UNIT, R))
-    return row(f"half-width over Hertz's contact radius ({reduction})", radius["value"] / hertzian,
-               Reference(2.0 if twice else 1.0, "closed form of the springs, √(2Rd) beside √(Rd/2)" if twice else "the MDR's transform keeps the radius"),
-               claim("round-off, residual forces"), uncertainty=radius["uncertainty"] / hertzian, on=[case.name],
-               despite=NAMED, wide=EXACT)  # fmt: skip
+    return row(
+        f"half-width over Hertz's contact radius ({reduction})",
+        radius["value"] / hertzian,
+        Reference(
+            2.0 if twice else 1.0,
+            "closed form of the springs, √(2Rd) beside √(Rd/2)" if twice else "the MDR's transform keeps the radius",
+        ),
+        claim("round-off, residual forces"),
+        uncertainty=radius["uncertainty"] / hertzian,
+        on=[case.name],
+        despite=NAMED,
+        wide=EXACT,
+    )
 
 
 def _factor_checks(row: Rows) -> list[Row]:
@@ -152,11 +169,28 @@ def _factor_checks(row: Rows) -> list[Row]:
     off, misprint = case.off("energy") + stated, 2.0 * math.sqrt(2.0) / 15.0
     name = "factor in U = factor · c_n √(R d^5), Eq. (2)"
     return [
-        row(name, value, Reference(4.0 * misprint, "integral over the springs, 8√2/15"), relative(off, LATTICE),
-            uncertainty=value * stated, on=[case.name], despite=NAMED, standing="repeats", wide=BY_CHANCE),
-        row(f"{name}, as printed", value, printed(misprint, "Eq. (2) of the paper, 2√2/15: a misprint"),
-            relative(off, LATTICE), uncertainty=value * stated, on=[case.name], despite=NAMED, known=Known(4.0 * misprint, 4.0 * off * misprint, "8√2/15, what Eq. (3) needs")),
-    ]  # fmt: skip
+        row(
+            name,
+            value,
+            Reference(4.0 * misprint, "integral over the springs, 8√2/15"),
+            relative(off, LATTICE),
+            uncertainty=value * stated,
+            on=[case.name],
+            despite=NAMED,
+            standing="repeats",
+            wide=BY_CHANCE,
+        ),
+        row(
+            f"{name}, as printed",
+            value,
+            printed(misprint, "Eq. (2) of the paper, 2√2/15: a misprint"),
+            relative(off, LATTICE),
+            uncertainty=value * stated,
+            on=[case.name],
+            despite=NAMED,
+            known=Known(4.0 * misprint, 4.0 * off * misprint, "8√2/15, what Eq. (3) needs"),
+        ),
+    ]
 
 
 SLOPES: dict[str, Callable[[float], float]] = {

@@ -43,21 +43,38 @@ def judge(bench: Bench) -> Findings:
     between = float(pressure[lowest - 1] - 2.0 * pressure[lowest] + pressure[lowest + 1]) / (8.0 * tension)
     setting = SETTING * paper.accuracy.tolerance
     checks = [
-        row.at_most("pressure at zero load, rms distance to the solver's over the largest tension", rms,
-            solver(setting, AGAINST), "share of the tolerance of the run that a setting may use up", on=[RUN]),
+        row.at_most(
+            "pressure at zero load, rms distance to the solver's over the largest tension",
+            rms,
+            solver(setting, AGAINST),
+            "share of the tolerance of the run that a setting may use up",
+            on=[RUN],
+        ),
         *against_solver(row, paper, run, solved, RUN),
-        row.at_most("sum of the pressure at zero load over the largest tension times a_0",
+        row.at_most(
+            "sum of the pressure at zero load over the largest tension times a_0",
             abs(float(profile.pressure.sum())) * paper.bodies.spacing / (tension * radius.value),
-            Reference(setting, "equilibrium: the force of the contact is 0"), "search for F = 0", on=[RUN],
-            standing="by construction"),
-        row("largest tension of a particle at zero load", -float(profile.pressure.min()) * paper.bodies.spacing,
+            Reference(setting, "equilibrium: the force of the contact is 0"),
+            "search for F = 0",
+            on=[RUN],
+            standing="by construction",
+        ),
+        row(
+            "largest tension of a particle at zero load",
+            -float(profile.pressure.min()) * paper.bodies.spacing,
             Reference(row_tension(paper), "the law's largest tension before a straight row: no singularity"),
-            relative(between, "a particle lies at most half a spacing from the maximum: curvature of the pressure there"),
-            unit="FU", on=[RUN], wide="the particle nearest to the maximum is nearer to it"),
-    ]  # fmt: skip
+            relative(
+                between, "a particle lies at most half a spacing from the maximum: curvature of the pressure there"
+            ),
+            unit="FU",
+            on=[RUN],
+            wide="the particle nearest to the maximum is nearer to it",
+        ),
+    ]
     finding = (
         "The pressure falls from the compressed middle to a finite tension, largest at the radius "
-        f"a_0 = {radius.value:.3f} LU: {number(checks[-1].value / checks[-1].reference.value, 6)} of what one particle can "
+        f"a_0 = {radius.value:.3f} LU: {number(checks[-1].value / checks[-1].reference.value, 6)} of what one particle "
+        "can "
         "be pulled with, so that there is no singularity. The independent solver finds the same pressure within "
         f"{share(rms)} of the largest tension: {agreement(checks)}."
     )

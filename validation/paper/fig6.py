@@ -190,7 +190,8 @@ def _ending(slipped: list[Row]) -> str:
     return (
         f"It does so up to a displacement of {number(slipped[0].value, 3)} LU, where an aligned pair gives way "
         "sideways "
-        f"(independent pairs: {number(slipped[0].reference.value, 3)} LU); beyond it the bodies go through each other and "
+        f"(independent pairs: {number(slipped[0].reference.value, 3)} LU); beyond it the bodies go through each other "
+        "and "
         "the "
         "run says so and gives no number."
     )

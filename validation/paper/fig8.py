@@ -170,13 +170,25 @@ def _closed_form_checks(study: str, laws: Mapping[str, tuple[str, Scene]], runs:
         claim = found(runs[run], "adhesion_force")
         over = (np.abs(a - radii) / spread)[touching]
         checks += [
-            row.at_most(f"rms distance of F to the closed form over F_A, local limit, {name}", off,
-                Reference(claim.uncertainty / claim.value, "what the run claims for F_A"), "what the run claims",
-                on=[run], despite=READ, wide=NARROW),
-            row.at_most(f"share of {over.size} radii farther from the closed form than they claim (worst: {over.max():.2g} of " f"the claim), local limit, {name}",
-                float(np.mean(over > 1.0)), Reference(OUTSIDE, "closed form of independent pairs"),
-                "a claim is an estimate: 95 % are to be inside", on=[run], despite=READ),
-        ]  # fmt: skip
+            row.at_most(
+                f"rms distance of F to the closed form over F_A, local limit, {name}",
+                off,
+                Reference(claim.uncertainty / claim.value, "what the run claims for F_A"),
+                "what the run claims",
+                on=[run],
+                despite=READ,
+                wide=NARROW,
+            ),
+            row.at_most(
+                f"share of {over.size} radii farther from the closed form than they claim (worst: {over.max():.2g} of "
+                f"the claim), local limit, {name}",
+                float(np.mean(over > 1.0)),
+                Reference(OUTSIDE, "closed form of independent pairs"),
+                "a claim is an estimate: 95 % are to be inside",
+                on=[run],
+                despite=READ,
+            ),
+        ]
     return checks
 
 

@@ -191,11 +191,18 @@ def _friction(row: Rows, share: float, velocity: float) -> Row:
     ours = found(row.runs[name], "mean_friction")
     top = WELLS.largest_force
     sigma = math.hypot(ours.uncertainty / INTERVAL, error) / top
-    return row(f"⟨F⟩/F_max, kT = {share:g} of the barrier, v = {velocity:g} LU/TU", ours.value / top,
-               solver(mean / top, "Smoluchowski's equation" if velocity < SLOW else f"ensemble of {COPIES} equations of motion"),
-               absolute(SIGMAS * sigma if math.isfinite(sigma) else 0.0, STATISTICS),
-               uncertainty=ours.uncertainty / top, on=[name], despite=DRAGGED,
-               wide="four standard errors, and by chance it is near")  # fmt: skip
+    return row(
+        f"⟨F⟩/F_max, kT = {share:g} of the barrier, v = {velocity:g} LU/TU",
+        ours.value / top,
+        solver(
+            mean / top, "Smoluchowski's equation" if velocity < SLOW else f"ensemble of {COPIES} equations of motion"
+        ),
+        absolute(SIGMAS * sigma if math.isfinite(sigma) else 0.0, STATISTICS),
+        uncertainty=ours.uncertainty / top,
+        on=[name],
+        despite=DRAGGED,
+        wide="four standard errors, and by chance it is near",
+    )
 
 
 def _textbook(share: float, velocity: float) -> float:

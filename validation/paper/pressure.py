@@ -88,24 +88,50 @@ def judge_pressure(bench: Bench) -> Findings:
     spread = ours * (units.force_uncertainty / units.force + 2.0 * units.length_uncertainty / units.length) + bend
     place = f"at R = {first.radius:g} LU, a = {PLACE:g} LU"
     checks = [
-        row(f"mean pressure {place}, by the run's own force", ours, printed(PRINTED, "Section 4: about 800 MPa"),
-            absolute(DIGIT, "print: one digit"), uncertainty=spread, unit="MPa", on=[curve, pull_off], despite=READ),
-        row("the same over that of Eq. (8) with the run's F_A and a_0", ours / by_law,
-            Reference(1.0, "Eq. (8); bound as for the curves of Fig. 8, over F/F_A here", "set bound"),
-            relative(ASKED / reduced, "range of the interaction: the curve is near JKR's and not on it; chosen by the stiffness"),
-            uncertainty=spread / by_law, on=[curve, pull_off], despite=READ),
-        row(f"mean pressure {place}, by Eq. (8) with the run's F_A and a_0", by_law,
+        row(
+            f"mean pressure {place}, by the run's own force",
+            ours,
             printed(PRINTED, "Section 4: about 800 MPa"),
-            absolute(DIGIT, "print: one digit; F_A and a_0 are those of Table 1"), uncertainty=spread, unit="MPa",
-            on=[pull_off], standing="by construction"),
-    ]  # fmt: skip
+            absolute(DIGIT, "print: one digit"),
+            uncertainty=spread,
+            unit="MPa",
+            on=[curve, pull_off],
+            despite=READ,
+        ),
+        row(
+            "the same over that of Eq. (8) with the run's F_A and a_0",
+            ours / by_law,
+            Reference(1.0, "Eq. (8); bound as for the curves of Fig. 8, over F/F_A here", "set bound"),
+            relative(
+                ASKED / reduced,
+                "range of the interaction: the curve is near JKR's and not on it; chosen by the stiffness",
+            ),
+            uncertainty=spread / by_law,
+            on=[curve, pull_off],
+            despite=READ,
+        ),
+        row(
+            f"mean pressure {place}, by Eq. (8) with the run's F_A and a_0",
+            by_law,
+            printed(PRINTED, "Section 4: about 800 MPa"),
+            absolute(DIGIT, "print: one digit; F_A and a_0 are those of Table 1"),
+            uncertainty=spread,
+            unit="MPa",
+            on=[pull_off],
+            standing="by construction",
+        ),
+    ]
     pressure = force / (math.pi * a**2) * mega
     shown = a > 0.55 * radius_scale
     panel = Panel(
-        "contact radius $a$ (LU)", r"mean pressure $F/\pi a^2$ (MPa)",
-        [Series("this program", a[shown], pressure[shown]), Series("the paper", np.array([PLACE]), np.array([PRINTED]))],
+        "contact radius $a$ (LU)",
+        r"mean pressure $F/\pi a^2$ (MPa)",
+        [
+            Series("this program", a[shown], pressure[shown]),
+            Series("the paper", np.array([PLACE]), np.array([PRINTED])),
+        ],
         [Series("JKR, Eq. (8), with the same $F_A$ and $a_0$", a[shown], jkr[shown])],
-    )  # fmt: skip
+    )
     figures = figure("Mean pressure over the contact radius, R = 1000 LU", panel)
     others = [at_place(*_stable(runs, stiffness_run(k))) for k in STIFFNESSES]
     said = ", ".join(f"{value:.0f} MPa with {k:g}" for k, value in zip(STIFFNESSES, others, strict=True))

@@ -124,9 +124,9 @@ def with_radius(scene: Scene, radius: float) -> Scene:
     return changed(scene, f"bodies.profile.radius={radius}")
 
 
-# Curves F(a) of many N and R (Fig. 8). N has two meanings: a longer chain of the same spacing, and a finer spacing of the
-# same length. "The same physics" of the latter is the same stiffness and line tension per length, and an interaction with
-# the same F_A and a₀ (by `identify.estimated`, to some 0.1 %).
+# Curves F(a) of many N and R (Fig. 8). N has two meanings: a longer chain of the same spacing, and a finer spacing of
+# the same length. "The same physics" of the latter is the same stiffness and line tension per length, and a law
+# with the same F_A and a₀ (by `identify.estimated`).
 DEEPEST, STEPS = 0.46, 56
 """Largest displacement [LU] of a curve, F/F_A some 2 in every scene, and its rows on the way back."""
 LENGTHENED = (200, 400, 800, 1600)

@@ -217,10 +217,16 @@ def _raised_checks(row: Rows) -> list[Row]:
     for i, words in ((2, "half of the way"), (4, "one and a half times the way")):
         expected = _raised_force(float(places[i]), float(places[0]))
         checks.append(
-            row(f"F_x over μN, load raised by {1.0 / FIRST**1.5 - 1.0:.0%} at {RAISED:g} u*, {words} to the old edge " "on",
-                float(force[i]) / unit, Reference(expected, "Mindlin and Deresiewicz: what slipped sticks anew"),
-                absolute(1.5 * _fineness(BASE) / FIRST, LATTICE), on=["tangential_raised"], wide=BY_CHANCE)
-        )  # fmt: skip
+            row(
+                f"F_x over μN, load raised by {1.0 / FIRST**1.5 - 1.0:.0%} at {RAISED:g} u*, {words} to the old edge "
+                "on",
+                float(force[i]) / unit,
+                Reference(expected, "Mindlin and Deresiewicz: what slipped sticks anew"),
+                absolute(1.5 * _fineness(BASE) / FIRST, LATTICE),
+                on=["tangential_raised"],
+                wide=BY_CHANCE,
+            )
+        )
     return checks
 
 

@@ -1,6 +1,6 @@
 """Axisymmetric indenters z = c r^n on a half space, with adhesion or without: JKR is n = 2, c = 1/2R.
 
-By the method of dimensionality reduction, g(a) = kappa c a^n with kappa = n int_0^(pi/2) sin^(n-1) phi dphi by quadrature,
+By the method of dimensionality reduction, g(a) = kappa c a^n, kappa = n int_0^(pi/2) sin^(n-1) phi dphi by quadrature,
 
     d(a) = g(a) - sqrt(2 pi a W/E*),    F(a) = 2 E* [a d - g(a) a/(n + 1)]
 

@@ -19,7 +19,16 @@ MADE = ("runs", "reproduced", "stability", "speed", "__pycache__")
 """What is made by running, and is not copied from the top."""
 HANGS = "they take too long"
 QUICK = ("-q", "--assert=plain", "-p", "no:cacheprovider")
-LOADED = ("numpy", "scipy.optimize", "scipy.interpolate", "scipy.stats", "pydantic", "matplotlib.figure", "pytest", "pint")
+LOADED = (
+    "numpy",
+    "scipy.optimize",
+    "scipy.interpolate",
+    "scipy.stats",
+    "pydantic",
+    "matplotlib.figure",
+    "pytest",
+    "pint",
+)
 
 
 def load() -> None:

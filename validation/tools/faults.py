@@ -1,6 +1,6 @@
 """The listed faults (`faults.toml`) put back, one at a time: which test notices. Exit code 1 where one passes.
 
-    python -m validation.tools.faults [NAME ...]
+python -m validation.tools.faults [NAME ...]
 """
 
 from __future__ import annotations

@@ -4,9 +4,8 @@
 
 A fault changes one operator, comparison or number in a copy of this checkout. A trace of calls says which tests call its
 function; these run there, quick ones first, up to the first that fails or LONGEST. One that passes them survives: it is
-printed, and listed in results/mutants.json with the reason if one was written there by hand (kept for the same change of
-the same line). What no user could meet is not drawn: messages, types, drawings, and `strict=`. Exit code 1 where fewer
-than ASKED are noticed.
+printed, and listed in results/mutants.json with the reason if one was written there by hand (kept for the same change).
+What no user could meet is not drawn: messages, types, drawings, and `strict=`. Exit code 1: fewer than ASKED noticed.
 """
 
 from __future__ import annotations
@@ -203,7 +202,9 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--tests", nargs="+", default=TESTS)
     options = parser.parse_args()
-    files = [str(path.relative_to(ROOT)) for folder in options.folders for path in sorted((ROOT / folder).rglob("*.py"))]
+    files = [
+        str(path.relative_to(ROOT)) for folder in options.folders for path in sorted((ROOT / folder).rglob("*.py"))
+    ]
     every = [mutant for file in files for mutant in mutants(file)]
     chosen = random.Random(options.seed).sample(every, min(options.number, len(every)))
     old = json.loads(RESULTS.read_text(encoding="utf-8")).get("survivors", []) if RESULTS.exists() else []

@@ -60,14 +60,32 @@ def load_checks(row: Rows) -> tuple[list[Row], Panel]:
     rise = [(of[step[1]] - of[step[0]]) / (step[1] - step[0]) for of in (ours, theory)]
     law = "largest slope of the energy of a rigid row"
     checks = [
-        row("largest friction of one particle without a load", ours[0.0], Reference(theory[0.0], law),
-            relative(OF_LARGEST, BETWEEN), unit="FU", on=[points.names[0.0,]]),
-        row(f"the same over that of the row, worst of {len(loads)} loads from {loads[0]:g} to {loads[-1]:g} FU, at " f"{worst:g} FU",
-            ours[worst] / theory[worst], Reference(1.0, law), relative(OF_LARGEST, BETWEEN), on=points.every,
-            despite=EITHER),
-        row("what it rises by with the load, between -0.1 and 0.1 FU", rise[0], Reference(rise[1], law),
-            relative(OF_LARGEST, BETWEEN), on=[points.names[load,] for load in step], despite=EITHER),
-    ]  # fmt: skip
+        row(
+            "largest friction of one particle without a load",
+            ours[0.0],
+            Reference(theory[0.0], law),
+            relative(OF_LARGEST, BETWEEN),
+            unit="FU",
+            on=[points.names[0.0,]],
+        ),
+        row(
+            f"the same over that of the row, worst of {len(loads)} loads from {loads[0]:g} to {loads[-1]:g} FU, at "
+            f"{worst:g} FU",
+            ours[worst] / theory[worst],
+            Reference(1.0, law),
+            relative(OF_LARGEST, BETWEEN),
+            on=points.every,
+            despite=EITHER,
+        ),
+        row(
+            "what it rises by with the load, between -0.1 and 0.1 FU",
+            rise[0],
+            Reference(rise[1], law),
+            relative(OF_LARGEST, BETWEEN),
+            on=[points.names[load,] for load in step],
+            despite=EITHER,
+        ),
+    ]
     fine = np.linspace(loads[0], loads[-1], 33)
     line = [corrugation(law_of(points.scenes[0.0,]), 1.0, load).largest_force for load in fine.tolist()]
     panel = Panel(
@@ -109,10 +127,16 @@ def velocity_checks(row: Rows) -> tuple[list[Row], Panel]:
         limits.append(Series("" if limits else "theory for v → 0", np.zeros(1), np.asarray([expected])))
     worst, velocity, eta = max(off, key=lambda one: abs(one[0] - 1.0))
     checks.append(
-        row(f"⟨F⟩ over that of the equation of motion at the same velocity, worst of {len(off)}, at η = {eta:g} and " f"{velocity:g} LU/TU",
-            worst, solver(1.0, "equation of motion of one particle over the corrugation"),
-            relative(ASKED, "particle and plate are two masses, the equation has one"), on=points.every, despite=EDGE)
-    )  # fmt: skip
+        row(
+            f"⟨F⟩ over that of the equation of motion at the same velocity, worst of {len(off)}, at η = {eta:g} and "
+            f"{velocity:g} LU/TU",
+            worst,
+            solver(1.0, "equation of motion of one particle over the corrugation"),
+            relative(ASKED, "particle and plate are two masses, the equation has one"),
+            on=points.every,
+            despite=EDGE,
+        )
+    )
     panel = Panel("velocity to the power 2/3 (LU/TU)$^{2/3}$", r"$\langle F\rangle/F_{max}$", shown, limits)
     return checks, panel
 

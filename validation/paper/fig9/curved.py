@@ -98,11 +98,16 @@ def curved_checks(row: Rows) -> tuple[list[Row], Panel, Panel]:
         for names_of, one in ((slides(sweep).names[value,], one) for value, one in values.items())
     }
     checks.append(
-        row.at_most(f"friction at every row of the trace off that of the integrator, over its peak, worst of {len(worst)} " "slides",
-            max(worst.values()), Reference(TRACE, "bound that was asked for", "set bound"),
-            "table of the law, order of the sums, the rest from which it starts", on=list(worst),
-            wide="what was asked for leaves room for heat and neighbours")
-    )  # fmt: skip
+        row.at_most(
+            f"friction at every row of the trace off that of the integrator, over its peak, worst of {len(worst)} "
+            "slides",
+            max(worst.values()),
+            Reference(TRACE, "bound that was asked for", "set bound"),
+            "table of the law, order of the sums, the rest from which it starts",
+            on=list(worst),
+            wide="what was asked for leaves room for heat and neighbours",
+        )
+    )
     return checks, _panel(row, LOAD, known, "normal force (FU)"), _panel(row, RADIUS, known, "radius (LU)")
 
 

@@ -68,7 +68,8 @@ def judge(bench: Bench) -> Findings:
         f"stiffness: {agreement([*particle, *velocity, *stiffness])}; heat lowers its friction by as much as "
         f"Smoluchowski's equation says: {agreement(warmth)}. A commensurate flat is so many particles, and an "
         f"incommensurate one is free above {number(threshold.value, 3)} FU/LU, where particles that share one height "
-        f"should be from {number(threshold.reference.value, 4)} on: {agreement([*lattices, *flats])}. Of the cantilever's "
+        f"should be from {number(threshold.reference.value, 4)} on: {agreement([*lattices, *flats])}. Of the "
+        "cantilever's "
         f"work {share(energy[-1].value)} at most are neither dissipated nor stored: {agreement(energy)}."
     )
     return Findings(checks, figures, text=finding)

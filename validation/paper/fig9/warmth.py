@@ -47,12 +47,19 @@ def temperature_checks(row: Rows) -> tuple[list[Row], Panel]:
         ours = found(row.runs[points.names[kT,]], "mean_friction")
         sigma = ours.uncertainty / INTERVAL / top
         checks.append(
-            row(f"⟨F⟩/F_max of one particle, kT = {kT / barrier:.2g} of the barrier", ours.value / top,
+            row(
+                f"⟨F⟩/F_max of one particle, kT = {kT / barrier:.2g} of the barrier",
+                ours.value / top,
                 solver(smoluchowski(scene, kT) / top, "Smoluchowski's equation"),
-                absolute(SIGMAS * sigma if math.isfinite(sigma) else 0.0, "statistics: four standard errors of the run"),
-                uncertainty=ours.uncertainty / top, on=[points.names[kT,]], despite=DRAGGED,
-                wide="four standard errors, and by chance it is near")
-        )  # fmt: skip
+                absolute(
+                    SIGMAS * sigma if math.isfinite(sigma) else 0.0, "statistics: four standard errors of the run"
+                ),
+                uncertainty=ours.uncertainty / top,
+                on=[points.names[kT,]],
+                despite=DRAGGED,
+                wide="four standard errors, and by chance it is near",
+            )
+        )
     fine = np.linspace(0.6 * temperatures[0], 1.05 * temperatures[-1], 12)
     line = np.asarray([smoluchowski(scene, kT) for kT in fine.tolist()]) / top
     means = [found(row.runs[name], "mean_friction") for name in points.every]

@@ -1,4 +1,4 @@
-"""The project's independent solver (validation/references): the same chains as contact1d, minimised by Newton's method."""
+"""The independent solver of validation/references: the same chains as contact1d, minimised by Newton's method."""
 
 from __future__ import annotations
 
