@@ -15,6 +15,10 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from contact1d.workflow.continuation.contact import Contact
+from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.experiments.thermal import chunk_steps
+
 from contact1d.files import write_whole
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import start_offset
@@ -24,9 +28,6 @@ from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Engine, EngineError, Session
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments import planned
-from contact1d.workflow.experiments.running.contact import Contact
-from contact1d.workflow.experiments.running.run_context import RunContext
-from contact1d.workflow.experiments.running.sampling import chunk_steps
 from contact1d.workflow.identify import Target, estimated, identify, jkr_target, material_scene
 from contact1d.workflow.runs import campaign
 from contact1d.workflow.runs.campaign import write_deck

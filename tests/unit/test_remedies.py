@@ -8,7 +8,6 @@ from typing import Any
 
 import pytest
 
-from contact1d.workflow.errors import Contact1dError, RunError
 from contact1d.workflow.continuation.trust import (
     ChainEndError,
     OffEndError,
@@ -17,6 +16,7 @@ from contact1d.workflow.continuation.trust import (
     UnsteadyError,
     UntrustedError,
 )
+from contact1d.workflow.errors import Contact1dError, RunError
 from contact1d.workflow.runs import remedies
 from contact1d.workflow.runs.remedies import Change, Tried, tried
 from contact1d.workflow.scene import Scene, SceneError, read_scene, scene_from_dict

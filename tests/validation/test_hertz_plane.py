@@ -28,11 +28,11 @@ import pytest
 from numpy.typing import NDArray
 
 from contact1d import Run
-from validation.references.model import ChainModel
-from validation.references.solver import trace
 from contact1d.analysis.theory.winkler import rigid_plane_sum, winkler_force, winkler_half_width
 from contact1d.workflow.continuation.state import State
 from tests.scenes import chains
+from validation.references.model import ChainModel
+from validation.references.solver import trace
 
 RunTables = Callable[[dict[str, Any]], Run]
 Array = NDArray[np.float64]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from contact1d.workflow.experiments.spacing import fine_enough
 from contact1d.workflow.identify.contact import AskedContact
 from contact1d.workflow.identify.judgement import judged, require_size
 from contact1d.workflow.identify.material import jkr_target, material_scene
@@ -13,7 +14,6 @@ from contact1d.workflow.identify.reduced import contact_radius, largest_tension,
 from contact1d.workflow.identify.target import IdentifyError, Target
 from contact1d.workflow.identify.theories import Theories
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.experiments.spacing import fine_enough
 
 PRELOAD_SHARE = 0.7
 """Preload of a pull-off over JKR's F_A, where no load is given."""
