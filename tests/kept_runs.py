@@ -21,8 +21,7 @@ from contact1d.analysis.curve import Curve
 from contact1d.analysis.pressure import Profile
 from contact1d.workflow.runs.finished import Run, read_run
 from contact1d.workflow.scene import Scene, scene_from_dict
-from validation.paper import fig6
-from validation.paper.fig9 import warmth
+from validation.paper.fig9 import asperity
 
 KEPT = Path(__file__).parents[1] / "validation" / "results" / "runs.json.gz"
 DIGITS, WHOLE, SHORT = 12, 17, 200
@@ -119,7 +118,7 @@ def kept_paper() -> Scene:
     return kept_runs()["pull_off_R1000"].scene
 
 
-ONCE = {(fig6, "_released"): cache(fig6._released), (warmth, "smoluchowski"): cache(warmth.smoluchowski)}
+ONCE = {(asperity, "smoluchowski"): cache(asperity.smoluchowski)}
 """What takes long and knows nothing of the runs."""
 
 

@@ -15,11 +15,9 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from contact1d.files import write_whole
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import RunContext
-from contact1d.workflow.experiments.thermal import chunk_steps
-
-from contact1d.files import write_whole
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import start_offset
 from contact1d.workflow.deck.steps import Displace, UnderLoad
@@ -28,6 +26,7 @@ from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Engine, EngineError, Session
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments import planned
+from contact1d.workflow.experiments.thermal import chunk_steps
 from contact1d.workflow.identify import Target, estimated, identify, jkr_target, material_scene
 from contact1d.workflow.runs import campaign
 from contact1d.workflow.runs.campaign import write_deck
@@ -54,58 +53,6 @@ from contact1d.workflow.sweep.axes import read_sweep
 from contact1d.workflow.sweep.points import points
 from contact1d.workflow.units import Quantity, rounded
 
-__all__ = [
-    "BEFORE",
-    "Contact",
-    "Deck",
-    "Displace",
-    "Engine",
-    "EngineError",
-    "FolderError",
-    "Parabola",
-    "PullOff",
-    "Quantity",
-    "Reduction",
-    "Run",
-    "RunContext",
-    "RunError",
-    "Scene",
-    "SceneError",
-    "Session",
-    "Settings",
-    "SettingsError",
-    "Silent",
-    "Slide",
-    "Target",
-    "UnderLoad",
-    "chunk_steps",
-    "contact_of",
-    "cores",
-    "deck_text",
-    "estimated",
-    "finish",
-    "finished",
-    "identify",
-    "jkr_scales",
-    "jkr_target",
-    "load_run",
-    "machine",
-    "material_scene",
-    "read_run",
-    "read_scene",
-    "rounded",
-    "run",
-    "scene_from_dict",
-    "scene_to_toml",
-    "settings_for",
-    "shipped",
-    "start_offset",
-    "sweep_points",
-    "versions",
-    "write_deck",
-    "write_system",
-    "write_whole",
-]
 BEFORE = (SceneError, SettingsError, FolderError)
 """What a scene is refused with before anything runs."""
 TIME_LIMIT = 7200.0

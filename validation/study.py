@@ -65,26 +65,18 @@ class Refused:
     before: bool
 
 
-class Runs(Mapping[str, Run]):
-    """The runs of a bench, each read once."""
+class Runs(dict[str, Run]):
+    """The runs in a folder by name, each read once."""
 
-    def __init__(self, read: Callable[[str], Run]) -> None:
+    def __init__(self, folder: Path) -> None:
         """Nothing is read yet."""
-        self._read, self._known = read, dict[str, Run]()
+        super().__init__()
+        self._folder = folder
 
-    def __getitem__(self, name: str) -> Run:
+    def __missing__(self, name: str) -> Run:
         """The run of that name."""
-        if name not in self._known:
-            self._known[name] = self._read(name)
-        return self._known[name]
-
-    def __iter__(self) -> Iterator[str]:
-        """Those that were read."""
-        return iter(self._known)
-
-    def __len__(self) -> int:
-        """How many were read."""
-        return len(self._known)
+        self[name] = doors.read_run(self._folder / name)
+        return self[name]
 
 
 @dataclass(frozen=True)
@@ -113,7 +105,7 @@ class Bench:
     @cached_property
     def runs(self) -> Runs:
         """The runs that the study named beforehand; one that failed has no results."""
-        return Runs(lambda name: doors.read_run(self.runs_folder / name))
+        return Runs(self.runs_folder)
 
     def run(self, name: str, scene: Mapping[str, Any]) -> Run | Refused:
         """The finished run of a scene, made now or there already, or the words with which it was refused."""

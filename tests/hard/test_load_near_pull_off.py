@@ -15,8 +15,8 @@ import pytest
 from contact1d import RunError
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import scene_from_dict
+from tests.pair_lattice import PairLattice
 from validation.references.interaction import Exponential, PairInteraction
-from validation.references.pair_lattice import PairLattice
 
 TOLERANCE = 1e-3
 PARTICLES, RADIUS, STIFFNESS = 40, 100.0, 0.83

@@ -14,8 +14,8 @@ import pytest
 
 from contact1d import run
 from contact1d.workflow.scene import scene_from_dict
+from tests.pair_lattice import PairLattice
 from validation.references.interaction import Exponential, PairInteraction
-from validation.references.pair_lattice import PairLattice
 
 LAW = PairInteraction(Exponential(0.011, 0.015), Exponential(0.01, 0.03))
 """Short against the spacing, so that a particle feels its opposite alone."""

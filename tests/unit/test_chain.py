@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.unit.test_estimate import RADIUS, REST, estimate, parabola, scene_of
 
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.chain import SettingsError, chain_length, decay_length, felt_up_to, reflected
 from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import chains
-from tests.unit.test_estimate import RADIUS, REST, estimate, parabola, scene_of
 
 
 def linear_chain(particles: int, stiffness: float, neighbours: float, pushed: int) -> Any:

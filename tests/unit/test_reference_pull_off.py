@@ -74,16 +74,6 @@ def test_result_does_not_depend_on_the_coarse_step() -> None:
     assert coarse.critical_radius == pytest.approx(fine.critical_radius, rel=10 * SEARCH)  # at a flat maximum
 
 
-def test_curves_run_from_the_preload_to_separation() -> None:
-    result = pull_off(ChainModel(120, 0.83, PAPERLIKE, radius=400.0), 0.3)
-    assert result.loading.force[-1] == pytest.approx(0.3, rel=SEARCH)
-    assert result.unloading.force[0] == result.loading.force[-1]
-    assert np.all(np.diff(result.loading.displacement) > 0.0)
-    assert np.all(np.diff(result.unloading.displacement) < 0.0)
-    assert result.unloading.force.min() >= -result.adhesion_force
-    assert result.unloading.force[-1] > -0.01 * result.adhesion_force
-
-
 def test_one_pair_holds_the_largest_tension_of_its_law() -> None:
     for k in (0.83, 0.05):  # without and with a snap
         model = ChainModel(3, k, PAPERLIKE, heights=np.array([50.0, 0.0, 50.0]), spacing=12.0)

@@ -17,7 +17,7 @@ from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene
 from tests.kept_runs import KeptBench, kept_paper, kept_runs, solved_once
 from validation.paper import STUDIES, fig9, tangential
-from validation.paper.oracles import barquins_reduced
+from validation.paper.scenes import barquins_reduced
 from validation.references.slide import Trace
 from validation.row import Row
 from validation.study import Findings, Study, read_record

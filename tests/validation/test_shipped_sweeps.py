@@ -11,9 +11,9 @@ import pytest
 
 from contact1d import run
 from contact1d.workflow.settings.settings import settings_for
+from validation.paper.fig9.asperity import smoluchowski
 from validation.paper.fig9.curved import integrated
-from validation.paper.fig9.sweeps import SWEEPS, slides
-from validation.paper.fig9.warmth import smoluchowski
+from validation.paper.fig9.reading import SWEEPS, slides
 from validation.references.incommensurate import shared_corrugation
 from validation.references.prandtl_tomlinson import corrugation, moving_friction, slow_friction
 

@@ -6,10 +6,12 @@ ratio = steepest rise of the pair's force / (k/2): above 1 pairs snap.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from scipy.stats import chi2
 
 from validation.references.folded_pairs import FoldedPairs
 from validation.references.interaction import Exponential, Floats, PairInteraction
@@ -140,3 +142,21 @@ def heights(profile: dict[str, Any], particles: int) -> Floats:
         case "power":
             return np.asarray(profile["height"] * (x / profile["radius"]) ** profile["exponent"])
     raise ValueError(f"no heights for a {profile['kind']}")
+
+
+SIGMAS = 4.0
+"""Standard errors of the sample: one row in 16 000 fails by chance, and the seeds are fixed."""
+CHANCE = 1e-4
+"""Of a row that judges a chi-square."""
+BLOCKS = 20
+
+
+def chi_square_bound(count: int) -> float:
+    """χ² of `count` block means, whose own errors are known from BLOCKS blocks only: each is an F-variable."""
+    return float(chi2.ppf(1.0 - CHANCE, count)) * (BLOCKS - 1) / (BLOCKS - 3)
+
+
+def block_mean(samples: Floats) -> tuple[Floats, Floats]:
+    """Mean and standard error of each column, from blocks."""
+    blocks = np.array([block.mean(axis=0) for block in np.array_split(samples, BLOCKS)])
+    return samples.mean(axis=0), blocks.std(axis=0, ddof=1) / math.sqrt(BLOCKS)

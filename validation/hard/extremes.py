@@ -7,6 +7,7 @@ motion stretches; and a rigid plane carries F = k Σ max(0, d − h_i).
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,8 @@ from scipy.optimize import brentq
 from validation.figures import Panel, Series, figure
 from validation.hard.cases import TENSION, PairCase, shaped
 from validation.row import Row, at_most
-from validation.study import Bench, Findings, Refused, Study, over_claim, said
-from validation.study import found as result
+from validation.study import Bench, Findings, Refused, Study, claim_row, found
 
-NAME = "extremes"
 RADII = (1.0, 1e3, 1e6, 1e9)
 REFUSED_COUNTS = (1, 2)
 """Too few for a radius: refused before anything runs."""
@@ -34,60 +33,36 @@ RATIO, PUNCH = 0.3, 10
 
 def measure(bench: Bench) -> Findings:
     """One row for each extreme; a refusal before anything runs is an answer where the row says so."""
-    checks: list[Row] = []
+    places = np.arange(-30.0, 31.0)
+    on_plane = []
     for radius in RADII:
         d = WIDTH**2 / radius
-        places = np.arange(-30.0, 31.0)
         exact = 0.5 * float(np.sum(np.maximum(0.0, d - places**2 / radius)))
-        off = _on_plane(bench, f"radius_{radius:g}", {"kind": "parabola", "radius": radius}, 61, d, exact)
-        checks.append(
-            at_most(
-                f"force on a plane off, R = {radius:g} LU",
-                off,
-                PLANE,
-                "Σ k (d − x²/R)",
-                "round-off, and the minimiser's share of the tolerance",
-            )
-        )
+        words, profile = f"R = {radius:g} LU", {"kind": "parabola", "radius": radius}
+        on_plane.append((f"radius_{radius:g}", words, profile, 61, d, exact, "Σ k (d − x²/R)"))
     for count in FULL_COUNTS if bench.full else COUNTS:
         punch = {"kind": "flat_punch", "radius": 0.5 * count}
-        off = _on_plane(bench, f"count_{count}", punch, count, 0.1, 0.5 * 0.1 * count)
-        checks.append(
-            at_most(
-                f"force on a plane off, N = {count}",
-                off,
-                PLANE,
-                "N k d",
-                "round-off, and the minimiser's share of the tolerance",
-            )
-        )
-    checks.append(_too_few(bench))
-    drawn = [_masses(bench, checks)]
-    drawn += [_springs(bench, checks, kind) for kind in ("neighbour", "tangential")]
-    return Findings(
-        checks,
-        figure(
-            "Error over claim far from the usual numbers; dashed: the bound",
-            Panel("plate over particle mass, or stiffness over k", "error over claim", drawn, log="xy", bound=1.0),
-        ),
-    )
+        on_plane.append((f"count_{count}", f"N = {count}", punch, count, 0.1, 0.5 * 0.1 * count, "N k d"))
+    limit = "round-off, and the minimiser's share of the tolerance"
+    rows = [
+        at_most(f"force on a plane off, {words}", _off(bench, name, profile, count, d, exact), PLANE, source, limit)
+        for name, words, profile, count, d, exact, source in on_plane
+    ]
+    rows.append(_too_few(bench))
+    series = []
+    for words, cases in (("mass of the plate", _masses(bench)), ("neighbour springs", _springs(bench, "neighbour")),
+                         ("tangential springs", _springs(bench, "tangential"))):  # fmt: skip
+        rows += cases.values()
+        known = [(factor, max(row.value, 1e-6)) for factor, row in cases.items() if math.isfinite(row.value)]
+        series.append(Series(words, *np.array(known).T))
+    panel = Panel("plate over particle mass, or stiffness over k", "error over claim", series, log="xy", bound=1.0)
+    return Findings(rows, figure("Error over claim far from the usual numbers; dashed: the bound", panel))
 
 
-def _on_plane(bench: Bench, name: str, profile: dict[str, Any], count: int, d: float, exact: float) -> float:
-    found = bench.run(
-        name,
-        {
-            "bodies": {
-                "particles": count,
-                "spacing": 1.0,
-                "profile": profile,
-                "bulk_stiffness": 0.5,
-                "lower": "rigid_plane",
-            },
-            "experiment": {"kind": "path", "displacements": [d]},
-        },
-    )
-    return math.nan if isinstance(found, Refused) else abs(result(found, "largest_force").value / exact - 1.0)
+def _off(bench: Bench, name: str, profile: dict[str, Any], count: int, d: float, exact: float) -> float:
+    bodies = {"particles": count, "spacing": 1.0, "profile": profile, "bulk_stiffness": 0.5, "lower": "rigid_plane"}
+    run = bench.run(name, {"bodies": bodies, "experiment": {"kind": "path", "displacements": [d]}})
+    return math.nan if isinstance(run, Refused) else abs(found(run, "largest_force").value / exact - 1.0)
 
 
 def _too_few(bench: Bench) -> Row:
@@ -101,65 +76,49 @@ def _too_few(bench: Bench) -> Row:
     return at_most(name, wrong, 0.0, "three particles make the least width", evidence="set bound")
 
 
-def _masses(bench: Bench, checks: list[Row]) -> Series:
+def _masses(bench: Bench) -> dict[float, Row]:
+    """d of a punch under a load, by the mass of the plate; a refusal beforehand is an answer."""
     case = PairCase("masses", RATIO, shaped("flat_punch", PUNCH, 0.0), PUNCH, 0.0, 1e-3, dynamic=True)
     load = 0.5 * PUNCH * TENSION
-    exact = case.exact().deepest(load)
-    found = []
+    exact, rows = case.exact().deepest(load), {}
     for mass in FULL_MASSES if bench.full else MASSES:
-        scene = case.scene() | {"plate": {"mass": mass}, "experiment": {"kind": "load", "force": load}}
-        run = bench.run(f"mass_{mass:g}", scene)
-        said_before = isinstance(run, Refused) and run.before
-        over = math.nan if isinstance(run, Refused) else over_claim(run, "displacement", exact)
-        over = 0.0 if said_before else over
-        found.append((mass, over))
-        checks.append(
-            at_most(
-                f"d under a load off over its claim, plate of {mass:g} particle masses",
-                over,
-                1.0,
-                "independent pairs",
-                said("what the run claims", run),
-            )
+        run = bench.run(
+            f"mass_{mass:g}", case.scene() | {"plate": {"mass": mass}, "experiment": {"kind": "load", "force": load}}
         )
-    return Series("mass of the plate", *np.array([(m, max(o, 1e-6)) for m, o in found if o == o]).T)
+        words = f"d under a load off over its claim, plate of {mass:g} particle masses"
+        row = claim_row(words, run, "displacement", exact, "independent pairs")
+        rows[mass] = replace(row, value=0.0) if isinstance(run, Refused) and run.before else row
+    return rows
 
 
-def _springs(bench: Bench, checks: list[Row], kind: str) -> Series:
+def _springs(bench: Bench, kind: str) -> dict[float, Row]:
     """F_A of a punch with neighbour springs; d of it under a tension with another stiffness along x."""
     case = PairCase("springs", RATIO, shaped("flat_punch", PUNCH, 0.0), PUNCH, TENSION)
-    load = -0.5 * PUNCH * TENSION
-    pairs = case.exact()
+    load, pairs, rows = -0.5 * PUNCH * TENSION, case.exact(), {}
+    tables: dict[str, Any]
     place = float(brentq(lambda d: float(pairs.loading(d)) - load, pairs.adhesion(0.0)[1], 0.05, xtol=1e-15))
-    found = []
     for factor in FULL_STIFFNESSES if bench.full else STIFFNESSES:
         scene = case.scene()
         if kind == "neighbour":
-            run = bench.run(f"neighbour_{factor:g}", scene | {"neighbours": {"stiffness": factor * case.stiffness}})
-            name, exact = "adhesion_force", PUNCH * TENSION
+            tables, name, exact = (
+                {"neighbours": {"stiffness": factor * case.stiffness}},
+                "adhesion_force",
+                PUNCH * TENSION,
+            )
         else:
             bodies = scene["bodies"] | {"bulk_stiffness_tangential": factor * case.stiffness}
             experiment = {"kind": "load", "method": "quasistatic", "force": load}
-            run = bench.run(
-                f"tangential_{factor:g}", scene | {"bodies": bodies, "horizontal": {}, "experiment": experiment}
-            )
+            tables = {"bodies": bodies, "horizontal": {}, "experiment": experiment}
             name, exact = "displacement", place
-        over = math.nan if isinstance(run, Refused) else over_claim(run, name, exact)
-        found.append((factor, over))
-        checks.append(
-            at_most(
-                f"{name} of a punch off over its claim, {kind} springs of {factor:g} k",
-                over,
-                1.0,
-                "N times one pair",
-                said("what the run claims", run),
-            )
+        words = f"{name} of a punch off over its claim, {kind} springs of {factor:g} k"
+        rows[factor] = claim_row(
+            words, bench.run(f"{kind}_{factor:g}", scene | tables), name, exact, "N times one pair"
         )
-    return Series(f"{kind} springs", *np.array([(f, max(o, 1e-6)) for f, o in found if o == o]).T)
+    return rows
 
 
 EXTREMES = Study(
-    NAME,
+    "extremes",
     "Stiffness ratios 1e-6 to 1e6, radii to 1e9, 1 to 10⁶ particles, plate masses 1e-3 to 1e9",
     "Where numbers are far apart one of them is lost in the other's rounding, a time step is chosen for the wrong one, "
     "or a minimiser stops too early.",

@@ -13,8 +13,7 @@ import numpy as np
 
 from validation.doors import contact_of
 from validation.figures import Panel, Series, figure
-from validation.hard.cases import PAPER_LAW
-from validation.hard.statistics import SIGMAS, block_mean, chi_square_bound
+from validation.hard.cases import PAPER_LAW, SIGMAS, block_mean, chi_square_bound
 from validation.references.interaction import Floats
 from validation.row import Reference, Row, at_most, claim
 from validation.study import Bench, Findings, Study

@@ -13,19 +13,19 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from validation.doors import Contact, Displace, contact_of
+from validation.doors import Contact, Displace, Run, contact_of
 from validation.figures import Panel, Series, figure
 from validation.hard.cases import CORE, LAW, PairCase, shaped
-from validation.row import Row, at_most
-from validation.study import Bench, Findings, Refused, Study, over_claim, said
+from validation.row import at_most
+from validation.study import Bench, Findings, Refused, Study, claim_row
 
 CORE_CLASS, BUCKLING = "core", "buckling"
 RATIO, PUNCH = 0.5, 10
 SHARES, PAST = (0.1, 0.5, 0.85), (1.02, 10.0)
 BUCKLED = (0.9, 0.98, 1.02, 1.1)
 """Force of a pair over that at which it buckles."""
-PATIENCE = 20
-"""For a refusal [s]."""
+PATIENCE, HANGING = 20, ("LAMMPS", "time limit", "nothing was said")
+"""For a refusal [s], and words of one that came too late."""
 TANGENTIAL = 4.0
 """Tangential stiffness [FU/LU]: a pair then buckles at a third of its core's force."""
 PUSH = 1e-5
@@ -34,58 +34,27 @@ PUSH = 1e-5
 
 def measure_core(bench: Bench) -> Findings:
     """d under shares of what N cores carry over its claim; loads past that are refused in words of this program."""
-    case = PairCase("core", RATIO, shaped("flat_punch", PUNCH, 0.0), PUNCH, 0.0)
-    pairs = case.exact()
-    checks: list[Row] = []
-    drawn = []
+    rows, points = [], []
     for method in ("quasistatic", "dynamic"):
-        timed = PairCase("core", RATIO, case.profile, PUNCH, 0.0, 1e-3, method == "dynamic").scene()
+        case = PairCase("core", RATIO, shaped("flat_punch", PUNCH, 0.0), PUNCH, 0.0, 1e-3, method == "dynamic")
+
+        def pressed(share: float, bench: Bench, case: PairCase = case, method: str = method) -> Run | Refused:
+            experiment = {"kind": "load", "force": share * PUNCH * CORE, "method": method}
+            return bench.run(f"{method}_{share:g}", case.scene() | {"experiment": experiment})
+
         for share in SHARES:
-            load = share * PUNCH * CORE
-            exact = pairs.deepest(load)
-            found = bench.run(
-                f"{method}_{share:g}", timed | {"experiment": {"kind": "load", "force": load, "method": method}}
-            )
-            over = math.nan if isinstance(found, Refused) else over_claim(found, "displacement", exact)
-            checks.append(
-                at_most(
-                    f"d off over its claim at {share:g} of the core's force, {method}",
-                    over,
-                    1.0,
-                    "independent pairs",
-                    said("what the run claims", found),
-                )
-            )
-            drawn.append((share, max(over, 1e-6)))
-        bad, soon = 0, replace(bench, patience=PATIENCE)
-        for share in PAST:
-            load = share * PUNCH * CORE
-            found = soon.run(
-                f"{method}_{share:g}", timed | {"experiment": {"kind": "load", "force": load, "method": method}}
-            )
-            ended = "" if not isinstance(found, Refused) else found.words
-            bad += not ended or any(words in ended for words in ("LAMMPS", "time limit", "nothing was said"))
-        checks.append(
-            at_most(
-                f"loads of {PAST} core forces that are held, hang, or end in words of LAMMPS, {method}",
-                bad,
-                0.0,
-                "the core carries no more",
-            )
-        )
-    return Findings(
-        checks,
-        figure(
-            "Error over claim up to the core; dashed: the bound",
-            Panel(
-                "load over the core's force",
-                "error of d over its claim",
-                [Series("runs", *np.array(drawn).T)],
-                log="xy",
-                bound=1.0,
-            ),
-        ),
-    )
+            words = f"d off over its claim at {share:g} of the core's force, {method}"
+            exact = case.exact().deepest(share * PUNCH * CORE)
+            rows.append(claim_row(words, pressed(share, bench), "displacement", exact, "independent pairs"))
+            points.append((share, max(rows[-1].value, 1e-6)))
+        soon = replace(bench, patience=PATIENCE)
+        ends = [pressed(share, soon) for share in PAST]
+        bad = sum(not isinstance(end, Refused) or any(word in end.words for word in HANGING) for end in ends)
+        words = f"loads of {PAST} core forces that are held, hang, or end in words of LAMMPS, {method}"
+        rows.append(at_most(words, bad, 0.0, "the core carries no more"))
+    shown = Series("runs", *np.array(points).T)
+    panel = Panel("load over the core's force", "error of d over its claim", [shown], log="xy", bound=1.0)
+    return Findings(rows, figure("Error over claim up to the core; dashed: the bound", panel))
 
 
 def measure_buckling(bench: Bench) -> Findings:

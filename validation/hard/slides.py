@@ -13,10 +13,10 @@ import numpy as np
 
 from validation.doors import Run, scene_from_dict, settings_for
 from validation.figures import Panel, Series, figure
-from validation.hard.random_slides import integrated, mean_friction
 from validation.references.prandtl_tomlinson import corrugation
 from validation.references.slide import Trace
 from validation.row import Row, at_most, so
+from validation.slides import integrated, mean_friction
 from validation.study import Bench, Findings, Refused, Study, over_claim, said
 from validation.study import found as result
 

@@ -11,8 +11,7 @@ from scipy.stats import chi2
 
 from validation.doors import Run
 from validation.figures import Panel, Series, figure
-from validation.hard.cases import PAPER_LAW
-from validation.hard.statistics import CHANCE, SIGMAS, block_mean, chi_square_bound
+from validation.hard.cases import CHANCE, PAPER_LAW, SIGMAS, block_mean, chi_square_bound
 from validation.references.boltzmann_pairs import BoltzmannPairs
 from validation.references.folded_pairs import FoldedPairs
 from validation.references.interaction import Exponential, Floats, PairInteraction
@@ -20,8 +19,7 @@ from validation.references.model import ChainModel
 from validation.references.solver import ChainSolver
 from validation.references.thermal_chain import displacement_under
 from validation.row import Reference, Row, at_most, claim
-from validation.study import Bench, Findings, Refused, Study, over_claim, said
-from validation.study import found as result
+from validation.study import Bench, Findings, Refused, Study, claim_row, found, over_claim, said
 
 THERMAL, SEEDS = "boltzmann", "seeds"
 FORGOTTEN = 60
@@ -55,55 +53,31 @@ def thermal_scene(temperature: float, seed: int, tolerance: float = 2e-3) -> dic
 
 def measure_boltzmann(bench: Bench) -> Findings:
     """⟨d⟩ under a load at three temperatures, and how much of it is thermal."""
-    checks: list[Row] = []
     rest = FoldedPairs(LAW_HERE, 0.83, HEIGHTS).deepest(LOAD)
     still = bench.run("rest", thermal_scene(0.0, 0))
-    source = "independent pairs"
-    value = math.nan if isinstance(still, Refused) else over_claim(still, "displacement", rest)
-    checks.append(at_most("d at kT = 0 off over its claim", value, 1.0, source, "what the run claims"))
-    drawn, exacts = [], []
-    for temperature in TEMPERATURES:
-        exact, swing = BoltzmannPairs(LAW_HERE, 0.83, HEIGHTS, temperature).displacement(LOAD, NEAR, WIDTH[temperature])
-        found = bench.run(f"noise_{temperature:g}", thermal_scene(temperature, 3))
-        source, limit = "Boltzmann's integral over distances and plate", "statistics: 4 of the run's standard errors"
-        if isinstance(found, Refused):
-            checks.append(
-                at_most(f"d at kT = {temperature:g} off over its claim", math.nan, SIGMAS, source, said(limit, found))
-            )
+    rows = [claim_row("d at kT = 0 off over its claim", still, "displacement", rest, "independent pairs")]
+    source, limit = "Boltzmann's integral over distances and plate", "statistics: 4 of the run's standard errors"
+    known, exacts = [], []
+    for kT in TEMPERATURES:
+        exact, swing = BoltzmannPairs(LAW_HERE, 0.83, HEIGHTS, kT).displacement(LOAD, NEAR, WIDTH[kT])
+        run = bench.run(f"noise_{kT:g}", thermal_scene(kT, 3))
+        off = over_claim(run, "displacement", exact)
+        rows.append(at_most(f"d at kT = {kT:g} off over its claim", off, SIGMAS, source, said(limit, run)))
+        if isinstance(run, Refused):
             continue
-        d, error = result(found, "displacement").value, result(found, "displacement").uncertainty
-        checks.append(
-            at_most(f"d at kT = {temperature:g} off over its claim", abs(d - exact) / error, SIGMAS, source, limit)
-        )
-        if temperature > TEMPERATURES[0]:  # there the mean cannot tell the temperature from 0, and the variance does
-            checks.append(
-                Row(
-                    f"d(kT = {temperature:g}) − d(0)",
-                    d - rest,
-                    Reference(exact - rest, source),
-                    claim(limit),
-                    uncertainty=SIGMAS * error,
-                    unit="LU",
-                )
-            )
-        checks.append(_swing_row(found, temperature, swing))
-        drawn.append((temperature, d))
-        exacts.append((temperature, exact))
-    checks += _shipped(bench)
-    x, y = np.array(drawn).T
-    return Findings(
-        checks,
-        figure(
-            "Mean displacement under a load over the temperature",
-            Panel(
-                "kT (FU·LU)",
-                "mean displacement (LU)",
-                [Series("run", x, y)],
-                [Series("Boltzmann", *np.array(exacts).T)],
-                log="x",
-            ),
-        ),
-    )
+        d = found(run, "displacement")
+        if kT > TEMPERATURES[0]:  # there the mean cannot tell the temperature from 0, and the variance does
+            rows.append(
+                Row(f"d(kT = {kT:g}) − d(0)", d.value - rest, Reference(exact - rest, source), claim(limit),
+                    uncertainty=SIGMAS * d.uncertainty, unit="LU")
+            )  # fmt: skip
+        rows.append(_swing_row(run, kT, swing))
+        known.append((kT, d.value))
+        exacts.append((kT, exact))
+    rows += _shipped(bench)
+    theory = [Series("Boltzmann", *np.array(exacts).T)]
+    panel = Panel("kT (FU·LU)", "mean displacement (LU)", [Series("run", *np.array(known).T)], theory, log="x")
+    return Findings(rows, figure("Mean displacement under a load over the temperature", panel))
 
 
 def _shipped(bench: Bench) -> list[Row]:
@@ -115,21 +89,21 @@ def _shipped(bench: Bench) -> list[Row]:
     for temperature in FULL_WIDE_TEMPERATURES if bench.full else WIDE_TEMPERATURES:
         scene = thermal_scene(temperature, 3, WIDE_TOLERANCE if bench.full else 5e-3)
         scene |= {"bodies": WIDE_BODIES, "experiment": {"kind": "load", "force": WIDE_LOAD}}
-        found = bench.run(f"wide_{temperature:g}", scene)
+        run = bench.run(f"wide_{temperature:g}", scene)
         if temperature:
             exact, source = displacement_under(model, WIDE_LOAD, temperature, places)[0], "all pairs, first order in kT"
         else:
             exact, source = rest, "Newton's method on all pairs"
-        over = math.nan if isinstance(found, Refused) else over_claim(found, "displacement", exact)
+        over = over_claim(run, "displacement", exact)
         name = f"d of pull_off.toml's bodies without neighbours under 1 FU at kT = {temperature:g}, off over its claim"
         limit = f"statistics: {SIGMAS:g} of the run's standard errors" if temperature else "what the run claims"
-        checks.append(at_most(name, over, SIGMAS if temperature else 1.0, source, said(limit, found)))
+        checks.append(at_most(name, over, SIGMAS if temperature else 1.0, source, said(limit, run)))
     return checks
 
 
-def _swing_row(found: Run, temperature: float, swing: float) -> Row:
+def _swing_row(run: Run, temperature: float, swing: float) -> Row:
     """The variance of d in time: it tells the temperature where the mean does not."""
-    sampled = np.asarray(found.curve.displacement)[FORGOTTEN:]
+    sampled = np.asarray(run.curve.displacement)[FORGOTTEN:]
     ratio, error = block_mean(((sampled - sampled.mean()) ** 2 / swing**2)[:, None])
     off = float(abs(ratio[0] - 1.0) / error[0])
     return at_most(
@@ -147,10 +121,10 @@ def measure_seeds(bench: Bench) -> Findings:
     exact, _ = BoltzmannPairs(LAW_HERE, 0.83, HEIGHTS, temperature).displacement(LOAD, NEAR, WIDTH[temperature])
     sigmas, silent = [], 0
     for seed in range(1, count + 1):
-        found = bench.run(f"seed_{seed}", thermal_scene(temperature, seed, 5e-3))
-        if isinstance(found, Run):
-            sigmas.append((result(found, "displacement").value - exact) / result(found, "displacement").uncertainty)
-            silent += abs(sigmas[-1]) > SIGMAS and not found.warnings
+        run = bench.run(f"seed_{seed}", thermal_scene(temperature, seed, 5e-3))
+        if isinstance(run, Run):
+            sigmas.append((found(run, "displacement").value - exact) / found(run, "displacement").uncertainty)
+            silent += abs(sigmas[-1]) > SIGMAS and not run.warnings
     square = float(np.sum(np.square(sigmas))) if len(sigmas) == count else math.nan
     source, limit = "Boltzmann's integral; χ² of as many independent seeds", "statistics"
     checks = [

@@ -17,8 +17,7 @@ from scipy.integrate import quad
 from validation.doors import Quantity, Run, Scene, estimated, jkr_target, material_scene
 from validation.figures import Panel, Series, figure
 from validation.page import number, share
-from validation.paper.oracles import jkr_reduced
-from validation.paper.scenes import CONTACT_MODULUS, READ, SURFACE_ENERGY, TABLE_1, changed
+from validation.paper.scenes import CONTACT_MODULUS, READ, SURFACE_ENERGY, TABLE_1, changed, jkr_reduced
 from validation.paper.table1 import pull_off_run
 from validation.references.interaction import Floats
 from validation.references.maugis import tabor_of

@@ -2,25 +2,22 @@
 
 An opposite pair at the distance r, pressed together with the force f, gives way sideways where f/r exceeds the two
 tangential springs in series, k/2. Independent pairs reach that at the displacement d* = r₀ − r + 2f/k.
-What could scatter in the paper is computed beside it: momentum (`references.released_plate`), and an iteration
-that ends with a share δ of F_A left, where the radius is that of F = −(1 − δ) F_A.
+What could scatter in the paper is computed beside it: an iteration that ends with a share δ of F_A left, where the
+radius is that of F = −(1 − δ) F_A.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from validation.doors import Scene
 from validation.figures import Panel, Series, figure
 from validation.page import agreement, number, share
 from validation.paper.fig4 import STENCIL, against_solver
-from validation.paper.oracles import chain_model, independent_pairs, interaction
-from validation.paper.scenes import changed, local
+from validation.paper.scenes import chain_model, changed, independent_pairs, interaction, local
 from validation.paper.table1 import printed_scatter
 from validation.references.pull_off import pull_off
-from validation.references.released_plate import ReleasedPlate
 from validation.row import Reference, Row, relative
 from validation.study import Bench, Findings, Rows, Scenes, Study, found
 
@@ -32,12 +29,6 @@ SLIP = 0.06
 """Neighbour springs hold a pair that would slip alone, and non-opposite particles press: some percent."""
 SOLVED = (PRELOADS[0], PRELOADS[-1])
 """Preloads from which the independent solver unloads as well."""
-DAMPING_RATIOS = (0.3, 0.4, 0.5)
-"""Of a plate on which the tension acts at once; 1 is critical."""
-RELEASED = (0.25, 1.0, 2.0, 3.0)
-"""F_D [FU] of that plate."""
-APART, DEEPEST = -1.5, 0.6
-"""Displacements between which it moves [LU]."""
 BRACKET = 0.01
 """Share of F_A that an iteration may leave open."""
 
@@ -120,12 +111,7 @@ def judge(bench: Bench) -> Findings:
         if "zero load" not in check.name
     ]  # fmt: skip
     slipped, limit = _slips(paper, row)
-    momentum, bracket = _released(paper), _left_open(paper)
-    for ratio, tensions in momentum.items():
-        force.append(
-            Series(f"tension at once, {ratio:g} of critical damping", np.array(RELEASED), tensions / tensions.mean())
-        )
-    swings = ", ".join(f"{share(float(np.ptp(v) / v.mean()))} at {r:g}" for r, v in momentum.items())
+    bracket = _left_open(paper)
     finding = (
         f"{_scatter(spreads)} At rest the largest deviations of F_A and a_cr from their means are "
         f"{share(spreads[0].value)} and {share(spreads[1].value)}; beside the independent solver, which unloads from "
@@ -135,11 +121,8 @@ def judge(bench: Bench) -> Findings:
         f"{_ending(slipped)} "
         f"In time the deviations are {share(spreads[4].value)} and {share(spreads[5].value)}; that says nothing, since "
         "the search first comes to rest without load and then tries the same tensions after every preload.\n\nTwo "
-        "things that the paper does not print could make its weak dependence. One is momentum: where the tension "
-        "acts at "
-        f"once on the plate that rests under F_D, F_A after F_D = {RELEASED[0]:g} and {RELEASED[-1]:g} FU differs by "
-        f"{swings} of critical damping (independent pairs with this law). The other is where the iteration ends: a "
-        "tension "
+        "things that the paper does not print could make its weak dependence. One is momentum, where the tension acts "
+        "at once on the plate that rests under F_D. The other is where the iteration ends: a tension "
         f"that is {share(BRACKET)} short of F_A is held with a radius {share(bracket)} above a_cr, so that F_A is "
         "found "
         "well and a_cr poorly. Neither damping, mass nor that width is known; but "
@@ -151,8 +134,7 @@ def judge(bench: Bench) -> Findings:
     panels = (Panel(along, r"$F_A/\bar F_A$", force, mark=limit, view=(0.9, 1.1)),
               Panel(along, r"$a_{cr}/\bar a_{cr}$", radius, mark=limit, view=(0.9, 1.1)))  # fmt: skip
     figures = figure(
-        "Adhesion force and critical radius over the preload, each over its mean; dotted: where chains slip past. "
-        "The plate on which the tension acts at once is computed, not run",
+        "Adhesion force and critical radius over the preload, each over its mean; dotted: where chains slip past",
         *panels,
     )
     return Findings([*spreads, *solved, *slipped], figures, text=finding)
@@ -160,12 +142,6 @@ def judge(bench: Bench) -> Findings:
 
 SAME_STATES = "unloading passes through the same states after every preload, since no pair snaps"
 SAME_TENSIONS = "the search comes to rest at F = 0 and tries the same tensions after every preload"
-
-
-def _released(paper: Scene) -> dict[float, NDArray[np.float64]]:
-    """F_A [FU] after each F_D of RELEASED, by damping ratio."""
-    plate = ReleasedPlate(independent_pairs(local(paper)).force, APART, DEEPEST)
-    return {zeta: np.array([plate.largest_tension(p, zeta) for p in RELEASED]) for zeta in DAMPING_RATIOS}
 
 
 def _left_open(paper: Scene) -> float:

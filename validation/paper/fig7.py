@@ -16,8 +16,7 @@ from scipy.stats import linregress, t
 from validation.doors import Quantity, Scene
 from validation.figures import Panel, Series, figure
 from validation.page import agreement, measured, number, share, worst_deviation
-from validation.paper.oracles import independent_pairs
-from validation.paper.scenes import HALF_DIGIT, TABLE_1, changed, local, with_radius
+from validation.paper.scenes import HALF_DIGIT, TABLE_1, changed, independent_pairs, local, with_radius
 from validation.row import Evidence, Reference, Row, absolute, claim
 from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
 

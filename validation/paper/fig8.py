@@ -13,15 +13,6 @@ from validation.doors import Run, Scene
 from validation.figures import Drawing, Panel, Series, figure
 from validation.page import agreement, share, worst_deviation
 from validation.paper.fig4 import AGAINST, CAREFUL, STENCIL
-from validation.paper.oracles import (
-    barquins_reduced,
-    chain_model,
-    distances,
-    equilibrium_under,
-    independent_pairs,
-    jkr_reduced,
-    reduced,
-)
 from validation.paper.scenes import (
     DYNAMIC_FORCES,
     LENGTHENED,
@@ -31,12 +22,19 @@ from validation.paper.scenes import (
     READ,
     REFINED,
     TABLE_1,
+    barquins_reduced,
     branch,
+    chain_model,
+    distances,
     dynamic_run,
+    equilibrium_under,
+    independent_pairs,
+    jkr_reduced,
     lengthened_run,
     local,
     local_counted,
     radius_run,
+    reduced,
     refined_run,
     scenes_8a,
     scenes_8b,

@@ -16,7 +16,6 @@ from validation.doors import Scene, Target, estimated
 from validation.figures import Panel, Series, figure
 from validation.page import share
 from validation.paper.fig8 import ASKED
-from validation.paper.oracles import jkr_reduced
 from validation.paper.scenes import (
     DEEPEST,
     READ,
@@ -25,6 +24,7 @@ from validation.paper.scenes import (
     branch,
     changed,
     curve_scene,
+    jkr_reduced,
     lengthened_run,
     scenes_8a,
 )

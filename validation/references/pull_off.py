@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.references.interaction import Floats
 from validation.references.model import ChainModel
 from validation.references.solver import ChainSolver, State
 from validation.references.tension_radius import PARABOLA, state_radius
@@ -37,23 +36,6 @@ SMALLEST_STEP = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
-    """States along one branch in the order of the path; arrays of shape (n,).
-
-    Args:
-        displacement: d [LU].
-        force: F, compression positive [FU].
-        contact_radius: radius of maximum tensile stress [LU]; NaN without tension or at the end of the chain.
-        smallest_distance: between particles of opposite bodies [LU].
-    """
-
-    displacement: Floats
-    force: Floats
-    contact_radius: Floats
-    smallest_distance: Floats
-
-
-@dataclass(frozen=True, eq=False)
 class PullOff:
     """What a pull-off test measures.
 
@@ -64,8 +46,6 @@ class PullOff:
         preload: F_D as reached [FU]; above the one asked for only if the force jumped over it.
         zero_load: the state at F = 0 (at a jump through zero: the one nearer to it).
         critical: the state of the largest tension.
-        loading: coarse curve up to the preload.
-        unloading: coarse curve from the preload to separation.
     """
 
     adhesion_force: float
@@ -74,8 +54,6 @@ class PullOff:
     preload: float
     zero_load: State
     critical: State
-    loading: Curve
-    unloading: Curve
 
 
 def pull_off(model: ChainModel, preload: float, step: float | None = None, stencil: int = PARABOLA) -> PullOff:
@@ -114,30 +92,6 @@ def pull_off(model: ChainModel, preload: float, step: float | None = None, stenc
         preload=loaded[-1].force,
         zero_load=zero,
         critical=critical,
-        loading=curve(model, loaded, stencil),
-        unloading=curve(model, unloaded, stencil),
-    )
-
-
-def curve(model: ChainModel, states: list[State], stencil: int = PARABOLA) -> Curve:
-    """Return the table of a path; a radius that does not exist is NaN.
-
-    Args:
-        model: of all states.
-        states: in the order of the path.
-        stencil: points of the polynomial behind every radius, see `tension_radius`.
-    """
-    radii = []
-    for state in states:
-        try:
-            radii.append(state_radius(model, state, stencil))
-        except ValueError:
-            radii.append(math.nan)
-    return Curve(
-        displacement=np.array([s.displacement for s in states]),
-        force=np.array([s.force for s in states]),
-        contact_radius=np.array(radii),
-        smallest_distance=np.array([s.smallest_distance for s in states]),
     )
 
 

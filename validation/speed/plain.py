@@ -17,7 +17,7 @@ from time import process_time
 from contact1d import run
 from validation import doors
 from validation.doors import Contact, PullOff, Scene, UnderLoad, read_scene, settings_for, shipped
-from validation.paper.oracles import chain_model
+from validation.paper.scenes import chain_model
 from validation.references.pull_off import pull_off
 from validation.row import Row, at_most
 from validation.study import Bench, Findings, Study

@@ -9,8 +9,7 @@ import numpy as np
 
 from validation.doors import Scene, settings_for
 from validation.figures import Panel, Series
-from validation.paper.fig9.reading import mean, static
-from validation.paper.fig9.sweeps import LOAD, RADIUS, slides
+from validation.paper.fig9.reading import LOAD, RADIUS, mean, slides, static
 from validation.references.slide import Integrator, Trace
 from validation.row import Evidence, Reference, Row, relative, solver
 from validation.slides import slide_model

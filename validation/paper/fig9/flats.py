@@ -13,8 +13,7 @@ import numpy as np
 from validation.doors import Scene, Slide
 from validation.figures import Panel, Series
 from validation.paper.fig9.asperity import BETWEEN, MIDDLE, OF_LARGEST, wells_of
-from validation.paper.fig9.reading import exponent, mean, slow_limit, static, threshold
-from validation.paper.fig9.sweeps import FLATS, LATTICES, slides
+from validation.paper.fig9.reading import FLATS, LATTICES, exponent, mean, slides, slow_limit, static, threshold
 from validation.references.flat_chain import FlatChain
 from validation.references.incommensurate import shared_corrugation
 from validation.references.incommensurate import threshold as law_threshold

@@ -3,11 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
-from validation.doors import Quantity, Run
+from validation.doors import Quantity, Run, Scene, sweep_points
 from validation.study import found
+
+LOAD, RADIUS = "friction_over_load", "friction_over_radius"
+PARTICLE, VELOCITY, STIFFNESS = "friction_of_one_particle", "friction_over_velocity", "friction_over_stiffness"
+FLATS, LATTICES, TEMPERATURE = "friction_of_flats", "friction_of_lattices", "friction_over_temperature"
+SWEEPS = (TEMPERATURE, VELOCITY, LOAD, RADIUS, FLATS, STIFFNESS, PARTICLE, LATTICES)
+"""Those with the longest runs come first."""
+Place = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Slides:
+    """The points of a sweep: names of their runs and scenes, by the values of the axes that have several."""
+
+    names: dict[Place, str]
+    scenes: dict[Place, Scene]
+
+    @property
+    def every(self) -> list[str]:
+        """The names of all runs."""
+        return list(self.names.values())
+
+
+@cache
+def slides(sweep: str) -> Slides:
+    """The slides of a shipped sweep."""
+    scenes = sweep_points(sweep)
+    return Slides({place: "_".join([sweep, *(f"{value:g}" for value in place)]) for place in scenes}, scenes)
+
 
 STICKS, CRITICAL, SLIDES = 2.0 / 3.0, 0.8, 1.0
 """⟨F⟩ goes to its limit, or to 0, as v to this power: where slips are, at the threshold, where all is smooth."""

@@ -5,11 +5,10 @@ from __future__ import annotations
 from validation.doors import Run, Scene, read_scene, shipped
 from validation.figures import Drawing
 from validation.page import agreement, number, share
-from validation.paper.fig9.asperity import load_checks, stiffness_checks, velocity_checks
+from validation.paper.fig9.asperity import load_checks, stiffness_checks, temperature_checks, velocity_checks
 from validation.paper.fig9.curved import curved_checks
 from validation.paper.fig9.flats import flat_checks, lattice_checks
-from validation.paper.fig9.sweeps import SWEEPS, slides
-from validation.paper.fig9.warmth import temperature_checks
+from validation.paper.fig9.reading import SWEEPS, slides
 from validation.row import Reference, Row
 from validation.study import Bench, Findings, Rows, Scenes, Study, found
 

@@ -19,7 +19,7 @@ from validation.row import Row, at_most
 from validation.speed.peers.contacts import Curve, errors, reduced_distance
 from validation.study import Bench, Findings, Study
 
-MODULES = ("contact1d_peer", "scipy_peer", "tamaas_peer", "contact_mechanics_peer", "granular_peer")
+MODULES = ("contact1d_peer", "tamaas_peer", "contact_mechanics_peer")
 NEEDS = {"tamaas_peer": "tamaas", "contact_mechanics_peer": "ContactMechanics"}
 OURS, ELEMENTS = "contact1d", ("tamaas", "ContactMechanics")
 ROUNDS, LONG = 5, 20.0

@@ -33,8 +33,6 @@ DEPTH = A_0**2 / RADIUS
 ADHESIVE_WAY = (DEPTH, -0.25 * DEPTH)
 """First and last displacement of the adhesive curve, an unloading [nm]: from F = 3.3 F_A, past F_A, until just before
 the bodies part under fixed grips, where dF/dd has no bound and an error in F would mean nothing."""
-CHAIN_WAY = (DEPTH, -0.9 * DEPTH)
-"""The same for the chains, whose law reaches further, so that F_A is further out."""
 
 
 @dataclass(frozen=True)
