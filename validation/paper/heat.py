@@ -219,10 +219,11 @@ def _panels(runs: Runs) -> list[Panel]:
         values, spreads = (np.asarray([getattr(one, key) for one in means]) / top for key in ("value", "uncertainty"))
         known = np.asarray([expected(share, float(v))[0] for v in drives]) / top
         law = np.asarray([_textbook(share, float(v)) for v in fine]) / top
-        lines = [Series("Smoluchowski, then an ensemble", drives, known), Series("$(\\ln v)^{2/3}$", fine, law)]
+        points = [Series("runs", drives, values, spreads), Series("Smoluchowski, then an ensemble", drives, known)]
         panels.append(
-            Panel("velocity (LU/TU)", r"mean friction over $F_{max}$", [Series("runs", drives, values, spreads)], lines,
-                  log="x", bound=slow_friction(WELLS, SPRING) / top, title=f"kT = {share:g} of the barrier")
+            Panel("velocity (LU/TU)", r"mean friction over $F_{max}$", points, [Series("$(\\ln v)^{2/3}$", fine, law)],
+                  log="x", bound=slow_friction(WELLS, SPRING) / top, title=f"kT = {share:g} of the barrier",
+                  view=(0.0, None))
         )  # fmt: skip
     return panels
 

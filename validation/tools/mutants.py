@@ -3,9 +3,10 @@
     python -m validation.tools.mutants [FOLDER ...] [--number 100] [--seed 1] [--tests tests/unit ...]
 
 A fault changes one operator, comparison or number in a copy of this checkout. A trace of calls says which tests reach
-its function; these run there, quick ones first, up to the first that fails or LONGEST. One that passes them survives: it
-is printed and listed in results/mutants.json, with the reason if one was written there by hand (kept for the same change).
-What no user could meet is not drawn: messages, types, drawings, and `strict=`. Exit code 1: fewer than ASKED noticed.
+its function; these run there, quick ones first, up to the first that fails or LONGEST. One that passes them survives:
+it is printed and listed in results/mutants.json, with the reason if one was written there by hand (kept for the same
+change). What no user could meet is not drawn: messages, types, drawings, and `strict=`. Exit code 1 where fewer than
+ASKED are noticed.
 """
 
 from __future__ import annotations
