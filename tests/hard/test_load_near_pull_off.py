@@ -1,6 +1,6 @@
 """Claim: a dynamic tension within the tolerance of F_A is held with a warning, and one beyond it is not held at all.
 
-Reference: `analysis.reference.pair_lattice`, whose largest tension is F_A to round-off.
+Reference: `tests.pair_lattice`, whose largest tension is F_A to round-off.
 """
 
 from __future__ import annotations

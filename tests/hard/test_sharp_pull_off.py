@@ -1,6 +1,6 @@
 """Claim: just below snapping, where the largest tension is sharp and has rivals, F_A is right within what is claimed.
 
-Reference: `analysis.reference.pair_lattice`, the same row of pairs inverted one by one. "Ratio" is a pair's greatest
+Reference: `tests.pair_lattice`, the same row of pairs inverted one by one. "Ratio" is a pair's greatest
 negative stiffness over its springs in series: towards 1, F(d) has a tooth for each pair that lets go, with a top as
 narrow as (1 - ratio)^(3/2) ranges.
 """

@@ -1,6 +1,6 @@
 """Claim: where pairs snap, F_A is that of the highest tooth, and no state of the run's own curve contradicts it.
 
-Reference: `analysis.reference.pair_lattice`, each pair with its folds, unloaded from where the run had been deepest.
+Reference: `tests.pair_lattice`, each pair with its folds, unloaded from where the run had been deepest.
 Between a tooth and the next the force of a sharp body passes 0, and soft springs follow the attraction far out.
 """
 

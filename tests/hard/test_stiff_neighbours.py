@@ -1,6 +1,6 @@
 """Claim: an automatic chain is long enough for stiff neighbour springs, and a given one that is not is warned of.
 
-Reference: `analysis.reference.solver`, Newton's method for a chain of twice the length.
+Reference: `validation.references.solver`, Newton's method for a chain of twice the length.
 """
 
 from __future__ import annotations

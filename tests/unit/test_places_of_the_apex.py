@@ -1,7 +1,7 @@
 """Claims of what the lattice leaves open: sums over particles wherever the apex stands, written out; and of teeth.
 
 References: springs on a plane and pairs of particles, added up one by one and solved by scipy; Mindlin's spring sliders
-(`analysis.reference`); scipy's own search for peaks.
+(`validation.references`); scipy's own search for peaks.
 """
 
 from __future__ import annotations

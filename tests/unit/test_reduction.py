@@ -1,6 +1,6 @@
 """Claim: a scene without a reduction has the one that is right for its body; the paper's is refused, or has a factor.
 
-References: Galin and Sneddon (`analysis.reference.sneddon`) for the body, the integral over springs for the image.
+References: Galin and Sneddon (`analysis.theory.sneddon`) for the body, the integral over springs for the image.
 """
 
 from __future__ import annotations

@@ -12,7 +12,11 @@ from validation.tools.mutants import mutants
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.parametrize("fault", listed(), ids=lambda fault: fault["name"])
+STALE = pytest.mark.xfail(reason="the text has gone: to be aimed anew", strict=True)
+EACH = [pytest.param(one, id=one["name"], marks=[STALE] * ("stale" in one)) for one in listed()]
+
+
+@pytest.mark.parametrize("fault", EACH)
 def test_a_fault_is_of_a_text_that_is_there_once(fault: dict[str, str]) -> None:
     assert (ROOT / fault["file"]).read_text(encoding="utf-8").count(fault["old"]) == 1
 

@@ -1,6 +1,6 @@
 """Claim: where pairs are independent, a pull-off follows the closed form, and F_A, a_0 and a_cr grow as √R exactly.
 
-Reference: `analysis.reference.independent_pairs`, F(G₀) = (√(2R)/s) ∫ f(G) (G − G₀)^(−1/2) dG with G = r − 2 f(r)/k,
+Reference: `validation.references.independent_pairs`, F(G₀) = (√(2R)/s) ∫ f(G) (G − G₀)^(−1/2) dG with G = r − 2 f(r)/k,
 and a = √(2R (G_m − G₀)): one integral, no chain and no minimisation (physics.md). It holds without neighbour
 springs and
 horizontal freedom, for interactions that end well within one spacing, and edges that are several particles wide.

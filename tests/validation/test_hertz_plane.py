@@ -15,7 +15,7 @@ That is exact. The error depends on where the edge lies between two particles: â
 
 Nothing has to come to rest, so that round-off limits the tolerance.
 With neighbour springs the plane is a penalty, 1/tolerance stiffer than the chain; the reference is the exact active-set
-solution of `analysis.reference.rigid_plane`.
+solution of `validation.references.rigid_plane`.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 References, in SI and written down here: Hertz, and Galin's and Sneddon's d(a), F(a), p(r) of a cone, a flat punch and a
 sphere that is flattened to an ellipsoid (I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47); p(r) of the ellipsoid by
-quadrature (`analysis.reference.mdr`). The measured profile is a sphere's, read from a file in µm, without noise.
+quadrature (`validation.references.mdr`). The measured profile is a sphere's, read from a file in µm, without noise.
 The same scenes with the paper's reduction are refused, or carry the factor.
 """
 

@@ -1,6 +1,6 @@
 """Claim: the closed forms of rigid indenters (Sneddon, Galin) are right: one energy gives d, F and p of each shape.
 
-Second source: `analysis.reference.mdr`, quadratures of the profile's slope that know no closed form. Limits: n = 2 and
+Second source: `validation.references.mdr`, quadratures of the profile's slope that know no closed form. Limits: n = 2 and
 a << R are Hertz. Independent numerics: the pressure integrates to the force, the force is dU/dd by finite differences.
 """
 

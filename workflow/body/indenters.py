@@ -1,4 +1,4 @@
-"""Closed forms of bodies pressed on a plane without adhesion: Hertz, Sneddon, Galin (`analysis.reference.sneddon`).
+"""Closed forms of bodies pressed on a plane without adhesion: Hertz, Sneddon, Galin (`analysis.theory.sneddon`).
 
 Under a given force F they say d, a, F/πa², p(0) and dF/dd = 2E*a; at a given displacement F, a and the pressures.
 """

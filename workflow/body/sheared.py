@@ -1,4 +1,4 @@
-"""Closed forms of bodies drawn along a plane with friction: Cattaneo and Mindlin (`analysis.reference.mindlin`).
+"""Closed forms of bodies drawn along a plane with friction: Cattaneo and Mindlin (`analysis.theory.mindlin`).
 
 Of a sphere under one load N they say F_x and c on any way there and back, and a; under a displacement N as well.
 """

@@ -15,7 +15,7 @@ from contact1d.workflow.body.closed_form import Case, ClosedForm
 from contact1d.workflow.scene import Parabola
 
 JKR_ABOVE, DMT_BELOW = 5.0, 0.1
-"""Tabor's μ beyond which a limit holds (`analysis.reference.tabor`)."""
+"""Tabor's μ beyond which a limit holds (`analysis.theory.tabor`)."""
 MAUGIS_UNIT = 4.0 / 3.0
 """K/E*."""
 
