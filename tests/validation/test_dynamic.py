@@ -1,6 +1,6 @@
 """Claim: `method = "dynamic"`, the paper's own way, gives the equilibria and the pull-off force of the model.
 
-Reference: `validation.references`, energy minimisation in numpy/scipy without time, plate, damping or LAMMPS. Asked for:
+Reference: `validation.references`, energy minimisation in numpy/scipy without time, plate, damping or LAMMPS. Asked:
 within 1 %.
 
 What limits the agreement. The pull-off force: the bracket between the largest tension that held and the smallest that

@@ -1,7 +1,7 @@
 """Claim: with the rule of Hess the reduced contact is the 3D one with adhesion: JKR, Kendall's punch, the cone.
 
-The quadratures of `validation.references.mdr` against closed forms that don't use them. That the rule itself is right is
-tested by energies: what a contact releases per area that opens at a fixed displacement is W.
+The quadratures of `validation.references.mdr` against closed forms that don't use them. That the rule itself is right
+is tested by energies: what a contact releases per area that opens at a fixed displacement is W.
 """
 
 from __future__ import annotations
