@@ -1,7 +1,7 @@
 """Claim: a quasi-static pull-off gives the adhesion force and the contact radii of the model's energy minima.
 
 Reference: `validation.references.pull_off`, an energy minimisation in numpy/scipy that shares no line with the program:
-no LAMMPS, no table, no cutoff, its own law, path and search. Asked for: adhesion force and zero-load radius within 0.3 %.
+no LAMMPS, no table, no cutoff, its own law, path and search. Asked: adhesion force and zero-load radius within 0.3 %.
 
 What limits the agreement. The adhesion force: the rows of the last pass around the largest tension, whose increments
 are chosen so that a parabola through them misses no more than 0.3·tolerance = 3e-4, and the tail beyond the cutoff. The

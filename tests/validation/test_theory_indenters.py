@@ -1,7 +1,7 @@
 """Claim: the closed forms of rigid indenters (Sneddon, Galin) are right: one energy gives d, F and p of each shape.
 
 Second source: `validation.references.mdr`, quadratures of the profile's slope that know no closed form. Limits: n = 2
-and a << R are Hertz. Independent numerics: the pressure integrates to the force, the force is dU/dd by finite differences.
+and a << R are Hertz. Numerics: the pressure integrates to the force, the force is dU/dd by finite differences.
 """
 
 from __future__ import annotations
