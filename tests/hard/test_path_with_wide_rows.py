@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from contact1d import run
-from validation.references.interaction import Exponential, PairInteraction
-from validation.references.pair_lattice import PairLattice
 from contact1d.workflow.scene import scene_from_dict
+from tests.pair_lattice import PairLattice
 from validation.hard.cases import TENSION, PairCase, reach, shaped
+from validation.references.interaction import Exponential, PairInteraction
 
 RANGE = 0.03
 LAW = PairInteraction(Exponential(0.0024, 0.015), Exponential(0.0012, RANGE))

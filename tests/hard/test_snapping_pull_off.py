@@ -12,10 +12,10 @@ from typing import Any
 import pytest
 
 from contact1d import run
-from validation.references.interaction import Exponential, PairInteraction
-from validation.references.pair_lattice import PairLattice
 from contact1d.workflow.scene import scene_from_dict
+from tests.pair_lattice import PairLattice
 from validation.hard.cases import TENSION, PairCase, reach, shaped
+from validation.references.interaction import Exponential, PairInteraction
 
 LAW = PairInteraction(Exponential(0.011, 0.015), Exponential(0.01, 0.03))
 """Short against the spacing, so that a particle feels its opposite alone."""

@@ -20,13 +20,13 @@ import pytest
 from scipy.optimize import brentq
 
 from contact1d import Run
+from contact1d.workflow.continuation.outcome import Result
+from tests.scenes import chains
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
 from validation.references.pull_off import pull_off
 from validation.references.solver import ChainSolver, State, trace
 from validation.references.tension_radius import tension_radius
-from contact1d.workflow.continuation.outcome import Result
-from tests.scenes import chains
 
 RunTables = Callable[[dict[str, Any]], Run]
 Term = tuple[float, float]

@@ -19,8 +19,8 @@ import numpy as np
 import pytest
 
 from contact1d import Run, run
-from validation.references.mdr import ReducedContact
 from contact1d.workflow.scene import SceneError, scene_from_dict
+from validation.references.mdr import ReducedContact
 
 ASKED = 0.01
 """Relative, of every number: what an engineer asks for."""

@@ -14,9 +14,9 @@ from contact1d.workflow.deck.fragments import DeckError
 from contact1d.workflow.engine.process import stop_idle
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.errors import FolderError, RunError
+from contact1d.workflow.runs.report import open_results
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.pool import pool
-from contact1d.workflow.runs.report import open_results
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import Settings, SettingsError
 from contact1d.workflow.units import Quantity
