@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from contact1d.workflow.experiments.slide.findings import is_steady
 
 from contact1d.analysis.friction import block_means, mean_of, sampled_mean
 from contact1d.workflow.experiments.motion import Motion
