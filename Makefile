@@ -40,18 +40,18 @@ docs: $(READY) ## build the site in site/; the tutorial runs on the way
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[docs]'
 	@$(BIN)/python -m mkdocs build --strict --quiet
 
-mutants: $(READY) ## put small faults into the code and see whether the tests notice, a night: ARGS='--part 0.1'
-	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks.mutants $(ARGS)
+mutants: $(READY) ## put random faults into the code and see whether the tests notice: ARGS='--number 100 --seed 1'
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m validation.tools.mutants $(ARGS)
 
-validation: $(READY) ## reproduce the paper anew: VALIDATION.md, docs/reproduced and the README's table
+validation: $(READY) ## the paper's statements anew, then VALIDATION.md, its tables and the README's table
 	@rm -rf reproduced  # runs of an older state of the program would be taken over
-	@$(BIN)/contact1d reproduce --out reproduced
-	@mkdir -p docs/reproduced && cp reproduced/reproduce.json reproduced/*.png docs/reproduced/
-	@WRITE_DOCS=1 $(BIN)/python -m pytest -q tests/unit/test_validation_page.py tests/unit/test_judged_runs.py
+	@$(BIN)/python -m validation paper --out reproduced
+	@cp reproduced/record.json validation/results/paper.json && cp reproduced/*.png docs/reproduced/
+	@$(BIN)/python -m validation pages
 
 clean: ## remove .venv and the caches; runs/ stays
 	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
-	find workflow analysis potentials lammps_inputs tests -name __pycache__ -type d -prune -exec rm -rf {} +
+	find workflow analysis potentials lammps_inputs validation tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(LOCKED): requirements.lock
 	@command -v "$(PYTHON)" >/dev/null || { echo "contact1d needs Python 3.11 or newer; \

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from contact1d.analysis.curve import Curve
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import moved_centre
-from contact1d.analysis.reference.jkr import FIXED_GRIPS_RADIUS_RATIO, Jkr, jkr_reduced_force
-from contact1d.analysis.reference.line_adhesion import barquins_reduced_force
-from contact1d.analysis.reference.winkler import winkler_force
+from contact1d.analysis.theory.jkr import FIXED_GRIPS_RADIUS_RATIO, Jkr, jkr_reduced_force
+from contact1d.analysis.theory.line_adhesion import barquins_reduced_force
+from contact1d.analysis.theory.winkler import winkler_force
 from contact1d.files import whole
 
 if TYPE_CHECKING:

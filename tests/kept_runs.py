@@ -1,7 +1,6 @@
-"""The runs behind docs/reproduced, as far as its judges read them: scenes, results, warnings, the columns of some.
+"""The runs behind validation/results/paper.json, as far as its studies read them: scenes, results, some columns.
 
-`make validation` writes them. With them a row can be judged again in seconds, without a run. Beside them what the
-figures draw, of each line and set of points some numbers.
+With them a row can be judged again in seconds, without a run.
 """
 
 from __future__ import annotations
@@ -10,23 +9,21 @@ import gzip
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from contact1d.analysis.curve import Curve
 from contact1d.analysis.pressure import Profile
-from contact1d.workflow.reproduce import fig6
-from contact1d.workflow.reproduce.fig9 import warmth
 from contact1d.workflow.runs.finished import Run, read_run
 from contact1d.workflow.scene import Scene, scene_from_dict
+from validation.paper.fig9 import asperity
 
-KEPT = Path(__file__).parents[1] / "docs" / "reproduced" / "runs.json.gz"
+KEPT = Path(__file__).parents[1] / "validation" / "results" / "runs.json.gz"
 DIGITS, WHOLE, SHORT = 12, 17, 200
 """Of a number in a table; in a SHORT one it is kept WHOLE: orders of convergence are of differences near round-off."""
 COLUMNS = tuple(field.name for field in fields(Curve))
@@ -74,32 +71,6 @@ def kept(run: Run, name: str) -> dict[str, Any]:
     return entry
 
 
-def drawn(figure: Figure) -> list[list[float]]:
-    """Of each line and set of points: how many, first and last, and the mean of places and squares, of both axes."""
-    told = []
-    for axes in figure.axes:
-        lines = [np.asarray(line.get_xydata(), dtype=float) for line in axes.lines]
-        points = [np.asarray(one.get_offsets(), dtype=float) for one in axes.collections]
-        for xy in (*lines, *points):
-            numbers = xy[np.isfinite(xy).all(axis=1)]
-            if len(numbers):
-                ends = (numbers[0], numbers[-1], numbers.mean(axis=0), (numbers**2).mean(axis=0))
-                told.append([float(len(numbers)), *np.concatenate(ends).tolist()])
-    return told
-
-
-def keep_figures(figures: Mapping[str, list[list[float]]]) -> None:
-    """Write what they draw beside the runs."""
-    found = json.loads(gzip.decompress(KEPT.read_bytes()))
-    _write(found | {"figures": {name: [_rounded(line) for line in lines] for name, lines in figures.items()}})
-
-
-def kept_figures() -> dict[str, list[list[float]]]:
-    """What they draw, by file name."""
-    found: dict[str, list[list[float]]] = json.loads(gzip.decompress(KEPT.read_bytes()))["figures"]
-    return found
-
-
 def _write(found: Mapping[str, Any]) -> None:
     text = json.dumps(found, ensure_ascii=False, separators=(",", ":"))
     KEPT.write_bytes(gzip.compress(text.encode(), mtime=0))
@@ -109,7 +80,7 @@ def keep(runs: Path) -> None:
     """Write what is read of all runs in a folder."""
     found = {folder.name: kept(read_run(folder), folder.name) for folder in sorted(runs.iterdir())
              if (folder / "results.json").is_file()}  # fmt: skip
-    _write({"runs": found, "figures": {}})
+    _write({"runs": found})
     kept_runs.cache_clear()
 
 
@@ -147,8 +118,16 @@ def kept_paper() -> Scene:
     return kept_runs()["pull_off_R1000"].scene
 
 
-ONCE = {(fig6, "_released"): cache(fig6._released), (warmth, "smoluchowski"): cache(warmth.smoluchowski)}
+ONCE = {(asperity, "smoluchowski"): cache(asperity.smoluchowski)}
 """What takes long and knows nothing of the runs."""
+
+
+@dataclass(frozen=True)
+class KeptBench:
+    """A bench whose runs are the kept ones, or others."""
+
+    runs: Mapping[str, Run]
+    paper: Scene
 
 
 @contextmanager

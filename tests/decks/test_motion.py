@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.session import Session
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import LAW, chains
+from validation.references.interaction import Exponential, PairInteraction
 
 OpenDeck = Callable[[Scene], tuple[Deck, Session]]
 PARTICLES, STIFFNESS, TANGENTIAL, MASS, DRAG = 60, 0.83, 0.5, 1.0, 0.3

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from contact1d import Run, run
-from contact1d.analysis.reference.spring_sliders import SpringSliders
 from contact1d.workflow.scene import SceneError, scene_from_dict
+from validation.references.spring_sliders import SpringSliders
 
 LOAD, RADIUS, MU = 40.0, 1000.0, 0.3
 EXACT = 1e-10

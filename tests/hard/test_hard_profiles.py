@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from contact1d import Run, RunError
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.settings.settings import SettingsError, settings_for
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.model import ChainModel
+from validation.references.pull_off import pull_off
 
 LAW = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
 SHORT = {"repulsion": {"amplitude": 0.02, "range": 0.03}, "attraction": {"amplitude": 0.01, "range": 0.06}}

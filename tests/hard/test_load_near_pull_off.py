@@ -1,6 +1,6 @@
 """Claim: a dynamic tension within the tolerance of F_A is held with a warning, and one beyond it is not held at all.
 
-Reference: `analysis.reference.pair_lattice`, whose largest tension is F_A to round-off.
+Reference: `tests.pair_lattice`, whose largest tension is F_A to round-off.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from contact1d import RunError
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.pair_lattice import PairLattice
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import scene_from_dict
+from tests.pair_lattice import PairLattice
+from validation.references.interaction import Exponential, PairInteraction
 
 TOLERANCE = 1e-3
 PARTICLES, RADIUS, STIFFNESS = 40, 100.0, 0.83

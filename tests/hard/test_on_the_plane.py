@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from contact1d import RunError, run
-from contact1d.analysis.reference.jkr import Jkr
+from contact1d.analysis.theory.jkr import Jkr
 from contact1d.workflow.scene import SceneError, scene_from_dict
 
 RADIUS, ENERGY = 1000.0, 0.005

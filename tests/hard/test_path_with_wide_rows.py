@@ -1,6 +1,6 @@
 """Claim: where pairs snap, a path has the same states whether its rows are narrow or as wide as the range.
 
-Reference: `analysis.reference.pair_lattice`, each pair with its folds, at the same displacements; and the energy lost
+Reference: `tests.pair_lattice`, each pair with its folds, at the same displacements; and the energy lost
 in a round, one loop for each pair that snaps.
 """
 
@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from contact1d import run
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.pair_lattice import PairLattice
 from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.stability.pairs import TENSION, PairCase, reach, shaped
+from tests.pair_lattice import PairLattice
+from validation.hard.cases import TENSION, PairCase, reach, shaped
+from validation.references.interaction import Exponential, PairInteraction
 
 RANGE = 0.03
 LAW = PairInteraction(Exponential(0.0024, 0.015), Exponential(0.0012, RANGE))

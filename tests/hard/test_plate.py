@@ -11,16 +11,16 @@ from typing import Any
 import pytest
 
 from contact1d import run
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.session import Session
 from contact1d.workflow.experiments import planned
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
-from contact1d.workflow.stability.pairs import TENSION, PairCase, reach, shaped
 from tests.scenes import chains
+from validation.hard.cases import TENSION, PairCase, reach, shaped
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.model import ChainModel
+from validation.references.pull_off import pull_off
 
 MakeScene = Callable[..., Scene]
 OpenDeck = Callable[[Scene], tuple[Deck, Session]]

@@ -1,6 +1,6 @@
 """Claim: just below snapping, where the largest tension is sharp and has rivals, F_A is right within what is claimed.
 
-Reference: `analysis.reference.pair_lattice`, the same row of pairs inverted one by one. "Ratio" is a pair's greatest
+Reference: `tests.pair_lattice`, the same row of pairs inverted one by one. "Ratio" is a pair's greatest
 negative stiffness over its springs in series: towards 1, F(d) has a tooth for each pair that lets go, with a top as
 narrow as (1 - ratio)^(3/2) ranges.
 """
@@ -13,9 +13,9 @@ from typing import Any
 import pytest
 
 from contact1d import run
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.pair_lattice import PairLattice
 from contact1d.workflow.scene import scene_from_dict
+from tests.pair_lattice import PairLattice
+from validation.references.interaction import Exponential, PairInteraction
 
 LAW = PairInteraction(Exponential(0.011, 0.015), Exponential(0.01, 0.03))
 """Short against the spacing, so that a particle feels its opposite alone."""

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from contact1d import RunError, SceneError, read_scene, run
-from contact1d.analysis.reference.slide import Integrator
 from contact1d.workflow.deck.lattice import start_offset
-from contact1d.workflow.judging.slide_model import slide_model
 from contact1d.workflow.runs.campaign import run as run_alone
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.settings import SettingsError, settings_for
+from validation.references.slide import Integrator
+from validation.slides import slide_model
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 TRACE = 1e-3

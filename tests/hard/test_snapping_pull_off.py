@@ -1,6 +1,6 @@
 """Claim: where pairs snap, F_A is that of the highest tooth, and no state of the run's own curve contradicts it.
 
-Reference: `analysis.reference.pair_lattice`, each pair with its folds, unloaded from where the run had been deepest.
+Reference: `tests.pair_lattice`, each pair with its folds, unloaded from where the run had been deepest.
 Between a tooth and the next the force of a sharp body passes 0, and soft springs follow the attraction far out.
 """
 
@@ -12,10 +12,10 @@ from typing import Any
 import pytest
 
 from contact1d import run
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.pair_lattice import PairLattice
 from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.stability.pairs import TENSION, PairCase, reach, shaped
+from tests.pair_lattice import PairLattice
+from validation.hard.cases import TENSION, PairCase, reach, shaped
+from validation.references.interaction import Exponential, PairInteraction
 
 LAW = PairInteraction(Exponential(0.011, 0.015), Exponential(0.01, 0.03))
 """Short against the spacing, so that a particle feels its opposite alone."""

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from contact1d import RunError
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.solver import ChainSolver
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import LAW, chains
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.model import ChainModel
+from validation.references.solver import ChainSolver
 
 CARRIED = 0.9
 """Force of a pair over that of its core at which a particle counts as about to be pushed through."""

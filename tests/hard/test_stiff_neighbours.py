@@ -1,6 +1,6 @@
 """Claim: an automatic chain is long enough for stiff neighbour springs, and a given one that is not is warned of.
 
-Reference: `analysis.reference.solver`, Newton's method for a chain of twice the length.
+Reference: `validation.references.solver`, Newton's method for a chain of twice the length.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ import pytest
 from scipy.optimize import brentq
 
 from contact1d import run
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.solver import ChainSolver
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.model import ChainModel
+from validation.references.solver import ChainSolver
 
 TOLERANCE, FORCE = 1e-2, 0.5
 ASKED: dict[str, Any] = {

@@ -10,12 +10,12 @@ from typing import Any
 import pytest
 
 from contact1d import RunError
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.pull_off import pull_off
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import scene_from_dict
 from tests.scenes import LAW, chains
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.model import ChainModel
+from validation.references.pull_off import pull_off
 
 
 def tables(experiment: dict[str, Any], bodies: dict[str, Any] | None = None, **more: Any) -> dict[str, Any]:

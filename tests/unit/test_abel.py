@@ -1,7 +1,7 @@
 """Claim: the pressure of a line load is exact for what its cubics meet exactly, and of third order for other loads.
 
 References: the closed forms of Hertz, Sneddon and JKR, written down here, and quadrature of the line load's slope
-(`analysis.reference.mdr`). The forward transform, q = 2 ∫ r p/√(r² − x²) dr, of what is found gives the load back.
+(`validation.references.mdr`). The forward transform, q = 2 ∫ r p/√(r² − x²) dr, of what is found gives the load back.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.integrate import quad
 
 from contact1d.analysis.abel import FEWEST, LineLoad, line_load
-from contact1d.analysis.reference.mdr import ReducedContact
+from validation.references.mdr import ReducedContact
 
 Array = NDArray[np.float64]
 ROUND_OFF = 1e-12

@@ -10,21 +10,19 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.calibration import LADDERS, SCENES
-from benchmarks.calibration_choice import (
-    PART,
-    PROMISED,
-    TOGETHER,
-    Row,
-    calibration_markdown,
-    chosen_values,
-    read_rows,
-)
-from benchmarks.pages import between
 from contact1d.workflow.cost.study import TARGETS
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.settings.calibration import CALIBRATION, FILE, Calibration, calibration_of
 from contact1d.workflow.settings.settings import settings_for
+from validation.tools.calibration import LADDERS, SCENES
+from validation.tools.calibration_choice import (
+    PART,
+    PROMISED,
+    TOGETHER,
+    Row,
+    chosen_values,
+    read_rows,
+)
 
 MakeScene = Callable[..., Scene]
 ROOT = Path(__file__).parents[2]
@@ -32,17 +30,10 @@ AT_ALL_TOLERANCES = 4
 
 
 def test_the_file_in_use_follows_from_the_kept_study() -> None:
-    """Renew both with `python -m benchmarks.calibration`; never by hand."""
+    """Renew both with `python -m validation.tools.calibration`; never by hand."""
     kept = json.loads(FILE.read_text(encoding="utf-8"))
     assert kept == chosen_values(read_rows())
     assert calibration_of(kept) == CALIBRATION
-
-
-def test_the_table_in_benchmarks_follows_from_the_kept_study() -> None:
-    rows = read_rows()
-    assert between(ROOT / "benchmarks" / "README.md", "calibration")[1] == calibration_markdown(
-        chosen_values(rows), rows
-    )
 
 
 def test_every_share_was_studied_at_every_tolerance_and_every_scene_has_a_part() -> None:

@@ -11,7 +11,6 @@ import pytest
 
 from contact1d.workflow.cli.app import app
 from contact1d.workflow.cli.arguments import scene_files
-from contact1d.workflow.reproduce.studies import NAMES
 from contact1d.workflow.scene import EFFECTS
 
 PROGRAM = "import sys; from contact1d.workflow.cli.app import main; main()"
@@ -43,7 +42,6 @@ def folder(tmp_path: Path) -> Path:
         ("contact1d cost sc", {"scenes/cone.toml", "scenes/more/"}),
         ("contact1d run ball.toml --without n", {"neighbours", "noise"}),
         ("contact1d deck ball.toml --without ", set(EFFECTS)),
-        ("contact1d reproduce --only ", set(NAMES)),
         ("contact1d new ball --kind p", {"pull_off", "path"}),
     ],
 )

@@ -1,4 +1,4 @@
-"""`contact1d identify`, `reproduce` and `cost` as a person uses them."""
+"""`contact1d identify` and `cost` as a person uses them."""
 
 from __future__ import annotations
 
@@ -90,36 +90,13 @@ def test_a_run_that_does_not_say_its_scene_is_told(scene: object, tmp_path: Path
     assert done.stderr.count("\n") == 1
 
 
-def test_one_study_leaves_record_page_and_figure_and_resumes(tmp_path: Path) -> None:
-    done = contact1d("reproduce", "--only", "fig4", "--out", "here", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "5 of 5 rows pass; counted apart: 1 true by construction" in done.stdout
-    record = json.loads((tmp_path / "here" / "reproduce.json").read_text(encoding="utf-8"))
-    assert {row["study"] for row in record["rows"]} == {"fig4"}
-    assert {row["verdict"] for row in record["rows"]} == {"PASS"}
-    for name in ("reproduce.html", "VALIDATION.md", "fig4.png"):
-        assert (tmp_path / "here" / name).stat().st_size > 1000
-    kept = (tmp_path / "here" / "runs" / "pull_off_R1000" / "results.json").stat().st_mtime_ns
-    assert contact1d("reproduce", "--only", "fig4", "--out", "here", cwd=tmp_path).returncode == 0
-    assert (tmp_path / "here" / "runs" / "pull_off_R1000" / "results.json").stat().st_mtime_ns == kept
-
-
-def test_an_unknown_study_is_told_with_the_known_ones(tmp_path: Path) -> None:
-    done = contact1d("reproduce", "--only", "fig_4", cwd=tmp_path)
-    assert done.returncode == 2
-    assert "did you mean fig4?" in done.stderr
-    assert "jkr_or_barquins" in done.stderr
-    assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize("command", [("cost", PULL_OFF), ("reproduce",)], ids=["cost", "reproduce"])
-def test_a_place_that_is_no_folder_is_told(command: tuple[str | Path, ...], tmp_path: Path) -> None:
+def test_a_place_that_is_no_folder_is_told(tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("mine")
     for out, words in (
         ("taken", "taken is a file; a folder is needed"),
         ("taken/in", "taken/in cannot be written: Not a"),
     ):
-        done = contact1d(*command, "--out", out, cwd=tmp_path)
+        done = contact1d("cost", PULL_OFF, "--out", out, cwd=tmp_path)
         assert (done.returncode, done.stdout) == (2, "")
         assert words in done.stderr
     assert (tmp_path / "taken").read_text() == "mine"

@@ -1,7 +1,7 @@
 """Claims of what the lattice leaves open: sums over particles wherever the apex stands, written out; and of teeth.
 
 References: springs on a plane and pairs of particles, added up one by one and solved by scipy; Mindlin's spring sliders
-(`analysis.reference`); scipy's own search for peaks.
+(`validation.references`); scipy's own search for peaks.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.estimate import particles_estimate
 from contact1d.workflow.settings.settings import settings_for
-from contact1d.workflow.stability.pairs import ATTRACTION, LAW, REPULSION, STEEPEST
 from tests.scenes import chains
+from validation.hard.cases import ATTRACTION, LAW, REPULSION, STEEPEST
 
 Array = NDArray[np.float64]
 RADIUS, SPACING, SPRING = 40.0, 0.8, 0.7

@@ -5,7 +5,6 @@ No clock: the times are made up. What takes twice as long must come out as 2, ne
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -13,15 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks import deck_overhead, plain
-from benchmarks.peers.table import ratios
-from benchmarks.scaling import spread
 from contact1d.workflow.cost import measure as per_step
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.progress import Lines
 from contact1d.workflow.scene import Scene, read_scene
-from tests.unit.test_benchmarks_peers import record
-from tests.unit.test_benchmarks_scaling import sized
 
 MakeScene = Callable[..., Scene]
 ROUND_OFF = 1e-12
@@ -73,49 +67,6 @@ def test_the_table_of_a_slide_has_cantilever_plate_and_drag(tmp_path: Path, monk
     assert {name for name, cost in costs.items() if not cost.reason} == {"damping", "plate", "cantilever"}
     assert all(costs[name].with_us - costs[name].without_us == pytest.approx(1.0) for name in ("damping", "cantilever"))
     assert (costs["plate"].with_us, costs["plate"].without_us) == pytest.approx((4.0, 3.0))
-
-
-def test_the_plain_way_takes_so_many_times_as_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def compared(*_: object) -> list[plain.Cost]:
-        return [plain.Cost(way, 1e-2, 1.0, 0.0, cpu, 1) for way, cpu in (("quasistatic", 2.0), ("plain", 100.0))]
-
-    monkeypatch.setattr(plain, "compared", compared)
-    monkeypatch.setattr(plain, "RESULTS", tmp_path / "plain.json")
-    monkeypatch.setattr(sys, "argv", ["plain.py", "--tolerance", "1e-2"])
-    plain.main()
-    rows = {row["way"]: row["plain_over_it"] for row in json.loads(plain.RESULTS.read_text())["rows"]}
-    assert rows == {"quasistatic": 50.0, "plain": 1.0}
-
-
-class Read:
-    """A session that knows what it was given."""
-
-    def execute(self, text: str) -> None:
-        self.text = text
-
-
-def test_a_generated_deck_that_is_slower_is_above_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    hand = (deck_overhead.HAND / "plane.lmp").read_text()
-
-    @contextmanager
-    def session(_: Path) -> Iterator[Read]:
-        yield Read()
-
-    monkeypatch.setattr(deck_overhead.Engine, "session", session)
-    monkeypatch.setattr(deck_overhead, "loop_time", lambda opened, _, __: WITHOUT if hand in opened.text else ALL)
-    generated, by_hand, ratio = deck_overhead.ratio("plane", tmp_path)
-    assert ratio == pytest.approx(ALL / WITHOUT, rel=ROUND_OFF)
-    assert generated > by_hand
-
-
-def test_a_solver_that_takes_longer_is_above_one() -> None:
-    ours, theirs = record(0.2, 0.009), record(1.0, 0.009) | {"solver": "tamaas"}
-    told = [line for line in ratios({"records": [ours, theirs]}) if "any range" in line]
-    assert "**5** (tamaas a_0/8 1 s, contact1d a_0/8 200 ms)" in told[0]
-
-
-def test_the_spread_of_costs_is_the_largest_over_the_smallest() -> None:
-    assert spread([sized(10.0, 1.0), sized(30.0, 1.0), sized(20.0, 1.0)]) == 3.0
 
 
 def test_what_is_left_of_a_phase_takes_as_long_as_what_is_done(

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact1d.analysis.reference.energy import EnergySurface
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.model import ChainModel
+from validation.references.energy import EnergySurface
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.model import ChainModel
 
 STEP = 1e-5
 DIFFERENCE = 2e-8

@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact1d.analysis.reference.flat_chain import FlatChain
-from contact1d.analysis.reference.incommensurate import shared_corrugation
-from contact1d.analysis.reference.prandtl_tomlinson import corrugation, slow_friction
+from validation.references.flat_chain import FlatChain
+from validation.references.incommensurate import shared_corrugation
+from validation.references.prandtl_tomlinson import corrugation, slow_friction
 
 LAW = (1.0, 0.5, 0.5, 1.0)
 LOAD, NORMAL = 0.2, 1.0

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact1d.analysis.reference.boltzmann_pairs import BoltzmannPairs
-from contact1d.analysis.reference.folded_pairs import FoldedPairs
-from contact1d.analysis.reference.independent_pairs import IndependentPairs
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.solver import trace
+from validation.references.boltzmann_pairs import BoltzmannPairs
+from validation.references.folded_pairs import FoldedPairs
+from validation.references.independent_pairs import IndependentPairs
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.model import ChainModel
+from validation.references.solver import trace
 
 LAW = PairInteraction(Exponential(0.011, 0.015), Exponential(0.01, 0.03))
 STEEPEST = float(LAW.force_slope(np.array(LAW.extremum_distance(2))))

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact1d.analysis.reference.independent_pairs import IndependentPairs
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.pair_lattice import PairLattice
+from tests.pair_lattice import PairLattice
+from validation.references.independent_pairs import IndependentPairs
+from validation.references.interaction import Exponential, PairInteraction
 
 LAW = PairInteraction(Exponential(0.0024, 0.015), Exponential(0.0012, 0.03))
 STEEPEST = float(LAW.force_slope(np.asarray(LAW.extremum_distance(2))))

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from contact1d.analysis.reference.independent_pairs import IndependentPairs
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.pull_off import pull_off
-from contact1d.analysis.reference.tension_radius import band_limited_radius, state_radius, tension_radius
+from validation.references.independent_pairs import IndependentPairs
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.model import ChainModel
+from validation.references.pull_off import pull_off
+from validation.references.tension_radius import band_limited_radius, state_radius, tension_radius
 
 SEARCH = 1e-8
 """Relative: the search stops at 1e-9."""
@@ -72,16 +72,6 @@ def test_result_does_not_depend_on_the_coarse_step() -> None:
     assert coarse.adhesion_force == pytest.approx(fine.adhesion_force, rel=SEARCH)
     assert coarse.zero_load_radius == pytest.approx(fine.zero_load_radius, rel=SEARCH)
     assert coarse.critical_radius == pytest.approx(fine.critical_radius, rel=10 * SEARCH)  # at a flat maximum
-
-
-def test_curves_run_from_the_preload_to_separation() -> None:
-    result = pull_off(ChainModel(120, 0.83, PAPERLIKE, radius=400.0), 0.3)
-    assert result.loading.force[-1] == pytest.approx(0.3, rel=SEARCH)
-    assert result.unloading.force[0] == result.loading.force[-1]
-    assert np.all(np.diff(result.loading.displacement) > 0.0)
-    assert np.all(np.diff(result.unloading.displacement) < 0.0)
-    assert result.unloading.force.min() >= -result.adhesion_force
-    assert result.unloading.force[-1] > -0.01 * result.adhesion_force
 
 
 def test_one_pair_holds_the_largest_tension_of_its_law() -> None:

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from contact1d.analysis.reference.energy import EnergySurface
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.newton import Descent, is_stable, minimise
-from contact1d.analysis.reference.solver import State, trace
+from validation.references.energy import EnergySurface
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.model import ChainModel
+from validation.references.newton import Descent, is_stable, minimise
+from validation.references.solver import State, trace
 
 SOLVER = 1e-9
 """Forces: the descent stops at 1e-10 k a per particle, then polishes; brentq stops at 1e-14 LU."""

@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from contact1d.analysis.reference.detachment import detachment, garg
-from contact1d.analysis.reference.langevin_ensemble import ensemble_friction
-from contact1d.analysis.reference.prandtl_tomlinson import Corrugation, corrugation
-from contact1d.analysis.reference.thermal_friction import free_corrugation, textbook_friction, thermal_friction
-from contact1d.workflow.reproduce import heat
+from validation.paper import heat
+from validation.references.detachment import detachment, garg
+from validation.references.langevin_ensemble import ensemble_friction
+from validation.references.prandtl_tomlinson import Corrugation, corrugation
+from validation.references.thermal_friction import free_corrugation, textbook_friction, thermal_friction
 
 FLAT = Corrugation(1.0, np.zeros(1))
 SECOND_ORDER = 1e-2

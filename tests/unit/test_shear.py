@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from contact1d.analysis.reference.mindlin import mindlin_shear
 from contact1d.analysis.shear import kinks_of, shear_load
+from contact1d.analysis.theory.mindlin import mindlin_shear
 
 EXACT = 1e-10
 """Of the largest traction: zones of a parabola are parabolas, which splines have exactly."""

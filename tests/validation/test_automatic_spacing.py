@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 
 from contact1d import run
-from contact1d.analysis.reference.adhesive_power import AdhesivePower
-from contact1d.analysis.reference.mindlin import stiffness_ratio
-from contact1d.analysis.reference.sneddon import PowerLaw
+from contact1d.analysis.theory.adhesive_power import AdhesivePower
+from contact1d.analysis.theory.mindlin import stiffness_ratio
+from contact1d.analysis.theory.sneddon import PowerLaw
 from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.stability.claims import Tally
+from validation.hard.claims import Tally
 
 SCENES, SEED = 24, 20
 KINDS = ("load", "path", "pull_off", "fixed_grips", "tangential")

@@ -1,6 +1,6 @@
 """Claim: where pairs are independent, a pull-off follows the closed form, and F_A, a_0 and a_cr grow as √R exactly.
 
-Reference: `analysis.reference.independent_pairs`, F(G₀) = (√(2R)/s) ∫ f(G) (G − G₀)^(−1/2) dG with G = r − 2 f(r)/k,
+Reference: `validation.references.independent_pairs`, F(G₀) = (√(2R)/s) ∫ f(G) (G − G₀)^(−1/2) dG with G = r − 2 f(r)/k,
 and a = √(2R (G_m − G₀)): one integral, no chain and no minimisation (physics.md). It holds without neighbour
 springs and
 horizontal freedom, for interactions that end well within one spacing, and edges that are several particles wide.
@@ -20,10 +20,10 @@ import numpy as np
 import pytest
 
 from contact1d import Run
-from contact1d.analysis.reference.independent_pairs import IndependentPairs
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
 from contact1d.workflow.units import Quantity
 from tests.scenes import LAW, chains
+from validation.references.independent_pairs import IndependentPairs
+from validation.references.interaction import Exponential, PairInteraction
 
 FORCE = 2e-6
 """Relative; measured 4e-7: table, cutoff and rows, each chosen for far less than the tolerance of 1e-3."""

@@ -1,6 +1,6 @@
 """Claim: `method = "dynamic"`, the paper's own way, gives the equilibria and the pull-off force of the model.
 
-Reference: `analysis.reference`, energy minimisation in numpy/scipy without time, plate, damping or LAMMPS. Asked for:
+Reference: `validation.references`, energy minimisation in numpy/scipy without time, plate, damping or LAMMPS. Asked:
 within 1 %.
 
 What limits the agreement. The pull-off force: the bracket between the largest tension that held and the smallest that
@@ -20,13 +20,13 @@ import pytest
 from scipy.optimize import brentq
 
 from contact1d import Run
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.pull_off import pull_off
-from contact1d.analysis.reference.solver import ChainSolver, State, trace
-from contact1d.analysis.reference.tension_radius import tension_radius
 from contact1d.workflow.continuation.outcome import Result
 from tests.scenes import chains
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.model import ChainModel
+from validation.references.pull_off import pull_off
+from validation.references.solver import ChainSolver, State, trace
+from validation.references.tension_radius import tension_radius
 
 RunTables = Callable[[dict[str, Any]], Run]
 Term = tuple[float, float]

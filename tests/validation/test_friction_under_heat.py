@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from contact1d import Run, run, run_many
-from contact1d.workflow.reproduce import heat
 from contact1d.workflow.runs.processors import pool
 from contact1d.workflow.scene import Scene, read_scene
+from validation.paper import heat
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 SIGMAS = 4.0

@@ -15,7 +15,7 @@ That is exact. The error depends on where the edge lies between two particles: â
 
 Nothing has to come to rest, so that round-off limits the tolerance.
 With neighbour springs the plane is a penalty, 1/tolerance stiffer than the chain; the reference is the exact active-set
-solution of `analysis.reference.rigid_plane`.
+solution of `validation.references.rigid_plane`.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ import pytest
 from numpy.typing import NDArray
 
 from contact1d import Run
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.solver import trace
-from contact1d.analysis.reference.winkler import rigid_plane_sum, winkler_force, winkler_half_width
+from contact1d.analysis.theory.winkler import rigid_plane_sum, winkler_force, winkler_half_width
 from contact1d.workflow.continuation.state import State
 from tests.scenes import chains
+from validation.references.model import ChainModel
+from validation.references.solver import trace
 
 RunTables = Callable[[dict[str, Any]], Run]
 Array = NDArray[np.float64]

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from contact1d import run
-from contact1d.analysis.reference.incommensurate import threshold
 from contact1d.workflow.scene import scene_from_dict
+from validation.references.incommensurate import threshold
 
 LAW, LOAD = (1.0, 0.5, 0.5, 1.0), 0.2
 UPPER, LOWER = 34, 55

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
 
 from contact1d import Run
-from contact1d.analysis.reference.jkr import Jkr
-from contact1d.analysis.reference.winkler import rigid_plane_sum
+from contact1d.analysis.theory.jkr import Jkr
+from contact1d.analysis.theory.winkler import rigid_plane_sum
 
 RunTables = Callable[[dict[str, Any]], Run]
 Array = NDArray[np.float64]

@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 from contact1d import Run, run
-from contact1d.analysis.reference.prandtl_tomlinson import Corrugation, corrugation, slow_friction
-from contact1d.analysis.reference.slide import Integrator
-from contact1d.workflow.judging.slide_model import slide_model
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
+from validation.references.prandtl_tomlinson import Corrugation, corrugation, slow_friction
+from validation.references.slide import Integrator
+from validation.slides import slide_model
 
 LAW = (1.0, 0.5, 0.5, 1.0)
 LOAD, TANGENTIAL = 0.2, 1.0

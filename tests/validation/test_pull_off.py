@@ -1,7 +1,7 @@
 """Claim: a quasi-static pull-off gives the adhesion force and the contact radii of the model's energy minima.
 
-Reference: `analysis.reference.pull_off`, an energy minimisation in numpy/scipy that shares no line with the program: no
-LAMMPS, no table, no cutoff, its own law, path and search. Asked for: adhesion force and zero-load radius within 0.3 %.
+Reference: `validation.references.pull_off`, an energy minimisation in numpy/scipy that shares no line with the program:
+no LAMMPS, no table, no cutoff, its own law, path and search. Asked: adhesion force and zero-load radius within 0.3 %.
 
 What limits the agreement. The adhesion force: the rows of the last pass around the largest tension, whose increments
 are chosen so that a parabola through them misses no more than 0.3·tolerance = 3e-4, and the tail beyond the cutoff. The
@@ -19,13 +19,13 @@ from typing import Any
 
 import pytest
 
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.pull_off import pull_off
-from contact1d.analysis.reference.solver import State
-from contact1d.analysis.reference.tension_radius import tension_radius
 from contact1d.workflow.units import Quantity
 from tests.scenes import chains
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.model import ChainModel
+from validation.references.pull_off import pull_off
+from validation.references.solver import State
+from validation.references.tension_radius import tension_radius
 
 FORCE = 2e-5
 """Relative; measured 1.2e-5: mostly the tail of the attraction beyond the automatic cutoff."""

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 from random import Random
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from contact1d import Run, RunError, run_many
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import settings_for
-from contact1d.workflow.stability.random_slides import SEED, integrated, mean_friction, random_slide
+from validation.slides import integrated, mean_friction
 
 TRACE = 3e-4
 """Of the peak, at a tolerance of 1e-3: the table of the law, the rest from which a slide starts."""
@@ -36,6 +37,59 @@ LONGER = 3.0
 """Way over the scene's own in which its mean is known better."""
 FINER = 0.1
 """Tolerance over the scene's own of what it is held against."""
+
+
+SEED = 5
+CURVED = 0.5
+"""Share of the slides of a curved body."""
+
+
+def random_slide(random: Random) -> dict[str, Any]:
+    """A slide of some particles, by a law, springs, drags, a load and a velocity that are drawn."""
+    spacing, force = 2.0 ** random.uniform(-2.0, 2.0), 10.0 ** random.uniform(-1.0, 1.0)
+    stiffness, curved = force / spacing, random.random() < CURVED
+    mass = 10.0 ** random.uniform(-1.0, 1.0)
+    clock = (mass / stiffness) ** 0.5
+    amplitude, reach = force * spacing * random.uniform(0.3, 0.7), spacing * random.uniform(0.9, 1.1)
+    bodies: dict[str, Any] = {"spacing": spacing, "mass": mass}
+    if curved:
+        count = 20
+        bodies |= {
+            "particles": 48, "upper_particles": count, "upper_offset": spacing * random.uniform(0.3, 0.7),
+            "profile": {"kind": "parabola", "radius": spacing * random.uniform(6.0, 14.0)},
+            "bulk_stiffness": stiffness * random.uniform(2.0, 5.0),
+        }  # fmt: skip
+        load, touching = 4.0 * amplitude / spacing * random.uniform(-0.2, 0.6), 4
+    else:
+        below, count = random.choice([(4, 4), (6, 6), (6, 3), (3, 1), (4, 2), (8, 5)])
+        bodies |= {
+            "particles": below, "upper_particles": count, "upper_spacing": below / count * spacing,
+            "lower": random.choice(["rigid_chain", "particles"]), "periodic": True, "profile": {"kind": "flat"},
+            "bulk_stiffness": stiffness * random.uniform(1.0, 4.0),
+        }  # fmt: skip
+        load, touching = count * amplitude / spacing * random.uniform(-0.1, 0.5), count
+    bodies["bulk_stiffness_tangential"] = random.uniform(0.6, 1.0) * bodies["bulk_stiffness"]
+    return {
+        "title": "random slide",
+        "bodies": bodies,
+        "interaction": {
+            "repulsion": {"amplitude": 2.0 * amplitude, "range": 0.5 * reach},
+            "attraction": {"amplitude": amplitude, "range": reach},
+        },
+        "horizontal": {},
+        "damping": {"coefficient": random.uniform(0.05, 0.3) * stiffness * clock},
+        "plate": {
+            "free": ["x", "z"],
+            "mass": random.uniform(0.5, 2.0) * count * mass,
+            "damping": random.uniform(0.0, 0.1) * count * stiffness * clock,
+        },
+        "cantilever": {
+            "stiffness": touching * stiffness * 10.0 ** random.uniform(-1.7, -0.5),
+            "velocity": spacing / clock * 10.0 ** random.uniform(-2.6, -1.5),
+        },
+        "accuracy": {"tolerance": 10.0 ** random.uniform(-3.0, -2.0)},
+        "experiment": {"kind": "slide", "normal_force": load, "distance": spacing * random.uniform(6.0, 10.0)},
+    }
 
 
 def slides() -> Iterator[tuple[int, Scene]]:

@@ -2,7 +2,7 @@
 
 References, in SI and written down here: Hertz, and Galin's and Sneddon's d(a), F(a), p(r) of a cone, a flat punch and a
 sphere that is flattened to an ellipsoid (I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47); p(r) of the ellipsoid by
-quadrature (`analysis.reference.mdr`). The measured profile is a sphere's, read from a file in µm, without noise.
+quadrature (`validation.references.mdr`). The measured profile is a sphere's, read from a file in µm, without noise.
 The same scenes with the paper's reduction are refused, or carry the factor.
 """
 
@@ -19,8 +19,8 @@ import numpy as np
 import pytest
 
 from contact1d import Run, run
-from contact1d.analysis.reference.mdr import ReducedContact
 from contact1d.workflow.scene import SceneError, scene_from_dict
+from validation.references.mdr import ReducedContact
 
 ASKED = 0.01
 """Relative, of every number: what an engineer asks for."""

@@ -12,19 +12,19 @@ import pytest
 from scipy.optimize import brentq
 
 from contact1d import Scene, read_scene, run
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.pull_off import pull_off
-from contact1d.analysis.reference.slide import Integrator
-from contact1d.analysis.reference.solver import ChainSolver, trace
-from contact1d.analysis.reference.spring_sliders import SpringSliders
-from contact1d.analysis.reference.spring_sliders import displacement_under as displacement_carrying
-from contact1d.analysis.reference.thermal_chain import displacement_under
-from contact1d.analysis.reference.winkler import rigid_plane_sum
+from contact1d.analysis.theory.winkler import rigid_plane_sum
 from contact1d.workflow.deck.lattice import start_offset
-from contact1d.workflow.judging.slide_model import slide_model
 from contact1d.workflow.scene import Tangential
 from contact1d.workflow.settings.settings import settings_for
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.model import ChainModel
+from validation.references.pull_off import pull_off
+from validation.references.slide import Integrator
+from validation.references.solver import ChainSolver, trace
+from validation.references.spring_sliders import SpringSliders
+from validation.references.spring_sliders import displacement_under as displacement_carrying
+from validation.references.thermal_chain import displacement_under
+from validation.slides import slide_model
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 

@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 
 from contact1d import run
-from contact1d.analysis.reference.incommensurate import shared_corrugation
-from contact1d.analysis.reference.prandtl_tomlinson import corrugation, moving_friction, slow_friction
-from contact1d.workflow.reproduce.fig9.curved import integrated
-from contact1d.workflow.reproduce.fig9.sweeps import SWEEPS, slides
-from contact1d.workflow.reproduce.fig9.warmth import smoluchowski
 from contact1d.workflow.settings.settings import settings_for
+from validation.paper.fig9.asperity import smoluchowski
+from validation.paper.fig9.curved import integrated
+from validation.paper.fig9.reading import SWEEPS, slides
+from validation.references.incommensurate import shared_corrugation
+from validation.references.prandtl_tomlinson import corrugation, moving_friction, slow_friction
 
 FOLDER = Path(__file__).parents[2] / "lammps_inputs" / "sweeps"
 LAW, LOAD = (1.0, 0.5, 0.5, 1.0), 0.2

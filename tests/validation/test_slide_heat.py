@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from contact1d import Run, run
-from contact1d.workflow.reproduce.heat import FLAT_PAIR, TEMPERATURE
 from contact1d.workflow.scene import Scene, scene_from_dict
+from validation.paper.heat import FLAT_PAIR, TEMPERATURE
 
 SIGMAS = 3.0
 CLOSED = 5e-3

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from contact1d import Run, run
-from contact1d.analysis.reference.slide import Integrator, Trace
-from contact1d.workflow.judging.slide_model import slide_model
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.settings.settings import Settings, settings_for
+from validation.references.slide import Integrator, Trace
+from validation.slides import slide_model
 
 TRACE = 1e-4
 """Of the peak: the table of the law, the rest from which the slide starts, and the order of the sums."""

@@ -1,8 +1,8 @@
 """Claim: friction on the rigid plane is the exact sum over springs with sliders, row by row, and goes to Cattaneo and
 Mindlin, with reversals, loops and changing loads, as spacing².
 
-References. `analysis.reference.spring_sliders`: s_i <- clip(s_i + k_t Δu, ±μ f_i) on straight ways, one particle after
-the other in plain numbers. `analysis.reference.mindlin`: F_x = μN[1 − (1 − u/u*)^{3/2}], c/a = √(1 − u/u*),
+References. `validation.references.spring_sliders`: s_i <- clip(s_i + k_t Δu, ±μ f_i) on straight ways, one particle
+after the other in plain numbers. `analysis.theory.mindlin`: F_x = μN[1 − (1 − u/u*)^{3/2}], c/a = √(1 − u/u*),
 u* = μ(E*/G*)d, Masing's rules for reversals, Mindlin and Deresiewicz for a raised load.
 
 What limits the tolerances: LAMMPS takes one step for a row, so that the sum is met to round-off; the closed form is met
@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 
 from contact1d import Run
-from contact1d.analysis.reference.mindlin import (
+from contact1d.analysis.theory.mindlin import (
     mindlin_force,
     mindlin_loop_area,
     mindlin_path,
@@ -30,7 +30,7 @@ from contact1d.analysis.reference.mindlin import (
     sliding_displacement,
     stiffness_ratio,
 )
-from contact1d.analysis.reference.spring_sliders import SpringSliders, displacement_under
+from validation.references.spring_sliders import SpringSliders, displacement_under
 
 RunTables = Callable[[dict[str, Any]], Run]
 

@@ -1,7 +1,7 @@
 """Claim: with the rule of Hess the reduced contact is the 3D one with adhesion: JKR, Kendall's punch, the cone.
 
-The quadratures of `analysis.reference.mdr` against closed forms that don't use them. That the rule itself is right is
-tested by energies: what a contact releases per area that opens at a fixed displacement is W.
+The quadratures of `validation.references.mdr` against closed forms that don't use them. That the rule itself is right
+is tested by energies: what a contact releases per area that opens at a fixed displacement is W.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from contact1d.analysis.reference.jkr import Jkr
-from contact1d.analysis.reference.mdr import ReducedContact, edge_elongation
-from contact1d.analysis.reference.sneddon import AdhesiveCone, FlatPunch
+from contact1d.analysis.theory.jkr import Jkr
+from contact1d.analysis.theory.sneddon import AdhesiveCone, FlatPunch
+from validation.references.mdr import ReducedContact, edge_elongation
 
 ROUND_OFF = 1e-12
 QUADRATURE = 1e-10

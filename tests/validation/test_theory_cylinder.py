@@ -12,7 +12,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
-from contact1d.analysis.reference.line_adhesion import AdhesiveCylinder, barquins_reduced_force
+from contact1d.analysis.theory.line_adhesion import AdhesiveCylinder, barquins_reduced_force
 
 ROUND_OFF = 1e-12
 QUADRATURE = 1e-9

@@ -1,7 +1,7 @@
 """Claim: the closed forms of rigid indenters (Sneddon, Galin) are right: one energy gives d, F and p of each shape.
 
-Second source: `analysis.reference.mdr`, quadratures of the profile's slope that know no closed form. Limits: n = 2 and
-a << R are Hertz. Independent numerics: the pressure integrates to the force, the force is dU/dd by finite differences.
+Second source: `validation.references.mdr`, quadratures of the profile's slope that know no closed form. Limits: n = 2
+and a << R are Hertz. Numerics: the pressure integrates to the force, the force is dU/dd by finite differences.
 """
 
 from __future__ import annotations
@@ -12,9 +12,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from contact1d.analysis.reference.hertz import hertz_contact_radius, hertz_force, hertz_peak_pressure
-from contact1d.analysis.reference.mdr import ReducedContact
-from contact1d.analysis.reference.sneddon import (
+from contact1d.analysis.theory.sneddon import (
     FlatPunch,
     PowerLaw,
     Sphere,
@@ -23,6 +21,8 @@ from contact1d.analysis.reference.sneddon import (
     galin_factor,
     paraboloid,
 )
+from validation.references.hertz import hertz_contact_radius, hertz_force, hertz_peak_pressure
+from validation.references.mdr import ReducedContact
 
 ROUND_OFF = 1e-12
 QUADRATURE = 1e-10

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from contact1d.analysis.reference.jkr import (
+from contact1d.analysis.theory.jkr import (
     Jkr,
     identified_contact_modulus,
     identified_surface_energy,

@@ -9,16 +9,15 @@ import math
 
 import pytest
 
-from contact1d.analysis.reference.dmt import Dmt
-from contact1d.analysis.reference.jkr import Jkr
-from contact1d.analysis.reference.maugis_dugdale import (
+from contact1d.analysis.theory.dmt import Dmt
+from contact1d.analysis.theory.jkr import Jkr
+from contact1d.analysis.theory.maugis_dugdale import (
     MaugisDugdale,
     dmt_contact_radius,
     jkr_contact_radius,
     maugis_parameter_of_tabor,
 )
-from contact1d.analysis.reference.mdr import edge_elongation
-from contact1d.analysis.reference.tabor import (
+from contact1d.analysis.theory.tabor import (
     DMT_TABOR,
     HERTZ_ADHESION_SHARE,
     JKR_TABOR,
@@ -28,6 +27,7 @@ from contact1d.analysis.reference.tabor import (
     tabor_number,
     valid_theory,
 )
+from validation.references.mdr import edge_elongation
 
 ROUND_OFF = 1e-12
 RADIUS, MODULUS, ADHESION, RANGE = 3.0, 7.0, 0.2, 0.01

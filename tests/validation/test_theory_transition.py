@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from contact1d.analysis.reference.dmt import Dmt, dmt_reduced_force
-from contact1d.analysis.reference.jkr import Jkr
-from contact1d.analysis.reference.maugis_dugdale import (
+from contact1d.analysis.theory.dmt import Dmt, dmt_reduced_force
+from contact1d.analysis.theory.jkr import Jkr
+from contact1d.analysis.theory.maugis_dugdale import (
     LAMBDA_OVER_TABOR,
     LENNARD_JONES_STRESS,
     MaugisDugdale,
@@ -25,7 +25,7 @@ from contact1d.analysis.reference.maugis_dugdale import (
     maugis_parameter,
     maugis_parameter_of_tabor,
 )
-from contact1d.analysis.reference.tabor import tabor_number
+from contact1d.analysis.theory.tabor import tabor_number
 
 ROUND_OFF = 1e-12
 QUADRATURE = 1e-9

@@ -18,13 +18,13 @@ import pytest
 from numpy.typing import NDArray
 
 from contact1d import Run, read_scene, run
-from contact1d.analysis.reference.boltzmann_pairs import BoltzmannPairs
-from contact1d.analysis.reference.interaction import Exponential, PairInteraction
-from contact1d.analysis.reference.model import ChainModel
-from contact1d.analysis.reference.thermal_chain import displacement_under
 from contact1d.workflow.experiments.thermal import SETTLING_LOOKS
 from tests.scenes import LAW
 from tests.validation.test_shipped_scenes import SCENES, THERMAL_PLACES, model_of
+from validation.references.boltzmann_pairs import BoltzmannPairs
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.model import ChainModel
+from validation.references.thermal_chain import displacement_under
 
 Array = NDArray[np.float64]
 SIGMAS = 4.0

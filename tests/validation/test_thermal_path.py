@@ -12,8 +12,8 @@ import pytest
 
 from contact1d import Run, load_run, run
 from contact1d.analysis.curve_marks import largest_tension
-from contact1d.workflow.reproduce import detachment
 from contact1d.workflow.scene import scene_from_dict
+from validation.paper import detachment
 
 SIGMAS = 4.0
 """Standard errors: one row in 16 000 would fail by chance, and the seed is fixed."""

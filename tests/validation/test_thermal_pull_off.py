@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 from contact1d import Run, run, run_many
-from contact1d.analysis.reference.detachment import detachment as quasi_stationary
-from contact1d.analysis.reference.detachment import detachment_in_time, drag_of_pairs
-from contact1d.workflow.reproduce import detachment
 from contact1d.workflow.runs.processors import pool
 from contact1d.workflow.scene import read_scene
 from contact1d.workflow.settings.settings import settings_for
+from validation.paper import detachment
+from validation.references.detachment import detachment as quasi_stationary
+from validation.references.detachment import detachment_in_time, drag_of_pairs
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 REPEATS = 16

@@ -21,7 +21,7 @@ from scipy.stats import binom
 from contact1d import RunError
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.stability.random_scenes import SOLVER, exact_results, model_of, random_scene
+from validation.hard.random_scenes import SOLVER, exact_results, model_of, random_scene
 
 SEED, SCENES, QUICK = 20071, 60, 12
 WITHIN_TOLERANCE, WITHIN_UNCERTAINTY = 0.99, 0.95

@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.reference import mindlin, sneddon
-from contact1d.analysis.reference.adhesive_power import AdhesivePower
-from contact1d.analysis.reference.dmt import Dmt
+from contact1d.analysis.theory import mindlin, sneddon
+from contact1d.analysis.theory.adhesive_power import AdhesivePower
+from contact1d.analysis.theory.dmt import Dmt
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.scene.material import SPHERES
 from contact1d.workflow.units import Quantity, Scales, scale_of
@@ -37,7 +37,7 @@ ROUND_OFF = 1e-12
 POINTS = 200
 """Of Gauss's quadrature of a smooth function: its error is below round-off."""
 JKR_ABOVE, DMT_BELOW = 5.0, 0.1
-"""Tabor's µ beyond which a limit holds (`analysis.reference.tabor`)."""
+"""Tabor's µ beyond which a limit holds (`analysis.theory.tabor`)."""
 OF_ANY_INTERACTION = ("adhesion_force", "zero_load_radius", "critical_radius", "contact_radius", "displacement")
 """What JKR says of a sphere that an interaction holds, with or without a load."""
 
@@ -355,7 +355,7 @@ def _with_a_range(case: Case) -> str:
     mu = tabor(case)
     if mu is None or case.scene.adhesion is None or case.kind != "parabola":
         return ""
-    from contact1d.analysis.reference.tabor import valid_theory  # scipy's solvers take longer than a small run
+    from contact1d.analysis.theory.tabor import valid_theory  # scipy's solvers take longer than a small run
 
     return f"a paraboloid with a range; Tabor's number is {mu:.3g}, where {valid_theory(mu, 0.0).theory} holds"
 
@@ -375,7 +375,7 @@ def _by_tabor(holds: Callable[[float], bool]) -> Callable[[Case], str]:
 
 def _maugis_values(case: Case) -> Values:
     """Maugis and Dugdale's results in the scene's units: πWR, and (πWR²/K)^{1/3} with K = 4E*/3."""
-    from contact1d.analysis.reference.maugis_dugdale import MaugisDugdale, maugis_parameter_of_tabor
+    from contact1d.analysis.theory.maugis_dugdale import MaugisDugdale, maugis_parameter_of_tabor
 
     mu = tabor(case)
     assert mu is not None

@@ -11,9 +11,7 @@ import typer
 from contact1d.workflow.cli.arguments import Format, SceneFile, Set, Without
 from contact1d.workflow.cli.ending import FAILS, Commands, command, read, say
 from contact1d.workflow.cli.identify import identify
-from contact1d.workflow.cli.reproduce import reproduce
 from contact1d.workflow.cli.scenes import new, schema
-from contact1d.workflow.cli.stability import stability
 from contact1d.workflow.cli.studies import animate, cost, report, sweep
 
 GARBAGE_THRESHOLD = 100_000
@@ -25,7 +23,7 @@ app = typer.Typer(
     rich_markup_mode="markdown",
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="Exit codes: 0 done; 1 a row of `reproduce` or a check of `doctor` fails; 2 the scene or the call is wrong; "
+    epilog="Exit codes: 0 done; 1 a check of `doctor` fails; 2 the scene or the call is wrong; "
     "3 the run failed or its result can't be trusted, files are kept; 130 interrupted. "
     "Units: LU length, FU force, MU mass, TU = sqrt(MU LU/FU); compression is positive.",
 )
@@ -128,7 +126,7 @@ def doctor() -> None:
         raise typer.Exit(FAILS)
 
 
-for one in (new, run, sweep, report, animate, deck, cost, identify, reproduce, stability, schema, doctor):
+for one in (new, run, sweep, report, animate, deck, cost, identify, schema, doctor):
     app.command()(one)
 
 

@@ -30,13 +30,6 @@ def effect_names(incomplete: str) -> list[str]:
     return [name for name in EFFECTS if name.startswith(incomplete)]
 
 
-def study_names(incomplete: str) -> list[str]:
-    """The studies of a reproduction that begin with `incomplete`."""
-    from contact1d.workflow.reproduce.studies import NAMES
-
-    return [name for name in NAMES if name.startswith(incomplete)]
-
-
 class Format(StrEnum):
     """Of figures."""
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from contact1d.workflow.scene import Scene
 
 FAILS = 1
-"""A row of `reproduce` fails, or the installation is not whole."""
+"""A check of `doctor` fails."""
 CALL_IS_WRONG = 2
 """The scene, an option or a folder is wrong; nothing was written."""
 RUN_FAILED = 3

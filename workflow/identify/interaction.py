@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from contact1d.analysis.reference.jkr import Jkr, work_of_adhesion
+from contact1d.analysis.theory.jkr import Jkr, work_of_adhesion
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.errors import Contact1dError, FolderError, RunError
 from contact1d.workflow.runs.campaign import run

@@ -19,10 +19,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.reference.dmt import Dmt
-from contact1d.analysis.reference.jkr import Jkr
-from contact1d.analysis.reference.maugis_dugdale import MaugisDugdale, maugis_parameter_of_tabor
-from contact1d.analysis.reference.tabor import DMT_TABOR, JKR_TABOR, Verdict, tabor_number, valid_theory
+from contact1d.analysis.theory.dmt import Dmt
+from contact1d.analysis.theory.jkr import Jkr
+from contact1d.analysis.theory.maugis_dugdale import MaugisDugdale, maugis_parameter_of_tabor
+from contact1d.analysis.theory.tabor import DMT_TABOR, JKR_TABOR, Verdict, tabor_number, valid_theory
 from contact1d.workflow.identify.contact import AskedContact
 from contact1d.workflow.identify.interaction import LARGEST_RADIUS_SHARE, IdentifyError
 from contact1d.workflow.units import prefixed

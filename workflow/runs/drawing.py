@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from contact1d.analysis import body_plots, plots, slip_plots
 from contact1d.analysis.curve import DETACHMENTS, SAMPLE_TABLE, Curve, read_samples
 from contact1d.analysis.pressure import Profile
-from contact1d.analysis.reference.mindlin import mindlin_path, sliding_displacement
 from contact1d.analysis.slip import stick_margin
+from contact1d.analysis.theory.mindlin import mindlin_path, sliding_displacement
 from contact1d.analysis.time_plots import samples_figure
 from contact1d.workflow.body.derived import REPORTED
 from contact1d.workflow.body.reading import IMAGE

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from contact1d.analysis.reference.jkr import identified_contact_modulus, identified_surface_energy
+from contact1d.analysis.theory.jkr import identified_contact_modulus, identified_surface_energy
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import Quantity, Scales
 

@@ -1,6 +1,6 @@
 """How fine each numerical setting is for an `[accuracy] tolerance`, as measured: `calibration.json`, read at import.
 
-The file is written by `python -m benchmarks.calibration`, which turns every value over a ladder in a number of scenes,
+The file is written by `python -m validation.tools.calibration`, which turns every value over a ladder in a number of scenes,
 at tolerances of 1e-2 to 1e-5, and takes the cheapest that adds a small part of the tolerance at most to the errors of
 the main results in each of them. Nobody types these numbers. Four of them are shares of the tolerance; three hold at
 every tolerance.

@@ -1,1 +1,0 @@
-"""The same Hertz and the same JKR contact with other people's solvers, with this model and with closed forms."""

@@ -1,0 +1,144 @@
+"""Claim: the record is what the studies make of their kept runs, and no row passes where every run is wrong."""
+
+from __future__ import annotations
+
+import math
+import zlib
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact1d.analysis.curve import TANGENTIAL_COLUMNS, Curve
+from contact1d.analysis.pressure import Profile
+from contact1d.workflow.runs.finished import Run
+from contact1d.workflow.scene import Scene
+from tests.kept_runs import KeptBench, kept_paper, kept_runs, solved_once
+from validation.paper import STUDIES, fig9, tangential
+from validation.paper.scenes import barquins_reduced
+from validation.references.slide import Trace
+from validation.row import Row
+from validation.study import Findings, Study, read_record
+
+RECORD = Path(__file__).parents[2] / "validation" / "results" / "paper.json"
+SAME, SMALL = 2e-5, 1e-9
+"""Relative, and absolute for residues: the kept numbers have twelve digits, what is found by a search fewer."""
+LONG = ("neighbours", "fig5", "fig6", "exponents", "fig8a", "fig8b", "heat", "detachment", "fig9", "adhesive", "fig4")
+"""Their references take more than a second."""
+BY_INTEGRATOR = ("⟨F⟩ of a curved", "largest friction of a curved", "what it rises by", "friction at every row")
+"""Rows whose reference takes minutes; in its place stand the numbers of the run."""
+EACH = [pytest.param(one, id=one.name, marks=[pytest.mark.slow] * (one.name in LONG)) for one in STUDIES]
+
+
+def as_the_run(scene: Scene) -> fig9.curved.Integrated:
+    """In place of the integrator: what the run itself has."""
+    run = next(run for run in kept_runs().values() if run.scene == scene)
+    known = np.full(2, 1.0)
+    mean, static = (run.results[name].value for name in ("mean_friction", "static_friction"))
+    return fig9.curved.Integrated(mean, static, Trace(known, known, known, known, known))
+
+
+@cache
+def judged(study: Study) -> Findings:
+    with pytest.MonkeyPatch.context() as patch, solved_once():
+        patch.setattr(fig9.curved, "integrated", as_the_run)
+        patch.setattr(fig9.curved, "off_trace", lambda *_: 0.0)
+        bench: Any = KeptBench(kept_runs(), kept_paper())
+        return study.measure(bench)
+
+
+def recorded(study: Study) -> list[Row]:
+    return list(next(answer.rows for answer in read_record(RECORD).answers if answer.name == study.name))
+
+
+@pytest.mark.parametrize("study", EACH)
+def test_the_record_is_what_a_study_makes_of_its_runs(study: Study) -> None:
+    for ours, known in zip(judged(study).rows, recorded(study), strict=True):
+        assert ours.name == known.name
+        assert ours.verdict == ("PASS" if ours.known is None else "DIFFERS"), ours.name
+        if not ours.name.startswith(BY_INTEGRATOR):
+            pairs = ((ours.value, known.value), (ours.reference.value, known.reference.value))
+            for one, other in (*pairs, (ours.bound.size, known.bound.size)):
+                assert one == pytest.approx(other, rel=SAME, abs=SMALL), ours.name
+
+
+@pytest.mark.parametrize("study", EACH)
+def test_the_kept_runs_are_of_the_scenes_that_a_study_asks_for(study: Study) -> None:
+    assert study.scenes is not None
+    scenes = study.scenes(kept_paper())
+    assert {run for row in judged(study).rows for run in row.runs} <= set(scenes)
+    assert set(scenes) <= set(kept_runs())
+
+
+ABOUT = {
+    "adhesion_force": (1.47, "FU"), "zero_load_radius": (28.53, "LU"), "critical_radius": (15.0, "LU"),
+    "largest_force": (40.0, "FU"), "largest_radius": (30.0, "LU"), "contact_radius": (30.0, "LU"),
+    "mean_friction": (0.02, "FU"), "static_friction": (0.02, "FU"), "cantilever_work": (0.1, "FU·LU"),
+    "dissipated_energy": (0.1, "FU·LU"), "stored_energy": (0.01, "FU·LU"),
+    "image_contact_radius": (30.0, "LU"), "image_largest_radius": (30.0, "LU"), "displacement": (0.4, "LU"),
+    "plate_temperature": (2e-3, "FU·LU"), "detachment_force": (0.5, "FU"),
+    "detachment_force_spread": (0.1, "FU"),
+}  # fmt: skip
+"""About what the paper's scene has, so that nothing fails by its size alone."""
+WRONG = (1.4, 3.0)
+"""Factors by which each number of each run is wrong, drawn from its name: the widest tolerance of a row is 10 %."""
+POINTS, SLIDE = 30, 400
+"""Points of a curve, and of a slide."""
+COLUMNS = (*TANGENTIAL_COLUMNS, "drive", "friction")
+CLAIMED = 1e-3
+"""Uncertainty that the wrong numbers claim, relative."""
+
+
+class WrongRuns(dict[str, Run]):
+    """A finished run of any name. With horizontal freedom the larger preloads have failed, at a wrong place."""
+
+    def __missing__(self, name: str) -> Run:
+        rng = np.random.default_rng(zlib.crc32(name.encode()))
+
+        def wrong(value: float) -> float:
+            return float(value * rng.uniform(*WRONG))
+
+        document: dict[str, Any] = {"status": "done"}
+        for quantity, (value, unit) in ABOUT.items():
+            number = wrong(value)
+            entry = {"value": number, "uncertainty": CLAIMED * number, "unit": unit}
+            document[quantity] = entry | {"si": {"value": 1e-9 * wrong(value), "uncertainty": 0.0, "unit": unit}}
+        if "horizontal" in name and "dynamic" not in name and float(name.split("_")[0].removeprefix("preload")) > 2.0:
+            document = {"status": "failed", "error": {"message": "it went through at displacement 9.9 LU"}}
+        count = 200
+        x = np.arange(count) - 0.5 * (count - 1)
+        profile = Profile(x, 0.0 * x, 0.0 * x, rng.uniform(-0.3, 0.3, count), 0.0 * x)
+        a = np.linspace(45.0, 8.0, POINTS)
+        force = wrong(1.47) * barquins_reduced(a / 28.53)
+        d = np.linspace(wrong(0.5), -0.5, POINTS)
+        branch = np.array(["unloading"] * POINTS)
+        curve = Curve(d, force, a, np.full(POINTS, 0.3), branch, np.full(POINTS, 1e-3))
+        rows = len(tangential.OUT) + len(tangential.LOOP) - 1
+        friction = {
+            name: wrong(2.0) + rng.uniform(0.0, 1.0, SLIDE if name in COLUMNS[-2:] else rows).cumsum()
+            for name in COLUMNS
+        }
+        self[name] = Run(
+            Path(name), document, kept_paper(), curve, {"zero_load": profile, "deepest": profile}, friction
+        )
+        return self[name]
+
+
+def no_integrator(scene: Scene) -> fig9.curved.Integrated:
+    """In place of the integrator, which takes minutes and knows nothing of the runs."""
+    known = np.full(SLIDE // 2, 0.07)
+    return fig9.curved.Integrated(0.07, 0.17, Trace(known, known, known, known, known))
+
+
+@pytest.mark.parametrize("study", EACH)
+def test_no_row_passes_where_every_run_is_wrong(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fig9.curved, "integrated", no_integrator)
+    bench: Any = KeptBench(WrongRuns(), kept_paper())
+    with solved_once():
+        found = study.measure(bench)
+    assert found.rows
+    if study.name != "adhesive":  # a ratio that is off the map of Maugis has no μ; else what is none fails for that
+        assert all(math.isfinite(row.value) for row in found.rows)
+    assert [row.name for row in found.rows if row.verdict != "FAIL"] == []

@@ -1,0 +1,120 @@
+"""Claim: one runner does studies, reuses what is there, and keeps what fails; the pages are made from its records."""
+
+from __future__ import annotations
+
+import importlib
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from validation import doors
+from validation.__main__ import RESULTS, ROOT, app
+from validation.figures import Panel, Series, figure
+from validation.hard import STUDIES as HARD
+from validation.page import readme_table, summary, tables_page
+from validation.paper import STUDIES as PAPER
+from validation.row import Row, at_most
+from validation.speed import STUDIES as SPEED
+from validation.study import Bench, Findings, Refused, Study, answered, claim_row, conduct, read_record
+
+PLANE = {
+    "bodies": {
+        "particles": 21, "spacing": 1.0, "profile": {"kind": "flat_punch", "radius": 10.5}, "bulk_stiffness": 0.5,
+        "lower": "rigid_plane",
+    },
+    "experiment": {"kind": "path", "displacements": [0.1]},
+}  # fmt: skip
+
+
+def measure(bench: Bench) -> Findings:
+    """A punch on a plane: N k d; and a scene that is refused."""
+    found, wrong = bench.run("punch", PLANE), bench.run("wrong", PLANE | {"noise": {}})
+    assert not isinstance(found, Refused)
+    force = found.results["largest_force"]
+    rows = [claim_row("force", found, "largest_force", 21 * 0.5 * 0.1, "N k d"),
+            claim_row("refused", wrong, "largest_force", 1.0, "nothing")]  # fmt: skip
+    series = Series("run", found.curve.displacement, found.curve.force)
+    assert force.unit == "FU"
+    return Findings(rows, figure("Force", Panel("d", "F", [series])))
+
+
+def broken(bench: Bench) -> Findings:
+    raise RuntimeError("a study that does not end")
+
+
+SMALL = Study("small", "A punch", "Is it N k d?", measure)
+
+
+def test_a_study_runs_its_scenes_once_and_a_refusal_is_a_row_that_fails(tmp_path: Path) -> None:
+    record = conduct([SMALL], tmp_path, workers=1)
+    assert [(row.name, row.verdict) for row in record.rows] == [("force", "PASS"), ("refused", "FAIL")]
+    assert record.rows[1].bound.source.startswith("refused before anything ran: ")
+    assert (tmp_path / "small.png").stat().st_size > 1000
+    results = tmp_path / "runs" / "small" / "punch" / "results.json"
+    made = results.stat().st_mtime_ns
+    again = conduct([SMALL], tmp_path, workers=1)
+    assert results.stat().st_mtime_ns == made
+    assert [row.as_data() for row in read_record(tmp_path / "record.json").rows] == [
+        row.as_data() for row in again.rows
+    ]
+
+
+def test_a_study_that_breaks_has_a_row_that_fails(tmp_path: Path) -> None:
+    answer = answered(Study("broken", "–", "–", broken), tmp_path, False)
+    assert [row.verdict for row in answer.rows] == ["FAIL"]
+    assert "a study that does not end" in answer.rows[0].name
+
+
+def test_a_folder_of_other_things_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "letter.txt").write_text("dear")
+    with pytest.raises(doors.FolderError, match="not of a validation"):
+        conduct([SMALL], tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]
+
+
+@pytest.mark.parametrize("command", ["paper", "hard", "speed"])
+def test_an_unknown_study_is_told_with_the_known_ones(command: str, tmp_path: Path) -> None:
+    done = CliRunner().invoke(app, [command, "--only", "fig_4", "--out", str(tmp_path / "out")])
+    assert done.exit_code == 2
+    assert "there are " in done.output
+
+
+def test_the_pages_are_what_the_records_say() -> None:
+    """Renew them with `python -m validation pages`."""
+    paper, hard = (read_record(RESULTS / f"{name}.json") for name in ("paper", "hard"))
+    assert (ROOT / "VALIDATION.md").read_text(encoding="utf-8") == summary(paper, hard)
+    assert (RESULTS / "tables.md").read_text(encoding="utf-8") == tables_page([paper, hard])
+    assert readme_table(paper) in (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(("name", "studies"), [("paper", PAPER), ("hard", HARD), ("speed", SPEED)])
+def test_a_record_has_every_study(name: str, studies: tuple[Study, ...]) -> None:
+    record = read_record(RESULTS / f"{name}.json")
+    assert [answer.name for answer in record.answers] == [study.name for study in studies]
+    if name != "speed":
+        assert [row.name for row in record.rows if row.verdict == "FAIL"] == []
+
+
+def test_what_validates_knows_nothing_of_what_is_printed() -> None:
+    """No module of validation imports the closed forms that users see."""
+    for path in sorted((ROOT / "validation").rglob("*.py")):
+        assert "analysis.theory" not in path.read_text(encoding="utf-8"), path
+
+
+@pytest.mark.parametrize("name", ["loads", "loops", "friction", "forces", "modes", "buckling"])
+@pytest.mark.slow
+def test_a_class_of_seconds_has_no_new_failure(name: str, tmp_path: Path) -> None:
+    study = next(study for study in HARD if study.name == name)
+    assert [row.name for row in answered(study, tmp_path, False).rows if row.verdict == "FAIL"] == []
+
+
+def test_speed_rows_are_ours_over_theirs() -> None:
+    plain = importlib.import_module("validation.speed.plain")
+    scaling = importlib.import_module("validation.speed.scaling")
+    seconds = {"quasistatic": 1.0, "dynamic": 2.0, "plain": 200.0, "plain, tuned": 20.0, "scipy solver": 4.0}
+    rows: list[Row] = plain.rows_of(1e-3, seconds, {"quasistatic": 1e-4, "dynamic": 1e-4})
+    assert rows[0].value == pytest.approx(1.0 / 200.0)
+    assert rows[0].verdict == "PASS"
+    assert scaling.spread({200: 3.0, 2000: 6.0}) == pytest.approx(2.0)
+    assert at_most("slow", 3.0, scaling.SPREAD, "asked").verdict == "FAIL"

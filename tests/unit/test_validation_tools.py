@@ -1,0 +1,27 @@
+"""Claim: every listed fault can still be put back: the text that it changes is there, once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from validation.tools.faults import listed
+from validation.tools.mutants import mutants
+
+ROOT = Path(__file__).parents[2]
+
+
+STALE = pytest.mark.xfail(reason="the text has gone: to be aimed anew", strict=True)
+EACH = [pytest.param(one, id=one["name"], marks=[STALE] * ("stale" in one)) for one in listed()]
+
+
+@pytest.mark.parametrize("fault", EACH)
+def test_a_fault_is_of_a_text_that_is_there_once(fault: dict[str, str]) -> None:
+    assert (ROOT / fault["file"]).read_text(encoding="utf-8").count(fault["old"]) == 1
+
+
+def test_a_mutant_is_one_change_of_a_function() -> None:
+    found = mutants("potentials/double_exponential.py")
+    assert len({one.source for one in found}) > 10
+    assert any(one.function == "DoubleExponential.force" for one in found)

@@ -1,0 +1,85 @@
+"""`python -m validation paper|hard|speed`, in a checkout: nothing of this is installed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from validation.doors import FolderError
+
+app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__)
+ROOT = Path(__file__).parents[1]
+RESULTS = Path(__file__).parent / "results"
+FAILS, CALL_IS_WRONG = 1, 2
+Only = Annotated[list[str] | None, typer.Option(metavar="NAME", help="One study, as often as needed.")]
+Out = Annotated[Path | None, typer.Option(help="Folder for record, figures and runs; finished runs are reused.")]
+Full = Annotated[bool, typer.Option("--full", help="The long form: hours in place of minutes.")]
+Workers = Annotated[int | None, typer.Option(min=1, help="At a time.", show_default="processors")]
+
+
+@app.command()
+def paper(only: Only = None, out: Out = None, full: Full = False, workers: Workers = None) -> None:
+    """Every statement of the paper, beside the printed value and beside theory. Exit code 1: a row fails."""
+    from validation.paper import STUDIES
+
+    _conduct(STUDIES, out or Path("reproduced"), only, full, workers)
+
+
+@app.command()
+def hard(only: Only = None, out: Out = None, full: Full = False, workers: Workers = None) -> None:
+    """Hard cases, each against a bound that is not the program's own. Exit code 1: a row fails."""
+    from validation.hard import STUDIES
+
+    _conduct(STUDIES, out or Path("stability"), only, full, workers)
+
+
+@app.command()
+def speed(only: Only = None, out: Out = None, full: Full = False, workers: Workers = 1) -> None:
+    """Times side by side in one run, one study after the other. Exit code 1: an asked figure is not reached."""
+    from validation.speed import STUDIES
+
+    _conduct(STUDIES, out or Path("speed"), only, full, workers)
+
+
+@app.command()
+def pages() -> None:
+    """VALIDATION.md, the tables and the README's table from the records in validation/results."""
+    from validation.page import readme_table, speed_table, summary, tables_page, write_between
+    from validation.study import read_record
+
+    records = {name: read_record(RESULTS / f"{name}.json") for name in ("paper", "hard", "speed")}
+    (ROOT / "VALIDATION.md").write_text(summary(records["paper"], records["hard"]), encoding="utf-8")
+    (RESULTS / "tables.md").write_text(tables_page([records["paper"], records["hard"]]), encoding="utf-8")
+    write_between(ROOT / "README.md", "reproduced", readme_table(records["paper"]))
+    write_between(ROOT / "docs" / "performance.md", "speed", speed_table(records["speed"]))
+
+
+def _conduct(studies: object, out: Path, only: list[str] | None, full: bool, workers: int | None) -> None:
+    from validation.page import agreement, duration, number
+    from validation.study import RECORD, Study, conduct
+
+    assert isinstance(studies, tuple)
+    chosen: tuple[Study, ...] = studies
+    try:
+        record = conduct(chosen, out, only or (), full, workers, typer.echo)
+    except KeyError as error:
+        typer.echo(f"--only {error}: no such study; there are {', '.join(one.name for one in chosen)}", err=True)
+        raise typer.Exit(CALL_IS_WRONG) from None
+    except FolderError as error:
+        typer.echo(str(error), err=True)
+        raise typer.Exit(CALL_IS_WRONG) from None
+    for answer in record.answers:
+        typer.echo(f"{answer.name:<16} {agreement(answer.rows)}, in {duration(answer.wall_s)}")
+        for row in answer.rows:
+            if row.verdict == "FAIL":
+                found, wanted = number(row.value), number(row.reference.value)
+                typer.secho(f"  FAIL {row.name}: {found} {row.unit}, {wanted}", fg="red")
+    typer.echo(f"{agreement(record.rows)}; {out / RECORD}")
+    if any(row.verdict == "FAIL" for row in record.rows):
+        raise typer.Exit(FAILS)
+
+
+if __name__ == "__main__":
+    app()

@@ -1,0 +1,133 @@
+"""What validation needs of the program's inside, in one place; all else is had from `contact1d.run` and results files.
+
+`contact_of` opens a contact in a deck, so that single particles can be moved and read.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from contact1d.files import write_whole
+from contact1d.workflow.continuation.contact import Contact
+from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.lattice import start_offset
+from contact1d.workflow.deck.steps import Displace, UnderLoad
+from contact1d.workflow.deck.system import write_system
+from contact1d.workflow.engine.progress import Silent
+from contact1d.workflow.engine.session import Engine, EngineError, Session
+from contact1d.workflow.errors import FolderError, RunError
+from contact1d.workflow.experiments import planned
+from contact1d.workflow.experiments.thermal import chunk_steps
+from contact1d.workflow.identify import Target, estimated, identify, jkr_target, material_scene
+from contact1d.workflow.runs import campaign
+from contact1d.workflow.runs.campaign import write_deck
+from contact1d.workflow.runs.finished import Run, load_run, read_run
+from contact1d.workflow.runs.many import completed
+from contact1d.workflow.runs.processors import cores, pool
+from contact1d.workflow.runs.report import versions
+from contact1d.workflow.runs.scales import jkr_scales
+from contact1d.workflow.scene import (
+    Parabola,
+    PullOff,
+    Reduction,
+    Scene,
+    SceneError,
+    Slide,
+    read_scene,
+    scene_from_dict,
+    scene_to_toml,
+)
+from contact1d.workflow.settings.calibration import CALIBRATION
+from contact1d.workflow.settings.settings import Settings, SettingsError, settings_for
+from contact1d.workflow.sweep.axes import points, read_sweep
+from contact1d.workflow.units import Quantity, rounded
+
+BEFORE = (SceneError, SettingsError, FolderError)
+"""What a scene is refused with before anything runs."""
+TIME_LIMIT = 7200.0
+"""Of LAMMPS in a deck under the hand [s], far above what anything takes: what hangs has failed."""
+CPUINFO = Path("/proc/cpuinfo")
+
+
+def run(scene: Scene, folder: Path, time_limit: float) -> None:
+    """Run a scene as it is, with no advice where it fails. Raises as `contact1d.run`."""
+    campaign.run(scene, folder, figures=False, progress=Silent(), time_limit=time_limit)
+
+
+def finished(scene: Scene, folder: Path) -> Run | None:
+    """The run in `folder`, if it is of this scene and of these versions, and whole."""
+    try:
+        run = read_run(folder)
+    except FolderError:
+        return None
+    return run if run.scene == scene and run.document.get("versions") == versions() else None
+
+
+def finish(scenes: Mapping[str, Scene], folder: Path, workers: int) -> None:
+    """Run every scene that `folder` does not have yet, each in a folder of its name.
+
+    Raises:
+        RunError: a run could not begin.
+    """
+    missing = [name for name, scene in scenes.items() if finished(scene, folder / name) is None]
+    with pool(min(workers, max(1, len(missing)))) as executor:
+        for _, entry in completed([(scenes[name], folder / name) for name in missing], executor):
+            if isinstance(entry, RunError) and not entry.kept:
+                raise entry
+
+
+@contextmanager
+def contact_of(tables: dict[str, Any], folder: Path, **settings: Any) -> Iterator[Contact]:
+    """The contact of a scene, at displacement 0; `settings` in place of the chosen ones."""
+    scene = scene_from_dict({"title": folder.name} | tables)
+    deck = Deck(scene, replace(settings_for(scene), **settings))
+    folder.mkdir(parents=True, exist_ok=True)
+    write_system(deck, folder)
+    with RunContext(deck, folder, Silent(), TIME_LIMIT).contact() as contact:
+        yield contact
+
+
+def still_step() -> float:
+    """ω_max·Δt that the program chooses for a contact at rest."""
+    return CALIBRATION.still_step
+
+
+def deck_text(scene: Scene) -> str:
+    """The deck of a scene with its planned schedule."""
+    settings = settings_for(scene)
+    return Deck(scene, settings).text(planned(scene, settings))
+
+
+def shipped(name: str) -> Path:
+    """A file of `lammps_inputs`, such as "scenes/paper.toml"."""
+    return Path(str(files("contact1d.lammps_inputs") / name))
+
+
+def sweep_points(name: str) -> dict[tuple[float, ...], Scene]:
+    """The scenes of a shipped sweep by the values of the axes that have several."""
+    plan = read_sweep(shipped(f"sweeps/{name}.toml"))
+    varied = [i for i, axis in enumerate(plan.axes) if len(axis.values) > 1]
+    found = {}
+    for point in points(plan):
+        assert point.scene is not None, point.reason
+        found[tuple(float(point.values[i]) for i in varied)] = point.scene
+    return found
+
+
+def machine() -> str:
+    """Kind of machine, without names: "x86_64 with 2 processors (AMD EPYC) under Linux"."""
+    known = (
+        re.search(r"^model name\s*:\s*(\D*)", CPUINFO.read_text(encoding="utf-8"), re.M) if CPUINFO.exists() else None
+    )
+    words = re.sub(r"\(.*?\)", "", known[1]).strip() if known else ""
+    kind = f" ({words})" if words else ""
+    return f"{platform.machine()} with {os.cpu_count()} processors{kind} under {platform.system()}"

@@ -1,0 +1,122 @@
+"""Figures of studies: panels of points beside the lines of what they are held against."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.analysis.plots import THEORY, new_figure, save_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999933")
+"""Okabe and Ito's colours, and one more."""
+MARKERS = "osD^vP*Xh"
+ONE, TWO = (6.4, 4.4), (9.6, 4.2)
+"""Sizes of one panel and of two [inch]."""
+MOST = 12
+"""Names in a legend."""
+
+
+@dataclass(frozen=True)
+class Series:
+    """Points with a name; `spread` their uncertainty or None."""
+
+    name: str
+    x: Array
+    y: Array
+    spread: Array | None = None
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One plot.
+
+    Attributes:
+        along, up: labels of both axes.
+        runs: what this program finds, as points.
+        theory: what that is held against, as lines; a line of one point as a cross.
+        log: which axes are logarithmic, letters of "xy".
+        title: in a corner.
+        lines: whether the runs are lines, too.
+        coloured: whether the lines of theory have the colours of the runs, one for each.
+        bound: where a dashed line is drawn across.
+        mark: where a dotted one is drawn upright.
+        view: limits of y.
+    """
+
+    along: str
+    up: str
+    runs: Sequence[Series]
+    theory: Sequence[Series] = ()
+    log: str = ""
+    title: str = ""
+    lines: bool = False
+    coloured: bool = False
+    bound: float | None = None
+    mark: float | None = None
+    view: tuple[float | None, float | None] | None = None
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Panels side by side, and what they show."""
+
+    caption: str
+    panels: Sequence[Panel]
+
+
+def figure(caption: str, *panels: Panel) -> dict[str, Drawing]:
+    """The figure of a study that has one."""
+    return {"": Drawing(caption, panels)}
+
+
+def figure_of(drawing: Drawing) -> Figure:
+    """The panels side by side."""
+    figure = new_figure(ONE if len(drawing.panels) == 1 else TWO)
+    axes = figure.subplots(1, len(drawing.panels), squeeze=False)[0]
+    for axis, panel in zip(axes, drawing.panels, strict=True):
+        _draw(axis, panel)
+    return figure
+
+
+def save(drawing: Drawing, path: Path) -> None:
+    """Draw, and save whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    save_figure(figure_of(drawing), path)
+
+
+def _draw(axis: Axes, panel: Panel) -> None:
+    for i, one in enumerate(panel.theory):
+        colour = COLOURS[i % len(COLOURS)] if panel.coloured else THEORY
+        style = "" if len(one.x) == 1 else "-" if panel.coloured or not i else ("--", ":")[i % 2]
+        marker = "" if style else "+"
+        axis.plot(one.x, one.y, marker + style, markersize=14, color=colour, linewidth=1.2, label=one.name or None)
+    for i, one in enumerate(panel.runs):
+        colour, style = COLOURS[i % len(COLOURS)], "-" if panel.lines else MARKERS[i % len(MARKERS)]
+        axis.errorbar(
+            one.x, one.y, one.spread, fmt=style, color=colour, markersize=5, capsize=2, fillstyle="none",
+            label=one.name or None,
+        )  # fmt: skip
+    if panel.bound is not None:
+        axis.axhline(panel.bound, color=THEORY, linewidth=1.0, linestyle="--")
+    if panel.mark is not None:
+        axis.axvline(panel.mark, color=THEORY, linewidth=1.0, linestyle=":")
+    for letter in panel.log:
+        getattr(axis, f"set_{letter}scale")("log")
+    if "y" not in panel.log:
+        axis.axhline(0.0, color="black", linewidth=0.6)
+    if panel.view:
+        axis.set_ylim(*panel.view)
+    axis.set(xlabel=panel.along, ylabel=panel.up)
+    axis.set_title(panel.title, loc="left", fontsize=10)
+    if len(axis.get_legend_handles_labels()[1]) <= MOST:
+        axis.legend(frameon=False, fontsize=8)

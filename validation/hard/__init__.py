@@ -1,0 +1,28 @@
+"""What programs of this kind get wrong: classes of hard cases, each against bounds that are not the program's own."""
+
+from validation.hard import (
+    extremes,
+    faults,
+    forces,
+    friction,
+    fuzz,
+    loads,
+    loops,
+    modes,
+    motion,
+    pressed,
+    random_scenes,
+    settling,
+    sharp,
+    similarity,
+    slides,
+    stiffness,
+    thermal,
+)
+from validation.study import Study
+
+STUDIES: tuple[Study, ...] = (
+    stiffness.STIFFNESS, sharp.SHARP, random_scenes.RANDOM, loads.LOADS, settling.SETTLING, loops.LOOPS,
+    friction.FRICTION, similarity.SIMILARITY, forces.FORCES, motion.MOTION, modes.EQUIPARTITION, *thermal.CLASSES,
+    extremes.EXTREMES, *pressed.CLASSES, slides.SLIDES, faults.FAULTS, fuzz.FUZZ,
+)  # fmt: skip

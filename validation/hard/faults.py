@@ -1,0 +1,169 @@
+"""Faults from outside: a run that is killed and made again, files that cannot grow, two runs in one folder."""
+
+from __future__ import annotations
+
+import json
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from validation.doors import scene_from_dict, scene_to_toml
+from validation.figures import Panel, Series, figure
+from validation.hard.cases import PAPER_LAW
+from validation.row import at_most
+from validation.study import Bench, Findings, Study
+
+NAME = "faults"
+COMMAND = (sys.executable, "-m", "contact1d.workflow.cli.app", "run")
+MOST = 1800.0
+"""Wall time of one command [s]."""
+CODES, RESULTS = (0, 2, 3), "results.json"
+SCENE = {
+    "title": "pull-off that is disturbed",
+    "bodies": {
+        "particles": 200,
+        "spacing": 1.0,
+        "profile": {"kind": "parabola", "radius": 1000.0},
+        "bulk_stiffness": 0.83,
+    },
+    "interaction": PAPER_LAW,
+    "neighbours": {"stiffness": 0.3},
+    "horizontal": {},
+    "experiment": {"kind": "pull_off", "method": "quasistatic", "preload": 1.0},
+}
+
+
+def measure(bench: Bench) -> Findings:
+    """All three kinds; the reference is the same run undisturbed, whose phases and files are those of the others."""
+    scene = bench.folder / "scene.toml"
+    scene.write_text(scene_to_toml(scene_from_dict(SCENE)), encoding="utf-8")
+    whole = bench.folder / "undisturbed"
+    phases = _lines(_start(scene, whole))
+    undisturbed = _force(whole)
+    sizes = {path.name: path.stat().st_size for path in sorted(whole.iterdir()) if path.is_file()}
+    moments = [(phases.index(line) + 1, "", f'at "{line.split(":")[0]}"') for line in dict.fromkeys(phases)]
+    moments += [(0, name, f"when {name} appears") for name in (sizes if bench.full else [RESULTS])]
+    checks = [
+        at_most(f"killed {words}: a torn results.json, or another F_A when it is run again in that folder",
+            _killed(scene, bench.folder / f"killed_{index}_{name}", index, name, undisturbed), 0.0,
+            "the same scene undisturbed, to the last digit", evidence="set bound")
+        for index, name, words in moments
+    ]  # fmt: skip
+    codes = []
+    for name, size in sizes.items():
+        most = max(0, size - 1)
+        run = bench.folder / f"full_{most}"
+        code, words = _end(_start(scene, run, most))
+        bad = code not in CODES or "Traceback" in words or (code == 0 and _force(run) != undisturbed)
+        codes.append((most, code))
+        checks.append(
+            at_most(f"disk full at the last byte of {name}: a traceback, another exit code than 0, 2, 3, another F_A",
+                float(bad), 0.0, f"exit 0, 2 or 3 and no traceback; it is {code}", evidence="set bound")
+        )  # fmt: skip
+    checks.append(
+        at_most(
+            "second run in a folder at work that is not refused with exit 2",
+            _second(scene, bench),
+            0.0,
+            "one run for each folder",
+            evidence="set bound",
+        )
+    )
+    x, y = np.array(codes, dtype=float).T
+    return Findings(
+        checks,
+        figure(
+            "Exit code where no file may grow beyond so many bytes",
+            Panel("bytes that a file may have", "exit code", [Series("disk full", x + 1.0, y)], log="x"),
+        ),
+    )
+
+
+def _killed(scene: Path, run: Path, lines: int, file: str, undisturbed: float | None) -> float:
+    """1 where a run that is killed at a line of its progress, or when a file appears, leaves what spoils the next."""
+    process = _start(scene, run)
+    assert process.stderr is not None
+    for _ in range(lines):
+        process.stderr.readline()
+    end = time.monotonic() + MOST
+    while file and not any(run.glob(f"{file}*")) and process.poll() is None and time.monotonic() < end:
+        time.sleep(0.001)
+    process.kill()
+    process.communicate()
+    torn = _torn(run)
+    code, _ = _end(_start(scene, run))
+    return float(torn or code != 0 or _force(run) != undisturbed)
+
+
+def _lines(process: subprocess.Popen[str]) -> list[str]:
+    """What a run tells of its progress."""
+    _, told = process.communicate(timeout=MOST)
+    return told.splitlines()
+
+
+def _start(scene: Path, run: Path, size: int | None = None) -> subprocess.Popen[str]:
+    def limit() -> None:
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # so that writing fails as on a full disk
+        if size is not None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+    return subprocess.Popen(
+        [*COMMAND, str(scene), "--out", str(run), "--no-figures"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=limit,
+    )
+
+
+def _end(process: subprocess.Popen[str]) -> tuple[int, str]:
+    """Exit code and what was said; one that does not end is killed and has code -9."""
+    try:
+        said, complained = process.communicate(timeout=MOST)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        said, complained = process.communicate()
+    return process.returncode, said + complained
+
+
+def _force(run: Path) -> float | None:
+    try:
+        return float(json.loads((run / RESULTS).read_text(encoding="utf-8"))["adhesion_force"]["value"])
+    except (OSError, ValueError, KeyError):
+        return None
+
+
+def _torn(run: Path) -> bool:
+    try:
+        json.loads((run / RESULTS).read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return False
+    except ValueError:
+        return True
+    return False
+
+
+def _second(scene: Path, bench: Bench) -> float:
+    run = bench.folder / "two"
+    first = _start(scene, run)
+    end = time.monotonic() + MOST
+    while not (run / "in.lammps").exists() and first.poll() is None and time.monotonic() < end:
+        time.sleep(0.01)
+    first.send_signal(signal.SIGSTOP)  # at work for as long as it takes
+    code, words = _end(_start(scene, run))
+    first.send_signal(signal.SIGCONT)
+    _end(first)
+    return float(code != 2 or "Traceback" in words or _force(run) is None)
+
+
+FAULTS = Study(
+    NAME,
+    "Killed, disk full, two runs in one folder",
+    "A run that was cut off must not leave a number, or a folder in which the next run ends otherwise.",
+    measure,
+)

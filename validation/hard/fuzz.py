@@ -1,0 +1,190 @@
+"""Random edits of scenes: each ends in a deck or in a sentence, never in a traceback.
+
+A scene of the package is read as text and edited one to four times: a number replaced by an extreme or wrong one, a
+line taken away, doubled or moved, a character changed. What still is a scene goes on to its settings and its deck; some
+of those are run.
+"""
+
+from __future__ import annotations
+
+import json
+import random
+import re
+import warnings
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from validation import doors
+from validation.doors import RunError, SceneError, SettingsError, read_scene, write_whole
+from validation.figures import Panel, Series, figure
+from validation.row import at_most
+from validation.study import Bench, Findings, LateError, Study, at_most_seconds
+
+NAME = "fuzz"
+QUICK, FULL = 2_000, 20_000
+EVERY = 100
+"""One in so many of the decks is run."""
+PIECE = 1000
+"""Scenes of one seed."""
+SLOW, RUN, HANGS = 10, 60, 600
+"""Seconds of work for a scene to become a deck or a sentence, of LAMMPS in a run, and of the clock for what hangs."""
+NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
+VALUES = (
+    "0",
+    "-1",
+    "1e-300",
+    "1e300",
+    "1e20",
+    "1e-6",
+    "1e6",
+    "nan",
+    "inf",
+    "-inf",
+    "true",
+    '"auto"',
+    '"x"',
+    "[]",
+    "{}",
+    "3",
+    "1e-3",
+    "0.5",
+    "2.0",
+    "1000000",
+    "10.0",
+    "7",
+)
+SPOILT = "\"'[]{}=#.,\\\0é\n -"
+
+
+@dataclass
+class Ends:
+    """How many scenes end how, and what the first of each kind said."""
+
+    counts: Counter[str] = field(default_factory=Counter)
+    said: dict[str, str] = field(default_factory=dict)
+
+    def add(self, other: Ends) -> None:
+        """Take in those of another piece."""
+        self.counts += other.counts
+        self.said = other.said | self.said
+
+
+def measure(bench: Bench) -> Findings:
+    """How many scenes end how; one row for each way that must not be. A piece that is there is not made again."""
+    count = FULL if bench.full else QUICK
+    ends = Ends()
+    for seed in range(count // PIECE):
+        path = bench.folder / f"piece_{seed}.json"
+        if not path.exists():
+            write_whole(path, json.dumps(vars(_piece(bench.folder, seed))))
+        kept = json.loads(path.read_text(encoding="utf-8"))
+        ends.add(Ends(Counter(kept["counts"]), kept["said"]))
+    return _findings(ends, count)
+
+
+def _piece(folder: Path, seed: int) -> Ends:
+    """PIECE scenes of one seed; the first that ends in each way is kept as a file."""
+    sources = [path.read_text(encoding="utf-8") for path in sorted(doors.shipped("scenes").glob("*.toml"))]
+    draw, found, decks = random.Random(seed), Ends(), 0
+    path = folder / "scene.toml"
+    for _ in range(PIECE):
+        path.write_text(edited(draw.choice(sources), draw), encoding="utf-8")
+        end, words = _become(path, folder / "run", decks % EVERY == EVERY - 1)
+        decks += end in ("a deck", "ran")
+        found.counts[end] += 1
+        if end not in found.said:
+            found.said[end] = words
+            (folder / f"{end.split(':')[0].replace(' ', '_')}_{seed}.toml").write_bytes(path.read_bytes())
+    return found
+
+
+def _findings(found: Ends, count: int) -> Findings:
+    ends, said = found.counts, found.said
+    bad = {end: found for end, found in ends.items() if end.startswith("a traceback")}
+    worst = "; ".join(f"{found} × {said[end]}" for end, found in bad.items())
+    checks = [
+        at_most(
+            f"tracebacks of {count} random scenes",
+            sum(bad.values()),
+            0.0,
+            "a deck, a result or a sentence",
+            worst or "–",
+            "set bound",
+        ),
+        at_most(
+            f"of {count} random scenes, those that are neither deck nor sentence after {SLOW} s",
+            ends["late"],
+            0.0,
+            "a deck, a result or a sentence",
+            evidence="set bound",
+        ),
+    ]
+    names = sorted(ends)
+    return Findings(
+        checks,
+        figure(
+            "How many random scenes end how",
+            Panel(
+                "end",
+                "scenes",
+                [Series(f"{i}: {name}"[:60], np.array([i]), np.array([ends[name]])) for i, name in enumerate(names)],
+                log="y",
+            ),
+        ),
+    )
+
+
+def edited(text: str, draw: random.Random) -> str:
+    """The text of a scene with one to four random edits."""
+    for _ in range(draw.randint(1, 4)):
+        lines = text.split("\n")
+        match draw.randrange(6):
+            case 0 | 1 | 2:
+                places = list(NUMBER.finditer(text))
+                if places:
+                    first, last = draw.choice(places).span()
+                    text = text[:first] + draw.choice(VALUES) + text[last:]
+            case 3:
+                del lines[draw.randrange(len(lines))]
+                text = "\n".join(lines)
+            case 4:
+                lines.insert(draw.randrange(len(lines)), draw.choice(lines))
+                text = "\n".join(lines)
+            case _:
+                place = draw.randrange(len(text))
+                text = text[:place] + draw.choice(SPOILT) + text[place + draw.randrange(2) :]
+    return text
+
+
+def _become(path: Path, folder: Path, go_on: bool) -> tuple[str, str]:
+    """How a scene file ends, in a word, and what was said. A warning of a library is a fault, too."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            with at_most_seconds(SLOW, of_processor=True):
+                scene = read_scene(path)
+                doors.deck_text(scene)
+            if go_on:
+                with at_most_seconds(HANGS):
+                    doors.run(scene, folder, RUN)
+                return "ran", ""
+    except (SceneError, SettingsError) as error:
+        return "a sentence", str(error)
+    except RunError as error:
+        return "a run refused", error.message
+    except LateError:
+        return "late", ""
+    except Exception as error:  # every other one would reach a person as a traceback
+        return f"a traceback: {type(error).__name__}", f"{type(error).__name__}: {str(error)[:80]}"
+    return "a deck", ""
+
+
+FUZZ = Study(
+    NAME,
+    "Random edits of scenes",
+    "What nobody thought of.",
+    measure,
+)

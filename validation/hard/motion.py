@@ -1,0 +1,210 @@
+"""Motion in time: velocity Verlet up to and past its limit ωΔt = 2, and energy without damping over many steps.
+
+Of a linear oscillator from rest x_n = A cos(nΩ), cos Ω = 1 − (ωΔt)²/2, exactly; past ωΔt = 2 x_n = (−1)ⁿ A cosh(nκ),
+cosh κ = (ωΔt)²/2 − 1. Of any smooth system the energy swings by a constant times Δt² and does not drift.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eigh
+
+from validation.doors import EngineError, Session, contact_of, scene_from_dict, settings_for
+from validation.figures import Panel, Series, figure
+from validation.hard.cases import BODIES, PAPER_LAW
+from validation.references.energy import EnergySurface
+from validation.references.interaction import Exponential, PairInteraction
+from validation.references.model import ChainModel
+from validation.references.solver import ChainSolver
+from validation.row import Reference, Row, absolute, at_most
+from validation.study import Bench, Findings, Study
+
+NAME = "motion"
+SHARES = (0.1, 0.5, 0.9, 0.99, 0.999)
+BEYOND = 1.01
+STEPS = 1000
+EXACT = 1e-10
+"""Of the amplitude after 1000 steps: round-off that the recursion makes 1000 times larger, more near the limit."""
+APART, AMPLITUDE = 30.0, 0.1
+"""[LU]"""
+TIME_STEPS = (0.08, 0.04, 0.02)
+"""Of the runs without damping [TU]; ω_max is about 2."""
+ORDER = 0.1
+"""Of the order 2: the next term in Δt is the fourth power."""
+LOOKS = 400
+TIMED: dict[str, Any] = {"damping": {"coefficient": 0.5}, "interaction": PAPER_LAW, "bodies": BODIES}
+PATH: dict[str, Any] = {"experiment": {"kind": "path", "method": "dynamic", "displacements": [0.05]}}
+LOADED: dict[str, Any] = {"plate": {}, "experiment": {"kind": "load", "force": 1.0}}
+
+
+def measure(bench: Bench) -> Findings:
+    """Oscillators, energy, and the program's own time step against the stiffest motion of the independent solver."""
+    checks = [_oscillator(bench.folder, share) for share in SHARES]
+    checks += _beyond(bench.folder)
+    swings, drift = _energies(bench)
+    fitted = float(np.polyfit(np.log(TIME_STEPS), np.log(swings), 1)[0])
+    count = 10**6 if bench.full else 10**5
+    checks.append(
+        Row(
+            "order of the swing of the energy in Δt, no damping",
+            fitted,
+            Reference(2.0, "velocity Verlet"),
+            absolute(ORDER, "next order"),
+        )
+    )
+    checks.append(
+        at_most(
+            f"drift of the energy over its swing, {count:g} steps without damping",
+            drift,
+            1.0,
+            "velocity Verlet is symplectic: no drift",
+            "sampling of the swing",
+        )
+    )
+    checks += [_time_step(tables, words) for words, tables in (("", {}), (", neighbours 100 k", _stiff(83.0)))]
+    dt = np.array(TIME_STEPS)
+    law = Series("Δt²", dt, swings[0] * (dt / dt[0]) ** 2)
+    return Findings(
+        checks,
+        figure(
+            "Swing of the energy without damping over the time step",
+            Panel("Δt (TU)", "energy (FU·LU)", [Series("swing", dt, np.array(swings))], [law], log="xy"),
+        ),
+    )
+
+
+def _stiff(stiffness: float) -> dict[str, Any]:
+    return {"neighbours": {"stiffness": stiffness}}
+
+
+def _swung(session: Session) -> NDArray[np.float64]:
+    """Displace free particles by AMPLITUDE, far from the other body; where those of one body begin to swing [LU]."""
+    session.execute(
+        f"unfix damping_viscous\ndisplace_atoms upper_body move 0 0 {APART} units box\nrun 0\n"
+        f"displace_atoms particles move 0 0 {AMPLITUDE} units box\n",
+        phase="swinging",
+    )
+    return _heights(session)
+
+
+def _heights(session: Session) -> NDArray[np.float64]:
+    return session.atoms("x")["x"][:24, 2]
+
+
+def _oscillator(folder: Path, share: float) -> Row:
+    omega = math.sqrt(0.83)
+    step = 2.0 * share / omega
+    with contact_of(TIMED | PATH, folder / f"verlet_{share:g}", time_step=step) as contact:
+        session = contact.session
+        start = _swung(session)
+        session.execute(f"run {STEPS}\n")
+        moved = _heights(session) - start + AMPLITUDE
+    angle = math.acos(1.0 - 0.5 * (2.0 * share) ** 2)
+    off = float(np.max(np.abs(moved / AMPLITUDE - math.cos(STEPS * angle))))
+    return at_most(
+        f"place over the amplitude off after {STEPS} steps, ωΔt = {2 * share:g}",
+        off,
+        EXACT,
+        "x_n = A cos(nΩ), cos Ω = 1 − (ωΔt)²/2",
+        "round-off",
+    )
+
+
+def _beyond(folder: Path) -> list[Row]:
+    """Past the limit: it grows as it must, and a run that goes on ends in one sentence."""
+    step, few = 2.0 * BEYOND / math.sqrt(0.83), 10
+    words, moved = "", math.nan
+    try:
+        with contact_of(TIMED | PATH, folder / "verlet_beyond", time_step=step) as contact:
+            session = contact.session
+            start = _swung(session)
+            session.execute(f"run {few}\n")
+            moved = float((_heights(session) - start + AMPLITUDE)[0])
+            session.execute("run 5000\n")
+    except EngineError as error:
+        words = str(error)
+    growth = math.acosh(0.5 * (2.0 * BEYOND) ** 2 - 1.0)
+    off = abs(moved / AMPLITUDE / math.cosh(few * growth) - 1.0)
+    said = float(not words or "\n" in words or "Traceback" in words)
+    return [
+        at_most(
+            f"growth off after {few} steps, ωΔt = {2 * BEYOND:g}", off, EXACT, "x_n = (−1)ⁿ A cosh(nκ)", "round-off"
+        ),
+        at_most(
+            f"a run at ωΔt = {2 * BEYOND:g} that ends otherwise than in a sentence",
+            said,
+            0.0,
+            "no number from what flies apart",
+            evidence="set bound",
+        ),
+    ]
+
+
+def _energies(bench: Bench) -> tuple[list[float], float]:
+    """Swing of the energy at each time step, over the same time; and how far its mean drifts over many steps."""
+    swings = []
+    for step in TIME_STEPS:
+        energy = _energy(bench.folder / f"energy_{step:g}", step, round(160.0 / step), LOOKS)
+        swings.append(float(np.std(energy)))
+    many = 10**6 if bench.full else 10**5
+    energy = _energy(bench.folder / "energy_long", TIME_STEPS[1], many, 10 * LOOKS)
+    tenth = energy.size // 10
+    return swings, abs(float(np.mean(energy[-tenth:]) - np.mean(energy[:tenth]))) / float(np.std(energy[:tenth]))
+
+
+def _energy(folder: Path, step: float, steps: int, looks: int) -> Any:
+    tables = TIMED | PATH | {"neighbours": {"stiffness": 0.3}}
+    with contact_of(tables, folder, time_step=step) as contact:
+        session = contact.session
+        session.execute(
+            "thermo_style custom step pe ke\nthermo_modify norm no\nunfix damping_viscous\n"
+            "displace_atoms upper_body move 0 0 -0.05 units box\n",
+            phase="swinging",
+        )
+        energy = []
+        stride = max(1, steps // looks)
+        for _ in range(looks):
+            energy.append(sum(session.measure(f"run {stride} post no\n", ("pe", "ke")).values))
+    return np.array(energy)
+
+
+def _time_step(more: dict[str, Any], words: str) -> Row:
+    """ωΔt/2 of the time step that the program chooses, ω from the solver's Hessian under the load."""
+    tables = TIMED | LOADED | more
+    step = settings_for(scene_from_dict({"title": "time step"} | tables)).time_step
+    law = PairInteraction(Exponential(**PAPER_LAW["repulsion"]), Exponential(**PAPER_LAW["attraction"]))
+    neighbours = more.get("neighbours", {"stiffness": 0.0})["stiffness"]
+    model = ChainModel(12, 0.83, law, radius=40.0, neighbour_stiffness=neighbours)
+    solver = ChainSolver(model)
+    state, d = solver.equilibrium(0.0), 0.0
+    while state.force < LOADED["experiment"]["force"] and d < 1.0:
+        d += 0.01
+        state = solver.equilibrium(d, state)
+    surface = EnergySurface(model)
+    band = surface.hessian(np.stack([state.lower[:, 1], state.upper[:, 1]], axis=1).ravel(), d)
+    dense = np.zeros((surface.dofs, surface.dofs))
+    for offset in range(band.shape[0]):
+        rows = np.arange(surface.dofs - offset)
+        dense[rows + offset, rows] = dense[rows, rows + offset] = band[offset, : rows.size]
+    omega = math.sqrt(float(eigh(dense, eigvals_only=True)[-1]))
+    return at_most(
+        f"ωΔt/2 of the chosen time step under load{words}",
+        0.5 * omega * step,
+        1.0,
+        "largest eigenvalue of the solver's Hessian",
+        evidence="independent solver",
+    )
+
+
+MOTION = Study(
+    NAME,
+    "Time steps from 0.1 to 1.01 of Verlet's limit, and energy without damping",
+    "Too long a time step makes heat from nothing, just below the limit so little that it is not noticed; a damping "
+    "that is left on, or a force that is not the slope of an energy, makes it drift.",
+    measure,
+)

@@ -1,0 +1,135 @@
+"""Compression up to and past the core, and aligned pairs that buckle sideways.
+
+A pair at the distance r that repels with f is pushed sideways by f u/r for an offset u of its particles, and held by
+both springs in series, k_t/2: unstable where k_t < 2 f/r.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+from validation.doors import Contact, Displace, Run, contact_of
+from validation.figures import Panel, Series, figure
+from validation.hard.cases import CORE, LAW, PairCase, shaped
+from validation.row import at_most
+from validation.study import Bench, Findings, Refused, Study, claim_row
+
+CORE_CLASS, BUCKLING = "core", "buckling"
+RATIO, PUNCH = 0.5, 10
+SHARES, PAST = (0.1, 0.5, 0.85), (1.02, 10.0)
+BUCKLED = (0.9, 0.98, 1.02, 1.1)
+"""Force of a pair over that at which it buckles."""
+PATIENCE, HANGING = 20, ("LAMMPS", "time limit", "nothing was said")
+"""For a refusal [s], and words of one that came too late."""
+TANGENTIAL = 4.0
+"""Tangential stiffness [FU/LU]: a pair then buckles at a third of its core's force."""
+PUSH = 1e-5
+"""Offset that is given to the pairs [LU]."""
+
+
+def measure_core(bench: Bench) -> Findings:
+    """d under shares of what N cores carry over its claim; loads past that are refused in words of this program."""
+    rows, points = [], []
+    for method in ("quasistatic", "dynamic"):
+        case = PairCase("core", RATIO, shaped("flat_punch", PUNCH, 0.0), PUNCH, 0.0, 1e-3, method == "dynamic")
+
+        def pressed(share: float, bench: Bench, case: PairCase = case, method: str = method) -> Run | Refused:
+            experiment = {"kind": "load", "force": share * PUNCH * CORE, "method": method}
+            return bench.run(f"{method}_{share:g}", case.scene() | {"experiment": experiment})
+
+        for share in SHARES:
+            words = f"d off over its claim at {share:g} of the core's force, {method}"
+            exact = case.exact().deepest(share * PUNCH * CORE)
+            rows.append(claim_row(words, pressed(share, bench), "displacement", exact, "independent pairs"))
+            points.append((share, max(rows[-1].value, 1e-6)))
+        soon = replace(bench, patience=PATIENCE)
+        ends = [pressed(share, soon) for share in PAST]
+        bad = sum(not isinstance(end, Refused) or any(word in end.words for word in HANGING) for end in ends)
+        words = f"loads of {PAST} core forces that are held, hang, or end in words of LAMMPS, {method}"
+        rows.append(at_most(words, bad, 0.0, "the core carries no more"))
+    shown = Series("runs", *np.array(points).T)
+    panel = Panel("load over the core's force", "error of d over its claim", [shown], log="xy", bound=1.0)
+    return Findings(rows, figure("Error over claim up to the core; dashed: the bound", panel))
+
+
+def measure_buckling(bench: Bench) -> Findings:
+    """Pairs that are pushed aside a little: below the critical force they come back, above it they go on."""
+    critical = float(brentq(lambda r: 2.0 * float(LAW.force(np.array(r))) / r - TANGENTIAL, 1e-4, 0.023))
+    most = float(LAW.force(np.array(critical)))
+    checks, drawn = [], []
+    for share in BUCKLED:
+        r = float(brentq(lambda r, f=share * most: float(LAW.force(np.array(r))) - f, 1e-5, 0.0236, xtol=1e-16))
+        case = PairCase("buckling", RATIO, shaped("flat_punch", 3, 0.0), 3, 0.0)
+        d = LAW.force_free_distance() - (r - 2.0 * share * most / case.stiffness)
+        bodies = case.scene()["bodies"] | {"bulk_stiffness_tangential": TANGENTIAL}
+        tables: dict[str, Any] = case.scene() | {
+            "bodies": bodies,
+            "horizontal": {},
+            "experiment": {"kind": "path", "displacements": [d]},
+        }
+        with contact_of(tables, bench.folder / f"pushed_{share:g}") as contact:
+            offset = _pushed(contact, d)
+        stays = share < 1.0
+        value = offset / PUSH if stays else PUSH / max(offset, 1e-300)
+        words = "left of the push" if stays else "push over where it ends"
+        checks.append(
+            at_most(
+                f"{words}, pair at {share:g} of the force at which it buckles",
+                value,
+                0.5,
+                "k_t = 2 f/r",
+                "where the minimiser stops: some of the push",
+            )
+        )
+        drawn.append((share, max(offset / PUSH, 1e-9)))
+    return Findings(
+        checks,
+        figure(
+            "What becomes of a small push sideways; dashed: nothing",
+            Panel(
+                "force over the critical one",
+                "offset over the push",
+                [Series("runs", *np.array(drawn).T)],
+                log="y",
+                bound=1.0,
+            ),
+        ),
+    )
+
+
+def _pushed(contact: Contact, d: float) -> float:
+    """How far particles are in the end from where they stood aligned at the displacement d [LU], after a push.
+
+    Sideways or in height: pairs that buckle may slip past each other until they are aligned again.
+    """
+    contact.begin("loading")
+    moves = math.ceil(d / contact.settings.longest_move)
+    for i in range(moves):  # in one move they would pass each other
+        contact.row(Displace(d * (i + 1) / moves))
+    contact.finish()
+    before = contact.session.atoms("x")["x"][:6]
+    contact.session.execute(f"displace_atoms upper move {PUSH!r} 0 0 units box\n", phase="pushed")
+    contact.session.execute("min_style fire\nminimize 0.0 1e-13 20000 20000\n")
+    return float(np.max(np.abs(contact.session.atoms("x")["x"][:6] - before)))
+
+
+CLASSES = (
+    Study(
+        CORE_CLASS,
+        "Compression up to and past the core",
+        "The core is finite: beyond its force one body goes through the other, and what comes then is no contact.",
+        measure_core,
+    ),
+    Study(
+        BUCKLING,
+        "Buckling of aligned chains",
+        "Opposite particles under load stand on their heads: exact symmetry keeps them there in a program that never "
+        "pushes, although they are unstable.",
+        measure_buckling,
+    ),
+)

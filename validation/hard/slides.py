@@ -1,0 +1,208 @@
+"""Slides that are hard to get right: back, at rest, too fast, without slips, with many at once, unloaded, off the end.
+
+Each trace and mean is held against an integrator in numpy, one particle on a row against its corrugation as well.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from validation.doors import Run, scene_from_dict, settings_for
+from validation.figures import Panel, Series, figure
+from validation.references.prandtl_tomlinson import corrugation
+from validation.references.slide import Trace
+from validation.row import Row, at_most, so
+from validation.slides import integrated, mean_friction
+from validation.study import Bench, Findings, Refused, Study, over_claim, said
+from validation.study import found as result
+
+NAME = "slides"
+TRACE = 1e-3
+"""Of the peak: the tolerance of the scenes; further legs have the inertia of the first one's drag."""
+CLOSED = 5e-3
+"""Work that is neither dissipated nor stored, over the largest of the three."""
+STATIC = 5e-3
+"""Of the largest force of the corrugation: the plate moves on while it slips."""
+LAW: dict[str, Any] = {
+    "repulsion": {"amplitude": 1.0, "range": 0.5},
+    "attraction": {"amplitude": 0.5, "range": 1.0},
+}
+LOAD = 0.2
+"""Of a particle on a row [FU]."""
+SOURCE = "an integrator in numpy"
+DRIVE = 0.02
+"""[LU/TU]"""
+
+
+def curved(**tables: Any) -> dict[str, Any]:
+    """A sticky curved body on a longer flat one; keys of tables are added to those here."""
+    return _with(
+        {
+            "bodies": {
+                "particles": 48, "upper_particles": 20, "upper_offset": 0.5, "spacing": 1.0, "mass": 1.0,
+                "bulk_stiffness": 3.0, "profile": {"kind": "parabola", "radius": 8.0},
+            },
+            "damping": {"coefficient": 0.2},
+            "plate": {"free": ["x", "z"], "mass": 20.0, "damping": 2.0},
+            "cantilever": {"stiffness": 0.4, "velocity": DRIVE},
+            "experiment": {"kind": "slide", "normal_force": 1.0, "distance": 5.0},
+        },
+        tables,
+    )  # fmt: skip
+
+
+def flat(below: int, above: int, **tables: Any) -> dict[str, Any]:
+    """A row of so many particles on a rigid one that goes on for ever."""
+    return _with(
+        {
+            "bodies": {
+                "particles": below, "upper_particles": above, "upper_spacing": below / above, "spacing": 1.0,
+                "mass": 1.0, "bulk_stiffness": 1.0, "lower": "rigid_chain", "periodic": True,
+                "profile": {"kind": "flat"},
+            },
+            "damping": {"coefficient": 0.3},
+            "plate": {"free": ["x", "z"], "mass": float(above), "damping": 0.0},
+            "cantilever": {"stiffness": 0.05 * above, "velocity": 0.01},
+            "experiment": {"kind": "slide", "normal_force": LOAD * above, "distance": 4.0},
+        },
+        tables,
+    )  # fmt: skip
+
+
+def _with(base: dict[str, dict[str, Any]], tables: dict[str, Any]) -> dict[str, Any]:
+    own = base | {"interaction": LAW, "horizontal": {}, "accuracy": {"tolerance": 1e-3}}
+    return {name: own.get(name, {}) | tables.get(name, {}) for name in {**own, **tables}}
+
+
+PATH = {"kind": "slide", "normal_force": 1.0}
+CASES: dict[str, dict[str, Any]] = {
+    "drive reversed": curved(experiment={"distance": None, "path": [[DRIVE, 3.0], [-DRIVE, 6.0]]}),
+    "drive at rest": curved(experiment={"distance": None, "path": [[DRIVE, 2.0], [0.0, 1.0]]}),
+    "faster than the particles follow": curved(
+        bodies={"particles": 64}, cantilever={"velocity": 0.5, "stiffness": 4.0}, experiment={"distance": 12.0}
+    ),
+    "cantilever stiffer than the contact": curved(cantilever={"stiffness": 20.0}),
+    "no load": curved(experiment={"normal_force": 0.0}),
+    "a pull": curved(experiment={"normal_force": -0.3}),
+    "one particle": flat(32, 1),
+    "particles that slip one by one": flat(
+        13, 8, bodies={"bulk_stiffness_tangential": 0.03}, cantilever={"stiffness": 8.0}, accuracy={"tolerance": 1e-4}
+    ),
+}  # fmt: skip
+SMOOTH, ONE, ALONE = "cantilever stiffer than the contact", "one particle", "particles that slip one by one"
+FAST, BACK, REST = "faster than the particles follow", "drive reversed", "drive at rest"
+STICKY = ("no load", "a pull")
+
+
+def measure(bench: Bench) -> Findings:
+    """Three rows of each slide, what is special of each, and two that end nowhere."""
+    checks: list[Row] = []
+    drawn, lines = [], []
+    for name, tables in CASES.items():
+        scene = scene_from_dict({"title": name} | _clean(tables))
+        found = bench.run(name.replace(" ", "_"), _clean(tables))
+        if isinstance(found, Refused):
+            checks.append(at_most(f"trace, {name}", math.nan, 0.0, SOURCE, said("–", found)))
+            continue
+        trace = integrated(scene, settings_for(scene))
+        checks += [*_rows(name, found, trace), *_special(name, found, trace)]
+        if name == BACK:
+            drawn.append(Series("run", found.friction["plate_x"][::5], found.friction["friction"][::5]))
+            lines.append(Series("integrator", trace.place, trace.friction))
+    checks += _ends(bench)
+    labels = ("place of the plate (LU)", "friction (FU)")
+    return Findings(
+        checks, figure("A slide that is reversed: friction over the place of the plate", Panel(*labels, drawn, lines))
+    )
+
+
+def _clean(tables: dict[str, Any]) -> dict[str, Any]:
+    experiment = {key: value for key, value in tables["experiment"].items() if value is not None}
+    return tables | {"experiment": experiment}
+
+
+def _rows(name: str, found: Run, trace: Trace) -> Iterator[Row]:
+    peak = float(np.abs(trace.friction).max())
+    off = float(np.abs(found.friction["friction"] - trace.friction).max()) / peak
+    yield at_most(f"trace off over the peak, {name}", off, TRACE, SOURCE, "table of the law", "independent solver")
+    work, lost, stored = (
+        result(found, f"{n}").value for n in ("cantilever_work", "dissipated_energy", "stored_energy")
+    )
+    largest = max(map(abs, (work, lost, stored)))
+    yield at_most(
+        f"energy that is lost over the largest, {name}",
+        abs(work - lost - stored) / largest,
+        CLOSED,
+        "the first law",
+        "samples of the drag",
+    )
+    if name not in (BACK, REST):
+        velocity = found.scene.cantilever.velocity if found.scene.cantilever else math.nan
+        mean = mean_friction(trace, 1.0 / velocity)
+        over = over_claim(found, "mean_friction", mean)
+        yield at_most(f"mean friction off over its claim, {name}", over, 1.0, SOURCE, "run-in", "independent solver")
+
+
+def _special(name: str, found: Run, trace: Trace) -> Iterator[Row]:
+    """What a case is there for; 0 where it is so."""
+    friction, slips = found.friction["friction"], result(found, "slips").value
+    if name == BACK:
+        half = friction.size // 3
+        wrong = not (friction[half // 2 : half].mean() > 0.0 > friction[2 * half :].mean())
+        yield so("friction of the wrong sign there or back", wrong)
+        drive = found.friction["drive"]
+        loop = float(np.trapezoid(found.friction["cantilever_force"], drive))
+        yield so("loop of the cantilever that gives work", not loop > 0.0)
+    if name == REST:
+        balance = abs(friction[-1] - found.friction["cantilever_force"][-1]) / float(np.abs(friction).max())
+        own = abs(trace.friction[-1] - trace.cantilever_force[-1]) / float(np.abs(trace.friction).max())
+        yield at_most("force left at rest over the peak, beside the integrator's", balance, own + TRACE, SOURCE)
+        yield so("a mean friction of a drive at rest that is not that of the leg before", slips < 0.0)
+    if name == FAST:
+        yield so("a drive past 2π v/s = √(k/m) that is not warned about", "fast" not in found.warnings)
+    if name == SMOOTH:
+        yield so("slips of a plate that follows its drive", slips > 0.0)
+    if name in STICKY:
+        yield so(f"no friction where adhesion holds, {name}", not result(found, "mean_friction").value > 0.0)
+    if name == ONE:
+        exact = corrugation((1.0, 0.5, 0.5, 1.0), 1.0, LOAD).largest_force
+        off = abs(result(found, "static_friction").value / exact - 1.0)
+        yield at_most("static friction of one particle off", off, STATIC, "max of U′ of its corrugation", "slip")
+    if name == ALONE:
+        yield so("slips of the plate where its particles slip in turn", slips > 0.0)
+
+
+def _ends(bench: Bench) -> Iterator[Row]:
+    """A chain that is too short for the way, and a plate that is thrown off a chain that is long enough for it."""
+    short = bench.run("too_short", curved(bodies={"particles": 26}))
+    refused = isinstance(short, Refused) and short.before and "too short for the way" in short.words
+    yield so("a way off the end that is not refused beforehand", not refused)
+    bodies = {"particles": 68, "upper_particles": 36, "bulk_stiffness": 2.0}
+    thrown = bench.run(
+        "thrown_off",
+        curved(
+            bodies=bodies | {"profile": {"kind": "parabola", "radius": 30.0}},
+            damping={"coefficient": 0.01},
+            plate={"damping": 0.0, "mass": 36.0},
+            cantilever={"stiffness": 0.05, "velocity": 0.05},
+            experiment={"distance": 14.0},
+            accuracy={"tolerance": 1e-2},
+        ),
+    )
+    told = isinstance(thrown, Refused) and not thrown.before and "ran off the lower body" in thrown.words
+    yield so("a plate thrown off the end that is not told", not told)
+    left = all((bench.folder / "thrown_off" / name).is_file() for name in ("friction.csv", "curve.csv", "results.json"))
+    yield so("a trace that is not left of it", not left)
+
+
+SLIDES = Study(
+    NAME,
+    "Slides back, at rest, too fast, smooth, unloaded, one by one, off the end",
+    "A drive that turns or rests, slips that fall into one row, an integrator that lags by half a step, or a plate "
+    "that leaves its chain gives a smooth trace and a wrong friction.",
+    measure,
+)

@@ -1,0 +1,172 @@
+"""Thermal averages: a load against Boltzmann's integral, and the scatter of seeds against the claim."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.stats import chi2
+
+from validation.doors import Run
+from validation.figures import Panel, Series, figure
+from validation.hard.cases import CHANCE, PAPER_LAW, SIGMAS, block_mean, chi_square_bound
+from validation.references.boltzmann_pairs import BoltzmannPairs
+from validation.references.folded_pairs import FoldedPairs
+from validation.references.interaction import Exponential, Floats, PairInteraction
+from validation.references.model import ChainModel
+from validation.references.solver import ChainSolver
+from validation.references.thermal_chain import displacement_under
+from validation.row import Reference, Row, at_most, claim
+from validation.study import Bench, Findings, Refused, Study, claim_row, found, over_claim, said
+
+THERMAL, SEEDS = "boltzmann", "seeds"
+FORGOTTEN = 60
+"""First rows of a thermal load, on the way to equilibrium."""
+BODIES = {"particles": 41, "spacing": 4.0, "profile": {"kind": "parabola", "radius": 1000.0}, "bulk_stiffness": 0.83}
+"""Pull_off.toml's bodies, four times as far apart so that particles feel their opposite only."""
+LOAD = 0.25
+TEMPERATURES = (1e-4, 1e-3, 3e-3)
+WIDE_BODIES: dict[str, Any] = BODIES | {"particles": 200, "spacing": 1.0}
+WIDE_LOAD, WIDE_NEAR, WIDE_WIDTH = 1.0, 0.255, 0.1
+"""The load [FU], and the interval of displacements of its average [LU]: ten standard deviations."""
+WIDE_TEMPERATURES, FULL_WIDE_TEMPERATURES, WIDE_TOLERANCE = (0.0, 1e-3), (0.0, 1e-4, 1e-3), 1e-3
+LAW_HERE = PairInteraction(Exponential(**PAPER_LAW["repulsion"]), Exponential(**PAPER_LAW["attraction"]))
+HEIGHTS: Floats = np.asarray((4.0 * np.arange(-20.0, 21.0)) ** 2 / 2000.0)
+NEAR, WIDTH = 0.24, {1e-4: 0.05, 1e-3: 0.13, 3e-3: 0.22}
+"""Interval of displacements of the integral [LU]: eight standard deviations."""
+
+
+def thermal_scene(temperature: float, seed: int, tolerance: float = 2e-3) -> dict[str, Any]:
+    """A load under noise; without, at temperature 0, the same at rest."""
+    scene: dict[str, Any] = {
+        "bodies": BODIES,
+        "interaction": PAPER_LAW,
+        "accuracy": {"tolerance": tolerance},
+        "experiment": {"kind": "load", "force": LOAD},
+    }
+    if temperature > 0.0:
+        scene |= {"damping": {"coefficient": "auto"}, "noise": {"temperature": temperature, "seed": seed}, "plate": {}}
+    return scene
+
+
+def measure_boltzmann(bench: Bench) -> Findings:
+    """⟨d⟩ under a load at three temperatures, and how much of it is thermal."""
+    rest = FoldedPairs(LAW_HERE, 0.83, HEIGHTS).deepest(LOAD)
+    still = bench.run("rest", thermal_scene(0.0, 0))
+    rows = [claim_row("d at kT = 0 off over its claim", still, "displacement", rest, "independent pairs")]
+    source, limit = "Boltzmann's integral over distances and plate", "statistics: 4 of the run's standard errors"
+    known, exacts = [], []
+    for kT in TEMPERATURES:
+        exact, swing = BoltzmannPairs(LAW_HERE, 0.83, HEIGHTS, kT).displacement(LOAD, NEAR, WIDTH[kT])
+        run = bench.run(f"noise_{kT:g}", thermal_scene(kT, 3))
+        off = over_claim(run, "displacement", exact)
+        rows.append(at_most(f"d at kT = {kT:g} off over its claim", off, SIGMAS, source, said(limit, run)))
+        if isinstance(run, Refused):
+            continue
+        d = found(run, "displacement")
+        if kT > TEMPERATURES[0]:  # there the mean cannot tell the temperature from 0, and the variance does
+            rows.append(
+                Row(f"d(kT = {kT:g}) − d(0)", d.value - rest, Reference(exact - rest, source), claim(limit),
+                    uncertainty=SIGMAS * d.uncertainty, unit="LU")
+            )  # fmt: skip
+        rows.append(_swing_row(run, kT, swing))
+        known.append((kT, d.value))
+        exacts.append((kT, exact))
+    rows += _shipped(bench)
+    theory = [Series("Boltzmann", *np.array(exacts).T)]
+    panel = Panel("kT (FU·LU)", "mean displacement (LU)", [Series("run", *np.array(known).T)], theory, log="x")
+    return Findings(rows, figure("Mean displacement under a load over the temperature", panel))
+
+
+def _shipped(bench: Bench) -> list[Row]:
+    """⟨d⟩ of pull_off.toml's bodies without neighbours, held along x, under 1 FU: all pairs, to first order in kT."""
+    model = ChainModel(WIDE_BODIES["particles"], WIDE_BODIES["bulk_stiffness"], LAW_HERE, radius=1000.0)
+    places = np.linspace(WIDE_NEAR - WIDE_WIDTH, WIDE_NEAR + WIDE_WIDTH, 27)
+    rest = float(brentq(lambda d: ChainSolver(model).equilibrium(d).force - WIDE_LOAD, *places[[0, -1]], xtol=1e-9))
+    checks = []
+    for temperature in FULL_WIDE_TEMPERATURES if bench.full else WIDE_TEMPERATURES:
+        scene = thermal_scene(temperature, 3, WIDE_TOLERANCE if bench.full else 5e-3)
+        scene |= {"bodies": WIDE_BODIES, "experiment": {"kind": "load", "force": WIDE_LOAD}}
+        run = bench.run(f"wide_{temperature:g}", scene)
+        if temperature:
+            exact, source = displacement_under(model, WIDE_LOAD, temperature, places)[0], "all pairs, first order in kT"
+        else:
+            exact, source = rest, "Newton's method on all pairs"
+        over = over_claim(run, "displacement", exact)
+        name = f"d of pull_off.toml's bodies without neighbours under 1 FU at kT = {temperature:g}, off over its claim"
+        limit = f"statistics: {SIGMAS:g} of the run's standard errors" if temperature else "what the run claims"
+        checks.append(at_most(name, over, SIGMAS if temperature else 1.0, source, said(limit, run)))
+    return checks
+
+
+def _swing_row(run: Run, temperature: float, swing: float) -> Row:
+    """The variance of d in time: it tells the temperature where the mean does not."""
+    sampled = np.asarray(run.curve.displacement)[FORGOTTEN:]
+    ratio, error = block_mean(((sampled - sampled.mean()) ** 2 / swing**2)[:, None])
+    off = float(abs(ratio[0] - 1.0) / error[0])
+    return at_most(
+        f"variance of d in time at kT = {temperature:g} off over its standard error",
+        off,
+        SIGMAS,
+        "Boltzmann's integral",
+        f"statistics: {sampled.size} samples, ± {error[0]:.2g}",
+    )
+
+
+def measure_seeds(bench: Bench) -> Findings:
+    """(d − exact)/claim of each seed: its χ² neither too large nor too small."""
+    count, temperature = (24, 1e-4) if bench.full else (6, 1e-4)
+    exact, _ = BoltzmannPairs(LAW_HERE, 0.83, HEIGHTS, temperature).displacement(LOAD, NEAR, WIDTH[temperature])
+    sigmas, silent = [], 0
+    for seed in range(1, count + 1):
+        run = bench.run(f"seed_{seed}", thermal_scene(temperature, seed, 5e-3))
+        if isinstance(run, Run):
+            sigmas.append((found(run, "displacement").value - exact) / found(run, "displacement").uncertainty)
+            silent += abs(sigmas[-1]) > SIGMAS and not run.warnings
+    square = float(np.sum(np.square(sigmas))) if len(sigmas) == count else math.nan
+    source, limit = "Boltzmann's integral; χ² of as many independent seeds", "statistics"
+    checks = [
+        at_most(f"χ² of {count} seeds by their claims: not too large", square, chi_square_bound(count), source, limit),
+        at_most(
+            f"least χ² that chance allows over χ² of {count} seeds: claims not too wide",
+            float(chi2.ppf(CHANCE, count)) / square,
+            1.0,
+            source,
+            limit,
+        ),
+        at_most(
+            f"mean of {count} seeds off, in standard errors of it",
+            abs(float(np.mean(sigmas))) * math.sqrt(count),
+            SIGMAS,
+            source,
+            limit,
+        ),
+    ]
+    return Findings(
+        checks,
+        figure(
+            "Deviation of each seed over its claim",
+            Panel(
+                "seed", "(d − exact)/claim", [Series("seeds", 1.0 + np.arange(float(len(sigmas))), np.array(sigmas))]
+            ),
+        ),
+    )
+
+
+CLASSES = (
+    Study(
+        THERMAL,
+        "Thermal averages against Boltzmann's integral",
+        "A thermal number can be right at 0 and wrong in what the noise adds: the part that is thermal has a row of "
+        "its own.",
+        measure_boltzmann,
+    ),
+    Study(
+        SEEDS,
+        "Scatter over seeds against the claim",
+        "A standard error that is too small is a wrong number; one that is too large hides one.",
+        measure_seeds,
+    ),
+)

@@ -1,0 +1,177 @@
+"""Detachment under heat: nine pairs pulled at a steady loading rate until they part, beside Smoluchowski's equation.
+
+The pairs are too far apart to feel each other, so that the free energy of the plate is nine times that of a pair, by
+quadrature. The density of the plate is followed in time as the load grows, over three decades of its rate.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from validation.doors import Scene, scene_from_dict
+from validation.figures import Array, Panel, Series, figure
+from validation.page import agreement, number
+from validation.references.boltzmann_pairs import BoltzmannPairs
+from validation.references.detachment import detachment_in_time, drag_of_pairs, garg
+from validation.references.interaction import Exponential, PairInteraction
+from validation.row import Reference, Row, absolute, relative, solver
+from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
+
+if TYPE_CHECKING:
+    pass
+
+NAME = "detachment"
+PAIRS, APART, STIFFNESS, DRAG, TEMPERATURE = 9, 3.0, 2.0, 0.5, 5e-3
+"""Pairs, their spacing [LU], springs [FU/LU], γ [FU·TU/LU] of a particle, kT [FU·LU]."""
+LAW = (0.18, 0.13, 0.09, 0.26)
+"""A [FU·LU], a [LU], B [FU·LU], b [LU]."""
+REPEATS = {3e-5: 8, 3e-4: 16, 3e-3: 24, 3e-2: 24}
+"""Loading rates [FU/TU] and pulls."""
+FARTHEST, DEEPEST, PLACES = -1.6, 0.45, 2200
+"""Places of the density [LU]."""
+COLD = 2e-5
+"""kT [FU·LU] of the forces that say where the largest tension is."""
+LET_GO = 0.99
+"""Share of the largest tension that has its place beyond the barrier, as the program has it."""
+SIGMAS, MOST_RMS = 4.0, 2.2
+"""Standard errors that a row allows; and of all means together, of four by chance once in a thousand times."""
+STATISTICS = "statistics: four standard errors"
+BY_CHANCE = "four standard errors, and by chance it is near"
+LAGGING = {"lagging": "the reference has the same drag"}
+
+
+def scene(rate: float, repeats: int) -> Scene:
+    """The pairs, pulled at a rate [FU/TU]."""
+    A, a, B, b = LAW
+    return scene_from_dict({
+        "title": "nine pairs under heat",
+        "bodies": {
+            "particles": "auto", "spacing": APART, "profile": {"kind": "flat_punch", "radius": 0.5 * PAIRS * APART},
+            "bulk_stiffness": STIFFNESS, "reduction": "geike_popov", "mass": 0.02,
+        },
+        "interaction": {"repulsion": {"amplitude": A, "range": a}, "attraction": {"amplitude": B, "range": b}},
+        "damping": {"coefficient": DRAG},
+        "noise": {"temperature": TEMPERATURE, "seed": 1},
+        "plate": {"mass": 0.1},
+        "accuracy": {"tolerance": 1e-2},
+        "experiment": {"kind": "pull_off", "preload": 0.1, "loading_rate": rate, "repeats": repeats},
+    })  # fmt: skip
+
+
+def run_name(rate: float) -> str:
+    """Of a run of this study."""
+    return f"detachment_{rate:g}"
+
+
+def scenes(_: Scene) -> Scenes:
+    """Pulls at every rate."""
+    return {run_name(rate): scene(rate, repeats) for rate, repeats in REPEATS.items()}
+
+
+@cache
+def free_energy(temperature: float = TEMPERATURE) -> tuple[Array, Array]:
+    """Displacements d [LU] and A(d) [FU·LU] of all pairs."""
+    A, a, B, b = LAW
+    law = PairInteraction(Exponential(A, a), Exponential(B, b))
+    d = np.linspace(FARTHEST, DEEPEST, PLACES)
+    pairs = BoltzmannPairs(law, STIFFNESS, np.zeros(1), temperature)
+    return d, -temperature * PAIRS * pairs.log_partition(law.force_free_distance() - d)
+
+
+def largest(temperature: float = TEMPERATURE) -> tuple[float, float]:
+    """The largest tension F_A(T) [FU] and |F″| there [FU/LU²]."""
+    d, energy = free_energy(temperature)
+    tension = -np.gradient(energy, d)
+    top = int(tension.argmax())
+    return float(tension[top]), abs(float(np.gradient(np.gradient(tension, d), d)[top]))
+
+
+@cache
+def barrier() -> float:
+    """d [LU] at which the pairs have let go."""
+    d, energy = free_energy(COLD)
+    tension = -np.gradient(energy, d)
+    top = int(tension.argmax())
+    return float(d[:top][tension[:top] < LET_GO * tension[top]][-1])
+
+
+@cache
+def expected(rate: float) -> tuple[float, float]:
+    """Mean and standard deviation [FU] by Smoluchowski's equation."""
+    d, energy = free_energy()
+    drag = drag_of_pairs(d, energy, PAIRS, STIFFNESS, DRAG)
+    return detachment_in_time(d, energy, drag, TEMPERATURE, rate, barrier())
+
+
+def by_garg(rate: float) -> float:
+    """Of his closed form [FU], with F_A at this temperature; NaN where it has none."""
+    strongest, bend = largest()
+    return garg(strongest, bend, PAIRS * DRAG, TEMPERATURE, rate)
+
+
+def judge(bench: Bench) -> Findings:
+    """Means and spreads within their errors, and all means together."""
+    runs = bench.runs
+    row = Rows(runs)
+    means, spreads = [_mean(row, rate) for rate in REPEATS], [_spread(row, rate) for rate in REPEATS]
+    off = [SIGMAS * (one.value - one.reference.value) / one.bound.size for one in means]
+    together = row.at_most("deviation over standard error, rms of the means at all rates",
+                   math.hypot(*off) / len(off) ** 0.5, Reference(MOST_RMS, "chance, 1 in 1000", "set bound"),
+                   "statistics", on=[run_name(rate) for rate in REPEATS], despite=LAGGING)  # fmt: skip
+    figures = figure("Detachment force over the loading rate; bars: standard error", _panel(runs))
+    slow = [rate for rate in REPEATS if math.isfinite(by_garg(rate))]
+    worst = max(abs(by_garg(rate) / expected(rate)[0] - 1.0) for rate in slow)
+    rows = [*means, *spreads, together]
+    finding = (
+        f"Over three decades of the loading rate mean and spread of the detachment force are those of Smoluchowski's "
+        f"equation: {agreement(rows)}. A slow pull lets go at {number(expected(min(REPEATS))[0], 3)} FU, where "
+        f"{number(largest()[0], 3)} FU are the most that the pairs hold at this temperature; a fast one drags on. "
+        f"Garg's closed form, for slow pulls and high barriers, is off by {number(100.0 * worst, 2)} % up to "
+        f"{number(max(slow))} FU/TU and has no value beyond."
+    )
+    return Findings(rows, figures, text=finding)
+
+
+def _mean(row: Rows, rate: float) -> Row:
+    ours, (mean, spread) = found(row.runs[run_name(rate)], "detachment_force"), expected(rate)
+    return row(f"mean detachment force, Ḟ = {rate:g} FU/TU, {REPEATS[rate]} pulls", ours,
+               solver(mean, "Smoluchowski's equation"),
+               absolute(SIGMAS * spread / math.sqrt(REPEATS[rate]), STATISTICS), on=[run_name(rate)], despite=LAGGING,
+               wide=BY_CHANCE)  # fmt: skip
+
+
+def _spread(row: Rows, rate: float) -> Row:
+    ours = found(row.runs[run_name(rate)], "detachment_force_spread")
+    return row(f"spread of the detachment force, Ḟ = {rate:g} FU/TU", ours,
+               solver(expected(rate)[1], "Smoluchowski's equation"),
+               relative(SIGMAS / math.sqrt(2.0 * (REPEATS[rate] - 1)), STATISTICS), on=[run_name(rate)],
+               despite=LAGGING, wide=BY_CHANCE)  # fmt: skip
+
+
+def _panel(runs: Runs) -> Panel:
+    rates = np.asarray(list(REPEATS))
+    line = np.geomspace(rates.min(), rates.max(), 10)
+    ours = [found(runs[run_name(rate)], "detachment_force") for rate in REPEATS]
+    theory = np.asarray([expected(float(rate)) for rate in line])
+    mean, spread = theory.T
+    return Panel(
+        "loading rate (FU/TU)", "detachment force (FU)",
+        [Series("runs", rates, np.asarray([q.value for q in ours]), np.asarray([q.uncertainty for q in ours]))],
+        [Series("Smoluchowski", line, mean), Series("Garg", line, np.asarray([by_garg(float(v)) for v in line])),
+         Series("Smoluchowski ± its spread", line, mean + spread), Series("", line, mean - spread)],
+        log="x", bound=largest()[0], title="dashed: $F_A(T)$",
+    )  # fmt: skip
+
+
+STUDY = Study(
+    NAME,
+    "Detachment under heat",
+    "The paper's model has stochastic forces on the particles (Section 3); its adhesion force is found without them. "
+    "Under heat a contact lets go at a force that scatters, and that is the larger the faster it is pulled.",
+    judge,
+    scenes,
+)

@@ -1,0 +1,107 @@
+"""The study `fig9`: all shipped sweeps of slides and both shipped scenes, their rows and figures."""
+
+from __future__ import annotations
+
+from validation.doors import Run, Scene, read_scene, shipped
+from validation.figures import Drawing
+from validation.page import agreement, number, share
+from validation.paper.fig9.asperity import load_checks, stiffness_checks, temperature_checks, velocity_checks
+from validation.paper.fig9.curved import curved_checks
+from validation.paper.fig9.flats import flat_checks, lattice_checks
+from validation.paper.fig9.reading import SWEEPS, slides
+from validation.row import Reference, Row
+from validation.study import Bench, Findings, Rows, Scenes, Study, found
+
+NAME = "fig9"
+SHIPPED = ("slide", "prandtl_tomlinson")
+"""The slides that ship as scenes."""
+CLOSED = 5e-3
+"""Work that is neither dissipated nor stored, over the largest of the three: the bound that was asked for."""
+CAPTIONS = {
+    "load": "Friction over the normal load: adhesion leaves some at no load, and some under a pull",
+    "radius": "Friction over the radius under one load: the flatter the body, the more particles take part",
+    "velocity": "Friction over the velocity: a straight line over v^{2/3} where the particle sticks and slips",
+    "temperature": "Friction over the temperature: heat carries the particle over what is left of a barrier",
+    "stiffness": "From stick-slip to smooth sliding: a stiffer cantilever ends the slips, and slow friction",
+    "flats": "Flat on flat: of one spacing it sticks; of others its friction is steady, and ends with stiff springs",
+}
+
+
+def scenes(_: Scene) -> Scenes:
+    """The points of all sweeps, and the shipped slides."""
+    needed = {name: read_scene(shipped(f"scenes/{name}.toml")) for name in SHIPPED}
+    for sweep in SWEEPS:
+        points = slides(sweep)
+        needed |= {points.names[place]: scene for place, scene in points.scenes.items()}
+    return needed
+
+
+def judge(bench: Bench) -> Findings:
+    """One law after the other."""
+    runs = bench.runs
+    row = Rows(runs)
+    particle, of_particle = load_checks(row)
+    velocity, over_velocity = velocity_checks(row)
+    warmth, over_temperature = temperature_checks(row)
+    stiffness, over_stiffness = stiffness_checks(row)
+    lattices, traces = lattice_checks(row)
+    flats, over_springs = flat_checks(row)
+    curved, over_load, over_radius = curved_checks(row)
+    panels = (
+        (of_particle, over_load),
+        (over_radius,),
+        (over_velocity,),
+        (over_temperature,),
+        over_stiffness,
+        (traces, over_springs),
+    )
+    figures = {name: Drawing(caption, shown) for (name, caption), shown in zip(CAPTIONS.items(), panels, strict=True)}
+    energy = energy_checks(row)
+    checks = [*curved, *particle, *velocity, *warmth, *stiffness, *lattices, *flats, *energy]
+    offset, rise = (next(check for check in curved if check.name.startswith(words)) for words in ("largest", "what it"))
+    threshold = next(check for check in flats if check.name.startswith("k_t at"))
+    finding = (
+        f"A curved body needs {number(offset.value, 3)} FU to slide without a load, and "
+        f"{number(rise.value, 3)} FU more for each FU of it; mean friction and trace are the integrator's: "
+        f"{agreement(curved)}. One particle is Prandtl's and Tomlinson's over load, velocity and the cantilever's "
+        f"stiffness: {agreement([*particle, *velocity, *stiffness])}; heat lowers its friction by as much as "
+        f"Smoluchowski's equation says: {agreement(warmth)}. A commensurate flat is so many particles, and an "
+        f"incommensurate one is free above {number(threshold.value, 3)} FU/LU, where particles that share one height "
+        f"should be from {number(threshold.reference.value, 4)} on: {agreement([*lattices, *flats])}. Of the "
+        "cantilever's "
+        f"work {share(energy[-1].value)} at most are neither dissipated nor stored: {agreement(energy)}."
+    )
+    return Findings(checks, figures, text=finding)
+
+
+def energy_checks(row: Rows) -> list[Row]:
+    """Work of the cantilever beside what is dissipated and stored: both shipped slides, and the worst of all others."""
+    names = [name for sweep in SWEEPS for name in slides(sweep).every]
+    source, limit = "bound that was asked for", "the drag is sampled at every fifth step"
+
+    def closed(words: str, value: float, on: list[str]) -> Row:
+        answers = dict.fromkeys(("tolerance", "drag", "fast", "energy"), "the energies are asked for, and no mean")
+        return row.at_most(words, value, Reference(CLOSED, source, "set bound"), limit, on=on, despite=answers,
+                   wide="timesteps are chosen for the means, and the energy follows")  # fmt: skip
+
+    checks = [closed(f"work that is neither dissipated nor stored, {name}.toml", open_energy(row.runs[name]), [name])
+              for name in SHIPPED]  # fmt: skip
+    worst = max(open_energy(row.runs[name]) for name in names)
+    return [*checks, closed(f"the same, worst of {len(names)} slides of the sweeps", worst, names)]
+
+
+def open_energy(run: Run) -> float:
+    """|W − Q − ΔE| over the largest of the three."""
+    work, lost, stored = (found(run, name).value for name in ("cantilever_work", "dissipated_energy", "stored_energy"))
+    return abs(work - lost - stored) / max(abs(work), abs(lost), abs(stored))
+
+
+STUDY = Study(
+    NAME,
+    "Outlook, Fig. 9: friction of bodies of particles",
+    "Fig. 9 shows the set-up of a friction experiment, a normal force and a cantilever that pulls, and no result. "
+    "So this is an outlook: its rows hold what the program makes of the set-up against theory and an independent "
+    "integrator, none against the paper.",
+    judge,
+    scenes,
+)

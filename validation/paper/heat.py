@@ -1,0 +1,238 @@
+"""Friction under heat: one particle on a rigid row, pulled by a spring, beside Smoluchowski's equation and an ensemble.
+
+Slow, the overdamped equation holds, by quadrature and finite volumes; fast, inertia and the particle's height matter,
+and the reference is an ensemble of the equations of motion. ⟨F⟩(T, v) spans three decades of v.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from validation.doors import Scene, scene_from_dict
+from validation.figures import Panel, Series, figure
+from validation.page import agreement, number
+from validation.references.langevin_ensemble import PulledParticle, ensemble_friction
+from validation.references.prandtl_tomlinson import corrugation, slow_friction
+from validation.references.thermal_friction import free_corrugation, textbook_friction, thermal_friction
+from validation.row import Reference, Row, absolute, solver
+from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
+
+if TYPE_CHECKING:
+    pass
+
+NAME = "heat"
+LAW, LOAD, SPACING = (2.0, 0.5, 1.0, 1.0), 0.5, 1.0
+"""A [FU·LU], a [LU], B [FU·LU], b [LU] of the row; F_N [FU]; s [LU]."""
+OWN, MASS, DRAG = 1.0, 0.1, 0.8
+"""Springs of the particle [FU/LU], m = M [MU], γ [FU·TU/LU]."""
+ETA = 3.0
+"""max(−U″) over the spring to the drive: sticks and slips without heat."""
+WELLS = corrugation(LAW, SPACING, LOAD)
+SPRING = WELLS.steepest / ETA
+BARRIER = 2.0 * abs(float(WELLS.coefficients[0]))
+"""U from hollow to top [FU·LU], without a pull."""
+SHARES = (0.05, 0.15)
+"""kT over it."""
+DRIVES = {2e-4: 7.0, 2e-3: 20.0, 2e-2: 60.0, 2e-1: 100.0}
+"""Velocities [LU/TU] and ways [LU]."""
+SLOW = 5e-3
+"""Velocity [LU/TU] below which Smoluchowski's equation is the reference: γ v is a tenth of F_max there."""
+COPIES, ENSEMBLE_STEP = 200, 0.05
+TIMES = 1500.0
+"""Time [TU] of each copy of an ensemble."""
+SIGMAS, MOST_RMS = 4.0, 1.8
+"""Standard errors that a row allows; and of all rows together, of eight by chance once in a thousand times."""
+INTERVAL = 1.96
+"""Half-width of the intervals of 95 % that a run states, over its standard error."""
+TEMPERATURE, RATIO = 2e-3, 3.0
+"""Of the flat pair at rest [FU·LU], and the standard errors that its ratio is allowed."""
+FLAT_PAIR: dict[str, Any] = {
+    "bodies": {
+        "particles": 8, "upper_particles": 8, "spacing": 1.0, "lower": "rigid_chain", "periodic": True,
+        "profile": {"kind": "flat"}, "bulk_stiffness": 1.0,
+    },
+    "interaction": {"repulsion": {"amplitude": 1.0, "range": 0.5}, "attraction": {"amplitude": 0.5, "range": 1.0}},
+    "horizontal": {},
+    "damping": {"coefficient": 0.4},
+    "noise": {"temperature": TEMPERATURE, "seed": 3},
+    "plate": {"free": ["x", "z"], "mass": 8.0, "damping": 4.0},
+    "cantilever": {"stiffness": 0.4, "velocity": 5e-3},
+    "accuracy": {"tolerance": 1e-2},
+}  # fmt: skip
+"""Eight particles on a rigid row, under heat; the plate's own drag is ten times that of one of them."""
+STATISTICS = "statistics: four standard errors of the run and of the reference"
+AT_REST = {
+    "energy": "the plate's temperature is asked for, not the balance of energies",
+    "unsteady": "it does not slide",
+}
+DRAGGED = {
+    "drag": "the reference has the same drag, against what moves with the drive",
+    "energy": "the mean friction is asked for, not the balance of energies",
+}
+
+
+def body(share: float) -> PulledParticle:
+    """The particle at kT of that share of the barrier."""
+    cantilever = 1.0 / (1.0 / SPRING - 1.0 / OWN)
+    return PulledParticle(LAW, SPACING, LOAD, OWN, cantilever, MASS, MASS, DRAG, share * BARRIER)
+
+
+def scene(share: float, velocity: float, distance: float, seed: int = 1) -> Scene:
+    """The same as a scene."""
+    particle = body(share)
+    return scene_from_dict({
+        "title": "a particle on a row, under heat",
+        "bodies": {
+            "particles": 32, "upper_particles": 1, "upper_offset": 0.5, "spacing": SPACING, "lower": "rigid_chain",
+            "periodic": True, "profile": {"kind": "flat"}, "bulk_stiffness": OWN, "mass": MASS,
+        },
+        "interaction": {
+            "repulsion": {"amplitude": LAW[0], "range": LAW[1]}, "attraction": {"amplitude": LAW[2], "range": LAW[3]},
+        },
+        "horizontal": {},
+        "damping": {"coefficient": DRAG},
+        "noise": {"temperature": particle.temperature, "seed": seed},
+        "plate": {"free": ["x", "z"], "mass": MASS, "damping": 0.0},
+        "cantilever": {"stiffness": particle.cantilever, "velocity": velocity},
+        "accuracy": {"tolerance": 1e-2},
+        "experiment": {"kind": "slide", "normal_force": LOAD, "distance": distance},
+    })  # fmt: skip
+
+
+def _plate_at_rest() -> Scene:
+    """The flat pair, which does not slide."""
+    at_rest = {"kind": "slide", "normal_force": 1.6, "path": [[0.0, 20.0]]}
+    return scene_from_dict({"title": "a plate at rest, under heat"} | FLAT_PAIR | {"experiment": at_rest})
+
+
+def run_name(share: float, velocity: float) -> str:
+    """Of a run of this study."""
+    return f"heat_T{share:g}_v{velocity:g}"
+
+
+def scenes(_: Scene) -> Scenes:
+    """Two temperatures, four velocities, and a plate at rest."""
+    slides = {
+        run_name(share, velocity): scene(share, velocity, distance)
+        for velocity, distance in DRIVES.items()
+        for share in SHARES
+    }
+    return slides | {"heat_plate": _plate_at_rest()}
+
+
+@cache
+def smoluchowski(share: float, velocity: float) -> float:
+    """⟨F⟩ [FU]."""
+    particle = body(share)
+    wells, heights = _free(share)
+    kT, mass = particle.temperature, particle.moving_mass
+    return thermal_friction(wells, heights, SPRING, DRAG, kT, velocity, mass)
+
+
+@cache
+def ensemble(share: float, velocity: float) -> tuple[float, float]:
+    """⟨F⟩ and its standard error [FU]."""
+    periods = 1 + math.ceil(TIMES * velocity / SPACING / 10.0)
+    return ensemble_friction(body(share), velocity, COPIES, periods, ENSEMBLE_STEP, seed=1)
+
+
+_free = cache(lambda share: free_corrugation(LAW, SPACING, LOAD, share * BARRIER))
+
+
+def expected(share: float, velocity: float) -> tuple[float, float]:
+    """⟨F⟩ and its standard error [FU] of the reference that holds at this velocity."""
+    return (smoluchowski(share, velocity), 0.0) if velocity < SLOW else ensemble(share, velocity)
+
+
+def judge(bench: Bench) -> Findings:
+    """Every mean within its errors, all of them together, and the temperature of a plate that drag of its own cools."""
+    runs = bench.runs
+    row = Rows(runs)
+    rows = [_friction(row, share, velocity) for share in SHARES for velocity in DRIVES]
+    names = [run_name(share, velocity) for share in SHARES for velocity in DRIVES]
+    off = [SIGMAS * (one.value - one.reference.value) / one.bound.size for one in rows]
+    rows.append(
+        row.at_most("deviation over standard error, rms of all velocities and temperatures",
+            math.hypot(*off) / len(off) ** 0.5, Reference(MOST_RMS, "chance, 1 in 1000", "set bound"), "statistics",
+            on=names, despite=DRAGGED)
+    )  # fmt: skip
+    plate = found(runs["heat_plate"], "plate_temperature")
+    sigma = plate.uncertainty / INTERVAL / TEMPERATURE
+    rows.append(
+        row("temperature of a plate with drag of its own over that of the particles", plate.value / TEMPERATURE,
+            Reference(1.0, "equipartition"),
+            absolute(RATIO * sigma if math.isfinite(sigma) else 0.0, "statistics: three standard errors"),
+            uncertainty=sigma, on=["heat_plate"], despite=AT_REST)
+    )  # fmt: skip
+    figures = figure(
+        "Mean friction over velocity under heat: runs, references, and the (ln v)^(2/3) law", *_panels(runs)
+    )
+    slowest = min(DRIVES)
+    top = WELLS.largest_force
+    laws = [number(_textbook(share, slowest) / top, 2) for share in SHARES]
+    means = [number(smoluchowski(share, slowest) / top, 2) for share in SHARES]
+    finding = (
+        f"Over three decades of velocity the mean friction of one particle under heat is that of the references, "
+        f"{agreement(rows[:-2])}: Smoluchowski's equation up to {SLOW:g} LU/TU, an ensemble of the equations of motion "
+        "beyond. Without heat it would go to one value for slow drives; with it a slow drive waits for fluctuations. "
+        f"The textbook's (ln v)^(2/3) is an expansion about a vanishing barrier: at {number(slowest)} LU/TU it "
+        f"gives {laws[0]} of F_max at kT = {SHARES[0]:g} of the barrier, and {laws[1]} at {SHARES[1]:g}, where the "
+        f"reference has {means[0]} and {means[1]}."
+    )
+    return Findings(rows, figures, text=finding)
+
+
+def _friction(row: Rows, share: float, velocity: float) -> Row:
+    name, (mean, error) = run_name(share, velocity), expected(share, velocity)
+    ours = found(row.runs[name], "mean_friction")
+    top = WELLS.largest_force
+    sigma = math.hypot(ours.uncertainty / INTERVAL, error) / top
+    return row(
+        f"⟨F⟩/F_max, kT = {share:g} of the barrier, v = {velocity:g} LU/TU",
+        ours.value / top,
+        solver(
+            mean / top, "Smoluchowski's equation" if velocity < SLOW else f"ensemble of {COPIES} equations of motion"
+        ),
+        absolute(SIGMAS * sigma if math.isfinite(sigma) else 0.0, STATISTICS),
+        uncertainty=ours.uncertainty / top,
+        on=[name],
+        despite=DRAGGED,
+        wide="four standard errors, and by chance it is near",
+    )
+
+
+def _textbook(share: float, velocity: float) -> float:
+    return textbook_friction(WELLS, SPRING, DRAG, share * BARRIER, velocity)
+
+
+def _panels(runs: Runs) -> list[Panel]:
+    """⟨F⟩/F_max over v, a panel for each temperature: runs, references, the textbook's law."""
+    top, drives = WELLS.largest_force, np.asarray(list(DRIVES))
+    fine = np.geomspace(drives[0], SLOW, 60)
+    panels = []
+    for share in SHARES:
+        means = [found(runs[run_name(share, velocity)], "mean_friction") for velocity in DRIVES]
+        values, spreads = (np.asarray([getattr(one, key) for one in means]) / top for key in ("value", "uncertainty"))
+        known = np.asarray([expected(share, float(v))[0] for v in drives]) / top
+        law = np.asarray([_textbook(share, float(v)) for v in fine]) / top
+        points = [Series("runs", drives, values, spreads), Series("Smoluchowski, then an ensemble", drives, known)]
+        panels.append(
+            Panel("velocity (LU/TU)", r"mean friction over $F_{max}$", points, [Series("$(\\ln v)^{2/3}$", fine, law)],
+                  log="x", bound=slow_friction(WELLS, SPRING) / top, title=f"kT = {share:g} of the barrier",
+                  view=(0.0, None))
+        )  # fmt: skip
+    return panels
+
+
+STUDY = Study(
+    NAME,
+    "Friction under heat",
+    "The paper's model has stochastic forces on the particles and a cantilever that pulls the plate (Section 3), and "
+    "gives no result with either. What a single particle does under both is known.",
+    judge,
+    scenes,
+)

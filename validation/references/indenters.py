@@ -1,0 +1,105 @@
+"""Axisymmetric indenters z = c r^n on a half space, with adhesion or without: JKR is n = 2, c = 1/2R.
+
+By the method of dimensionality reduction, g(a) = kappa c a^n, kappa = n int_0^(pi/2) sin^(n-1) phi dphi by quadrature,
+
+    d(a) = g(a) - sqrt(2 pi a W/E*),    F(a) = 2 E* [a d - g(a) a/(n + 1)]
+
+and all marks by search on F(a) and d(a), so that nothing is shared with the closed forms that users see.
+Sources: Johnson, Kendall and Roberts (1971); Maugis and Barquins (1983); Popov and Hess (2015). Any consistent units.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from validation.references.interaction import Floats
+
+DOUBLINGS = 400
+"""How often the search for a radius may double or halve its first guess."""
+STEP = 1e-4
+"""Relative, of the difference whose root is a minimum: a stationary place is then exact to its square."""
+
+
+@dataclass(frozen=True)
+class Indenter:
+    """One contact.
+
+    Args:
+        coefficient: c > 0 [length^(1-n)].
+        exponent: n >= 1.
+        contact_modulus: E* [stress].
+        work_of_adhesion: W [force/length]; 0 without adhesion.
+    """
+
+    coefficient: float
+    exponent: float
+    contact_modulus: float
+    work_of_adhesion: float = 0.0
+
+    @cached_property
+    def rise(self) -> float:
+        """kappa c."""
+        n = self.exponent
+        return self.coefficient * n * float(quad(lambda phi: math.sin(phi) ** (n - 1.0), 0.0, 0.5 * math.pi)[0])
+
+    def displacement(self, radius: Floats | float) -> Floats:
+        """d(a) [length]; a >= 0 [length]."""
+        a = np.asarray(radius, dtype=np.float64)
+        stretch = np.sqrt(2.0 * math.pi * a * self.work_of_adhesion / self.contact_modulus)
+        return np.asarray(self.rise * a**self.exponent - stretch)
+
+    def force(self, radius: Floats | float) -> Floats:
+        """F(a) [force], positive in compression; a >= 0 [length]."""
+        a, n = np.asarray(radius, dtype=np.float64), self.exponent
+        return np.asarray(2.0 * self.contact_modulus * a * (self.displacement(a) - self.rise * a**n / (n + 1.0)))
+
+    def critical_radius(self) -> float:
+        """a of the largest tension [length], dF/da = 0."""
+        return _rising(lambda a: _slope(self.force, a), self.zero_load_radius())
+
+    def fixed_grips_radius(self) -> float:
+        """a at which the bodies part under a prescribed displacement [length], dd/da = 0."""
+        return _rising(lambda a: _slope(self.displacement, a), self.zero_load_radius())
+
+    def zero_load_radius(self) -> float:
+        """a with F(a) = 0 [length]."""
+        return _rising(lambda a: float(self.force(a)), 1.0)
+
+    def pull_off_force(self) -> float:
+        """F_A [force], a positive magnitude."""
+        return -float(self.force(self.critical_radius()))
+
+
+def jkr(radius: float, contact_modulus: float, work_of_adhesion: float) -> Indenter:
+    """JKR's contact of a sphere R [length]."""
+    return Indenter(0.5 / radius, 2.0, contact_modulus, work_of_adhesion)
+
+
+def with_zero_load_radius(coefficient: float, exponent: float, contact_modulus: float, radius: float) -> Indenter:
+    """The indenter whose contact has that radius [length] without a load."""
+    at_rest = Indenter(coefficient, exponent, contact_modulus)
+    stretch = at_rest.rise * radius**exponent * exponent / (exponent + 1.0)  # of the edge, where F = 0
+    return Indenter(coefficient, exponent, contact_modulus, stretch**2 * contact_modulus / (2.0 * math.pi * radius))
+
+
+def _slope(curve: Callable[[float], Floats], a: float) -> float:
+    """Central difference, fourth order."""
+    h = STEP * a
+    near, far = (float(curve(a + k * h) - curve(a - k * h)) for k in (1.0, 2.0))
+    return (8.0 * near - far) / (12.0 * h)
+
+
+def _rising(function: Callable[[float], float], guess: float) -> float:
+    """The root of a function that is negative below it and positive above."""
+    low = high = guess
+    for _ in range(DOUBLINGS):
+        low = low if function(low) < 0.0 else 0.5 * low
+        high = high if function(high) > 0.0 else 2.0 * high
+    return float(brentq(function, low, high, xtol=1e-300, rtol=1e-14))

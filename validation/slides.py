@@ -1,0 +1,81 @@
+"""A slide as the independent integrator has it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields, replace
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+
+from validation.doors import Scene, Settings, Slide, start_offset
+from validation.figures import Array
+from validation.references.slide import Integrator, SlideModel, Trace
+
+
+def law_of(scene: Scene) -> tuple[float, float, float, float]:
+    """A [FU·LU], a [LU], B [FU·LU], b [LU] of the scene's law."""
+    terms = scene.interaction
+    assert terms is not None
+    assert terms.attraction is not None
+    return terms.repulsion.amplitude, terms.repulsion.range, terms.attraction.amplitude, terms.attraction.range
+
+
+def slide_model(scene: Scene, settings: Settings, beyond: int = 0) -> SlideModel:
+    """Places, springs and drags of a slide, with the values that it leaves open; a lower body longer by so many."""
+    bodies = scene.bodies
+    assert scene.cantilever is not None
+    assert isinstance(scene.experiment, Slide)
+
+    def row(count: int, spacing: float) -> Array:
+        return np.asarray((np.arange(count) - 0.5 * (count - 1)) * spacing, dtype=np.float64)
+
+    below, along = row(settings.lower_particles + beyond, bodies.spacing), row(settings.particles, bodies.own_spacing)
+    height = settings.rest + bodies.profile.height(along)
+    upper = np.column_stack([along + start_offset(scene, settings), height])
+    return SlideModel(
+        lower=np.column_stack([below, np.zeros_like(below)]),
+        upper=upper,
+        law=law_of(scene),
+        cutoff=settings.cutoff,
+        normal_stiffness=scene.bulk_stiffness,
+        tangential_stiffness=scene.tangential_stiffness,
+        mass=bodies.mass,
+        plate_mass=settings.plate_mass,
+        drag=settings.damping,
+        plate_drag=settings.plate_damping,
+        cantilever_stiffness=scene.cantilever.stiffness,
+        velocity=scene.cantilever.velocity,
+        normal_force=scene.experiment.normal_force,
+        rigid=bodies.lower == "rigid_chain",
+        period=settings.lower_particles * bodies.spacing if bodies.periodic else 0.0,
+        neighbours=0.0 if scene.neighbours is None else scene.neighbours.stiffness,
+    )
+
+
+RESIDUAL = 1e-6
+"""Force over that of the law, B/b, below which the integrator's bodies are at rest before they slide."""
+
+
+def integrated(scene: Scene, settings: Settings) -> Trace:
+    """All legs by the independent integrator, in the program's timesteps, measured where the program measures."""
+    assert scene.interaction is not None
+    assert scene.interaction.attraction is not None
+    law = scene.interaction.attraction
+    body = Integrator(slide_model(scene, settings))
+    body.settle(settings.time_step, RESIDUAL * law.amplitude / law.range, drag=settings.calm_damping)
+    legs, drive, time, impulse = [], 0.0, 0.0, 0.0
+    for leg in settings.drive:
+        trace = body.run(leg.rows * leg.steps, leg.time_step, leg.velocity, start=drive, every=leg.steps)
+        drive += leg.velocity * leg.rows * leg.row_time
+        legs.append(replace(trace, time=time + trace.time, impulse=impulse + trace.impulse))
+        time, impulse = float(legs[-1].time[-1]), float(legs[-1].impulse[-1])
+    return Trace(*(np.concatenate([getattr(leg, one.name) for leg in legs]) for one in fields(Trace)))
+
+
+def mean_friction(trace: Trace, period: float) -> float:
+    """Mean of the friction [FU] over the last whole periods, one less than there are or half of them."""
+    count = math.floor((trace.time[-1] - trace.time[0]) / period * (1.0 + 1e-9))
+    ends = np.maximum(trace.time[-1] - period * np.arange(count, -1, -1), trace.time[0])
+    blocks = np.diff(CubicHermiteSpline(trace.time, trace.impulse, trace.friction)(ends)) / period
+    return float(blocks[min(count - 1, max(1, count // 2)) :].mean())

@@ -1,0 +1,89 @@
+"""Time per step of generated decks over decks written by hand for just their scene.
+
+Both decks of a scene read the same system.data and table and run turn by turn; the ratio is the median over the turns
+of LAMMPS's own loop times.
+"""
+
+from __future__ import annotations
+
+import re
+import statistics
+from pathlib import Path
+
+from validation.doors import Deck, Displace, Engine, Session, scene_from_dict, settings_for, write_deck
+from validation.hard.cases import PAPER_LAW
+from validation.row import at_most
+from validation.study import Bench, Findings, Study
+
+HAND = Path(__file__).parent / "hand"
+STEPS, ROUNDS, LIMIT = 4_000, 15, 1.05
+"""Steps of a turn, turns, and the ratio that was asked for."""
+BODIES = {"particles": 200, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 1000.0}, "bulk_stiffness": 0.83}
+TIMED = {
+    "damping": {"coefficient": 0.3}, "plate": {"mass": 200.0, "damping": 100.0},
+    "experiment": {"kind": "load", "method": "dynamic", "force": 1.0},
+}  # fmt: skip
+CHAINS = {"bodies": BODIES, "interaction": PAPER_LAW} | TIMED
+SCENES = {
+    "plate": CHAINS,
+    "plate_neighbours_horizontal": CHAINS | {"neighbours": {"stiffness": 0.3}, "horizontal": {}},
+    "plate_noise": CHAINS | {"noise": {"temperature": 1e-4, "seed": 1}},
+    "plane": TIMED | {"bodies": BODIES | {"lower": "rigid_plane"}},
+    "sweep": {
+        "bodies": BODIES | {"lower": "rigid_plane", "bulk_stiffness": 0.5},
+        "experiment": {"kind": "path", "displacements": [2.0]},
+    },
+}
+PLACES = tuple(2.0 * step / STEPS for step in range(STEPS))
+"""Displacements of load steps that are steps of one run."""
+BY_HAND = f"variable row equal step-$(step)\nvariable places vector [{','.join(map(repr, PLACES))}]\n"
+"""What such a run by hand begins with."""
+
+
+def measure(bench: Bench) -> Findings:
+    """A row for each scene."""
+    return Findings([at_most(f"generated deck over one by hand: {name}", ratio(name, bench.folder / name), LIMIT,
+                             "asked for", "median of the turns", "set bound") for name in SCENES])  # fmt: skip
+
+
+def steps_of(deck: Deck) -> tuple[str, str]:
+    """STEPS steps of the generated deck, and of that by hand."""
+    run = f"run {STEPS}\n"
+    if not deck.stepped:
+        return run, run
+    return deck.in_one_run([Displace(place) for place in PLACES]), f"{BY_HAND}run {STEPS} pre no\n"
+
+
+def loop_time(session: Session, folder: Path, steps: str) -> float:
+    """Seconds that LAMMPS reports for STEPS steps."""
+    session.execute(f"log loop.log\n{steps}log none")
+    return float(re.findall(r"Loop time of (\S+)", (folder / "loop.log").read_text())[-1])
+
+
+def ratio(name: str, folder: Path) -> float:
+    """Median over the turns of the time of the generated deck over that by hand."""
+    scene = scene_from_dict({"title": name} | SCENES[name])
+    settings = settings_for(scene)
+    deck = Deck(scene, settings)
+    write_deck(scene, folder)
+    points = settings.table.points if settings.table is not None else 0
+    variables = f"variable points index {points}\nvariable dt index {settings.time_step!r}\n"
+    load = "fix plate_load plate addforce 0.0 0.0 -0.005\n"
+    steps = steps_of(deck)
+    head = deck.head + (deck.begin("loading") if deck.stepped else load)
+    texts = (head, ("" if deck.stepped else variables) + (HAND / f"{name}.lmp").read_text())
+    times: tuple[list[float], list[float]] = ([], [])
+    with Engine.session(folder) as first, Engine.session(folder) as second:
+        sessions = (first, second)
+        for index, session in enumerate(sessions):
+            session.execute(texts[index])
+            loop_time(session, folder, steps[index])  # settles into the contact; not counted
+        for turn in range(ROUNDS):
+            for index in (0, 1) if turn % 2 == 0 else (1, 0):
+                times[index].append(loop_time(sessions[index], folder, steps[index]))
+    return statistics.median(generated / hand for generated, hand in zip(*times, strict=True))
+
+
+OVERHEAD = Study(
+    "overhead", "Time per step: generated deck over one written by hand", "What do the fragments cost?", measure
+)

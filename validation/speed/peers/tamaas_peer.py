@@ -1,0 +1,115 @@
+"""tamaas (3D boundary elements, FFT), Polonsky and Keer's conjugate gradients, warm starts.
+
+Hertz: non-periodic (`registerNonPeriodic`, discrete-convolution FFT), prescribed load, the displacement read in the
+contact. JKR: `ExponentialAdhesionFunctional` needs the gap as the unknown, whose operator is periodic only; so the box
+is SIDE a_0 wide, the mean gap is prescribed, and d is corrected for the images: a square lattice of point forces lowers
+the mean-free displacement by 3.9003 F/(pi E* L), 3.9003 its Madelung constant. Nothing is corrected for what the images
+do to the curvature, 0.4 % of it under F_A.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from validation.speed.clock import spent
+from validation.speed.peers.axisymmetric import limit
+from validation.speed.peers.contact_mechanics_peer import heights
+from validation.speed.peers.contacts import (
+    A_0,
+    CONTACT_MODULUS,
+    WORK_OF_ADHESION,
+    Array,
+    Curve,
+    Setting,
+    closed_form,
+    displacements,
+    law_range,
+)  # fmt: skip
+
+NAME = "tamaas"
+SETTINGS = {
+    "hertz": tuple(Setting(f"{n}²", n, 1e-3) for n in (16, 24, 32, 48, 64)),
+    "jkr": tuple(
+        Setting(f"{n}², µ = {tabor:g}", n, 1e-4, tabor)
+        for n, tabor in ((48, 1.0), (72, 2.0), (96, 2.0), (128, 2.0), (192, 3.0), (256, 4.0), (320, 5.0), (384, 5.0))
+    ),
+}  # fmt: skip
+SIDE = {"hertz": 2.3, "jkr": 5.0}
+"""Side of the square over a_0."""
+MADELUNG = 3.900265
+MOST_ITERATIONS = 3000
+"""Of one displacement. From a pixel of 0.016 a_0 on (320²) all of them end within it at µ = 5; on coarser grids some do
+not end at all. A tolerance of 1e-5 takes longer and gives the same curve."""
+
+
+def load() -> None:
+    """Import the package."""
+    import tamaas
+
+    tamaas.set_log_level(tamaas.LogLevel.error)
+
+
+def curve(contact: str, setting: Setting) -> Curve:
+    """Return the curve of one grid."""
+    import tamaas
+
+    side, n = SIDE[contact] * A_0, setting.grid
+    began = spent()
+    model = tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, [side, side], [n, n])
+    model.E, model.nu = CONTACT_MODULUS, 0.0
+    surface = heights(side, n)
+    solve = _hertz if contact == "hertz" else _jkr
+    solver, _adhesion = _solver(model, surface, contact, setting)  # the solver does not keep its functional alive
+    start_up = spent() - began
+    began = spent()
+    d, force, area = solve(model, solver, surface, side)
+    seconds = spent() - began
+    reference = closed_form(contact, d) if contact == "hertz" else limit(setting.tabor, d)
+    return Curve(d, force, np.sqrt(area / np.pi), seconds, start_up, reference)
+
+
+def _solver(model: Any, surface: Array, contact: str, setting: Setting) -> tuple[Any, Any]:
+    import tamaas
+
+    kind = tamaas.PolonskyKeerRey
+    if contact == "hertz":
+        tamaas.ModelFactory.registerNonPeriodic(model, "dcfft")
+        solver = kind(model, surface, setting.tolerance)
+        solver.setIntegralOperator("dcfft")
+        adhesion = None
+    else:
+        solver = kind(model, surface, setting.tolerance, kind.gap, kind.gap)
+        adhesion = tamaas.ExponentialAdhesionFunctional(surface)
+        adhesion.parameters = {"rho": law_range(setting.tabor), "surface_energy": WORK_OF_ADHESION}
+        solver.addFunctionalTerm(adhesion)
+    solver.max_iter = MOST_ITERATIONS
+    return solver, adhesion
+
+
+def _hertz(model: Any, solver: Any, surface: Array, side: float) -> tuple[Array, Array, Array]:
+    """Return d [nm], F [µN] and the area of the loaded pixels [nm²]; the loads are Hertz's of the prescribed d."""
+    pixel = side**2 / surface.size
+    points = []
+    for load in closed_form("hertz", displacements("hertz"))[0]:
+        solver.solve(load / side**2)
+        touching = model.traction > 0.0
+        model.operators["dcfft"](model.traction, model.displacement)
+        depth = float((model.displacement - surface)[touching].mean())
+        points.append((depth, float(model.traction.sum()) * pixel, pixel * np.count_nonzero(touching)))
+    return tuple(np.array(points).T)
+
+
+def _jkr(model: Any, solver: Any, surface: Array, side: float) -> tuple[Array, Array, Array]:
+    """Return d [nm], F [µN] and the area of the closed pixels [nm²]."""
+    pixel, images = side**2 / surface.size, MADELUNG / (np.pi * CONTACT_MODULUS * side)
+    wanted = displacements("jkr")
+    force = closed_form("jkr", wanted)[0]
+    points = []
+    for depth in np.linspace(wanted[0] - images * force[0], wanted[-1] - images * force[-1], len(wanted)):
+        solver.solve(float(-surface.mean() - depth))
+        load = float(model.traction.sum()) * pixel
+        closed = pixel * np.count_nonzero(model["gap"] <= 0.0)
+        points.append((depth + images * load, load, closed))
+    return tuple(np.array(points).T)

@@ -1,0 +1,151 @@
+"""The cost study behind `[accuracy] tolerance`: what each setting may use up of it, in many scenes.
+
+    python -m validation.tools.calibration             # twenty minutes: all runs, then the same as with --choose
+    python -m validation.tools.calibration --choose    # a minute: the choice from kept runs
+
+The runs are kept in validation/results/calibration.csv, the choice in workflow/settings/calibration.json.
+
+Every scene runs at every tolerance with one share after the other at each value of its LADDER, all others as they are.
+A value is good where it adds no more than PART of the tolerance to the error of any main result, and brings no warning
+and no failure, against the finest value. Chosen is the cheapest of the values that are good in every scene at every
+tolerance and whose next coarser value still keeps the tolerance itself; of values that cost the same the finest one.
+A result that the run itself says to be known less well than the tolerance is not looked at. In a pull-off in time it
+is the schedule that decides how well the critical radius is known, now more and now less: there that is no trouble.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from contact1d.workflow.cost.knobs import at_tolerance
+from contact1d.workflow.cost.measure import Measured, Prepared, measure
+from contact1d.workflow.cost.report import power
+from contact1d.workflow.cost.study import TARGETS, reference_of
+from contact1d.workflow.engine.progress import choose_progress
+from contact1d.workflow.scene import Scene, read_scene
+from contact1d.workflow.settings.calibration import CALIBRATION, Calibration
+from contact1d.workflow.settings.settings import Settings, settings_for
+from contact1d.workflow.units import Quantity
+from validation.tools.calibration_choice import TOGETHER, Row, read_rows, write_choice, write_rows
+
+ROOT = Path(__file__).parents[2]
+ROUNDS, WORKERS = 1, 2
+"""Of each run, since a cost is the mean over all scenes and tolerances; and how many at a time."""
+LADDERS = {
+    "cutoff": (3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1),
+    "table": (0.01, 0.1, 0.3, 1.0, 3.0, 10.0),
+    "residual": (1e-4, 1e-3, 3e-3, 1e-2, 3e-2),
+    "chain": (0.01, 0.03, 0.1, 0.3, 1.0),
+    "smooth_increment": (0.125, 0.25, 0.375, 0.5, 0.75),
+    "loading_increment": (1 / 48, 1 / 24, 1 / 12, 1 / 6),
+    "still_step": (0.25, 0.5, 0.7, 1.0),
+}
+"""From fine to coarse. That of the residual ends at a third of what makes a state untrusted (`require_trust`), that of
+the time step at half of Verlet's limit."""
+WIDE = (
+    "interaction.repulsion={amplitude=0.3, range=0.5}",
+    "interaction.attraction={amplitude=0.15, range=1.0}",
+)
+SMALL = ("bodies.profile.radius=100", "experiment.preload=0.3")
+PUSHED = 'experiment={kind="load", force=20.0}'
+TIMED = ('damping={coefficient="auto"}', 'plate={damping="auto"}', "experiment.method=dynamic")
+SCENES: dict[str, tuple[str, tuple[str, ...], tuple[str, ...]]] = {
+    "pull_off": ("pull_off", (), ()),
+    "load": ("load", (), ()),
+    "paper": ("paper", (), ()),
+    "hertz_plane": ("hertz_plane", (), ()),
+    "path_hysteresis": ("path_hysteresis", (), ()),
+    "pull_off_dynamic": ("pull_off_dynamic", (), ()),
+    "pull_off, R = 100": ("pull_off", SMALL, ("neighbours", "horizontal")),
+    "pull_off, ranges of 0.5 and 1": ("pull_off", WIDE, ()),
+    "pull_off_dynamic, R = 100": ("pull_off_dynamic", SMALL, ("neighbours", "horizontal")),
+    "pull_off_dynamic, ranges of 0.5 and 1": ("pull_off_dynamic", WIDE, ()),
+    "load, in time": ("load", TIMED, ()),
+    "pull_off, cone": ("pull_off", ('bodies.profile={kind="cone", slope=0.03}',), ("horizontal",)),
+    "pull_off, snapping": ("path_hysteresis", ('experiment={kind="pull_off", preload=0.3}',), ()),
+    "load, rigid plane": ("hertz_plane", (PUSHED,), ()),
+    "load, rigid plane, neighbours": ("hertz_plane", (PUSHED, "neighbours={stiffness=0.3}"), ()),
+}
+"""Name: a shipped scene, keys that are set, effects that are left out. The one with noise is not among them: a change
+of any setting there gives another sample of the motion, which hides what the setting does."""
+
+
+def studied(name: str, shares: Mapping[str, Sequence[Calibration]]) -> list[Row]:
+    """Run a scene of SCENES at every tolerance of TARGETS with these shares; the first of each list is the finest."""
+    file, keys, without = SCENES[name]
+    scene = read_scene(ROOT / "lammps_inputs" / "scenes" / f"{file}.toml", keys, without)
+    rows: list[Row] = []
+    in_time = scene.method == "dynamic" and scene.experiment.kind == "pull_off"
+    with tempfile.TemporaryDirectory() as place:
+        _, reference = reference_of(scene, Path(place))
+        for tolerance in TARGETS:
+            asked = at_tolerance(scene, tolerance).scene(scene)
+            chosen = {
+                (share, one): settings_for(asked, calibration=one) for share, many in shares.items() for one in many
+            }
+            same = {key: _effective(asked, settings) for key, settings in chosen.items()}
+            ready = {same[key]: Prepared(same[key], asked, settings) for key, settings in chosen.items()}
+            progress = choose_progress()
+            progress.phase(f"{name}, tolerance {power(tolerance)}", ROUNDS * len(ready))
+            done = measure(list(ready.values()), Path(place), ROUNDS, WORKERS, progress)
+            progress.close()
+            for share, many in shares.items():
+                if len({same[share, one] for one in many}) > 1 or share == TOGETHER:
+                    found = [done[same[share, one]] for one in many]
+                    values = [getattr(one, share, math.nan) for one in many]
+                    rows += _rows((name, tolerance, share), values, found, reference, claims=not in_time)
+    return rows
+
+
+def _effective(scene: Scene, settings: Settings) -> str:
+    """What a run of the scene depends on among the settings that shares choose: runs that agree in it are one."""
+    timed = scene.method == "dynamic"
+    step = settings.smooth_step if settings.is_smooth else settings.displacement_step
+    points = settings.table.points if settings.table is not None else 0
+    pace = settings.time_step if timed else settings.force_tolerance
+    searched = not timed and scene.experiment.kind != "path"
+    return f"{settings.particles} {settings.cutoff!r} {points} {pace!r} {step if searched else 0.0!r}"
+
+
+def _rows(
+    key: tuple[str, float, str],
+    values: Sequence[float],
+    found: Sequence[Measured],
+    reference: Mapping[str, Quantity],
+    claims: bool,
+) -> Iterator[Row]:
+    tolerance, finest = key[1], found[0]
+    if finest.failure:
+        return
+    for value, one in zip(values, found, strict=True):
+        if trouble := one.failure or next((f"no {name}" for name in reference if name not in one.quantities), ""):
+            yield Row(*key, value, math.nan, math.nan, math.nan, 0, " ".join(trouble.split()))
+            continue
+        known = {name: best.value for name, best in reference.items() if f"tolerance {name}" not in finest.warnings}
+        mine, base = (
+            {name: abs(it.quantities[name].value / best - 1.0) / tolerance for name, best in known.items()}
+            for it in (one, finest)
+        )
+        added = max((mine[name] - base[name] for name in known), default=0.0)
+        error, more = max(mine.values(), default=0.0), one.warnings - finest.warnings
+        warned = sorted(name for name in more if claims or not name.startswith("tolerance "))
+        yield Row(*key, value, max(added, 0.0), error, one.cpu_s, one.steps, ", ".join(warned))
+
+
+def main(arguments: Sequence[str]) -> None:
+    """The command."""
+    if "--choose" not in arguments:
+        ladders = {share: [replace(CALIBRATION, **{share: one}) for one in many] for share, many in LADDERS.items()}
+        write_rows([row for name in SCENES for row in studied(name, ladders)])
+    rows = [row for row in read_rows() if row.share != TOGETHER]
+    chosen = {TOGETHER: [write_choice(rows)]}
+    write_rows([*rows, *(row for name in SCENES for row in studied(name, chosen))])
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

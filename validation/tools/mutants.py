@@ -1,0 +1,243 @@
+"""Random faults: a share of all small ones is put into the code, one at a time, and the tests that reach it must fail.
+
+    python -m validation.tools.mutants [FOLDER ...] [--number 100] [--seed 1] [--tests tests/unit ...]
+
+A fault changes one operator, comparison or number in a copy of this checkout. A trace of calls says which tests reach
+its function; these run there, quick ones first, up to the first that fails or LONGEST. One that passes them survives:
+it is printed and listed in results/mutants.json, with the reason if one was written there by hand (kept for the same
+change). What no user could meet is not drawn: messages, types, drawings, and `strict=`. Exit code 1 where fewer than
+ASKED are noticed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import json
+import os
+import random
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import CodeType, FrameType
+from typing import Any
+
+from validation.tools.copies import ROOT, copy_of_this, first_failure, load, run_tests
+
+RESULTS = Path(__file__).parents[1] / "results" / "mutants.json"
+FOLDERS = ("workflow", "analysis", "potentials")
+TESTS = ("tests/unit", "tests/decks", "tests/validation", "tests/hard")
+ASKED = 0.85
+"""Asked of the share that is noticed."""
+LONGEST, TRACED = 60.0, 7200.0
+"""Time of the tests that look for one fault, as they took when traced, and of the trace of all [s]."""
+PATIENCE = 10.0
+"""Clock of a run over the time that its tests took, on a machine that does other things too."""
+ROUND_OFF = 1e-9
+"""A number below it guards against round-off."""
+OPERATORS: dict[type[ast.AST], type[ast.AST]] = {
+    ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.FloorDiv: ast.Mult,
+    ast.Pow: ast.Mult, ast.Mod: ast.Mult, ast.And: ast.Or, ast.Or: ast.And, ast.Lt: ast.GtE, ast.GtE: ast.Lt,
+    ast.Gt: ast.LtE, ast.LtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq, ast.Is: ast.IsNot, ast.IsNot: ast.Is,
+    ast.In: ast.NotIn, ast.NotIn: ast.In,
+}  # fmt: skip
+NAMES = {"min": "max", "max": "min", "argmin": "argmax", "argmax": "argmin", "ceil": "floor", "floor": "ceil"}
+SKIPPED = (ast.Assert, ast.Raise, ast.JoinedStr, ast.Import, ast.ImportFrom)
+"""Words and types: no fault of these makes a wrong number."""
+Called = dict[str, tuple[float, list[str]]]
+"""For each test its time [s] and the functions, file:name."""
+Change = tuple[str, Callable[[], None], Callable[[], None]]
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One change: file, line, its text, what becomes what, the whole new text of the file, the function it is in."""
+
+    file: str
+    line: int
+    text: str
+    change: str
+    source: str
+    function: str
+
+
+class Trace:
+    """A pytest plugin that notes which functions of a copy each test calls, its fixtures included."""
+
+    def __init__(self, folder: Path) -> None:
+        """Nothing is noted yet."""
+        self._root, self._names = f"{folder}{os.sep}", dict[CodeType, str]()
+        self._now, self._of_fixtures, self.found = set[str](), dict[str, set[str]](), Called()
+
+    def note(self, frame: FrameType, event: str, value: object) -> None:
+        """A call."""
+        code = frame.f_code
+        if code not in self._names:
+            local = os.path.realpath(code.co_filename).removeprefix(self._root)  # src/contact1d holds links
+            ours = local.startswith(FOLDERS)
+            self._names[code] = f"{local}:{code.co_qualname.split('.<locals>')[0]}" if ours else ""
+        self._now.add(self._names[code])
+
+    def pytest_runtest_protocol(self, item: Any) -> Iterator[None]:
+        """Trace the test; what is kept (`functools.cache`) is forgotten before it."""
+        for module in [module for name, module in sys.modules.items() if name.startswith(("contact1d", "tests"))]:
+            for kept in list(vars(module).values()):
+                if callable(clear := getattr(kept, "cache_clear", None)):
+                    clear()
+        self._now, started = set(), time.monotonic()
+        threading.settrace(self.note)
+        sys.settrace(self.note)
+        yield
+        sys.settrace(None)
+        file = item.nodeid.partition("::")[0]
+        reached = self._now | self._of_fixtures.get(file, set())
+        self.found[item.nodeid] = time.monotonic() - started, sorted(reached - {""})
+
+    def pytest_fixture_setup(self, fixturedef: Any, request: Any) -> Iterator[None]:
+        """What a fixture of a file calls counts for every test of the file."""
+        before, self._now = self._now, set()
+        yield
+        self._of_fixtures.setdefault(request.node.nodeid.partition("::")[0], set()).update(self._now)
+        self._now |= before
+
+    def pytest_sessionfinish(self) -> None:
+        """Write what was found into the copy."""
+        (Path(self._root) / ".calls").write_text(json.dumps(self.found), encoding="utf-8")
+
+
+def callers(folder: Path, tests: Sequence[str]) -> Called:
+    """What the tests of a copy call."""
+    import pytest
+
+    for name in ("pytest_runtest_protocol", "pytest_fixture_setup"):
+        setattr(Trace, name, pytest.hookimpl(wrapper=True)(getattr(Trace, name)))
+    run_tests(folder, tests, Trace(folder), TRACED)
+    found: Called = json.loads((folder / ".calls").read_text(encoding="utf-8"))
+    return found
+
+
+def changes(node: ast.AST) -> Iterator[Change]:
+    """(words, do, undo) of every change of this node itself."""
+
+    def swap(owner: Any, field: str, new: Any, words: str) -> Change:
+        old = getattr(owner, field)
+        return words, lambda: setattr(owner, field, new), lambda: setattr(owner, field, old)
+
+    match node:
+        case ast.BinOp(op=op) | ast.AugAssign(op=op) | ast.BoolOp(op=op) if type(op) in OPERATORS:
+            new = OPERATORS[type(op)]
+            yield swap(node, "op", new(), f"{type(op).__name__} → {new.__name__}")
+        case ast.Compare(ops=[op]) if type(op) in OPERATORS:
+            new = OPERATORS[type(op)]
+            yield swap(node, "ops", [new()], f"{type(op).__name__} → {new.__name__}")
+        case ast.UnaryOp(op=ast.USub()):
+            yield swap(node, "op", ast.UAdd(), "−x → x")
+        case ast.UnaryOp(op=ast.Not(), operand=operand):
+            yield swap(node, "operand", ast.UnaryOp(ast.Not(), operand), "not x → x")
+        case ast.Constant(value=bool(value)):
+            yield swap(node, "value", not value, f"{value} → {not value}")
+        case ast.Constant(value=int(value) | float(value)) if value == 0 or abs(value) > ROUND_OFF:
+            yield swap(node, "value", 2 * value or 1, f"{value:g} → {2 * value or 1:g}")
+        case ast.Name(id=name) if name in NAMES:
+            yield swap(node, "id", NAMES[name], f"{name} → {NAMES[name]}")
+        case ast.Attribute(attr=name) if name in NAMES:
+            yield swap(node, "attr", NAMES[name], f"{name} → {NAMES[name]}")
+
+
+def inner(node: ast.AST, function: str = "") -> Iterator[tuple[ast.AST, str]]:
+    """The nodes whose change may make a wrong number, each with the outermost function that it is in."""
+    if isinstance(node, SKIPPED) or (isinstance(node, ast.keyword) and node.arg in ("strict", "encoding")):
+        return
+    if isinstance(node, ast.FunctionDef | ast.ClassDef) and (not function or function.endswith(".")):
+        told = [node.returns, *(one.annotation for one in node.args.args)] if isinstance(node, ast.FunctionDef) else []
+        if any(word in ast.unparse(one) for one in told if one for word in ("Figure", "Axes")):
+            return
+        function += node.name + "." * isinstance(node, ast.ClassDef)
+    yield node, function
+    for name, value in ast.iter_fields(node):
+        if name not in ("annotation", "returns", "decorator_list"):
+            for child in value if isinstance(value, list) else [value]:
+                if isinstance(child, ast.AST):
+                    yield from inner(child, function)
+
+
+def mutants(file: str) -> list[Mutant]:
+    """Every mutant of a file."""
+    source = (ROOT / file).read_text(encoding="utf-8")
+    tree, lines, found = ast.parse(source), source.splitlines(), []
+    for node, function in inner(tree):
+        for words, do, undo in changes(node):
+            line = getattr(node, "lineno", 1)
+            do()
+            text = ast.unparse(ast.fix_missing_locations(tree))
+            undo()
+            found.append(Mutant(file, line, lines[line - 1].strip(), words, text, function))
+    return found
+
+
+def tests_of(mutant: Mutant, called: Called) -> list[str]:
+    """The tests that call the mutant's function, the quick ones that call little else first, up to LONGEST."""
+    wanted = f"{mutant.file}:{mutant.function.rstrip('.')}"
+    those = {
+        test: taken * len(functions)
+        for test, (taken, functions) in called.items()
+        if any(one == wanted or (not mutant.function and one.startswith(wanted)) for one in functions)
+    }
+    chosen: list[str] = []
+    for test in sorted(those, key=lambda test: those[test]):
+        if chosen and sum(called[one][0] for one in [*chosen, test]) > LONGEST:
+            break
+        chosen.append(test)
+    return chosen
+
+
+def main() -> int:
+    """Draw faults, look for them, and write down those that no test notices."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folders", nargs="*", default=FOLDERS)
+    parser.add_argument("--number", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--tests", nargs="+", default=TESTS)
+    options = parser.parse_args()
+    files = [
+        str(path.relative_to(ROOT)) for folder in options.folders for path in sorted((ROOT / folder).rglob("*.py"))
+    ]
+    every = [mutant for file in files for mutant in mutants(file)]
+    chosen = random.Random(options.seed).sample(every, min(options.number, len(every)))
+    old = json.loads(RESULTS.read_text(encoding="utf-8")).get("survivors", []) if RESULTS.exists() else []
+    reasons = {(row["file"], row["text"], row["change"]): row["reason"] for row in old}
+    load()
+    alive = []
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = copy_of_this(Path(temporary) / "copy")
+        called = callers(folder, options.tests)
+        for mutant in chosen:
+            tests = tests_of(mutant, called)
+            path = folder / mutant.file
+            whole = path.read_text(encoding="utf-8")
+            path.write_text(mutant.source, encoding="utf-8")
+            patience = PATIENCE * (LONGEST + sum(called[test][0] for test in tests))
+            by = first_failure(folder, tests, patience) if tests else ""
+            path.write_text(whole, encoding="utf-8")
+            if not by:
+                alive.append(mutant)
+            word = "killed  " if by else "SURVIVES" if tests else "NO TEST "
+            print(f"{word} {mutant.file}:{mutant.line}: {mutant.change}   {by or mutant.text}", flush=True)
+    rows = [
+        {"file": m.file, "line": m.line, "text": m.text, "change": m.change,
+         "reason": reasons.get((m.file, m.text, m.change), "")}
+        for m in alive
+    ]  # fmt: skip
+    noticed = 1.0 - len(alive) / len(chosen)
+    record = {"asked": ASKED, "seed": options.seed, "faults": len(chosen), "noticed": noticed, "survivors": rows}
+    RESULTS.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    print(f"{len(chosen)} faults, {len(alive)} survive: {100.0 * noticed:.1f} % noticed")
+    return int(noticed < ASKED)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

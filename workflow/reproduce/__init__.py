@@ -1,1 +1,0 @@
-"""The paper, statement by statement: what it prints, what this program finds, and a verdict."""

@@ -1,5 +1,0 @@
-"""Fig. 9, the set-up of the friction experiment, and what the program makes of it: an outlook, held against theory."""
-
-from contact1d.workflow.reproduce.fig9.study import STUDY
-
-__all__ = ["STUDY"]
