@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contact1d.analysis.row import spacing_of
+from contact1d.analysis.pressure import spacing_of
 
 Array = NDArray[np.float64]
 NEAR = 0.3

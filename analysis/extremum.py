@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.polynomial import Array, fitting, lowest_minimum
-from contact1d.analysis.row import spacing_of
+from contact1d.analysis.pressure import spacing_of
 
 INTERPOLANT_SIZES = (7, 5)
 """Samples under the interpolating polynomial, and under the lower one that it is compared with."""

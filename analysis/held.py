@@ -16,9 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.extremum import Place
-from contact1d.analysis.pressure import Profile
+from contact1d.analysis.pressure import Profile, middle_of, spacing_of
 from contact1d.analysis.radius import ContactRadius
-from contact1d.analysis.row import middle_of, spacing_of
 
 Array = NDArray[np.float64]
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from contact1d.analysis.pressure import Profile
-from contact1d.analysis.row import spacing_of
+from contact1d.analysis.pressure import Profile, spacing_of
 from contact1d.potentials import DoubleExponential
 from contact1d.potentials.table import Table
 

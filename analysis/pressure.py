@@ -1,6 +1,8 @@
 """Pressure that the opposite body puts on the upper particles, and quantities read off it: p_i = F_z,i / spacing.
 
 Here F_z,i is the force of the whole lower body on upper particle i, positive upwards, so that compression is positive.
+
+A row of places that rise evenly: its spacing and its middle.
 """
 
 from __future__ import annotations
@@ -159,3 +161,16 @@ def end_pressure_share(profile: Profile) -> float:
     size = np.abs(profile.pressure)
     largest = float(np.max(size, initial=0.0))
     return float(max(size[0], size[-1])) / largest if largest > 0.0 else 0.0
+
+
+Array = NDArray[np.float64]
+
+
+def spacing_of(x: Array) -> float:
+    """The mean distance of neighbours [length], of rising places x, (n,), n >= 1; 0 for one."""
+    return float(np.ptp(x)) / max(x.size - 1, 1)
+
+
+def middle_of(x: Array) -> float:
+    """The middle between both ends [length]."""
+    return float(0.5 * (x.max() + x.min()))

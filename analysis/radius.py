@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.extremum import Place, place_of_minimum
-from contact1d.analysis.pressure import Profile
-from contact1d.analysis.row import middle_of, spacing_of
+from contact1d.analysis.pressure import Profile, middle_of, spacing_of
 
 Array = NDArray[np.float64]
 

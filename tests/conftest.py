@@ -14,8 +14,8 @@ from hypothesis import settings
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import Engine, Session
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
 from tests.approx import relative
 from tests.limits import LIMIT, SLOW_LIMIT, time_limit
 from tests.records import record_slow_tests

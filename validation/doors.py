@@ -28,6 +28,7 @@ from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments import planned
 from contact1d.workflow.experiments.thermal import chunk_steps
 from contact1d.workflow.identify import Target, estimated, identify, jkr_target, material_scene
+from contact1d.workflow.model.settings import CALIBRATION, Settings, SettingsError, settings_for
 from contact1d.workflow.runs import campaign
 from contact1d.workflow.runs.campaign import write_deck
 from contact1d.workflow.runs.finished import Run, load_run, read_run
@@ -46,8 +47,6 @@ from contact1d.workflow.scene import (
     scene_from_dict,
     scene_to_toml,
 )
-from contact1d.workflow.settings.calibration import CALIBRATION
-from contact1d.workflow.settings.settings import Settings, SettingsError, settings_for
 from contact1d.workflow.sweep.axes import points, read_sweep
 from contact1d.workflow.units import Quantity, rounded
 

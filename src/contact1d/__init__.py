@@ -28,12 +28,12 @@ if TYPE_CHECKING:
     from contact1d.workflow.engine.failure import EngineError
     from contact1d.workflow.errors import Contact1dError, FolderError, RunError
     from contact1d.workflow.identify.choice import from_material
+    from contact1d.workflow.model.chain import SettingsError
     from contact1d.workflow.runs.advised import run
     from contact1d.workflow.runs.campaign import write_deck
     from contact1d.workflow.runs.finished import Run, load_run
     from contact1d.workflow.runs.many import run_many
     from contact1d.workflow.scene import Scene, SceneError, read_scene
-    from contact1d.workflow.settings.chain import SettingsError
     from contact1d.workflow.sweep.sweep import Sweep, sweep
     from contact1d.workflow.units import Quantity
 
@@ -68,7 +68,7 @@ _HOMES = {
     "workflow.runs.finished": ("Run", "load_run"),
     "workflow.runs.many": ("run_many",),
     "workflow.scene": ("Scene", "SceneError", "read_scene"),
-    "workflow.settings.chain": ("SettingsError",),
+    "workflow.model.chain": ("SettingsError",),
     "workflow.sweep.sweep": ("Sweep", "sweep"),
     "workflow.units": ("Quantity",),
 }

@@ -23,8 +23,8 @@ from contact1d.workflow.deck.steps import DisplaceInTime, Draw, Phase, UnderLoad
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Engine
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import EFFECTS, Scene, SceneError
-from contact1d.workflow.settings.settings import settings_for
 
 MakeScene = Callable[..., Scene]
 

@@ -19,8 +19,8 @@ from contact1d.potentials.table import write_table
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.experiments import planned
+from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.scene import EFFECTS, Scene
-from contact1d.workflow.settings.settings import Settings, settings_for
 
 MakeScene = Callable[..., Scene]
 

@@ -16,8 +16,8 @@ import pytest
 
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.session import Session
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import LAW, chains
 from validation.references.interaction import Exponential, PairInteraction
 

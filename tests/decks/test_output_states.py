@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from contact1d.analysis.atoms import atoms
-from contact1d.analysis.states import read_states
+from contact1d.analysis.curve import read_states
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.finished import Run
 from tests.decks.test_run_folder import PLANE, READ, lmp

@@ -12,7 +12,7 @@ import pytest
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.experiments import planned
-from contact1d.workflow.settings.settings import settings_for
+from contact1d.workflow.model.settings import settings_for
 from tests.decks.test_effect_off import ALL, LOAD, PLANE, TIMED, MakeScene, commands, text_of
 
 

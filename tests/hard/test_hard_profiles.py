@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from contact1d import Run, RunError
+from contact1d.workflow.model.settings import SettingsError, settings_for
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.settings.settings import SettingsError, settings_for
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
 from validation.references.pull_off import pull_off

@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.model.settings import SettingsError, settings_for
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import read_scene, scene_from_dict
-from contact1d.workflow.settings.settings import SettingsError, settings_for
 from tests.scenes import chains
 
 SHIPPED = Path(__file__).parents[2] / "lammps_inputs" / "scenes"

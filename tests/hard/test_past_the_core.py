@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from contact1d.workflow.model.chain import SettingsError
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.settings.chain import SettingsError
-from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import chains
 
 

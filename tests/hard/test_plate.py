@@ -14,8 +14,8 @@ from contact1d import run
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.session import Session
 from contact1d.workflow.experiments import planned
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import chains
 from validation.hard.cases import TENSION, PairCase, reach, shaped
 from validation.references.interaction import Exponential, PairInteraction

@@ -16,10 +16,10 @@ from typing import Any
 import pytest
 
 from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import chains
 
 SAME = 1e-6

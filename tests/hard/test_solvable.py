@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from contact1d import RunError
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import LAW, chains
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel

@@ -12,8 +12,8 @@ import pytest
 from scipy.optimize import brentq
 
 from contact1d import run
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
 from validation.references.solver import ChainSolver

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from contact1d.workflow.settings.cells import left_by_cells, pulling_rows
+from contact1d.workflow.model.cells import left_by_cells, pulling_rows
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
+from contact1d.workflow.model.adhesion import AdhesiveEstimate
+from contact1d.workflow.model.settings import SettingsError, settings_for
 from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.settings.adhesion import AdhesiveEstimate
-from contact1d.workflow.settings.settings import SettingsError, settings_for
 
 BODIES = {
     "particles": "auto", "spacing": 0.2, "profile": {"kind": "parabola", "radius": 100.0}, "reduction": "mdr",

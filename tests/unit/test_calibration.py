@@ -11,9 +11,8 @@ from pathlib import Path
 import pytest
 
 from contact1d.workflow.cost.study import TARGETS
+from contact1d.workflow.model.settings import CALIBRATION, FILE, Calibration, calibration_of, settings_for
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.calibration import CALIBRATION, FILE, Calibration, calibration_of
-from contact1d.workflow.settings.settings import settings_for
 from validation.tools.calibration import LADDERS, SCENES
 from validation.tools.calibration_choice import (
     PART,

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from tests.unit.test_estimate import RADIUS, REST, estimate, parabola, scene_of
 
+from contact1d.workflow.model.chain import SettingsError, chain_length, decay_length, felt_up_to, reflected
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.chain import SettingsError, chain_length, decay_length, felt_up_to, reflected
-from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import chains
 
 

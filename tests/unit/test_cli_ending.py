@@ -22,8 +22,8 @@ from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import EngineError
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.identify import IdentifyError
+from contact1d.workflow.model.settings import SettingsError
 from contact1d.workflow.scene import Problem, SceneError
-from contact1d.workflow.settings.settings import SettingsError
 
 CONTACT1D = [sys.executable, "-m", "contact1d.workflow.cli.app"]
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"

@@ -28,8 +28,8 @@ from contact1d.workflow.cost.report import (
     summary,
 )
 from contact1d.workflow.cost.study import TARGETS, advise, choice, fit_order, judged, pareto_front
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import settings_for
 from contact1d.workflow.units import Quantity
 from tests.costs import effects_markdown, read_record
 

@@ -13,7 +13,7 @@ from contact1d import read_scene
 from contact1d.workflow.cli.app import app
 from contact1d.workflow.cost.measure import Prepared, measure
 from contact1d.workflow.engine.progress import Silent
-from contact1d.workflow.settings.settings import settings_for
+from contact1d.workflow.model.settings import settings_for
 from tests.costs import read_record
 from tests.unit.test_cost import SCENES, MakeScene
 

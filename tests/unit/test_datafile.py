@@ -14,8 +14,8 @@ from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import bodies
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import Session
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import settings_for
 
 MakeScene = Callable[..., Scene]
 OpenDeck = Callable[[Scene], tuple[Deck, Session]]

@@ -15,15 +15,16 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from contact1d.potentials import DoubleExponential, Exponential
-from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.settings.estimate import (
+from contact1d.workflow.model.pairs import (
     ContactEstimate,
     NotCarriedError,
+    Profile,
+    Tabulated,
     particles_estimate,
     plane_estimate,
     row_force,
 )
-from contact1d.workflow.settings.shape import Profile, Tabulated
+from contact1d.workflow.scene import scene_from_dict
 from tests.scenes import LAW, chains
 
 Array = NDArray[np.float64]

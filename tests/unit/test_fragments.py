@@ -17,9 +17,9 @@ from contact1d.workflow.deck.effects import EFFECTS, Contribution
 from contact1d.workflow.deck.effects.neighbours import neighbours
 from contact1d.workflow.deck.fragments import DeckError, fragment
 from contact1d.workflow.deck.steps import Displace, Hold, Phase, UnderLoad
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import EFFECTS as SCENE_EFFECTS
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import settings_for
 
 MakeScene = Callable[..., Scene]
 

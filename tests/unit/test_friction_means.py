@@ -11,7 +11,7 @@ import pytest
 from contact1d.analysis.friction import block_means, mean_of, sampled_mean
 from contact1d.workflow.experiments.motion import Motion
 from contact1d.workflow.experiments.slide import is_steady
-from contact1d.workflow.settings.drive import DriveLeg
+from contact1d.workflow.model.dynamics import DriveLeg
 
 PERIODS, VELOCITY = 12, 0.5
 

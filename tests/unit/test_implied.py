@@ -12,8 +12,8 @@ from scipy.optimize import brentq
 
 from contact1d.workflow.body.derived import formulas, implied
 from contact1d.workflow.identify import estimated, jkr_target, material_scene
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
 from contact1d.workflow.units import Quantity
 from tests.scenes import chains
 

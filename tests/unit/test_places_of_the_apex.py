@@ -11,15 +11,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from contact1d.workflow.settings.centring import expected, left_by_centring
+from contact1d.workflow.model.centring import expected, left_by_centring
 from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
 from scipy.signal import find_peaks
 
 from contact1d.potentials import DoubleExponential, Exponential
+from contact1d.workflow.model.pairs import particles_estimate
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.estimate import particles_estimate
-from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import chains
 from validation.hard.cases import ATTRACTION, LAW, REPULSION, STEEPEST
 

@@ -9,14 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d.workflow.model.chain import SettingsError, in_words, require_reach, require_rows, require_steps
+from contact1d.workflow.model.dynamics import _swinging_apart, drive_steps, stiffest_of
+from contact1d.workflow.model.motion import require_way, too_fast
+from contact1d.workflow.model.pairs import tabulated
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.chain import SettingsError
-from contact1d.workflow.settings.drive import drive_steps
-from contact1d.workflow.settings.dynamics import _swinging_apart, stiffest_of
-from contact1d.workflow.settings.settings import settings_for
-from contact1d.workflow.settings.shape import tabulated
-from contact1d.workflow.settings.size import in_words, require_reach, require_rows, require_steps
-from contact1d.workflow.settings.way import require_way, too_fast
 from tests.scenes import chains
 
 LOAD = {"kind": "load", "force": 0.05}

@@ -14,14 +14,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
+from contact1d.workflow.model.chain import SettingsError, require_apex, require_memory, require_travel
+from contact1d.workflow.model.motion import inertia
+from contact1d.workflow.model.pairs import NotCarriedError
+from contact1d.workflow.model.settings import CALIBRATION, Settings, innermost_distance, settings_for, thermal_motion
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.calibration import CALIBRATION
-from contact1d.workflow.settings.chain import SettingsError
-from contact1d.workflow.settings.estimate import NotCarriedError
-from contact1d.workflow.settings.inertia import inertia
-from contact1d.workflow.settings.scales import innermost_distance, thermal_motion
-from contact1d.workflow.settings.settings import Settings, settings_for
-from contact1d.workflow.settings.size import require_apex, require_memory, require_travel
 from tests.scenes import LAW, chains
 
 SPRING, SPACING = 0.7, 0.8

@@ -8,10 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d.workflow.model.chain import (
+    SettingsError,
+    in_words,
+    require_digits,
+    require_reach,
+    require_rows,
+    require_steps,
+)
+from contact1d.workflow.model.dynamics import DriveLeg
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.chain import SettingsError
-from contact1d.workflow.settings.drive import DriveLeg
-from contact1d.workflow.settings.size import in_words, require_digits, require_reach, require_rows, require_steps
 from tests.scenes import chains
 
 MOST = 1_000_000

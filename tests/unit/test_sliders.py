@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from contact1d.workflow.model.friction import Sliders, sliders_of, stops, without_rests
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene, Tangential, scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
-from contact1d.workflow.settings.sliders import Sliders, sliders_of, stops, without_rests
 from validation.references.spring_sliders import SpringSliders, displacement_under
 
 ROUND_OFF = 1e-12

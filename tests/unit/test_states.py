@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from contact1d.analysis import states as states_module
+from contact1d.analysis.curve import States, read_states, states_of, write_states
 from contact1d.analysis.pressure import Profile
-from contact1d.analysis.states import States, read_states, states_of, write_states
 
 
 def passed(rows: int, particles: int) -> list[Profile]:

@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d.workflow.model.dynamics import stiffest_of
+from contact1d.workflow.model.settings import CALIBRATION, Settings, settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.calibration import CALIBRATION
-from contact1d.workflow.settings.dynamics import stiffest_of
-from contact1d.workflow.settings.settings import Settings, settings_for
 from tests.scenes import chains
 
 RADIUS, SPRING, SPACING, MASS = 200.0, 0.7, 0.5, 3.0

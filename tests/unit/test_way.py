@@ -13,12 +13,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from contact1d.workflow.model.chain import SettingsError, decay_length
+from contact1d.workflow.model.motion import contact_half_width, require_way, too_fast
+from contact1d.workflow.model.settings import CALIBRATION, largest_holding_force, settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.calibration import CALIBRATION
-from contact1d.workflow.settings.chain import SettingsError, decay_length
-from contact1d.workflow.settings.registry import largest_holding_force
-from contact1d.workflow.settings.settings import settings_for
-from contact1d.workflow.settings.way import contact_half_width, require_way, too_fast
 from tests.scenes import chains
 
 RADIUS, SPRING, SPACING = 30.0, 2.0, 0.8

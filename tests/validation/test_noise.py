@@ -29,8 +29,8 @@ from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Session
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
 from tests.scenes import chains
 
 Array = NDArray[np.float64]

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from contact1d import Run, run
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
 from validation.references.prandtl_tomlinson import Corrugation, corrugation, slow_friction
 from validation.references.slide import Integrator
 from validation.slides import slide_model

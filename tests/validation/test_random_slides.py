@@ -16,9 +16,9 @@ import numpy as np
 import pytest
 
 from contact1d import Run, RunError, run_many
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.settings import settings_for
 from validation.slides import integrated, mean_friction
 
 TRACE = 3e-4

@@ -14,8 +14,8 @@ from scipy.optimize import brentq
 from contact1d import Scene, read_scene, run
 from contact1d.analysis.theory.winkler import rigid_plane_sum
 from contact1d.workflow.deck.lattice import start_offset
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Tangential
-from contact1d.workflow.settings.settings import settings_for
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
 from validation.references.pull_off import pull_off

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from contact1d import run
-from contact1d.workflow.settings.settings import settings_for
+from contact1d.workflow.model.settings import settings_for
 from validation.paper.fig9.asperity import smoluchowski
 from validation.paper.fig9.curved import integrated
 from validation.paper.fig9.reading import SWEEPS, slides

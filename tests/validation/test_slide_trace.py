@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from contact1d import Run, run
+from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.settings.settings import Settings, settings_for
 from validation.references.slide import Integrator, Trace
 from validation.slides import slide_model
 

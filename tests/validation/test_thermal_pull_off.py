@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from contact1d import Run, run, run_many
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.runs.processors import pool
 from contact1d.workflow.scene import read_scene
-from contact1d.workflow.settings.settings import settings_for
 from validation.paper import detachment
 from validation.references.detachment import detachment as quasi_stationary
 from validation.references.detachment import detachment_in_time, drag_of_pairs

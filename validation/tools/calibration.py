@@ -3,7 +3,7 @@
     python -m validation.tools.calibration             # twenty minutes: all runs, then the same as with --choose
     python -m validation.tools.calibration --choose    # a minute: the choice from kept runs
 
-The runs are kept in validation/results/calibration.csv, the choice in workflow/settings/calibration.json.
+The runs are kept in validation/results/calibration.csv, the choice in workflow/model/calibration.json.
 
 Every scene runs at every tolerance with one share after the other at each value of its LADDER, all others as they are.
 A value is good where it adds no more than PART of the tolerance to the error of any main result, and brings no warning
@@ -27,9 +27,8 @@ from contact1d.workflow.cost.measure import Measured, Prepared, measure
 from contact1d.workflow.cost.report import power
 from contact1d.workflow.cost.study import TARGETS, reference_of
 from contact1d.workflow.engine.progress import choose_progress
+from contact1d.workflow.model.settings import CALIBRATION, Calibration, Settings, settings_for
 from contact1d.workflow.scene import Scene, read_scene
-from contact1d.workflow.settings.calibration import CALIBRATION, Calibration
-from contact1d.workflow.settings.settings import Settings, settings_for
 from contact1d.workflow.units import Quantity
 from validation.tools.calibration_choice import TOGETHER, Row, read_rows, write_choice, write_rows
 

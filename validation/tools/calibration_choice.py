@@ -12,7 +12,7 @@ from typing import Any
 
 from contact1d.workflow.cost.report import power
 from contact1d.workflow.cost.study import TARGETS
-from contact1d.workflow.settings.calibration import FILE, Calibration, calibration_of, meanings
+from contact1d.workflow.model.settings import FILE, Calibration, calibration_of, meanings
 
 RECORD = Path(__file__).parents[1] / "results" / "calibration.csv"
 PART = 0.1
@@ -130,7 +130,7 @@ def write_rows(rows: Sequence[Row], path: Path = RECORD) -> None:
 
 
 def write_choice(rows: Sequence[Row]) -> Calibration:
-    """Write workflow/settings/calibration.json ; returns the chosen values."""
+    """Write workflow/model/calibration.json ; returns the chosen values."""
     document = chosen_values(rows)
     FILE.write_text(json.dumps(document, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     return calibration_of(document)

@@ -28,9 +28,9 @@ from contact1d.potentials import DoubleExponential
 from contact1d.workflow.body.theory import Case
 from contact1d.workflow.body.traction import body_pressures, is_of_a_body
 from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.model.pairs import row_force
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.estimate import row_force
-from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.units import ENERGY, FORCE, LINE_PRESSURE, MEAN_PRESSURE, Quantity
 
 REPORTED = ("deepest", "final", "zero_load")

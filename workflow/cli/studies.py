@@ -72,8 +72,8 @@ def cost(
         from contact1d.workflow.cost.report import closing, summary, write_report
         from contact1d.workflow.cost.study import cost_of
         from contact1d.workflow.experiments.spacing import with_spacing
+        from contact1d.workflow.model.settings import settings_for
         from contact1d.workflow.runs.processors import cores
-        from contact1d.workflow.settings.settings import settings_for
 
         checked = with_spacing(asked)
         settings_for(checked)

@@ -2,11 +2,12 @@
 
 How it may be refined follows from what the particles remember:
 
-    reversible       the state at a displacement does not depend on the path: a position is visited whenever it is wanted
-    irreversible     pairs snap: the whole schedule is run again from the start, with the wanted positions in their order
+    reversible       the state at a displacement does not depend on the path: a position is visited whenever it is
+    wanted irreversible     pairs snap: the whole schedule is run again from the start, with the wanted positions in
+    their order
 
-Rows on a rigid plane are steps of one run and cost next to nothing; the reduced model of such a contact is the deck's own
-law, so that its limit points and forces are known beforehand.
+Rows on a rigid plane are steps of one run and cost next to nothing; the reduced model of such a contact is the
+deck's own law, so that its limit points and forces are known beforehand.
 """
 
 from __future__ import annotations
@@ -27,8 +28,8 @@ from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import DigitsError, TensionError, UntrustedError
 from contact1d.workflow.deck.steps import Displace, DisplaceInTime, Phase, displacements
-from contact1d.workflow.settings.reduced import Reduced, reduced
-from contact1d.workflow.settings.settings import Settings
+from contact1d.workflow.model.reduced import Reduced, reduced
+from contact1d.workflow.model.settings import Settings
 
 Array = NDArray[np.float64]
 MOST_INCREMENTS = 10_000
@@ -79,8 +80,8 @@ MOST_RIVALS = 200
 READ_SHARE = 0.5
 """Part of a radius's uncertainty below which it is looked at no closer: reading between particles limits it."""
 WINDOW_ROWS, ZOOM_FACTOR, RIVAL_SHARE = 8, 0.25, 0.05
-"""Of a schedule that is run again: rows on either side of the largest tension, width of that window over the one before,
-and teeth within this share of the largest that are all looked at in the first one."""
+"""Of a schedule that is run again: rows on either side of the largest tension, width of that window over the one
+before, and teeth within this share of the largest that are all looked at in the first one."""
 
 JUMPS = (
     'the force jumps there, as particles snap or slip. Use kind = "path" to see it, or stiffer springs or a longer '
@@ -553,7 +554,8 @@ class Branch:
         raise UntrustedError(f"the bodies did not separate within {MOST_INCREMENTS} increments of the displacement")
 
     def _unloading_step(self, start: float) -> float:
-        """First increment [LU] of an unloading: soft springs follow the attraction far beyond what they were pressed."""
+        """First increment [LU] of an unloading: soft springs follow the attraction far beyond what they were
+        pressed."""
         way = start - self.settings.rest + float(self.settings.estimate.gap[-1])
         return max(self.settings.increment(), way / SEPARATION_ROWS)
 

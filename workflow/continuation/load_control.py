@@ -1,8 +1,8 @@
 """A branch of states under load control, in time, as the paper has it: loads, each held until rest or separation.
 
 A tension that breaks the contact is undone: the next one begins where it began. The first tensions are chosen by the
-model, which is mostly within a tolerance of the pull-off force; what counts is the bracket of a tension that held and one
-that did not. The rows of the search are the schedule: nothing is run twice.
+model, which is mostly within a tolerance of the pull-off force; what counts is the bracket of a tension that held
+and one that did not. The rows of the search are the schedule: nothing is run twice.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import ThroughError, UntrustedError
 from contact1d.workflow.deck.steps import Phase, UnderLoad
-from contact1d.workflow.settings.reduced import Reduced, reduced
+from contact1d.workflow.model.reduced import Reduced, reduced
 
 Array = NDArray[np.float64]
 MOST_LEVELS = 60
@@ -182,7 +182,8 @@ class LoadBranch:
         self.contact.finish()
 
     def reach(self, force: float, scale: float) -> None:
-        """Hold a force [FU] to a share of the tolerance of `scale` [FU]; a tension is approached from F = 0, so gently that the plate's momentum breaks nothing.
+        """Hold a force [FU] to a share of the tolerance of `scale` [FU]; a tension is approached from F = 0, so
+        gently that the plate's momentum breaks nothing.
 
         Raises:
             UntrustedError: see `hold`; the contact can't hold the force.
@@ -213,8 +214,8 @@ class LoadBranch:
     def holds_more(self, force: float) -> bool:
         """Whether a tension that is larger by FIRST_RISE tolerances is held, too, tried with a contact of its own.
 
-        A contact at rest balances its load within a share of the tolerance, and near the limit point it creeps: on which
-        side of it a load is can't be told nearer than that.
+        A contact at rest balances its load within a share of the tolerance, and near the limit point it creeps: on
+        which side of it a load is can't be told nearer than that.
         """
         if force > -DOUBTFUL_SHARE * self.scale:
             return True

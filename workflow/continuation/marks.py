@@ -53,9 +53,10 @@ def radius_at(trace: Trace, position: float) -> float:
 def displacement_under(trace: Trace, state: int, force: float, expected: float) -> float:
     """Displacement [LU] at which the curve through a state carries a force [FU] that is near to its own.
 
-    x with S x + K x²/2 = ΔF: towards the largest tension the stiffness S = dF/dd falls as K = dS/dd says, and x grows as
-    a square root, up to √(2 |ΔF|/K). S and K are those of a parabola through up to two states beside it, one at least
-    twice as far off as the other; S is at most `expected` [FU/LU], which counts alone where there are no such states.
+    x with S x + K x²/2 = ΔF: towards the largest tension the stiffness S = dF/dd falls as K = dS/dd says, and x
+    grows as a square root, up to √(2 |ΔF|/K). S and K are those of a parabola through up to two states beside it,
+    one at least twice as far off as the other; S is at most `expected` [FU/LU], which counts alone where there are
+    no such states.
     """
     own, missing = float(trace.displacement[state]), force - float(trace.force[state])
     ways, slopes = _beside(trace, state)

@@ -1,4 +1,5 @@
-"""The reduced model in the place of LAMMPS: the same script goes through it, and the same reader reads what it leaves."""
+"""The reduced model in the place of LAMMPS: the same script goes through it, and the same reader reads what it
+leaves."""
 
 from __future__ import annotations
 
@@ -9,15 +10,16 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.continuation.state import RadiusRule
 from contact1d.workflow.continuation.trace import Trace, of_model
+from contact1d.workflow.model.friction import Stop
+from contact1d.workflow.model.reduced import Reduced, Sliding
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.reduced import Reduced, Sliding
-from contact1d.workflow.settings.settings import Settings
-from contact1d.workflow.settings.sliders import Stop
 
 Array = NDArray[np.float64]
 COARSE, FINE, ZOOMS = 100, 30, 2
-"""Positions of the first look for the largest tension and of each closer one, and how many of these: none where the curve
-is smooth, since the model's forces are straight between the points of a grid, whose corners would place a flat top."""
+"""Positions of the first look for the largest tension and of each closer one, and how many of these: none where the
+curve is smooth, since the model's forces are straight between the points of a grid, whose corners would place a flat
+top."""
 BETWEEN = 8
 """Positions on the way to a force."""
 LAST = 1e-9

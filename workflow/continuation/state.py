@@ -9,8 +9,8 @@ from functools import cached_property
 from contact1d.analysis.held import held_radius
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius, compressive_radius, tensile_radius
+from contact1d.workflow.model.settings import CALIBRATION
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.calibration import CALIBRATION
 
 OUTSIDE = 1.5
 """Position over the spacing of the second particle of a chain whose apex lies between two."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.continuation.state import RadiusRule, State
-from contact1d.workflow.settings.reduced import Followed
+from contact1d.workflow.model.reduced import Followed
 
 Array = NDArray[np.float64]
 BESIDE = 2

@@ -17,10 +17,10 @@ from contact1d.workflow.errors import TensionError as TensionError
 from contact1d.workflow.errors import ThroughError as ThroughError
 from contact1d.workflow.errors import UnsteadyError as UnsteadyError
 from contact1d.workflow.errors import UntrustedError as UntrustedError
+from contact1d.workflow.model.chain import decay_length, reflected
+from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.scene import Damping, Plate, Scene
 from contact1d.workflow.scene.remedies import against_passing, longer_chain
-from contact1d.workflow.settings.chain import decay_length, reflected
-from contact1d.workflow.settings.settings import Settings, settings_for
 
 END_SHARE_LIMIT = 1.0
 """Pressure at a chain's end over the largest one, per unit of tolerance, from which on the chain cuts the contact."""

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 from contact1d.workflow.experiments import kind_of
+from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.scene.experiments import Span
 from contact1d.workflow.scene.tables import TIMED
-from contact1d.workflow.settings.settings import Settings, settings_for
 from contact1d.workflow.units import Quantity
 
 BASE_TOLERANCE = 1e-5

@@ -1,6 +1,6 @@
 """A cost study: reference, every knob turned from the base, effects left out, combinations; then orders and advice.
 
-What a tolerance chooses is good in every scene of a study of many (`workflow.settings.calibration`); one scene may
+What a tolerance chooses is good in every scene of a study of many (`workflow.model.settings`); one scene may
 need less. Errors are those of the main results, relative to a reference of much higher accuracy; the largest stands for
 a variant.
 """
@@ -44,9 +44,9 @@ from contact1d.workflow.cost.report import (
 )
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.errors import RunError
+from contact1d.workflow.model.settings import Settings, SettingsError, settings_for
 from contact1d.workflow.runs.report import versions
 from contact1d.workflow.scene import Scene, SceneError
-from contact1d.workflow.settings.settings import Settings, SettingsError, settings_for
 from contact1d.workflow.units import Quantity
 
 REFERENCE_TOLERANCES = (1e-7, 1e-6, 1e-5)

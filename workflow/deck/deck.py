@@ -12,15 +12,14 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import TypeVar
 
-from contact1d.workflow.deck.blocks import block, commands, listed
 from contact1d.workflow.deck.effects import Contribution, contributions
-from contact1d.workflow.deck.fragments import DeckError, Fragment, fragment
+from contact1d.workflow.deck.fragments import DeckError, Fragment, block, commands, fragment, listed
 from contact1d.workflow.deck.keeping import APPENDED, NEW, appended, skipped
 from contact1d.workflow.deck.parts import bins, moving, own_units, standing
 from contact1d.workflow.deck.steps import STEPS, UNITS, Displace, Hold, Phase, Row
 from contact1d.workflow.deck.units import DeckUnits, units_for
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import Settings
 
 AnyRow = TypeVar("AnyRow", bound=Row)
 

@@ -1,11 +1,14 @@
 """Fragments: LAMMPS text with ${variables} whose header says what it needs and what it defines.
 
 Two ways of use are recognised as a variable's name: ${name} and v_name. A fragment's header and its text must agree.
+
+Fragments put together: blocks with the variables that they need, commands, lists over several lines.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib.resources import files
@@ -76,3 +79,26 @@ def _names(found: re.Match[str] | None) -> tuple[str, ...]:
     if found is None:
         return ()
     return tuple(word for word in re.sub(r"\([^)]*\)", " ", found[1]).split() if word != "-")
+
+
+NUMBERS_PER_LINE = 6
+
+
+def block(name: str, variables: Mapping[str, str]) -> str:
+    """A fragment with its header, below the variables that it needs."""
+    lines = "".join(f"variable        {key} index {value}\n" for key, value in variables.items())
+    piece = fragment(name)
+    header = 5 if piece.redefines else 4
+    comments = piece.text[: len(piece.text) - len(piece.text.split("\n", header)[header])]
+    return comments + lines + piece.text[len(comments) :]
+
+
+def commands(names: Sequence[str]) -> str:
+    """The commands of fragments, one after the other."""
+    return "".join(fragment(name).commands for name in names)
+
+
+def listed(name: str, texts: Sequence[str]) -> str:
+    """`variable … index` over several lines."""
+    lines = [" ".join(texts[i : i + NUMBERS_PER_LINE]) for i in range(0, len(texts), NUMBERS_PER_LINE)]
+    return f"variable        {name} index " + " &\n                ".join(lines) + "\n"

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.workflow.model.settings import STAGGER_SHARE, Settings
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import STAGGER_SHARE, Settings
 
 Array = NDArray[np.float64]
 

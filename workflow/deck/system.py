@@ -7,13 +7,13 @@ from pathlib import Path
 
 from contact1d.files import write_whole
 from contact1d.potentials.table import write_table
-from contact1d.workflow.deck.box import margins
 from contact1d.workflow.deck.datafile import assemble, write_data
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.effects.base import number, sphere_radius
 from contact1d.workflow.deck.lattice import bodies, period
-from contact1d.workflow.settings.adhesion import cells_of
-from contact1d.workflow.settings.inertia import inertia
+from contact1d.workflow.deck.parts import margins
+from contact1d.workflow.model.adhesion import cells_of
+from contact1d.workflow.model.motion import inertia
 
 CELLS = "adhesion.cells"
 
@@ -44,7 +44,7 @@ def write_system(deck: Deck, folder: Path) -> None:
 
 
 def _write_cells(deck: Deck, path: Path) -> None:
-    """The columns of `workflow.settings.adhesion.Cells` below each other, as `variable atomfile` reads them."""
+    """The columns of `workflow.model.adhesion.Cells` below each other, as `variable atomfile` reads them."""
     x = bodies(deck.scene, deck.settings)[0].particles[:, 0]
     cells = cells_of(deck.scene, deck.settings.estimate, x)
     lengths = {name: deck.units.to_deck(1.0, "LU") * getattr(cells, name) for name in ("hold", "width", "fall")}

@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.potentials.table import Table as LawTable
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.scene.quantities import places
 from contact1d.workflow.scene.read import plain_data
-from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.units import SI
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from contact1d.workflow.experiments.path import PathExperiment
 from contact1d.workflow.experiments.pull_off import PullOffExperiment
 from contact1d.workflow.experiments.slide import SlideExperiment
 from contact1d.workflow.experiments.tangential import TangentialExperiment
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import Settings
 
 __all__ = ["KINDS", "kind_of", "perform", "planned"]
 

@@ -1,7 +1,7 @@
 """Pull-off under noise: the load is drawn off at a steady rate until the bodies part, once for each seed, side by side.
 
-The detachment force is the tension when the plate last leaves the position of the largest tension: it scatters, and grows
-with the rate, since a slow pull waits longer for a fluctuation that parts the bodies.
+The detachment force is the tension when the plate last leaves the position of the largest tension: it scatters, and
+grows with the rate, since a slow pull waits longer for a fluctuation that parts the bodies.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import LOG
 from contact1d.workflow.experiments.thermal import SETTLING_LOOKS, chunk_steps, sample_columns
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import PullOff, Scene
-from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.units import FORCE
 
 INCREMENTS = 400

@@ -1,4 +1,5 @@
-"""What an experiment is: a script that moves a contact, and a reader of what it leaves; both run on the reduced model, too."""
+"""What an experiment is: a script that moves a contact, and a reader of what it leaves; both run on the reduced
+model, too."""
 
 from __future__ import annotations
 
@@ -24,8 +25,8 @@ from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import ThroughError, doubts
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Phase
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import Settings
 
 FINER_SPACING = "a smaller bodies.spacing at the same stiffness and energy per length"
 """What every radius gains from."""
@@ -33,8 +34,9 @@ RETRY_SHARES = (1 / 4, 1 / 16)
 """Parts of the increments that are tried where bodies went through each other: a body that moves by much of its
 particles' distance from the opposite ones, or by which their force changes much, lets the minimiser put one beyond.
 Where pairs snap together a minimiser moves particles by more than their distance whatever the increment: a relaxation
-then goes downhill in short moves. In time it is a load applied at once that drives a plate past its equilibrium, and what
-a snap sets free that drives a particle through its opposite: loads then come in such parts, and drag takes it up."""
+then goes downhill in short moves. In time it is a load applied at once that drives a plate past its equilibrium, and
+what a snap sets free that drives a particle through its opposite: loads then come in such parts, and drag takes it
+up."""
 
 
 class Experiment(ABC):

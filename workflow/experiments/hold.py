@@ -12,8 +12,8 @@ from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import DisplaceInTime, Phase, UnderLoad
 from contact1d.workflow.experiments.experiment import Experiment
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Hold, Scene
-from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
 

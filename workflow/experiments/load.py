@@ -20,8 +20,8 @@ from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import Phase, displacements
 from contact1d.workflow.experiments.experiment import Experiment
 from contact1d.workflow.experiments.thermal import planned_samples, thermal_load
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Load, Scene
-from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
 

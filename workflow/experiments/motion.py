@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.continuation.contact import HEAT
 from contact1d.workflow.continuation.state import State
+from contact1d.workflow.model.dynamics import DriveLeg
+from contact1d.workflow.model.motion import inertia
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene, Slide
-from contact1d.workflow.settings.drive import DriveLeg
-from contact1d.workflow.settings.inertia import inertia
-from contact1d.workflow.settings.settings import Settings
 
 Array = NDArray[np.float64]
 EVERY = 5

@@ -28,8 +28,8 @@ from contact1d.workflow.continuation.trust import doubts, require_trust
 from contact1d.workflow.deck.steps import DisplaceInTime, Phase, Row, displacements
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Experiment
 from contact1d.workflow.experiments.thermal import CERTAIN, averaged, thermal_rows
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
 
 RELAXATIONS = 14.0
@@ -255,7 +255,8 @@ def way(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
 
 
 def _longest_drop(settings: Settings) -> float:
-    """Longest move [LU] by which bodies that part keep the particles that the interaction still holds; inf where none snaps.
+    """Longest move [LU] by which bodies that part keep the particles that the interaction still holds; inf where
+    none snaps.
 
     A move h puts a joined pair h further apart before it relaxes. It is lost where that is beyond the unstable
     equilibrium next to it, which is 2 √(2 e/|G″|) away at a gap e before the fold of G(r): too early by e = h² |G″|/8.

@@ -22,8 +22,8 @@ from contact1d.workflow.continuation.trust import require_no_contradiction
 from contact1d.workflow.deck.steps import Phase, displacements
 from contact1d.workflow.experiments.detachment import planned_detachment, pull_off_thermal
 from contact1d.workflow.experiments.experiment import Experiment
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import PullOff, Scene
-from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.units import FORCE, LENGTH
 
 UNLOADING_STEPS, TENSIONS = 80, 12
@@ -139,11 +139,12 @@ def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float)
     errors = {"sampling": 0.5 * (broken - best)} | dict(rested.doubt)
     zero, last = rested.radius_or_spot(0), len(rested) - 1
     if settings.is_toothed:
-        # A tooth has no smooth top to go on to. The pull-off may be at the next one, with one particle less at each edge,
-        # and further off where tension is left to it: the tops lie near F = F_A (1 − y²), y = (a − a_cr)/(a₀ − a_cr).
-        radius = rested.radius_or_spot(last)
-        beyond = abs(zero - radius) * math.sqrt(2.0 * sum(errors.values()) / tension)
-        critical = Reading(radius, LENGTH, {"instability": scene.bodies.spacing + beyond})
+        # A tooth has no smooth top to go on to. The pull-off may be at the next one, with one particle less at each
+        edge, # and further off where tension is left to it: the tops lie near F = F_A (1 − y²), y = (a − a_cr)/(a₀ −
+       
+        a_cr). radius = rested.radius_or_spot(last) beyond =
+        abs(zero - radius) * math.sqrt(2.0 * sum(errors.values()) / tension) critical = Reading(radius, LENGTH,
+        {"instability": scene.bodies.spacing + beyond})
     else:
         critical = _extrapolated(rested)
     slope = abs(critical.value - zero) / tension
@@ -159,7 +160,8 @@ def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float)
 
 
 def _extrapolated(rested: Trace) -> Reading:
-    """The radius as a parabola through the last three states at rest, where a cubic through four has its largest tension.
+    """The radius as a parabola through the last three states at rest, where a cubic through four has its largest
+    tension.
 
     A parabola through three says how far both can be trusted.
     """

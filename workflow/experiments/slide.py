@@ -1,8 +1,9 @@
 """Slide: a normal force, and a cantilever that pulls the plate along x (Fig. 9 of the paper).
 
-It starts from rest under the normal force. A plate with little drag swings as it is loaded, past its equilibrium and through
-the other body: so the particles have a drag of their own on the way, critical for the contact, and at rest that of the
-scene again. It counts as at rest where it is along both directions, the friction equal to the pull of the cantilever.
+It starts from rest under the normal force. A plate with little drag swings as it is loaded, past its equilibrium and
+through the other body: so the particles have a drag of their own on the way, critical for the contact, and at rest
+that of the scene again. It counts as at rest where it is along both directions, the friction equal to the pull of
+the cantilever.
 """
 
 from __future__ import annotations
@@ -35,11 +36,10 @@ from contact1d.workflow.deck.steps import Phase, UnderLoad
 from contact1d.workflow.experiments.experiment import Experiment
 from contact1d.workflow.experiments.motion import Motion, motion_of
 from contact1d.workflow.experiments.thermal import SETTLING_LOOKS, chunk_steps, sampled_phase
+from contact1d.workflow.model.dynamics import MOST_ROWS, MOVING_TOLERANCE, DriveLeg
+from contact1d.workflow.model.motion import cantilever_swing, contact_half_width, too_fast
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene, Slide
-from contact1d.workflow.settings.drive import MOST_ROWS, DriveLeg
-from contact1d.workflow.settings.dynamics import MOVING_TOLERANCE
-from contact1d.workflow.settings.settings import Settings
-from contact1d.workflow.settings.way import cantilever_swing, contact_half_width, too_fast
 from contact1d.workflow.units import ENERGY, FORCE, NUMBER
 
 STEADY = 0.1

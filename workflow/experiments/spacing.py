@@ -1,7 +1,7 @@
 """How many particles stand in a contact on the plane, where nobody said: so many that the lattice keeps the tolerance.
 
-What the lattice leaves open is known before a run, from the reduced model (`continuation.budget`). It falls with the square
-of the spacing.
+What the lattice leaves open is known before a run, from the reduced model (`continuation.budget`). It falls with the
+square of the spacing.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ import numpy as np
 from contact1d.workflow.continuation.budget import ForceErrors, budgeted, lattice_errors
 from contact1d.workflow.continuation.outcome import LATTICE
 from contact1d.workflow.experiments import kind_of
+from contact1d.workflow.model.adhesion import estimate_on_plane
+from contact1d.workflow.model.pairs import tabulated
+from contact1d.workflow.model.reduced import reduced
+from contact1d.workflow.model.settings import SettingsError, settings_for
 from contact1d.workflow.scene import FlatPunch, Measured, Path, PullOff, Scene
-from contact1d.workflow.settings.adhesion import estimate_on_plane
-from contact1d.workflow.settings.reduced import reduced
-from contact1d.workflow.settings.settings import SettingsError, settings_for
-from contact1d.workflow.settings.shape import tabulated
 
 FEWEST, MOST = 30, 5000
 """Particles in the contact radius: at FEWEST F_A and a₀ of JKR are within 3e-3; MOST keep 1e-6."""

@@ -1,8 +1,9 @@
-"""Tangential: friction on a rigid plane, F_x over the displacement u along x, which zone sticks, and what is dissipated.
+"""Tangential: friction on a rigid plane, F_x over the displacement u along x, which zone sticks, and what is
+dissipated.
 
-A row is one step of each particle's spring and slider, which is exact while a particle is touched all the way. Between two
-rows of the scene displacement and position change together, along a straight line; where a particle begins or ends to touch
-there is a row of its own.
+A row is one step of each particle's spring and slider, which is exact while a particle is touched all the way.
+Between two rows of the scene displacement and position change together, along a straight line; where a particle
+begins or ends to touch there is a row of its own.
 """
 
 from __future__ import annotations
@@ -33,9 +34,9 @@ from contact1d.workflow.continuation.trust import UntrustedError, doubts
 from contact1d.workflow.deck.lattice import places
 from contact1d.workflow.deck.steps import Draw, Phase
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Experiment
+from contact1d.workflow.model.friction import Sliders, Stop, sliders_of, stops, without_rests
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene, Tangential
-from contact1d.workflow.settings.settings import Settings
-from contact1d.workflow.settings.sliders import Sliders, Stop, sliders_of, stops, without_rests
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
 
 Array = NDArray[np.float64]
@@ -49,7 +50,8 @@ AS_PREDICTED = 1e-8
 
 
 class TangentialExperiment(Experiment):
-    """F_N, F_x, a, c and the dissipated energy Σ ∫ |s_i| dδ_i of the last row; δ_i is how far a particle has slipped."""
+    """F_N, F_x, a, c and the dissipated energy Σ ∫ |s_i| dδ_i of the last row; δ_i is how far a particle has
+    slipped."""
 
     main_results = ("tangential_force", "contact_radius", "stick_radius", "dissipated_energy")
 

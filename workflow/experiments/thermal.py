@@ -20,8 +20,8 @@ from contact1d.workflow.continuation.outcome import Outcome, Result
 from contact1d.workflow.continuation.state import RadiusRule, State
 from contact1d.workflow.continuation.trust import UntrustedError, doubts, require_trust
 from contact1d.workflow.deck.steps import DisplaceInTime, Phase, UnderLoad
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Load
-from contact1d.workflow.settings.settings import Settings
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
 CHUNK = 0.25
@@ -32,7 +32,8 @@ SETTLING_LOOKS = 40
 BLOCKS = 20
 """Blocks whose means give the standard error: each is long against the settling time."""
 SAMPLES = 200
-"""Samples of a position, and of a load before its statistics are judged, and again each time they are not good enough."""
+"""Samples of a position, and of a load before its statistics are judged, and again each time they are not good
+enough."""
 MOST_SAMPLES = 2_000
 BALANCE = 5.0
 """Standard errors by which the mean force may miss the load."""

@@ -23,13 +23,13 @@ from scipy.optimize import brentq
 from contact1d.analysis.theory.jkr import Jkr, work_of_adhesion
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.errors import Contact1dError, FolderError, RunError
+from contact1d.workflow.model.pairs import ContactEstimate, particles_estimate
+from contact1d.workflow.model.settings import interaction_law
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.finished import Run, load_run
 from contact1d.workflow.runs.scales import UNIT_FIXING_RESULTS, jkr_scales
 from contact1d.workflow.scene import PullOff, Scene, scene_from_dict
 from contact1d.workflow.scene.material import PARABOLA_SHARE, SPHERES
-from contact1d.workflow.settings.estimate import ContactEstimate, particles_estimate
-from contact1d.workflow.settings.scales import interaction_law
 from contact1d.workflow.units import SI, Scales
 
 BRITTLE_RATIO = 4.0 / (9.0 * math.sqrt(3.0))

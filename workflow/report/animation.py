@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.analysis.curve import States, read_states
 from contact1d.analysis.plots import COMPRESSION, DPI, TENSION, THEORY, plain_axes
-from contact1d.analysis.states import States, read_states
 from contact1d.files import whole, write_whole
 from contact1d.workflow.deck.keeping import STATES
 from contact1d.workflow.errors import Contact1dError, FolderError

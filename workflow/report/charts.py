@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.curve import SAMPLE_TABLE, read_samples
-from contact1d.analysis.states import States
+from contact1d.analysis.curve import SAMPLE_TABLE, States, read_samples
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.sweep.axes import SweepPlan
 from contact1d.workflow.sweep.figures import Line, lines_of, mean_of, roles_of, short, theories_of

@@ -12,7 +12,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from contact1d.analysis.states import read_states
+from contact1d.analysis.curve import read_states
 from contact1d.files import write_whole
 from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.errors import FolderError

@@ -11,6 +11,7 @@ from tempfile import TemporaryDirectory
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, RunError, SceneEdit, UntrustedError
 from contact1d.workflow.experiments.spacing import with_spacing
+from contact1d.workflow.model.settings import Settings, SettingsError, settings_for
 from contact1d.workflow.runs import campaign
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.runs.report import RESULTS, write_results
@@ -18,7 +19,6 @@ from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import AnyScene, Scene, SceneError, read_scene
 from contact1d.workflow.scene.problems import as_toml
 from contact1d.workflow.scene.quantities import places
-from contact1d.workflow.settings.settings import Settings, SettingsError, settings_for
 from contact1d.workflow.units import NUMBER
 
 TRIAL = 4.0

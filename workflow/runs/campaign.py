@@ -27,6 +27,9 @@ from contact1d.workflow.engine.session import EngineError
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments import perform, planned
 from contact1d.workflow.experiments.spacing import with_spacing
+from contact1d.workflow.model.chain import MIX_UP, in_words, require_steps
+from contact1d.workflow.model.motion import require_way
+from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.processors import cores, require_ranks
@@ -34,9 +37,6 @@ from contact1d.workflow.runs.refinement import Refined, refined
 from contact1d.workflow.runs.report import FILES, FORMATS, curve_of, failure, results, write_results, write_tables
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import AnyScene, Scene, read_scene, scene_to_toml
-from contact1d.workflow.settings.settings import Settings, settings_for
-from contact1d.workflow.settings.size import MIX_UP, in_words, require_steps
-from contact1d.workflow.settings.way import require_way
 
 AnyPath = str | PathLike[str]
 LOCK = ".running"

@@ -17,7 +17,7 @@ from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import EngineError
 from contact1d.workflow.experiments import perform
-from contact1d.workflow.settings.settings import SettingsError, settings_for
+from contact1d.workflow.model.settings import SettingsError, settings_for
 
 TOLERANCE_RATIO = 5.0
 """Tolerance of a pass over that of the next one."""

@@ -13,8 +13,15 @@ from typing import Any
 
 import numpy as np
 
-from contact1d.analysis.curve import Column, Curve, curve_columns, profile_columns, write_columns
-from contact1d.analysis.states import states_of, write_states
+from contact1d.analysis.curve import (
+    Column,
+    Curve,
+    curve_columns,
+    profile_columns,
+    states_of,
+    write_columns,
+    write_states,
+)
 from contact1d.files import write_whole
 from contact1d.workflow.body.reading import doubt_of_the_image, of_the_body
 from contact1d.workflow.body.theory import theory

@@ -21,11 +21,11 @@ from warnings import catch_warnings, simplefilter
 from contact1d.files import FULL_DISK, write_whole
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, FolderError
+from contact1d.workflow.model.settings import SettingsError
 from contact1d.workflow.runs.campaign import LOCK, AnyPath, alone, run
 from contact1d.workflow.runs.processors import cores, pool
 from contact1d.workflow.scene import Scene, SceneError
 from contact1d.workflow.scene.problems import as_toml
-from contact1d.workflow.settings.settings import SettingsError
 from contact1d.workflow.sweep.axes import AnySweep, SweepPlan, points, read_sweep, require_keys
 from contact1d.workflow.sweep.table import (
     MANY_ROWS,

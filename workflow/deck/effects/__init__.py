@@ -4,9 +4,9 @@ from collections.abc import Callable
 from importlib import import_module
 
 from contact1d.workflow.deck.effects.base import Contribution, Stage
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import EFFECTS as NAMES
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import Settings
 
 EFFECTS: dict[str, Callable[[Scene, Settings], Contribution]] = {
     name: getattr(import_module(f"{__name__}.{name}"), name) for name in NAMES

@@ -1,9 +1,9 @@
 """Effect [adhesion]: d = g(a) − √(2π a W/E*) at the edge a of the contact, the rule of Heß, which makes it JKR's."""
 
 from contact1d.workflow.deck.effects.base import Contribution, Stage, number
+from contact1d.workflow.model.adhesion import AdhesiveEstimate
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.adhesion import AdhesiveEstimate
-from contact1d.workflow.settings.settings import Settings
 
 TOUCH = 1e-9
 """Distance over the spacing at which bodies touch: round-off of a displacement of 0."""

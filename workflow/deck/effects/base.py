@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import IntEnum
 
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import Settings
 
 LEAST_SLENDERNESS = 0.02
 """Least edge of the box over that of a bin: LAMMPS wants no bin above 100 times the box."""

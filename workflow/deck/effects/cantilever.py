@@ -8,8 +8,8 @@ since the bulk goes with its body. Otherwise the cantilever would pull at a drag
 """
 
 from contact1d.workflow.deck.effects.base import Contribution, Stage, first_upper_anchor, number
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import Settings
 
 
 def cantilever(scene: Scene, settings: Settings) -> Contribution:

@@ -1,8 +1,8 @@
 """Effect [damping]: F = −γ v on every particle."""
 
 from contact1d.workflow.deck.effects.base import Contribution, Stage, number
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import Settings
 
 
 def damping(scene: Scene, settings: Settings) -> Contribution:

@@ -3,8 +3,8 @@
 import math
 
 from contact1d.workflow.deck.effects.base import BINS, LEAST_SLENDERNESS, Contribution, Stage, number
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import Settings
 
 
 def horizontal(scene: Scene, settings: Settings) -> Contribution:

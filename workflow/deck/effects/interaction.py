@@ -1,8 +1,8 @@
 """Effect [interaction]: V(r) = A exp(−r/a) − B exp(−r/b) between particles of opposite bodies, from a table."""
 
 from contact1d.workflow.deck.effects.base import Contribution, Stage, number
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import Settings
 
 SKIN = 0.5
 """Neighbour-list skin over the spacing: a row of a path moves a body by less, so a list lasts for a relaxation."""

@@ -1,8 +1,8 @@
 """Effect [neighbours]: F = k_n (u_{i+1} − u_i) along x and z between neighbours, u from the undeformed profile."""
 
 from contact1d.workflow.deck.effects.base import Contribution, Stage, number
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.settings import Settings
 
 
 def neighbours(scene: Scene, settings: Settings) -> Contribution:

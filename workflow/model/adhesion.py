@@ -25,11 +25,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.workflow.model.chain import FARTHEST_RATIO, SettingsError
+from contact1d.workflow.model.pairs import ContactEstimate, Profile, plane_estimate
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.chain import SettingsError
-from contact1d.workflow.settings.estimate import ContactEstimate, plane_estimate
-from contact1d.workflow.settings.shape import Profile
-from contact1d.workflow.settings.size import FARTHEST_RATIO
 
 Array = NDArray[np.float64]
 PLACES = 4000

@@ -1,12 +1,13 @@
-"""The reduced model: particles that know their own spring and what is opposite to them, and nothing of their neighbours.
+"""The reduced model: particles that know their own spring and what is opposite to them, and nothing of their
+neighbours.
 
     springs on a rigid plane    f = k max(0, d − h(x))
     pairs of opposite chains    f = f(r),  G(r) = r₀ + h(x) − d, on the branch that a pair came by
     cells that adhere           f = k φ [d − g(x) + c (1 − φ)], while the contact is held (`adhesion`)
     springs with a slider       s ← clip(s + k_t Δu, ±μ f)
 
-It follows any path of displacements with the memory that its particles have, all positions at once. No result depends on
-it: it predicts, and it says how a result changes with the lattice (`shifted`, `finer`).
+It follows any path of displacements with the memory that its particles have, all positions at once. No result
+depends on it: it predicts, and it says how a result changes with the lattice (`shifted`, `finer`).
 """
 
 from __future__ import annotations
@@ -21,12 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.slip import slip
+from contact1d.workflow.model.adhesion import AdhesiveEstimate, Cells
+from contact1d.workflow.model.friction import Sliders
+from contact1d.workflow.model.pairs import ContactEstimate, places_within
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.settings.adhesion import AdhesiveEstimate, Cells
-from contact1d.workflow.settings.estimate import ContactEstimate
-from contact1d.workflow.settings.settings import Settings
-from contact1d.workflow.settings.shape import places_within
-from contact1d.workflow.settings.sliders import Sliders
 
 Array = NDArray[np.float64]
 OVERREACH = 0.1
@@ -36,8 +36,8 @@ MARGIN = 1.5
 FEWEST = 4.0
 """Least half-width up to which they are counted, over the spacing."""
 ROUNDS, POINTS, SNAPPING = 5, 24, 10
-"""How often the bracket of a displacement is cut, and at how many positions: so many times more at first where pairs snap,
-and the force is a row of teeth."""
+"""How often the bracket of a displacement is cut, and at how many positions: so many times more at first where pairs
+snap, and the force is a row of teeth."""
 TOUCH = 1e-9
 """Distance over the spacing at which bodies touch: round-off of a displacement of 0."""
 

@@ -1,4 +1,6 @@
-"""What a contact will roughly look like, before LAMMPS runs: independent opposite pairs under the undeformed profile.
+"""The undeformed shape of a body, as an estimate asks for it.
+
+What a contact will roughly look like, before LAMMPS runs: independent opposite pairs under the undeformed profile.
 
 A particle on each side, each on its spring k, at the actual distance r have the undeformed gap
 
@@ -14,14 +16,67 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cache, cached_property, lru_cache
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import tops
 from contact1d.potentials import DoubleExponential
-from contact1d.workflow.settings.shape import Profile
+
+Array = NDArray[np.float64]
+PLACES, NEAR = 1000, 0.01
+"""Places at which a profile is tabulated, and the first one beyond its apex over the spacing."""
+
+
+def places_within(reach: float, spacing: float, phase: float) -> Array:
+    """All x = (i + φ) s with |x| ≤ reach [LU] in order, i a whole number: of particles whose apex is φ s off one."""
+    first, last = math.ceil(-reach / spacing - phase), math.floor(reach / spacing - phase)
+    return np.asarray(spacing * (np.arange(first, last + 1) + phase), dtype=np.float64)
+
+
+class Profile(Protocol):
+    """The undeformed shape of the upper body."""
+
+    def height(self, x: Array) -> Array:
+        """Height [LU] at x [LU]."""
+
+    @property
+    def reach(self) -> float:
+        """Half-width [LU] of the body."""
+
+    def __hash__(self) -> int:
+        """The same for equal bodies, which share their estimate."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tabulated:
+    """A profile that was asked once for its `heights` [LU] at rising `places` [LU] from 0, with straight lines between.
+
+    For a measured one, whose transform takes long: an estimate asks thousands of times.
+    """
+
+    places: Array
+    heights: Array
+
+    def height(self, x: Array) -> Array:
+        """Height [LU] at x [LU]."""
+        return np.interp(np.abs(x), self.places, self.heights)
+
+    @property
+    def reach(self) -> float:
+        """Half-width [LU] of the body."""
+        return float(self.places[-1])
+
+
+def tabulated(profile: Profile, spacing: float) -> Tabulated:
+    """The profile, which must have an end, at places in a geometric row: those of a parabola within 1e-4 of its height.
+
+    That holds for a reach of 0.1 to 1e10 spacings [LU]; nearer to the apex than NEAR spacings it is a line.
+    """
+    places = np.concatenate([[0.0], np.geomspace(NEAR * spacing, profile.reach, PLACES)])
+    return Tabulated(places, profile.height(places))
+
 
 Array = NDArray[np.float64]
 GRID = 4000

@@ -1,46 +1,209 @@
-"""Every number that a scene leaves open: chain length, cutoff, table, time step, thresholds, increments.
+"""How fine each numerical setting is for an `[accuracy] tolerance`, as measured: `calibration.json`, read at import.
+
+The file is written by `python -m validation.tools.calibration`, which turns every value over a ladder in a number of
+scenes, at tolerances of 1e-2 to 1e-5, and takes the cheapest that adds a small part of the tolerance at most to the
+errors of the main results in each of them. Nobody types these numbers. Four of them are shares of the tolerance;
+three hold at every tolerance.
+
+How a particle is held along x by a straight row of opposite ones, and how far the law must reach for that.
+
+    F_x(x, z) = Σ_j f(r_j) (x − j s)/r_j,    r_j = √((x − j s)² + z²)
+
+is a small difference of large sums: at the spacing of the law's longest range b it is some 1e-2 of one pair's force.
+
+Lengths and forces of a contact that thresholds and increments go by.
+
+Every number that a scene leaves open: chain length, cutoff, table, time step, thresholds, increments.
 
 Each is derived from `[accuracy] tolerance` (relative, on the main results): by its measured share of it
-(`workflow.settings.calibration`), or by the rule stated beside it.
+(`workflow.model.settings`), or by the rule stated beside it.
 """
 
 from __future__ import annotations
 
+import json
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from contact1d.potentials import DoubleExponential
+from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.potentials.table import Table, table_for
-from contact1d.workflow.scene import Measured, Scene
-from contact1d.workflow.scene.remedies import less_compression
-from contact1d.workflow.settings.adhesion import estimate_on_plane
-from contact1d.workflow.settings.calibration import CALIBRATION, Calibration
-from contact1d.workflow.settings.chain import SettingsError as SettingsError
-from contact1d.workflow.settings.chain import chains_of, require_body, require_room
-from contact1d.workflow.settings.drive import DriveLeg, drive_steps
-from contact1d.workflow.settings.dynamics import dynamics_of, stiffest_of
-from contact1d.workflow.settings.estimate import ContactEstimate, NotCarriedError, particles_estimate
-from contact1d.workflow.settings.scales import (
-    cutoff_for,
-    force_scale_of,
-    innermost_distance,
-    interaction_law,
-    loading_step_of,
-    plane_stiffness_of,
-    thermal_motion,
-)
-from contact1d.workflow.settings.shape import Profile, tabulated
-from contact1d.workflow.settings.size import (
+from contact1d.workflow.model.adhesion import estimate_on_plane
+from contact1d.workflow.model.chain import SettingsError as SettingsError
+from contact1d.workflow.model.chain import (
+    chains_of,
+    reaches_too_far,
     require_apex,
+    require_body,
     require_digits,
     require_memory,
     require_reach,
+    require_room,
     require_rows,
     require_travel,
 )
+from contact1d.workflow.model.dynamics import DriveLeg, drive_steps, dynamics_of, stiffest_of
+from contact1d.workflow.model.pairs import ContactEstimate, NotCarriedError, Profile, particles_estimate, tabulated
+from contact1d.workflow.scene import Measured, Scene
+from contact1d.workflow.scene.remedies import less_compression
+
+FILE = Path(__file__).with_name("calibration.json")
+
+
+def _value(meaning: str) -> Any:
+    return field(metadata={"is": meaning})
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """The values, each with its meaning (`meanings`); the study that measures them sets others."""
+
+    cutoff: float = _value("force at an automatic cutoff over the law's own, per unit of tolerance")
+    table: float = _value("error of the table over the force scale, per unit of tolerance")
+    residual: float = _value("norm of the forces left on the particles over the force scale, per unit of tolerance")
+    chain: float = _value("force at the end of an automatic chain over the largest one, per unit of tolerance")
+    smooth_increment: float = _value("increment of a smooth search over the longest range, at every tolerance")
+    loading_increment: float = _value(
+        "increment where pairs snap, and on a rigid plane, over the way from touch to the preload, at every tolerance"
+    )
+    still_step: float = _value("ω_max·Δt of a motion that comes to rest, without noise, at every tolerance")
+
+
+def meanings() -> dict[str, str]:
+    """What each value is, by its name."""
+    return {one.name: one.metadata["is"] for one in fields(Calibration)}
+
+
+def calibration_of(document: Mapping[str, Any]) -> Calibration:
+    """The values in the contents of `calibration.json`. Raises KeyError where one is missing."""
+    return Calibration(**{name: float(document["values"][name]["value"]) for name in meanings()})
+
+
+CALIBRATION = calibration_of(json.loads(FILE.read_text(encoding="utf-8")))
+
+
+Array = NDArray[np.float64]
+REACH = 40.0
+"""Reach of the sums, and of the longest cutoff, over the law's longest range."""
+PLACES, HEIGHTS = 33, 400
+"""Places within half a spacing, and heights, that are looked at."""
+LEFT_OUT = 0.1
+"""Force of a pair at the cutoff over the largest force along x, per unit of tolerance: each pair that comes within
+reach, or leaves it, changes that by so much at once."""
+
+
+def slide_cutoff(law: DoubleExponential, spacing: float, load: float, share: float) -> float:
+    """Cutoff [LU] at which a pair's force is LEFT_OUT `share` of the largest force along x [FU].
+
+    Args:
+        law: of a pair.
+        spacing: of the row [LU].
+        load: on a particle [FU], compression positive.
+        share: the tolerance.
+    """
+    holding = max(largest_holding_force(law, spacing, load), np.finfo(float).tiny)
+    far = law.repulsion if law.attraction is None else law.attraction
+    start = far.range * math.log(far.amplitude / far.range / (LEFT_OUT * share * holding))
+    return min(max(start, law.longest_range), REACH * law.longest_range)
+
+
+def largest_holding_force(law: DoubleExponential, spacing: float, load: float) -> float:
+    """max_x F_x [FU] of a particle that a load [FU] presses onto a rigid row, at the height that it has in a hollow."""
+    reach = math.ceil(REACH * law.longest_range / spacing) + 1
+    row: Array = np.asarray(spacing * np.arange(-reach, reach + 1), dtype=np.float64)
+    heights: Array = np.asarray(law.longest_range * np.geomspace(1e-2, 10.0, HEIGHTS))
+    _, upward = _row_forces(law, 0.5 * spacing - row, heights)
+    carried = np.flatnonzero(upward >= load)
+    height = float(heights[carried[-1]] if carried.size else heights[0])
+    x: Array = np.linspace(0.0, 0.5 * spacing, PLACES)
+    along = [float(_row_forces(law, place - row, np.asarray([height]))[0][0]) for place in x.tolist()]
+    return float(np.max(np.abs(along)))
+
+
+def _row_forces(law: DoubleExponential, aside: Array, heights: Array) -> tuple[Array, Array]:
+    """Forces along x and z [FU] of pairs so far `aside` [LU], summed, at each of the heights [LU]."""
+    distance = np.hypot(aside[None, :], heights[:, None])
+    over = law.force(distance) / distance
+    return (over * aside).sum(axis=1), over.sum(axis=1) * heights
+
+
+THERMAL_SIGMAS = 5.0
+"""Standard deviations by which a particle's thermal motion brings it nearer."""
+
+
+def interaction_law(scene: Scene) -> DoubleExponential | None:
+    """The scene's law, or None on a rigid plane."""
+    if scene.interaction is None:
+        return None
+    terms = scene.interaction
+    attraction = None if terms.attraction is None else Exponential(terms.attraction.amplitude, terms.attraction.range)
+    return DoubleExponential(Exponential(terms.repulsion.amplitude, terms.repulsion.range), attraction)
+
+
+def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: float) -> float:
+    """The scene's cutoff [LU], or the one beyond which the force is below a share of the law's own.
+
+    In a slide also below what the tolerance leaves of the force along x.
+    """
+    assert scene.interaction is not None
+    if scene.interaction.cutoff != "auto":
+        return scene.interaction.cutoff
+    reach = law.cutoff_for(share)
+    if scene.experiment.motion_is_result and not reaches_too_far(scene, reach):
+        return max(reach, slide_cutoff(law, scene.bodies.spacing, 0.0, tolerance))
+    return reach
+
+
+def innermost_distance(estimate: ContactEstimate, cutoff: float, displacement: float) -> float:
+    """Distance [LU] of the estimate's innermost pair at a displacement [LU]; its grid ends at the cutoff [LU]."""
+    grid = cutoff / estimate.gap.size * np.arange(1, estimate.gap.size + 1)
+    return float(np.interp(estimate.rest - displacement, estimate.gap, grid))
+
+
+def thermal_motion(scene: Scene) -> float:
+    """By how much noise brings two particles on their springs nearer to each other [LU]: THERMAL_SIGMAS √(2 k_BT/k)."""
+    return (
+        0.0 if scene.noise is None else THERMAL_SIGMAS * math.sqrt(2.0 * scene.noise.temperature / scene.bulk_stiffness)
+    )
+
+
+def force_scale_of(scene: Scene, law: DoubleExponential | None, largest: float) -> float:
+    """The largest tension of one pair, or without attraction the force of the deepest particle."""
+    if law is not None and law.attraction is not None:
+        r = law.force_free_distance() + law.longest_range * np.linspace(0.0, 5.0, 2001)
+        return float(-law.force(r).min())
+    return (largest if largest > 0.0 else 1e-3 * scene.bodies.spacing) * scene.bulk_stiffness / 2
+
+
+def loading_step_of(law: DoubleExponential | None, spacing: float, step: float) -> float:
+    """The `step` [LU] if it is > 0, never more than a quarter of the longest range."""
+    limit = 0.25 * law.longest_range if law is not None else 0.1 * spacing
+    return min(step, limit) if step > 0 else limit
+
+
+def plane_stiffness_of(scene: Scene, tolerance: float) -> float:
+    """One-sided stiffness of the rigid plane.
+
+    In series with a bond it is exact for a particle on its own (bond and plane 2k each give k), and without one, where
+    particles are moved with their body, it is k. Neighbour springs and thermal motion see the bond alone, so with them
+    the plane is 1/tolerance times stiffer than the chain.
+    """
+    if scene.bodies.lower != "rigid_plane":
+        return 0.0
+    stiffness = scene.bulk_stiffness
+    if scene.stands:
+        return stiffness
+    if scene.neighbours is None and scene.noise is None:
+        return 2.0 * stiffness
+    neighbours = 0.0 if scene.neighbours is None else scene.neighbours.stiffness
+    return (stiffness + 4.0 * neighbours) / tolerance
+
 
 TABLE_MARGIN = 0.8
 """Distance from which on a table is to follow the law, over the expected smallest one. Measured: the smallest distance
