@@ -257,10 +257,8 @@ def pull_off_thermal(context: RunContext) -> Outcome:
     forces = np.asarray([one.force for one in found])
     step = ramp_of(scene, settings).rise / math.sqrt(12.0)
     spread = float(forces.std(ddof=1)) if count > 1 else math.nan
-    if count > 1:
-        error = math.hypot(spread, step) / math.sqrt(count)
-    else:
-        error = float(abs(forces[0]))  # one pull says nothing of how they scatter
+    # One pull says nothing of how they scatter.
+    error = math.hypot(spread, step) / math.sqrt(count) if count > 1 else float(abs(forces[0]))
     results = {"detachment_force": Result(float(forces.mean()), FORCE, {"statistics": error})}
     if count > 1:
         of_spread = {"statistics": spread / math.sqrt(2.0 * (count - 1))}

@@ -42,9 +42,10 @@ class LoadExperiment(Experiment):
         if surely:
             return outcome
         doubt = (
-            f"the contact does not hold a tension that is larger by {FIRST_RISE * settings.tolerance:g}: {-load:.6g} FU "
-            f"is the pull-off force as nearly as a tolerance of {settings.tolerance:g} can tell, and whether it is held "
-            'for good can\'t be told. A smaller tolerance tells more, kind = "pull_off" gives the force itself'
+            f"the contact does not hold a tension that is larger by {FIRST_RISE * settings.tolerance:g}: {-load:.6g} "
+            f"FU is the pull-off force as nearly as a tolerance of {settings.tolerance:g} can tell, and whether it is "
+            "held for good can't be told. A smaller tolerance tells more, "
+            'kind = "pull_off" gives the force itself'
         )
         return replace(outcome, warnings={"near_pull_off": doubt, **outcome.warnings})
 

@@ -140,11 +140,11 @@ def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float)
     zero, last = rested.radius_or_spot(0), len(rested) - 1
     if settings.is_toothed:
         # A tooth has no smooth top to go on to. The pull-off may be at the next one, with one particle less at each
-        edge, # and further off where tension is left to it: the tops lie near F = F_A (1 − y²), y = (a − a_cr)/(a₀ −
-       
-        a_cr). radius = rested.radius_or_spot(last) beyond =
-        abs(zero - radius) * math.sqrt(2.0 * sum(errors.values()) / tension) critical = Reading(radius, LENGTH,
-        {"instability": scene.bodies.spacing + beyond})
+        # edge, and further off where tension is left to it: the tops lie near F = F_A (1 − y²),
+        # y = (a − a_cr)/(a₀ − a_cr).
+        radius = rested.radius_or_spot(last)
+        beyond = abs(zero - radius) * math.sqrt(2.0 * sum(errors.values()) / tension)
+        critical = Reading(radius, LENGTH, {"instability": scene.bodies.spacing + beyond})
     else:
         critical = _extrapolated(rested)
     slope = abs(critical.value - zero) / tension
@@ -160,8 +160,7 @@ def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float)
 
 
 def _extrapolated(rested: Trace) -> Reading:
-    """The radius as a parabola through the last three states at rest, where a cubic through four has its largest
-    tension.
+    """The radius as a parabola through the last three states, where a cubic through four has its largest tension.
 
     A parabola through three says how far both can be trusted.
     """

@@ -188,8 +188,9 @@ def _require_history(trace: Trace, rows: Sequence[Drawn]) -> None:
         if row.wrong > AS_PREDICTED * limit:
             raise UntrustedError(
                 f"a particle's tangential force is {row.wrong:.2g} FU off what its spring and slider make of the row "
-                f"before, at displacement {trace.displacement[row.state]:.4g} LU and {row.position:.4g} LU along x (phase "
-                f"{trace.phase[row.state]}): LAMMPS has lost its history. Take rows that are nearer to each other"
+                f"before, at displacement {trace.displacement[row.state]:.4g} LU and {row.position:.4g} LU along x "
+                f"(phase {trace.phase[row.state]}): LAMMPS has lost its history. "
+                "Take rows that are nearer to each other"
             )
 
 
