@@ -163,9 +163,6 @@ def end_pressure_share(profile: Profile) -> float:
     return float(max(size[0], size[-1])) / largest if largest > 0.0 else 0.0
 
 
-Array = NDArray[np.float64]
-
-
 def spacing_of(x: Array) -> float:
     """The mean distance of neighbours [length], of rising places x, (n,), n >= 1; 0 for one."""
     return float(np.ptp(x)) / max(x.size - 1, 1)

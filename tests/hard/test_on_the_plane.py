@@ -49,7 +49,7 @@ def test_nothing_is_pulled_off_that_nothing_holds() -> None:
 @pytest.mark.parametrize("work", [1e-300, 1e-30])
 def test_a_hold_below_the_last_digit_is_no_number(work: float, tmp_path: Path) -> None:
     tables = scene(adhesion={"work_of_adhesion": work}, experiment={"kind": "pull_off", "preload": 1.0})
-    with pytest.raises(RunError, match=r"nothing beside .* last digits of places .*: take a larger adhesion"):
+    with pytest.raises(RunError, match=r"nothing beside .* last digits of positions .*: take a larger adhesion"):
         run(tables, tmp_path / "run", figures=False)
 
 

@@ -36,9 +36,6 @@ UNTRUSTED = {
     "through each other: too deep": (
         tables({"kind": "path", "displacements": [0.0, 6.0]}), "went through each other",
     ),
-    "through each other: a preload beyond what particles carry": (
-        tables({"kind": "pull_off", "preload": 100.0}), "went through each other",
-    ),
     "end of the chain": (tables({"kind": "load", "force": 2.0}, {"particles": 13}), "end of the chain"),
     "more tension than adhesion": (tables({"kind": "load", "force": -5.0}), "never reached"),
     "lost in time": (

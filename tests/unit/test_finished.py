@@ -111,7 +111,7 @@ def test_a_folder_without_a_run_is_refused_in_words(plane: MakeScene, tmp_path: 
         with pytest.raises(FolderError, match=r"[Rr]un (its|the) scene again"):
             load_run(folder)
     results.write_text(json.dumps(whole))
-    (folder / "curve.csv").write_text(table[: len(table) // 2])
+    (folder / "curve.csv").write_text(table[: len(table) // 2].rpartition(",")[0])
     with pytest.raises(FolderError, match="can read"):
         load_run(folder)
     (folder / "curve.csv").unlink()

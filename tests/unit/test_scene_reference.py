@@ -78,6 +78,7 @@ TABLES = {
     "experiment, kind pull_off": scenes.PullOff,
     "experiment, kind slide": scenes.Slide,
     "experiment, kind tangential": scenes.Tangential,
+    "experiment, kind hold": scenes.Hold,
 }
 
 

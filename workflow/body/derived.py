@@ -85,9 +85,13 @@ def implied(scene: Scene, settings: Settings, found: Mapping[str, Quantity]) -> 
         return quantities
     reduction = scene.bodies.reduction
     energy = WIDER[reduction] * line / (math.pi * radius.value)
-    tension = found["adhesion_force"].value if "adhesion_force" in found else settings.estimate.pull_off_force()
-    by_force = tension / (1.5 * math.pi * EFFECTIVE[reduction] * curvature)
-    spread = abs(energy - by_force) + energy * (radius.uncertainty / radius.value + error / work)
+    tension, missed = settings.estimate.pull_off_force(), 0.0
+    if "adhesion_force" in found:
+        tension, missed = found["adhesion_force"].value, found["adhesion_force"].uncertainty
+    sphere = 1.5 * math.pi * EFFECTIVE[reduction] * curvature
+    spread = (
+        abs(energy - tension / sphere) + missed / sphere + energy * (radius.uncertainty / radius.value + error / work)
+    )
     return quantities | {"work_of_adhesion": Quantity(energy, spread, LINE_PRESSURE)}
 
 

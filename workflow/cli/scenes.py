@@ -18,6 +18,7 @@ class Kind(StrEnum):
     PULL_OFF = "pull_off"
     LOAD = "load"
     PATH = "path"
+    HOLD = "hold"
     SLIDE = "slide"
     TANGENTIAL = "tangential"
 

@@ -40,6 +40,11 @@ SCENES: dict[str, dict[str, Any]] = {
     "pull_off": BODY | {"experiment": {"kind": "pull_off", "preload": 1.0}},
     "load": BODY | {"experiment": {"kind": "load", "force": 3.0}},
     "path": BODY | {"experiment": {"kind": "path", "displacements": {"from": -1.0, "to": 2.0, "steps": 60}}},
+    "hold": BODY
+    | {
+        "damping": {"coefficient": "auto"},
+        "experiment": {"kind": "hold", "displacement": 0.5, "duration": 100.0},
+    },
     "slide": {
         "bodies": BODY["bodies"] | {"profile": {"kind": "parabola", "radius": 30.0}, "bulk_stiffness": 2.0},
         "interaction": {

@@ -205,11 +205,17 @@ def budgeted(
     if sampled:
         shapes.append(force_error.turning * np.sign(np.diff(trace.displacement, prepend=trace.displacement[:1])))
     solver = _changes(case.read, values, [trace.perturbed(sign * shape) for shape in shapes for sign in (1.0, -1.0)])
-    read = _changes(case.read, values, [trace.perturbed(radius_shift=sign) for sign in (1.0, -1.0)])
+    # Radii are read too large or too small by themselves: all of them alike, or every other one.
+    alike = np.ones(len(trace))
+    other = np.asarray((-1.0) ** np.arange(len(trace)), dtype=np.float64)
+    radii = [trace.perturbed(radius_shift=shift) for shift in (alike, -alike, other, -other)]
+    read = _changes(case.read, values, radii)
     between = sampling_errors(case, trace) if sampled else {}
     found = {}
     for name, one in readings.items():
-        errors = {"solver": solver[name], LATTICE: lattice.get(name, 0.0) + read[name]} | dict(one.errors)
+        errors = {"solver": solver[name], LATTICE: lattice.get(name, 0.0) + read[name]}
+        for source, error in one.errors.items():
+            errors[source] = errors.get(source, 0.0) + error
         if name in between:
             errors["sampling"] = max(errors.get("sampling", 0.0), between[name])
         found[name] = Result(one.value, one.unit, errors, one.scale, one.prescribed, read[name])

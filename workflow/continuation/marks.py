@@ -45,9 +45,12 @@ def radius_at(trace: Trace, position: float) -> float:
     at = range(first, min(first + 3, len(trace)))
     if position == trace.displacement[near] or len(at) < 2:
         return trace.radius_or_spot(near)
+    radii = [trace.radius_or_spot(i) for i in at]
+    if min(radii) == max(radii):  # a body that ends at an edge
+        return radii[0]
     d = trace.displacement[list(at)]
     weights = [np.prod([(position - d[k]) / (d[j] - d[k]) for k in range(len(d)) if k != j]) for j in range(len(d))]
-    return max(0.0, float(sum(w * trace.radius_or_spot(i) for w, i in zip(weights, at, strict=True))))
+    return max(0.0, float(sum(weight * radius for weight, radius in zip(weights, radii, strict=True))))
 
 
 def displacement_under(trace: Trace, state: int, force: float, expected: float) -> float:
@@ -60,6 +63,7 @@ def displacement_under(trace: Trace, state: int, force: float, expected: float) 
     """
     own, missing = float(trace.displacement[state]), force - float(trace.force[state])
     ways, slopes = _beside(trace, state)
+    expected = max(expected, float(np.finfo(np.float64).tiny))
     if len(ways) < 2:
         known = [expected, *(abs(slope) for slope in slopes if slope)]
         return own + missing / min(known)

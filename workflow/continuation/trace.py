@@ -31,7 +31,8 @@ class Trace:
         profile: pressure and shear of a state, by its number.
         contact: radius of a state as it is read off its profile; None where the bodies do not touch.
         rule: what a contact radius is.
-        radius_shift: how many of its own uncertainties a radius is taken too large.
+        shift: by how much forces were changed from those of the states, (m,) [FU]; 0 where they are these.
+        radius_shift: by how many of its own uncertainties each radius is taken too large, (m,); 0 as it is read.
         limit: displacement [LU] below which no contact is held; −inf where none is known.
         doubt: by source, how far the search may be off the largest tension [FU].
         bracket: under load control, the largest tension that was held and the smallest that was not [FU].
@@ -45,7 +46,8 @@ class Trace:
     profile: Callable[[int], Profile] = field(repr=False)
     contact: Callable[[int], ContactRadius | None] = field(repr=False)
     rule: RadiusRule = field(repr=False)
-    radius_shift: float = 0.0
+    shift: Array | float = 0.0
+    radius_shift: Array | float = 0.0
     limit: float = -np.inf
     doubt: Mapping[str, float] = field(default_factory=dict)
     bracket: tuple[float, float] | None = None
@@ -57,16 +59,24 @@ class Trace:
     def radius(self, state: int) -> float | None:
         """Contact radius [LU]; None where the bodies do not touch."""
         found = self.contact(state)
-        return None if found is None else max(0.0, found.value + self.radius_shift * found.uncertainty)
+        return None if found is None else max(0.0, found.value + self.shift_of(state) * found.uncertainty)
 
     def radius_or_spot(self, state: int) -> float:
         """The same; 0 where no particle is in tension."""
         found = self.contact(state) or self.rule.or_spot(self.profile(state))
-        return max(0.0, found.value + self.radius_shift * found.uncertainty)
+        return max(0.0, found.value + self.shift_of(state) * found.uncertainty)
 
     def phases(self, *names: str) -> Trace:
         """The states of these phases, "unloading_2" being one of "unloading"."""
         return self.chosen(np.flatnonzero([name.partition("_")[0] in names for name in self.phase]))
+
+    def shift_of(self, state: int) -> float:
+        """By how many of its uncertainties the radius of a state is taken too large."""
+        return float(np.broadcast_to(self.radius_shift, self.force.shape)[state])
+
+    def own_force(self, state: int) -> float:
+        """Force of a state as it is, whatever was changed [FU]."""
+        return float((self.force - self.shift)[state])
 
     def falling(self) -> Trace:
         """The states that are held, by falling displacement, each once, the last that was measured there."""
@@ -84,18 +94,20 @@ class Trace:
             force=self.force[at],
             asked=self.asked[at],
             along=self.along[at],
+            shift=np.broadcast_to(self.shift, self.force.shape)[at],
+            radius_shift=np.broadcast_to(self.radius_shift, self.force.shape)[at],
             profile=lambda i: self.profile(int(at[i])),
             contact=lambda i: self.contact(int(at[i])),
         )
 
-    def perturbed(self, force: Array | float = 0.0, radius_shift: float = 0.0) -> Trace:
+    def perturbed(self, force: Array | float = 0.0, radius_shift: Array | float = 0.0) -> Trace:
         """With forces changed [FU], and radii by so many of their own uncertainties."""
         changed = self.force + force
         bracket = self.bracket
         if bracket is not None:  # of tensions, that the last state is the largest of
             shift = float(changed[-1] - self.force[-1])
             bracket = (bracket[0] - shift, bracket[1] - shift)
-        return replace(self, force=changed, radius_shift=radius_shift, bracket=bracket)
+        return replace(self, force=changed, shift=changed - self.force, radius_shift=radius_shift, bracket=bracket)
 
 
 def of_states(states: Sequence[State], asked: Sequence[bool] | None = None, limit: float = -np.inf) -> Trace:

@@ -80,7 +80,8 @@ class Experiment(ABC):
             self.script(branch, scene)
             branch.finish()
         trace = branch.trace()
-        length = settings.law.longest_range if settings.law is not None else 0.0
+        # An error of the force changes its sign within half a range: it moves where a flat maximum lies.
+        length = 0.5 * settings.law.longest_range if settings.law is not None else 0.0
         left = branch.unbalance if isinstance(branch, LoadBranch) else None
         errors = force_errors(scene, settings, branch.states, branch.marked.values(), left)
         results = budgeted(case, trace, errors, lattice, length=length)

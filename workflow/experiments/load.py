@@ -65,17 +65,18 @@ class LoadExperiment(Experiment):
         """Results at the last state."""
         assert isinstance(scene.experiment, Load)
         force, last = scene.experiment.force, len(trace) - 1
-        own = float(trace.displacement[last])
-        displacement = displacement_under(trace, last, force, stiffness_under(settings, force))
+        own, stiffness = float(trace.displacement[last]), stiffness_under(settings, force)
+        displacement = displacement_under(trace, last, trace.own_force(last), stiffness)
+        missed = abs(displacement_under(trace, last, force, stiffness) - displacement)
         carried = float(trace.force[last])
         found = {
-            "displacement": Reading(displacement, LENGTH),
+            "displacement": Reading(displacement, LENGTH, {"solver": missed}),
             "force": Reading(carried, FORCE, prescribed=force == 0.0),
         }
         if trace.radius(last):
             rate = radius_rate(trace, last, BRANCH_DISTANCE) or settings.estimate.radius_rate(own)
             radius = trace.radius_or_spot(last) + rate * (displacement - own)
-            found["contact_radius"] = Reading(radius, LENGTH)
+            found["contact_radius"] = Reading(radius, LENGTH, {"solver": abs(rate) * missed})
             if radius > 0.0:
                 pressure = carried / (math.pi * radius**2)
                 found["mean_pressure"] = Reading(pressure, MEAN_PRESSURE, prescribed=force == 0.0)

@@ -69,7 +69,7 @@ class PathExperiment(Experiment):
         strongest = (ends["deepest"], min(seen, key=lambda s: s.force), ends["final"])
         errors = force_errors(scene, settings, seen, strongest)
         results = budgeted(case, of_states(seen), errors, lattice, sampled=scene.noise is None)
-        warnings = self._missing(results, scene) | doubts(scene, settings, tuple(reported))
+        warnings = self._missing(results, scene, phases) | doubts(scene, settings, tuple(reported))
         tables = {} if scene.noise is None else {"means": _means(settings, reported)}
         warnings |= lattice_warning(scene, results)
         return Outcome(results, tuple(reported), ends, phases, warnings, tables=tables)
@@ -102,10 +102,13 @@ class PathExperiment(Experiment):
         """The rows are the scene's own."""
         return f"What helps is more steps in experiment.displacements; for a radius {FINER_SPACING}, too"
 
-    def _missing(self, results: Mapping[str, Result], scene: Scene) -> dict[str, str]:
+    def _missing(self, results: Mapping[str, Result], scene: Scene, phases: Sequence[Phase]) -> dict[str, str]:
         """Warnings of results that the path does not reach."""
         if not scene.adheres:
             return {}
+        if not any(phase.name.startswith("unloading") for phase in phases) and not results:
+            never = "the path never draws the bodies apart, so it gives no"
+            return {"no_peak": f"{never} adhesion_force", "no_zero_load": f"{never} zero_load_radius"}
         warnings = {}
         if "adhesion_force" not in results:
             warnings["no_peak"] = (

@@ -98,7 +98,7 @@ class TangentialExperiment(Experiment):
             "tangential_force": Reading(last.force, FORCE, {"solver": error}, scale=strongest),
             "contact_radius": Reading(radius, LENGTH, prescribed=radius == 0.0),
             "stick_radius": Reading(
-                last.stick.value + trace.radius_shift * last.stick.uncertainty, LENGTH,
+                last.stick.value + trace.shift_of(final) * last.stick.uncertainty, LENGTH,
                 prescribed=last.stick.value == last.stick.uncertainty == 0.0,
             ),
             "dissipated_energy": Reading(

@@ -78,7 +78,6 @@ def tabulated(profile: Profile, spacing: float) -> Tabulated:
     return Tabulated(places, profile.height(places))
 
 
-Array = NDArray[np.float64]
 GRID = 4000
 CONTACT_POINTS = 401
 BRANCH_POINTS, COARSE_POINTS = 400, 40
