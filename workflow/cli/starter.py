@@ -87,7 +87,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
     },
     "output": {"states": 100},
     "experiment": {
-        "method": "quasistatic", "normal_displacement": 1.0, "loading_rate": 1e-4,
+        "method": "quasistatic", "normal_displacement": 1.0, "force": 3.0, "loading_rate": 1e-4,
         "velocity": 1e-3, "stiffness": 2.0,
         "repeats": 20, "path": [[0.05, 6.0], [-0.05, 6.0]],
     },

@@ -154,11 +154,13 @@ class ForceErrors:
     Attributes:
         common: alike at neighbouring states: what residual forces add up to at most, table, cutoff, a plane not rigid.
         turning: what a path back may have otherwise than the path there: residual forces are of either sign.
+        law: of that, the largest part that is the interaction's or the plane's own [FU].
         anchor: displacement [LU] about which an error may change sign: that of the last marked state.
     """
 
     common: Array
     turning: Array
+    law: float = 0.0
     anchor: float = 0.0
 
 
@@ -167,8 +169,9 @@ def force_errors(
 ) -> ForceErrors:
     """Of states, by their displacement between `marked` ones; `left`: in place of residual forces [FU]."""
     count = float(settings.particles)
+    law = {state.displacement: law_error(scene, settings, state) for state in marked}
     own = {
-        state.displacement: (count * state.residual if left is None else left) + law_error(scene, settings, state)
+        state.displacement: law[state.displacement] + (count * state.residual if left is None else left)
         for state in marked
     }
     positions = sorted(own)
@@ -176,7 +179,7 @@ def force_errors(
     common = np.interp(displacement, positions, [own[position] for position in positions])
     several = count if scene.noise is not None else np.sqrt(count)
     turning = several * np.asarray([state.residual for state in states])
-    return ForceErrors(common, turning, list(marked)[-1].displacement)
+    return ForceErrors(common, turning, max(law.values()), list(marked)[-1].displacement)
 
 
 def budgeted(
@@ -204,7 +207,12 @@ def budgeted(
         shapes.append(force_error.common * np.clip((trace.displacement - force_error.anchor) / length, -1.0, 1.0))
     if sampled:
         shapes.append(force_error.turning * np.sign(np.diff(trace.displacement, prepend=trace.displacement[:1])))
-    solver = _changes(case.read, values, [trace.perturbed(sign * shape) for shape in shapes for sign in (1.0, -1.0)])
+    traces = [trace.perturbed(sign * shape) for shape in shapes for sign in (1.0, -1.0)]
+    # Where an interaction is so much stronger or weaker, a contact is as much wider or narrower at most.
+    strength = case.settings.estimate.pull_off_force() or float(np.max(np.abs(trace.force), initial=0.0))
+    if force_error.law > 0.0 and strength > 0.0:
+        traces += [trace.perturbed(radius_factor=1.0 + sign * force_error.law / strength) for sign in (1.0, -1.0)]
+    solver = _changes(case.read, values, traces)
     # Radii are read too large or too small by themselves: all of them alike, or every other one.
     alike = np.ones(len(trace))
     other = np.asarray((-1.0) ** np.arange(len(trace)), dtype=np.float64)

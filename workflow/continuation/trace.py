@@ -33,6 +33,7 @@ class Trace:
         rule: what a contact radius is.
         shift: by how much forces were changed from those of the states, (m,) [FU]; 0 where they are these.
         radius_shift: by how many of its own uncertainties each radius is taken too large, (m,); 0 as it is read.
+        radius_factor: by which radii are taken larger.
         limit: displacement [LU] below which no contact is held; −inf where none is known.
         doubt: by source, how far the search may be off the largest tension [FU].
         bracket: under load control, the largest tension that was held and the smallest that was not [FU].
@@ -48,6 +49,7 @@ class Trace:
     rule: RadiusRule = field(repr=False)
     shift: Array | float = 0.0
     radius_shift: Array | float = 0.0
+    radius_factor: float = 1.0
     limit: float = -np.inf
     doubt: Mapping[str, float] = field(default_factory=dict)
     bracket: tuple[float, float] | None = None
@@ -59,12 +61,15 @@ class Trace:
     def radius(self, state: int) -> float | None:
         """Contact radius [LU]; None where the bodies do not touch."""
         found = self.contact(state)
-        return None if found is None else max(0.0, found.value + self.shift_of(state) * found.uncertainty)
+        return None if found is None else self._perturbed(found, state)
 
     def radius_or_spot(self, state: int) -> float:
         """The same; 0 where no particle is in tension."""
         found = self.contact(state) or self.rule.or_spot(self.profile(state))
-        return max(0.0, found.value + self.shift_of(state) * found.uncertainty)
+        return self._perturbed(found, state)
+
+    def _perturbed(self, found: ContactRadius, state: int) -> float:
+        return max(0.0, self.radius_factor * (found.value + self.shift_of(state) * found.uncertainty))
 
     def phases(self, *names: str) -> Trace:
         """The states of these phases, "unloading_2" being one of "unloading"."""
@@ -100,14 +105,23 @@ class Trace:
             contact=lambda i: self.contact(int(at[i])),
         )
 
-    def perturbed(self, force: Array | float = 0.0, radius_shift: Array | float = 0.0) -> Trace:
-        """With forces changed [FU], and radii by so many of their own uncertainties."""
+    def perturbed(
+        self, force: Array | float = 0.0, radius_shift: Array | float = 0.0, radius_factor: float = 1.0
+    ) -> Trace:
+        """With forces changed [FU], and radii by so many of their own uncertainties and by a factor."""
         changed = self.force + force
         bracket = self.bracket
         if bracket is not None:  # of tensions, that the last state is the largest of
             shift = float(changed[-1] - self.force[-1])
             bracket = (bracket[0] - shift, bracket[1] - shift)
-        return replace(self, force=changed, shift=changed - self.force, radius_shift=radius_shift, bracket=bracket)
+        return replace(
+            self,
+            force=changed,
+            shift=changed - self.force,
+            radius_shift=radius_shift,
+            radius_factor=radius_factor,
+            bracket=bracket,
+        )
 
 
 def of_states(states: Sequence[State], asked: Sequence[bool] | None = None, limit: float = -np.inf) -> Trace:
