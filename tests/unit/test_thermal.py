@@ -1,0 +1,55 @@
+"""Claims of means under noise: their standard error is that of a correlated series, and a motion forgets its start first."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact1d.workflow.continuation.trust import UntrustedError
+from contact1d.workflow.experiments import thermal
+from contact1d.workflow.experiments.thermal import planned_samples, standard_error
+from contact1d.workflow.model.settings import settings_for
+from contact1d.workflow.scene import scene_from_dict
+from tests.scenes import chains
+
+COUNT, MEMORY, SEEDS = 4000, 8.0, 60
+
+
+def correlated(seed: int) -> np.ndarray:
+    """A series of variance 1 that forgets in MEMORY steps."""
+    kept, rng = math.exp(-1.0 / MEMORY), np.random.default_rng(seed)
+    kicks, found = rng.normal(size=COUNT) * math.sqrt(1.0 - kept**2), np.empty(COUNT)
+    found[0] = rng.normal()
+    for i in range(1, COUNT):
+        found[i] = kept * found[i - 1] + kicks[i]
+    return found
+
+
+def test_a_standard_error_is_that_of_the_mean_of_a_correlated_series() -> None:
+    series = [correlated(seed) for seed in range(SEEDS)]
+    stated = np.mean([standard_error(one.tolist()) for one in series])
+    assert stated == pytest.approx(math.sqrt(2.0 * MEMORY / COUNT), rel=0.15)
+    off = np.asarray([abs(one.mean()) / standard_error(one.tolist()) for one in series])
+    assert (off <= 2.1).mean() >= 0.9
+
+
+def test_a_motion_forgets_its_start_before_it_is_sampled() -> None:
+    noisy = chains(1000.0, experiment={"kind": "load", "force": 1.0}, damping={"coefficient": "auto"}, plate={})
+    scene = scene_from_dict(noisy | {"noise": {"temperature": 1e-4, "seed": 1}})
+    settings = settings_for(scene)
+    settling, _ = planned_samples(settings, 1.0)
+    time = sum(getattr(row, "steps", 0) for row in settling.rows) * settings.time_step
+    assert time >= 8.0 * settings.settle_time
+
+
+def test_a_mean_force_that_misses_its_load_is_no_result(monkeypatch: pytest.MonkeyPatch) -> None:
+    rng = np.random.default_rng(1)
+    samples: list[Any] = [
+        SimpleNamespace(carried=1.1 + 0.01 * rng.normal(), displacement=0.0) for _ in range(thermal.SAMPLES)
+    ]
+    with pytest.raises(UntrustedError, match="not in equilibrium"):
+        thermal._load_results(SimpleNamespace(deck=SimpleNamespace(scene=None)), samples, 1.0)  # type: ignore[arg-type]
