@@ -1,4 +1,4 @@
-"""Claims of means under noise: their standard error is that of a correlated series, and a motion forgets its start first."""
+"""Claims of means under noise: a standard error knows that a series is correlated; a motion forgets its start first."""
 
 from __future__ import annotations
 
