@@ -99,31 +99,29 @@ class Reduction:
         return bodies.particles == "auto" and not bodies.profile.has_edge
 
     @property
-    def is_quadrature(self) -> bool:
-        """Whether the particles stand for a body that is continuous: on a rigid plane."""
-        bodies = self.scene.bodies
-        return bodies.lower == "rigid_plane" and (bodies.particles == "auto" or self.scene.adhesion is not None)
+    def converges(self) -> bool:
+        """Whether sums over particles come nearer to the body's own steadily: where cells share the edge.
+
+        Whole particles touch or don't, and what they miss goes up and down with the spacing.
+        """
+        return self.scene.adhesion is not None and self.scene.adheres
 
 
 def lattice_errors(case: Reduction) -> Values:
     """By name of a result, what the lattice leaves open; infinite where it does not come nearer with finer spacings."""
-    if not (case.on_lattice or (case.is_quadrature and case.scene.adheres)):
+    if not (case.on_lattice or case.converges):
         return {}
     model = reduced(case.scene, case.settings)
     own = case.values(model)
-    found = dict.fromkeys(own, 0.0)
-    if case.on_lattice:
-        for phase in MORE_PHASES if case.scene.friction is not None else PHASES:
-            other = case.values(model.shifted(phase))
-            found = {
-                name: max(error, MARGIN * abs(other.get(name, own[name]) - own[name])) for name, error in found.items()
-            }
-    if case.is_quadrature and case.scene.adheres:
-        finer = [case.values(model.finer()), case.values(model.finer().finer())]
-        for name in found:
-            values = (own[name], *(one.get(name, own[name]) for one in finer))
-            found[name] = max(found[name], MARGIN * _extrapolated(*values))
-    return found
+    if case.converges:
+        others = [case.values(model.finer()), case.values(model.finer().finer())]
+        return {
+            name: MARGIN * _extrapolated(value, *(one.get(name, value) for one in others))
+            for name, value in own.items()
+        }
+    phases = MORE_PHASES if case.scene.friction is not None else PHASES
+    others = [case.values(model.shifted(phase)) for phase in phases]
+    return {name: MARGIN * max(abs(one.get(name, value) - value) for one in others) for name, value in own.items()}
 
 
 def _extrapolated(coarse: float, fine: float, finest: float) -> float:
