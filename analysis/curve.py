@@ -1,7 +1,4 @@
-"""Tables of a run: curve.csv, profile.csv, friction.csv; written whole or not at all, read back to the same doubles.
-
-Profiles of the states that a run passed, for looking at its whole way: states.npz, whole or not at all.
-"""
+"""Files of a run: curve.csv, profile.csv, friction.csv and states.npz; written whole or not at all, read to the same doubles."""
 
 from __future__ import annotations
 

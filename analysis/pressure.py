@@ -1,8 +1,6 @@
 """Pressure that the opposite body puts on the upper particles, and quantities read off it: p_i = F_z,i / spacing.
 
 Here F_z,i is the force of the whole lower body on upper particle i, positive upwards, so that compression is positive.
-
-A row of places that rise evenly: its spacing and its middle.
 """
 
 from __future__ import annotations

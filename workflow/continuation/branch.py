@@ -2,9 +2,8 @@
 
 How it may be refined follows from what the particles remember:
 
-    reversible       the state at a displacement does not depend on the path: a position is visited whenever it is
-    wanted irreversible     pairs snap: the whole schedule is run again from the start, with the wanted positions in
-    their order
+    reversible       a state does not depend on the path: a position is visited whenever it is wanted
+    irreversible     pairs snap: the schedule is run again from the start, with the wanted positions in their order
 
 Rows on a rigid plane are steps of one run and cost next to nothing; the reduced model of such a contact is the
 deck's own law, so that its limit points and forces are known beforehand.
@@ -554,8 +553,7 @@ class Branch:
         raise UntrustedError(f"the bodies did not separate within {MOST_INCREMENTS} increments of the displacement")
 
     def _unloading_step(self, start: float) -> float:
-        """First increment [LU] of an unloading: soft springs follow the attraction far beyond what they were
-        pressed."""
+        """First increment [LU] of an unloading: soft springs follow the attraction farther than they were pressed."""
         way = start - self.settings.rest + float(self.settings.estimate.gap[-1])
         return max(self.settings.increment(), way / SEPARATION_ROWS)
 

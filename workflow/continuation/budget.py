@@ -1,13 +1,11 @@
 """The error budget: how far each result may be off, by source, found by perturbing the one reader of the results.
 
-    solver           the reader on forces ± ε, and on forces tilted by ± ε over the range of the interaction: ε is
-    what a
-                     minimiser or a motion leaves, and what table, cutoff or a plane that is not quite rigid change
+    solver           the reader on forces ± ε, also tilted about the last mark: ε is what a minimiser or a motion
+                     leaves, and what table, cutoff or a plane that is not quite rigid change
     sampling         what the reader's polynomials and the search leave; where the scene gives the steps, the reader on
                      the model with these steps beside the model with dense ones
-    discretisation   the reader on the model with its apex elsewhere between particles, and with two and four times
-    as many;
-                     and on radii changed by what reading between particles leaves
+    discretisation   the reader on the model with its apex elsewhere between particles, or on three spacings; and on
+                     radii changed by what reading between particles leaves
     instability      what particles that are lost early, and other teeth of the force, may change (the reader's own)
 
 Nothing here knows an experiment: whatever a script passes and a reader reads has all of these.
@@ -33,8 +31,7 @@ from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 MARGIN = 1.25
-"""Error over the change of the model with the lattice: it knows no neighbours; measured on chains of both parities:
-1.01."""
+"""Error over the change of the model with the lattice: it knows no neighbours. Measured on both parities: 1.01."""
 PATH_MARGIN = 1.5
 """The same of the steps of a path, where the model's maximum lies elsewhere."""
 PHASES = (0.25, 0.0)

@@ -40,8 +40,7 @@ MOST_REPEATS = 200
 TOLD = "steps/told"
 """The fragment from which on a heat bath reports what energy it takes."""
 FRAMES = "rows.bin"
-"""Where rows that are steps of one run leave a frame each: id, z, force along z, and along x where that is
-prescribed."""
+"""Where rows that are steps of one run leave a frame each: id, z, force along z, and along x if that is prescribed."""
 MOST_NUMBERS = 1_000_000
 """Of the frames that are read at once, to bound the memory."""
 
@@ -50,8 +49,7 @@ class Contact:
     """A deck that is being run. It keeps its schedule: `phases` is what in.lammps must hold to repeat it."""
 
     def __init__(self, deck: Deck, session: Session, meanwhile: Callable[[], object] | None = None) -> None:
-        """Run the deck's head: bodies, effects, method. What `meanwhile` does costs no time: LAMMPS reads the
-        bodies."""
+        """Run the deck's head. What `meanwhile` does costs no time: LAMMPS reads the bodies then."""
         self.deck, self.scene, self.settings, self.session = deck, deck.scene, deck.settings, session
         self.rows_seconds = 0.0  # wall time of the rows in LAMMPS
         self._phases: list[Phase] = []

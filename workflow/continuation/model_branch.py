@@ -1,5 +1,4 @@
-"""The reduced model in the place of LAMMPS: the same script goes through it, and the same reader reads what it
-leaves."""
+"""The reduced model in the place of LAMMPS: the same script goes through it, the same reader reads it."""
 
 from __future__ import annotations
 
@@ -18,8 +17,7 @@ from contact1d.workflow.scene import Scene
 Array = NDArray[np.float64]
 COARSE, FINE, ZOOMS = 100, 30, 2
 """Positions of the first look for the largest tension and of each closer one, and how many of these: none where the
-curve is smooth, since the model's forces are straight between the points of a grid, whose corners would place a flat
-top."""
+curve is smooth, since the model's forces are straight between the points of a grid, whose corners would move a top."""
 BETWEEN = 8
 """Positions on the way to a force."""
 LAST = 1e-9

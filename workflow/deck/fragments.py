@@ -1,8 +1,6 @@
-"""Fragments: LAMMPS text with ${variables} whose header says what it needs and what it defines.
+"""Fragments: LAMMPS text with ${variables} whose header says what it needs and what it defines, and blocks made of them.
 
 Two ways of use are recognised as a variable's name: ${name} and v_name. A fragment's header and its text must agree.
-
-Fragments put together: blocks with the variables that they need, commands, lists over several lines.
 """
 
 from __future__ import annotations

@@ -1,6 +1,4 @@
-"""What bodies, lower body, units and method bring to a deck, beside the effects.
-
-The box around the bodies, and the bins of it in which LAMMPS looks for neighbours.
+"""What bodies, lower body, units and method bring to a deck beside the effects, and the box around the bodies.
 
 LAMMPS bins the whole box, five integers for a cube of half the reach of the forces: of long chains that is most of the
 memory, and of a steep body, whose ends rise far beyond all forces, more than there is.

@@ -1,5 +1,4 @@
-"""What an experiment is: a script that moves a contact, and a reader of what it leaves; both run on the reduced
-model, too."""
+"""An experiment: a script that moves a contact and a reader of what it leaves; both run on the reduced model, too."""
 
 from __future__ import annotations
 
@@ -35,8 +34,7 @@ RETRY_SHARES = (1 / 4, 1 / 16)
 particles' distance from the opposite ones, or by which their force changes much, lets the minimiser put one beyond.
 Where pairs snap together a minimiser moves particles by more than their distance whatever the increment: a relaxation
 then goes downhill in short moves. In time it is a load applied at once that drives a plate past its equilibrium, and
-what a snap sets free that drives a particle through its opposite: loads then come in such parts, and drag takes it
-up."""
+what a snap sets free that drives a particle through its opposite: loads then come in such parts, with drag."""
 
 
 class Experiment(ABC):

@@ -1,5 +1,4 @@
-"""Tangential: friction on a rigid plane, F_x over the displacement u along x, which zone sticks, and what is
-dissipated.
+"""Tangential: friction on a rigid plane, F_x over the displacement u along x, the zone that sticks, what is lost.
 
 A row is one step of each particle's spring and slider, which is exact while a particle is touched all the way.
 Between two rows of the scene displacement and position change together, along a straight line; where a particle
@@ -50,8 +49,7 @@ AS_PREDICTED = 1e-8
 
 
 class TangentialExperiment(Experiment):
-    """F_N, F_x, a, c and the dissipated energy Σ ∫ |s_i| dδ_i of the last row; δ_i is how far a particle has
-    slipped."""
+    """F_N, F_x, a, c and the dissipated energy Σ ∫ |s_i| dδ_i of the last row; a particle has slipped by δ_i."""
 
     main_results = ("tangential_force", "contact_radius", "stick_radius", "dissipated_energy")
 

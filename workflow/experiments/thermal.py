@@ -32,8 +32,7 @@ SETTLING_LOOKS = 40
 BLOCKS = 20
 """Blocks whose means give the standard error: each is long against the settling time."""
 SAMPLES = 200
-"""Samples of a position, and of a load before its statistics are judged, and again each time they are not good
-enough."""
+"""Samples of a position, and of a load before its statistics are judged, and again until they are good enough."""
 MOST_SAMPLES = 2_000
 BALANCE = 5.0
 """Standard errors by which the mean force may miss the load."""

@@ -1,6 +1,6 @@
-"""Whether profile, chain and contact fit into each other, and how long an automatic chain is.
+"""How long a chain is, whether profile and contact fit into it, and whether a computer holds what a scene asks for.
 
-Whether a computer can hold the system and count the steps that a scene asks for, before anything runs.
+All of it is judged before anything runs; an error names the nearest value that is possible.
 """
 
 from __future__ import annotations

@@ -1,6 +1,4 @@
-"""The undeformed shape of a body, as an estimate asks for it.
-
-What a contact will roughly look like, before LAMMPS runs: independent opposite pairs under the undeformed profile.
+"""What a contact will roughly look like, before LAMMPS runs: independent opposite pairs under the undeformed profile.
 
 A particle on each side, each on its spring k, at the actual distance r have the undeformed gap
 

@@ -1,5 +1,4 @@
-"""The reduced model: particles that know their own spring and what is opposite to them, and nothing of their
-neighbours.
+"""The reduced model: particles that know their own spring and what is opposite, and nothing of their neighbours.
 
     springs on a rigid plane    f = k max(0, d − h(x))
     pairs of opposite chains    f = f(r),  G(r) = r₀ + h(x) − d, on the branch that a pair came by

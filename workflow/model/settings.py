@@ -1,22 +1,15 @@
-"""How fine each numerical setting is for an `[accuracy] tolerance`, as measured: `calibration.json`, read at import.
+"""Every number that a scene leaves open: chain length, cutoff, table, time step, thresholds, increments.
 
-The file is written by `python -m validation.tools.calibration`, which turns every value over a ladder in a number of
-scenes, at tolerances of 1e-2 to 1e-5, and takes the cheapest that adds a small part of the tolerance at most to the
-errors of the main results in each of them. Nobody types these numbers. Four of them are shares of the tolerance;
-three hold at every tolerance.
+Each is derived from `[accuracy] tolerance` (relative, on the main results): by its measured share of it, or by the rule
+stated beside it. The shares are in `calibration.json`, which `python -m validation.tools.calibration` writes: it turns every
+value over a ladder in a number of scenes, at tolerances of 1e-2 to 1e-5, and takes the cheapest that adds a small part of
+the tolerance at most to the errors of the main results in each of them.
 
-How a particle is held along x by a straight row of opposite ones, and how far the law must reach for that.
+The cutoff of a slide follows from how a particle is held along x by a straight row of opposite ones,
 
     F_x(x, z) = Σ_j f(r_j) (x − j s)/r_j,    r_j = √((x − j s)² + z²)
 
-is a small difference of large sums: at the spacing of the law's longest range b it is some 1e-2 of one pair's force.
-
-Lengths and forces of a contact that thresholds and increments go by.
-
-Every number that a scene leaves open: chain length, cutoff, table, time step, thresholds, increments.
-
-Each is derived from `[accuracy] tolerance` (relative, on the main results): by its measured share of it
-(`workflow.model.settings`), or by the rule stated beside it.
+a small difference of large sums: at the spacing of the law's longest range b it is some 1e-2 of one pair's force.
 """
 
 from __future__ import annotations
