@@ -1,4 +1,4 @@
-"""Files of a run: curve.csv, profile.csv, friction.csv and states.npz; written whole or not at all, read to the same doubles."""
+"""Files of a run: curve.csv, profile.csv, friction.csv, states.npz; written whole or not at all, to the same doubles."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fragments: LAMMPS text with ${variables} whose header says what it needs and what it defines, and blocks made of them.
+"""Fragments: LAMMPS text with ${variables} whose header says what it needs and what it defines; and blocks.
 
 Two ways of use are recognised as a variable's name: ${name} and v_name. A fragment's header and its text must agree.
 """
