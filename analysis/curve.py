@@ -1,4 +1,4 @@
-"""Files of a run: curve.csv, profile.csv, friction.csv, states.npz; written whole or not at all, to the same doubles."""
+"""Files of a run: curve.csv, profile.csv, friction.csv, states.npz; written whole or not at all, all digits kept."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Time step, damping, plate mass and settling time of a scene in time, and the rows of a slide's drive.
 
-The time step is the smallest of named limits (`time_step_limits`). In a slide it divides every leg of the drive, and every
-row has as many of them.
+The time step is the smallest of named limits (`time_step_limits`). In a slide it divides every leg of the drive, and
+every row has as many of them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A slide's inertia in LAMMPS, whether it stays on its lower chain, and whether its drive is slower than particles follow.
+"""A slide's inertia in LAMMPS, whether it stays on its lower chain, whether particles can follow its drive.
 
 LAMMPS evaluates the drag of a step with the velocity half a step before: m a = F − γ (v − a Δt/2). With m + γ Δt/2 in
 the place of m that is m a = F − γ v. Otherwise a slip is as much too light as its drag is strong, which at usual
