@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from contact1d.analysis import states as states_module
+from contact1d.analysis import curve as states_module
 from contact1d.analysis.curve import States, read_states, states_of, write_states
 from contact1d.analysis.pressure import Profile
 

@@ -69,6 +69,8 @@ class Trace:
         return self._perturbed(found, state)
 
     def _perturbed(self, found: ContactRadius, state: int) -> float:
+        if found.uncertainty == 0.0:  # a body that ends at an edge
+            return found.value
         return max(0.0, self.radius_factor * (found.value + self.shift_of(state) * found.uncertainty))
 
     def phases(self, *names: str) -> Trace:
