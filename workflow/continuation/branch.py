@@ -13,21 +13,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from contextlib import ExitStack
 from dataclasses import replace
-from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import Peak, largest_tension, promised, rivals, smooth_crossing
-from contact1d.workflow.continuation.contact import Contact
-from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.context import ContactBranch, RunContext
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import DigitsError, TensionError, UntrustedError
 from contact1d.workflow.deck.steps import Displace, DisplaceInTime, Phase, displacements
-from contact1d.workflow.model.reduced import Reduced, reduced
 from contact1d.workflow.model.settings import Settings
 
 Array = NDArray[np.float64]
@@ -88,60 +84,26 @@ JUMPS = (
 )
 
 
-class Branch:
-    """States of one contact, from its approach on.
+class Branch(ContactBranch):
+    """States under displacement control.
 
     Attributes:
-        context: where contacts are opened.
-        contact: the one that runs.
-        loading, falling: states of rising, and then of falling displacement, as they were measured.
-        marked: states that are reported, by name.
         missed: how far the search may be off the largest tension [FU].
         on_the_way: how many of the first states nobody asks for.
     """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Open a contact."""
-        self.context, self._meanwhile = context, meanwhile
-        self.scene, self.settings = context.deck.scene, context.deck.settings
-        self.model: Reduced = reduced(self.scene, self.settings)
+        """Prepare a contact."""
+        super().__init__(context, meanwhile)
         self.tolerance = SEARCH_SHARE * self.settings.tolerance
-        self.loading: list[State] = []
-        self.falling: list[State] = []
-        self.marked: dict[str, State] = {}
         self.missed, self.on_the_way = 0.0, 0
         self._targets: dict[str, float] = {}
-        self._open = ExitStack()
         self._finished = False
-
-    def __enter__(self) -> Self:
-        """Begin."""
-        self.contact: Contact = self._open.enter_context(self.context.contact(meanwhile=self._meanwhile))
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        """Close the contact."""
-        self._open.__exit__(*error)  # type: ignore[arg-type]
-
-    @property
-    def phases(self) -> tuple[Phase, ...]:
-        """The schedule so far."""
-        return self.contact.phases
-
-    @property
-    def states(self) -> list[State]:
-        """All states, in order."""
-        return [*self.loading, *self.falling]
 
     @property
     def reversible(self) -> bool:
         """Whether a state does not depend on the path."""
         return not self.settings.snaps
-
-    @property
-    def scale(self) -> float:
-        """The largest tension that is expected [FU]."""
-        return self.settings.estimate.pull_off_force()
 
     def trace(self) -> Trace:
         """What a reader sees."""
@@ -157,18 +119,17 @@ class Branch:
     def begin(self, name: str) -> None:
         """Begin a phase; of a finished schedule nothing is left to do."""
         if not self._finished:
-            self.contact.begin(name)
+            super().begin(name)
 
     def mark(self, name: str) -> None:
         """Report the last state."""
         if not self._finished:
-            self.marked[name] = self._last
-            self.contact.write_state()
+            super().mark(name)
 
     def finish(self) -> None:
         """End the schedule."""
         if not self._finished:
-            self.contact.finish()
+            super().finish()
 
     def visit(self, positions: Sequence[float] | Array, phases: str = "falling") -> list[State]:
         """Rows at displacements [LU] that are known beforehand."""

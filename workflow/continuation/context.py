@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Self
 
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.continuation.state import State
 from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.engine.session import Engine
+from contact1d.workflow.model.reduced import Reduced, reduced
 
 
 @dataclass
@@ -78,3 +82,62 @@ class RunContext:
             self.lammps_cpu_seconds += other.lammps_cpu_seconds
             self.rows_seconds += other.rows_seconds
             self.steps += other.steps
+
+
+class ContactBranch:
+    """States of one contact, from its approach on; what a script moves.
+
+    Attributes:
+        context: where contacts are opened.
+        contact: the one that runs.
+        model: the reduced one.
+        loading, falling: states of rising, and then of falling displacement, as they were measured.
+        marked: states that are reported, by name.
+    """
+
+    def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
+        """Prepare a contact; what `meanwhile` does costs no time: LAMMPS reads the bodies then."""
+        self.context, self._meanwhile = context, meanwhile
+        self.scene, self.settings = context.deck.scene, context.deck.settings
+        self.model: Reduced = reduced(self.scene, self.settings)
+        self.loading: list[State] = []
+        self.falling: list[State] = []
+        self.marked: dict[str, State] = {}
+        self._open = ExitStack()
+
+    def __enter__(self) -> Self:
+        """Open it."""
+        self.contact: Contact = self._open.enter_context(self.context.contact(meanwhile=self._meanwhile))
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        """Close it."""
+        self._open.__exit__(*error)  # type: ignore[arg-type]
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """The schedule so far."""
+        return self.contact.phases
+
+    @property
+    def states(self) -> list[State]:
+        """All states, in order."""
+        return [*self.loading, *self.falling]
+
+    @property
+    def scale(self) -> float:
+        """The largest tension that is expected [FU]."""
+        return self.settings.estimate.pull_off_force()
+
+    def begin(self, name: str) -> None:
+        """Begin a phase."""
+        self.contact.begin(name)
+
+    def mark(self, name: str) -> None:
+        """Report the last state."""
+        self.marked[name] = self.states[-1]
+        self.contact.write_state()
+
+    def finish(self) -> None:
+        """End the schedule."""
+        self.contact.finish()

@@ -9,24 +9,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import are_apart
 from contact1d.analysis.polynomial import lowest_minimum, through, value
-from contact1d.workflow.continuation.contact import Contact
-from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.context import ContactBranch, RunContext
 from contact1d.workflow.continuation.holding import Held, Start, hold, overshoot, press
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import ThroughError, UntrustedError
-from contact1d.workflow.deck.steps import Phase, UnderLoad
-from contact1d.workflow.model.reduced import Reduced, reduced
+from contact1d.workflow.deck.steps import UnderLoad
 
 Array = NDArray[np.float64]
 MOST_LEVELS = 60
@@ -112,54 +108,20 @@ class Search:
         return self.guess if top is None else top[1]
 
 
-class LoadBranch:
+class LoadBranch(ContactBranch):
     """States at rest under loads; what `Branch` does by displacement is done here by force.
 
     Attributes:
-        context: where contacts are opened.
-        contact: the one that runs.
-        loading, falling: states at rest under compression, and from F = 0 on.
-        marked: states that are reported, by name.
         unbalance: force [FU] that the last state leaves unbalanced.
         search: of the largest tension, once there was one.
     """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Open a contact."""
-        self.context, self._meanwhile = context, meanwhile
-        self.scene, self.settings = context.deck.scene, context.deck.settings
-        self.model: Reduced = reduced(self.scene, self.settings)
-        self.loading: list[State] = []
-        self.falling: list[State] = []
-        self.marked: dict[str, State] = {}
+        """Prepare a contact."""
+        super().__init__(context, meanwhile)
         self.search: Search | None = None
         self.unbalance = 0.0
         self._held: Held | None = None
-        self._open = ExitStack()
-
-    def __enter__(self) -> Self:
-        """Begin."""
-        self.contact: Contact = self._open.enter_context(self.context.contact(meanwhile=self._meanwhile))
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        """Close the contact."""
-        self._open.__exit__(*error)  # type: ignore[arg-type]
-
-    @property
-    def phases(self) -> tuple[Phase, ...]:
-        """The schedule so far."""
-        return self.contact.phases
-
-    @property
-    def states(self) -> list[State]:
-        """All states, in order."""
-        return [*self.loading, *self.falling]
-
-    @property
-    def scale(self) -> float:
-        """The largest tension that is expected [FU]."""
-        return self.settings.estimate.pull_off_force()
 
     def trace(self) -> Trace:
         """What a reader sees."""
@@ -167,19 +129,6 @@ class LoadBranch:
         if self.search is not None:
             bracket, doubt = (self.search.best, self.search.broken), {"instability": self.missed_teeth()}
         return replace(of_states(self.states), bracket=bracket, doubt=doubt)
-
-    def begin(self, name: str) -> None:
-        """Begin a phase."""
-        self.contact.begin(name)
-
-    def mark(self, name: str) -> None:
-        """Report the last state."""
-        self.marked[name] = self.states[-1]
-        self.contact.write_state()
-
-    def finish(self) -> None:
-        """End the schedule."""
-        self.contact.finish()
 
     def reach(self, force: float, scale: float) -> None:
         """Hold a force [FU] to a share of the tolerance of `scale` [FU]; a tension is approached from F = 0, so
