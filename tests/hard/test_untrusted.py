@@ -45,7 +45,12 @@ UNTRUSTED = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", UNTRUSTED)
+SLOW = {"through each other: too deep"}
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name in SLOW else name for name in UNTRUSTED]
+)
 def test_no_number_comes_out(name: str, tmp_path: Path) -> None:
     scene, words = UNTRUSTED[name]
     with pytest.raises(RunError, match=words):

@@ -30,6 +30,7 @@ def test_one_particle_is_that_of_prandtl_and_tomlinson(stiffness: float) -> None
     assert chain(1, 1, stiffness).friction() == pytest.approx(expected, rel=EXACT)
 
 
+@pytest.mark.slow
 def test_what_the_plate_gives_way_to_each_slip_falls_as_the_number_of_particles() -> None:
     few, more = (chain(*pair, 0.03).friction() for pair in ((5, 8), (8, 13)))
     expected = slow_friction(shared_corrugation(LAW, 1.0, LOAD, NORMAL, 0.03), 0.03)

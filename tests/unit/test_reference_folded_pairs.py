@@ -49,6 +49,7 @@ def test_the_newton_solver_snaps_at_the_same_places(ratio: float) -> None:
     assert np.max(np.abs(force - exact)) < EXACT * np.max(np.abs(exact))
 
 
+@pytest.mark.slow
 def test_the_area_of_the_loop_is_the_integral_of_the_force() -> None:
     pairs = FoldedPairs(LAW, 2.0 * STEEPEST / 3.0, HEIGHTS)
     there = np.linspace(-1.0, 0.0, 200_001)

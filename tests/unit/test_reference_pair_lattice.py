@@ -42,6 +42,7 @@ def test_a_pair_that_snaps_jumps_at_both_folds() -> None:
     assert pair.pull_off(0.0)[0] == pytest.approx(-float(LAW.force(np.asarray(LAW.extremum_distance(1)))), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_round_loses_the_area_between_the_ways() -> None:
     pair = PairLattice(LAW, 2.0 * STEEPEST / 3.0, np.zeros(1))
     d = np.linspace(-1.0, 0.01, 200_001)

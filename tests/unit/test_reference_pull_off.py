@@ -97,6 +97,7 @@ def _held_by_roots(law: PairInteraction, k: float, gaps: np.ndarray) -> float:
     return total
 
 
+@pytest.mark.slow
 def test_snapping_pairs_by_root_finding() -> None:
     k = 0.2
     law = PairInteraction(Exponential(0.18 / 75.0, 0.008), Exponential(0.09 / 75.0, 0.016))
@@ -122,6 +123,7 @@ def test_parabola_is_found_exactly_and_shape_errors_are_refused() -> None:
         tension_radius(x, pressure, 4)
 
 
+@pytest.mark.slow
 def test_what_cannot_be_pulled_off_is_refused() -> None:
     with pytest.raises(ValueError, match="attraction"):
         pull_off(ChainModel(9, 1.0, radius=10.0, rigid_plane=True), 1.0)

@@ -123,6 +123,7 @@ BYTES_PER_POINT = 2_000
 """Name, values, and here also an answer that no folder holds; a `Scene` alone is ten times that."""
 
 
+@pytest.mark.slow
 def test_many_points_take_no_memory_each(tmp_path: Path) -> None:
     """Ten times the points: what is held grows by names and values only, some hundred bytes for each."""
     import gc

@@ -149,7 +149,8 @@ def test_a_tension_just_below_the_largest_is_within_what_is_claimed(
     assert found["contact_radius"].uncertainty < NEAR_PULL_OFF * found["contact_radius"].value
 
 
-@pytest.mark.parametrize("radius_of_body", [pytest.param(200.0, marks=pytest.mark.slow), 100.0])
+@pytest.mark.slow
+@pytest.mark.parametrize("radius_of_body", [200.0, 100.0])
 def test_pairs_that_snap_let_go_where_they_do_without_time(run_tables: RunTables, radius_of_body: float) -> None:
     """The largest tooth of the tension: a plate that swings lets go before; and the run tells of several equilibria."""
     scene = tables((*SHORT[:2], radius_of_body), PLAIN, {"kind": "pull_off", "preload": 1.0})

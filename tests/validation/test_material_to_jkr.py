@@ -107,7 +107,7 @@ def test_scene_has_the_particles_in_the_contact_radius_that_its_tolerance_takes_
 ) -> None:
     """At 1e-3: test_automatic_spacing holds the tolerance itself."""
     _, found = done
-    assert found.run.results.zero_load_radius.value == pytest.approx(47.0, rel=ONE_PERCENT)
+    assert found.run.results.zero_load_radius.value == pytest.approx(35.0, rel=ONE_PERCENT)
     assert (found.scene.bodies.reduction, found.scene.effects) == ("mdr", ("adhesion",))
 
 

@@ -150,7 +150,7 @@ def test_pull_off_agrees_with_the_reference(run_tables: Callable[[dict[str, Any]
         assert 0.0 < compared.found[name].uncertainty < 1e-3 * compared.exact[name]
 
 
-@pytest.mark.parametrize(("preload", "tolerance"), [(60.0, 5e-3), (80.0, 1e-2)])
+@pytest.mark.parametrize(("preload", "tolerance"), [(60.0, 5e-3), pytest.param(80.0, 1e-2, marks=pytest.mark.slow)])
 def test_a_load_that_the_chains_carry_is_reached(
     run_tables: Callable[[dict[str, Any]], Any], preload: float, tolerance: float
 ) -> None:

@@ -68,6 +68,7 @@ THERMAL_PLACES = np.linspace(0.1, 0.36, 27)
 """Displacements of a reference at a temperature [LU]: thirty standard deviations to either side."""
 
 
+@pytest.mark.slow
 def test_the_pinned_numbers_are_those_of_the_references() -> None:
     assert independent("hertz_plane") == pytest.approx(PINNED["hertz_plane"][1], abs=DIGITS)
     assert independent("load") == pytest.approx(PINNED["load"][1], abs=DIGITS)
@@ -87,6 +88,7 @@ SLIDING = 5e-4
 """Relative, of means over periods that the run-in has not quite left."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["slide", "prandtl_tomlinson"])
 def test_the_pinned_slides_are_those_of_the_integrator(name: str) -> None:
     scene = read_scene(SCENES / f"{name}.toml")

@@ -79,6 +79,7 @@ def test_the_shipped_scene_has_the_swing_of_its_temperature(tmp_path: Path) -> N
     swings(run(scene, tmp_path / "run", figures=False), deviation)
 
 
+@pytest.mark.slow
 def test_noise_moves_the_mean_as_boltzmanns_integral_says(tmp_path: Path) -> None:
     changes = (
         f"bodies.particles={PARTICLES}", f"bodies.spacing={SPACING}", f"experiment.force={FORCE}",

@@ -27,7 +27,7 @@ ADIABATIC = 0.01
 """Relative: what a rate per time at every load leaves out where the load is slow."""
 
 
-@pytest.mark.parametrize("rate", [3e-4, 1e-3])
+@pytest.mark.parametrize("rate", [pytest.param(3e-4, marks=pytest.mark.slow), 1e-3])
 def test_the_detachment_force_is_that_of_smoluchowskis_equation(rate: float, tmp_path: Path) -> None:
     found = run(detachment.scene(rate, REPEATS), tmp_path / "run", figures=False)
     mean, spread = detachment.expected(rate)
