@@ -56,6 +56,11 @@ def local_scenes(paper: Scene) -> Scenes:
     return {local_run(radius): with_radius(local(paper), radius) for radius in LOCAL_RADII}
 
 
+def all_scenes(paper: Scene) -> Scenes:
+    """Those of both."""
+    return local_scenes(paper) | chain_scenes(paper)
+
+
 @dataclass(frozen=True)
 class Fit:
     """An exponent, and its uncertainty: half the confidence interval and what the runs claim."""
@@ -207,7 +212,7 @@ FIG7 = Study(
     "F_A and a_0 both go with the square root of R, while JKR (3D) has the exponents 1 and 2/3 and Barquins (2D) 1/3 "
     "and 2/3.",
     judge_fig7,
-    lambda paper: local_scenes(paper) | chain_scenes(paper),
+    all_scenes,
 )
 EXPONENTS = Study(
     "exponents",
