@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import pickle
 from pathlib import Path
 
 import pytest
@@ -71,6 +72,11 @@ def test_a_folder_of_other_things_is_left_alone(tmp_path: Path) -> None:
     with pytest.raises(doors.FolderError, match="not of a validation"):
         conduct([SMALL], tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]
+
+
+def test_every_study_goes_to_a_process_of_its_own() -> None:
+    for study in (*PAPER, *HARD, *SPEED):
+        assert pickle.loads(pickle.dumps(study)).name == study.name
 
 
 @pytest.mark.parametrize("command", ["paper", "hard", "speed"])

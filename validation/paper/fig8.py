@@ -42,7 +42,7 @@ from validation.paper.scenes import (
 )
 from validation.references.tension_radius import state_radius
 from validation.row import Reference, Row, Standing, claim, solver
-from validation.study import Bench, Findings, Rows, Runs, Study, found
+from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
 
 ASKED = 0.08
 """Largest rms distance of F/F_A to JKR's that was asked for, up to F/F_A = 1.5."""
@@ -222,6 +222,12 @@ def _summary(checks: list[Row]) -> str:
     )
 
 
+def neighbour_curves(paper: Scene) -> Scenes:
+    """The curves of bodies whose particles have neighbours."""
+    every = scenes_8a(paper) | scenes_8b(paper)
+    return {name: scene for name, scene in every.items() if name.startswith("curve") and "local" not in name}
+
+
 FIG8A = Study(
     "fig8a",
     "Fig. 8a: force over contact radius for different N",
@@ -243,9 +249,5 @@ JKR_OR_BARQUINS = Study(
     "For arbitrary N and R the three-dimensional theory (JKR) suits the results much better than the two-dimensional "
     "one (Barquins).",
     judge_both,
-    lambda paper: {
-        name: scene
-        for name, scene in (scenes_8a(paper) | scenes_8b(paper)).items()
-        if name.startswith("curve") and "local" not in name
-    },
+    neighbour_curves,
 )
