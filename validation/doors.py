@@ -125,7 +125,9 @@ def sweep_points(name: str) -> dict[tuple[float, ...], Scene]:
 def machine() -> str:
     """Kind of machine, without names: "x86_64 with 2 processors (AMD EPYC) under Linux"."""
     known = (
-        re.search(r"^model name\s*:\s*(\D*)", CPUINFO.read_text(encoding="utf-8"), re.M) if CPUINFO.exists() else None
+        re.search(r"^model name\s*:\s*([^\d\n]*)", CPUINFO.read_text(encoding="utf-8"), re.M)
+        if CPUINFO.exists()
+        else None
     )
     words = re.sub(r"\(.*?\)", "", known[1]).strip() if known else ""
     kind = f" ({words})" if words else ""
