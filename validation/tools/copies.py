@@ -14,6 +14,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
 MADE = ("runs", "reproduced", "stability", "speed", "__pycache__")
 """What is made by running, and is not copied from the top."""
@@ -106,4 +108,6 @@ def first_failure(folder: Path, tests: Sequence[str], patience: float) -> str:
     code = run_tests(folder, ["-x", *tests], Notes(), patience)
     if code is None:
         return HANGS
-    return "" if code == 0 else noted.read_text(encoding="utf-8") if noted.exists() else "they do not run"
+    if code in (0, pytest.ExitCode.NO_TESTS_COLLECTED):  # none that ran failed
+        return ""
+    return noted.read_text(encoding="utf-8") if noted.exists() else "they do not run"
