@@ -40,7 +40,7 @@ def killed_by(fault: dict[str, str], folder: Path) -> str:
 
 def main() -> int:
     """Put every fault back in turn."""
-    chosen = [fault for fault in listed() if fault["name"] in sys.argv[1:] or not (sys.argv[1:] or "stale" in fault)]
+    chosen = [fault for fault in listed() if fault["name"] in sys.argv[1:] or not sys.argv[1:]]
     found: dict[str, str] = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {}
     load()
     with tempfile.TemporaryDirectory() as temporary:
