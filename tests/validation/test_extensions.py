@@ -17,7 +17,7 @@ import pytest
 
 from contact1d import read_scene, run
 from contact1d.workflow import experiments
-from contact1d.workflow.continuation.budget import Reading
+from contact1d.workflow.continuation.outcome import Reading
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.experiments.load import LoadExperiment
 from contact1d.workflow.model.settings import Settings

@@ -18,8 +18,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.curve_marks import Peak, largest_tension, promised, rivals, smooth_crossing
+from contact1d.analysis.curve_marks import Peak, promised, rivals, smooth_crossing
 from contact1d.workflow.continuation.context import ContactBranch, RunContext
+from contact1d.workflow.continuation.marks import PLACE_FACTOR, cut_short, early_loss, peak_of, radius_rate
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import DigitsError, TensionError, UntrustedError
@@ -66,8 +67,6 @@ ROWS_BEYOND_PEAK = 3
 """Rows beyond the largest tension that its polynomials need."""
 HALVINGS_AT_PEAK = 2
 """Halvings of the increment beside the largest tension for the sake of the contact radius there."""
-PLACE_FACTOR = 2.0
-"""Error of the position of the largest tension over the distance between those of two polynomials."""
 PER_TOOTH, MOST_TEETH = 4.0, 400.0
 """Rows to a tooth of the tension, and teeth that rows can tell apart; denser ones are a small part of it each."""
 MOST_RIVALS = 200
@@ -107,14 +106,22 @@ class Branch(ContactBranch):
 
     def trace(self) -> Trace:
         """What a reader sees."""
-        limit = self.model.apart if self.contact.deck.stepped and self.scene.adheres else -math.inf
-        doubt = {}
-        if "critical" in self.marked:
-            doubt["sampling"] = self.missed
-            if not self.reversible:
-                doubt["instability"] = self.cut_short()
         asked = [i >= self.on_the_way for i in range(len(self.states))]
-        return replace(of_states(self.states, asked, limit), doubt=doubt)
+        return replace(of_states(self.states, asked, self._limit), doubt={"sampling": self.missed})
+
+    @property
+    def unloading(self) -> Trace:
+        """What was held on the way apart, by falling displacement."""
+        return of_states(self.falling, limit=self._limit).falling()
+
+    @property
+    def peak(self) -> Peak:
+        """The largest tension by all states that were held on the way apart."""
+        return peak_of(self.unloading)
+
+    @property
+    def _limit(self) -> float:
+        return self.model.apart if self.contact.deck.stepped and self.scene.adheres else -math.inf
 
     def begin(self, name: str) -> None:
         """Begin a phase; of a finished schedule nothing is left to do."""
@@ -245,44 +252,32 @@ class Branch(ContactBranch):
         """
         if self._finished:
             return
-        before = self.peak()
+        before = self.peak
         if self.contact.deck.stepped:
             self.visit(np.linspace(self._last.displacement, BEYOND_LIMIT * self.model.apart, LOADING_STEPS + 1)[1:])
             return
         # On from where the bodies have been, yet no longer a way at once than the search for a maximum goes past it.
         nearest = self._last.displacement - (ROWS_BEYOND_PEAK + 1) * self.settings.increment()
         self._separate(max(nearest, min(s.displacement for s in self.falling)))
-        after = self.peak()
+        after = self.peak
         if abs(after.smooth - before.smooth) > self.tolerance * after.smooth:
             raise SecondMaximumError(
                 f"the tension rises again to {after.tension:.6g} FU after its largest maximum was {before.smooth:.6g} "
                 'FU: use kind = "path" through all of it'
             )
 
-    def peak(self) -> Peak:
-        """The largest tension by all states that were held on the way apart."""
-        d, force = _curve(self.falling)
-        if self.contact.deck.stepped:
-            held = d >= self.model.apart
-            d, force = d[held], force[held]
-            found = largest_tension(d.tolist(), force.tolist())
-            if found.index == len(d) - 1:  # at the limit point the tension is what it is
-                return Peak(found.index, found.tension, LAST * found.tension, found.tension, found.position, 0.0)
-            return found
-        return largest_tension(d.tolist(), force.tolist())
-
     def _maximum_above_limit(self) -> None:
         """Rows from F = 0 to just before the limit point, then about the largest tension."""
         zero, last = self._last.displacement, self.model.apart
         end = zero + (1.0 - LAST) * (last - zero)
         self.visit(np.linspace(zero, end, PULLING_STEPS + 1)[1:])
-        before = self.peak()
+        before = self.peak
         step = (zero - last) / PULLING_STEPS
         self.visit(np.clip(before.position + step * np.asarray((0.5, -0.5, 0.25, -0.25)), end, zero))
-        self.visit([min(max(self.peak().position, end), zero)])
-        self.missed = abs(self.peak().smooth - before.smooth)
+        self.visit([min(max(self.peak.position, end), zero)])
+        self.missed = abs(self.peak.smooth - before.smooth)
         digits = self._last.residual * self.settings.particles
-        if self.peak().smooth <= digits:
+        if self.peak.smooth <= digits:
             raise DigitsError(
                 f"the largest tension, about {self.scale:.2g} FU, is nothing beside {digits:.2g} FU, which "
                 "the last digits of positions make of the contact's force",
@@ -295,10 +290,10 @@ class Branch(ContactBranch):
         Just below snapping F(d) has a tooth for each pair that is lost: every one that may be the highest is looked at.
         """
         beside = self._pass_maximum()
-        expected, cuts, changed = self.peak(), 0, math.inf
+        expected, cuts, changed = self.peak, 0, math.inf
         for _ in range(MOST_ROUNDS):
             self._back_to(expected.position)
-            found = self.peak()
+            found = self.peak
             missed, allowed = abs(found.smooth - expected.smooth), self.tolerance * found.smooth
             if missed > allowed or not self._is_at(found):
                 expected = found
@@ -309,12 +304,12 @@ class Branch(ContactBranch):
                 if len(self.falling) == before:
                     self.missed = max(missed, changed, left, abs(found.smooth + self._last.force))
                     return
-                expected = self.peak()
+                expected = self.peak
                 changed = max(changed, abs(expected.smooth - found.smooth))
                 continue
             beside, cuts = 0.5 * beside, cuts + 1
             surprise = self._halve((found.position + beside, found.position - beside))
-            expected = self.peak()
+            expected = self.peak
             changed = max(surprise, abs(expected.smooth - found.smooth))
         raise UntrustedError(f"the largest tension is not found near {expected.position:.6g} LU: {JUMPS}")
 
@@ -338,8 +333,7 @@ class Branch(ContactBranch):
 
     def _halve(self, positions: tuple[float, float]) -> float:
         """Visit positions [LU] beside the largest tension; by how much they are not what was promised there [FU]."""
-        d, force = _curve(self.falling)
-        expected = promised(d.tolist(), force.tolist(), positions)
+        expected = promised(*self.unloading.lists, positions)
         surprise = 0.0
         for position, tension in zip(positions, expected, strict=True):
             self._back_to(position)
@@ -353,8 +347,8 @@ class Branch(ContactBranch):
         """
         excess = 0.0
         for _ in range(MOST_RIVALS):
-            d, force = _curve(self.falling)
-            teeth = rivals(d.tolist(), force.tolist(), self.peak())
+            d, force = self.unloading.lists
+            teeth = rivals(d, force, self.peak)
             highest = max(teeth, key=lambda i: teeth[i], default=0)
             excess = max(0.0, teeth.get(highest, 0.0))
             if excess <= allowed:
@@ -373,11 +367,8 @@ class Branch(ContactBranch):
 
     def _rate(self) -> float:
         """da/dd at the last state, from the nearest other one."""
-        last = self._last
-        others = [s for s in self.falling if s.displacement != last.displacement]
-        near = min(others, key=lambda s: abs(s.displacement - last.displacement))
-        change = near.radius_or_spot.value - last.radius_or_spot.value
-        return change / (near.displacement - last.displacement)
+        way = self.unloading
+        return radius_rate(way, int(np.argmin(np.abs(way.displacement - self._last.displacement))))
 
     def _radius_allowed(self) -> float:
         radius = self._last.radius_or_spot
@@ -394,17 +385,16 @@ class Branch(ContactBranch):
         self._separate(self._last.displacement)
         window = self._unloading_step(self.loading[-1].displacement)
         for number in range(MOST_REPLAYS):
-            before = self.peak()
+            before = self.peak
             self._replay(window, first=number == 0)
             window *= ZOOM_FACTOR
             if self._agrees(before):
-                d, force = _curve(self.falling)
-                teeth = rivals(d.tolist(), force.tolist(), self.peak())
-                self.missed = abs(self.peak().smooth - before.smooth) + max((0.0, *teeth.values()))
+                teeth = rivals(*self.unloading.lists, self.peak)
+                self.missed = abs(self.peak.smooth - before.smooth) + max((0.0, *teeth.values()))
                 self._finished = True
                 return
         raise UntrustedError(
-            f"the pull-off force still changes from {before.tension:.6g} to {self.peak().tension:.6g} FU after "
+            f"the pull-off force still changes from {before.tension:.6g} to {self.peak.tension:.6g} FU after "
             f"{MOST_REPLAYS} refinements of the path, by more than a tolerance of {self.settings.tolerance:g} allows: "
             "take a larger [accuracy] tolerance, or stiffer springs or a longer range, with which particles do not snap"
         )
@@ -412,11 +402,12 @@ class Branch(ContactBranch):
     def _replay(self, window: float, first: bool) -> None:
         """Run the schedule again from the start, with the marks of the one before and a window about its peak [LU]."""
         deepest = _displacement_of(self.loading, self._targets["deepest"])
-        d, force = _curve(self.falling)
+        way, peak = self.unloading, self.peak
+        d, force = way.displacement, way.force
         same = 1e-9 * (deepest - d[-1])
         climbed = sorted({s.displacement for s in self.loading[:-1] if s.force < self._targets["deepest"]})
-        zero, peak = smooth_crossing(d.tolist(), force.tolist(), self._targets["zero"]), self.peak()
-        half, step = max(window, self.lost_early()), window / WINDOW_ROWS
+        zero = smooth_crossing(*way.lists, self._targets["zero"])
+        half, step = max(window, early_loss(way, peak, self.settings)), window / WINDOW_ROWS
         high, low = peak.position + half, peak.position - half
         if first:  # which tooth is the highest can't be told from coarse rows
             close = d[-force >= (1.0 - RIVAL_SHARE) * peak.tension]
@@ -444,35 +435,20 @@ class Branch(ContactBranch):
 
     def _agrees(self, before: Peak) -> bool:
         """Whether two schedules give the same results, and the marks of the latest one are where they belong."""
-        peak, critical = self.peak(), self.marked["critical"]
+        peak, critical = self.peak, self.marked["critical"]
         allowed, radius = self.tolerance * peak.smooth, critical.radius_or_spot
-        near = min((s for s in self.falling if s.displacement != critical.displacement),
-                   key=lambda s: abs(s.displacement - critical.displacement))  # fmt: skip
-        rate = (near.radius_or_spot.value - radius.value) / (near.displacement - critical.displacement)
+        way = self.unloading
+        rate = radius_rate(way, int(np.argmin(np.abs(way.displacement - critical.displacement))))
         preload = self._targets["deepest"]
         return (
             abs(peak.smooth - before.smooth) <= allowed
-            and peak.uncertainty + self.cut_short() <= allowed
+            and peak.uncertainty + cut_short(way, peak, self.settings) <= allowed
             and abs(self.loading[-1].force - preload) <= self.tolerance * preload
             and abs(self.marked["zero_load"].force) <= allowed
             and peak.smooth + critical.force <= allowed
             and abs(rate * (peak.position - critical.displacement))
             <= max(self.tolerance * radius.value, READ_SHARE * radius.uncertainty)
         )
-
-    def lost_early(self) -> float:
-        """How far [LU] before its limit the largest tension may have been lost, in the move after it."""
-        d, _ = _curve(self.falling)
-        i = self.peak().index
-        return self.settings.let_go_early(float(d[i] - d[min(i + 1, len(d) - 1)]))
-
-    def cut_short(self) -> float:
-        """Tension [FU] that is missed by that: it would have gone on to rise as it did."""
-        d, force = _curve(self.falling)
-        i = self.peak().index
-        if not 0 < i < len(d) - 1:
-            return 0.0
-        return max(0.0, float((force[i - 1] - force[i]) / (d[i - 1] - d[i]))) * self.lost_early()
 
     # --- moves
 
@@ -550,13 +526,6 @@ def _secant(before: State, beyond: State | None, states: Sequence[State], force:
         needed = OVERSHOOT * (force - before.carried) / slope / step
         ahead = min(1.0, needed) if needed > 0 else 1.0
     return before.displacement + ahead * step
-
-
-def _curve(states: Sequence[State]) -> tuple[Array, Array]:
-    """Displacements [LU], falling, each once, and forces [FU]."""
-    known = {state.displacement: state.force for state in states}
-    d = np.asarray(sorted(known, reverse=True))
-    return d, np.asarray([known[at] for at in d.tolist()])
 
 
 def _is_passed(states: Sequence[State]) -> bool:

@@ -14,14 +14,14 @@ Nothing here knows an experiment: whatever a script passes and a reader reads ha
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.continuation.model_branch import ModelBranch
-from contact1d.workflow.continuation.outcome import LATTICE, Result, in_words
+from contact1d.workflow.continuation.outcome import LATTICE, Reading, Result, in_words
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import law_error
@@ -44,25 +44,6 @@ DENSE = 16
 """Positions of the model in one step of a path."""
 SLOWEST = 0.9
 """Ratio of two differences of three spacings above which they do not shrink."""
-
-
-@dataclass(frozen=True)
-class Reading:
-    """A value that was read, and what its reader knows of its errors, by source.
-
-    Attributes:
-        value: in `unit`.
-        unit: of the model.
-        errors: by source.
-        scale: what the uncertainty is compared with, where that is not the value itself.
-        prescribed: whether the scene prescribes it.
-    """
-
-    value: float
-    unit: str
-    errors: Mapping[str, float] = field(default_factory=dict)
-    scale: float | None = None
-    prescribed: bool = False
 
 
 Script = Callable[[ModelBranch], object]

@@ -7,22 +7,110 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.curve_marks import Peak, largest_tension
+from contact1d.analysis.curve_marks import Peak, crossing, largest_tension, rivals, smooth_crossing
+from contact1d.workflow.continuation.outcome import Reading
 from contact1d.workflow.continuation.trace import Trace
+from contact1d.workflow.model.settings import Settings
+from contact1d.workflow.units import FORCE, LENGTH
 
 Array = NDArray[np.float64]
 BRANCH_DISTANCE = 0.02
 """Distance of two displacements over the whole path from which on a change is more than interpolation error."""
 LAST = 1e-6
 """Distance from the limit point, over the way from F = 0 to there, within which the last row stands for it."""
+TINY = float(np.finfo(np.float64).tiny)
+PLACE_FACTOR = 2.0
+"""Error of the position of the largest tension over the distance between those of two polynomials."""
+
+
+def unloading(branch: Trace, settings: Settings) -> dict[str, Reading]:
+    """F_A, a_cr and a₀ of a branch of falling displacement, those of the three that it has.
+
+    F_A is the largest tension, at the vertex of a smooth curve or at the last row before a jump, and a_cr the radius
+    there; a₀ is the radius where the force crosses 0. A largest tension at an end of the branch is none, but at the
+    limit point of the contact.
+    """
+    found: dict[str, Reading] = {}
+    peak, last = peak_of(branch), len(branch) - 1
+    if peak.tension > 0.0 and peak.index > 0 and (peak.index < last or _distance_from_limit(branch) <= LAST):
+        sampled = max(peak.uncertainty, branch.doubt.get("sampling", 0.0))
+        errors = {"sampling": sampled, "instability": cut_short(branch, peak, settings)}
+        found["adhesion_force"] = Reading(peak.smooth, FORCE, errors)
+        if branch.radius(peak.index) is not None:
+            found["critical_radius"] = _critical_radius(branch, peak, settings, sum(errors.values()))
+    if (zero := _zero_load(branch)) is not None:
+        found["zero_load_radius"] = zero
+    return found
+
+
+def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: float) -> Reading:
+    """a at the largest tension; where that may be another tooth by `missed` [FU], the radius may be the one there.
+
+    A jump comes anywhere on the way to the next row, and may leave nothing to read a radius off.
+    """
+    d, i = branch.displacement, peak.index
+    jumps = i + 1 < len(d) and peak.position == d[i]
+    if jumps:
+        radius = branch.radius_or_spot(i)
+        rate = abs(radius - branch.radius_or_spot(i - 1)) / max(float(d[i - 1] - d[i]), TINY)
+        errors = {"sampling": rate * float(d[i] - d[i + 1])}
+    else:
+        rate = abs(radius_rate(branch, int(np.argmin(np.abs(d - peak.position)))))
+        radius = radius_at(branch, peak.position)
+        errors = {"sampling": PLACE_FACTOR * rate * peak.misplaced}
+    if settings.snaps:
+        teeth = rivals(*branch.lists, peak)
+        others = [branch.radius_or_spot(i) for i, excess in teeth.items() if excess > -missed]
+        errors["instability"] = max((abs(other - radius) for other in others), default=0.0)
+    return Reading(radius, LENGTH, errors)
+
+
+def _zero_load(branch: Trace) -> Reading | None:
+    """a where the force crosses 0, by a parabola; a straight line says how far to believe it.
+
+    None where it never does, or only as the contact is lost.
+    """
+    d, force = branch.lists
+    try:
+        index, place = crossing(d, force, 0.0)
+    except ValueError:
+        return None
+    after = min(index + 1, len(d) - 1)
+    if branch.radius(after) is None:
+        return None
+    radii = [branch.radius_or_spot(i) for i in (after, index)]
+    line = float(np.interp(place, [d[after], d[index]], radii))
+    radius = radius_at(branch, smooth_crossing(d, force, 0.0))
+    return Reading(radius, LENGTH, {"sampling": abs(radius - line)})
+
+
+def early_loss(branch: Trace, peak: Peak, settings: Settings) -> float:
+    """How far [LU] before its limit the largest tension may have been lost, in the move after it."""
+    d = branch.displacement
+    return settings.let_go_early(float(d[peak.index] - d[min(peak.index + 1, len(d) - 1)]))
+
+
+def cut_short(branch: Trace, peak: Peak, settings: Settings) -> float:
+    """Tension [FU] that is missed by that: it would have gone on to rise as it did."""
+    d, force, i = branch.displacement, branch.force, peak.index
+    if not 0 < i < len(d) - 1:
+        return 0.0
+    return max(0.0, float(force[i - 1] - force[i]) / max(float(d[i - 1] - d[i]), TINY)) * early_loss(
+        branch, peak, settings
+    )
+
+
+def _distance_from_limit(branch: Trace) -> float:
+    """Of the last row, over the whole branch; infinite where no limit point is known."""
+    return abs(float(branch.displacement[-1]) - branch.limit) / max(float(np.ptp(branch.displacement)), TINY)
 
 
 def peak_of(trace: Trace) -> Peak:
     """The largest tension by falling displacement; at the limit point, where a contact is lost at once, what it is."""
-    found = largest_tension(trace.displacement.tolist(), trace.force.tolist())
+    found = largest_tension(*trace.lists)
     last = len(trace) - 1
-    left = abs(float(trace.displacement[last]) - trace.limit) / max(float(np.ptp(trace.displacement)), 1e-300)
-    if found.index < last or not left <= LAST:
+    left = _distance_from_limit(trace)
+    if found.index < last or left > LAST:
         return found
     return Peak(last, found.tension, left * found.tension, found.tension, found.position, 0.0)
 
@@ -63,7 +151,7 @@ def displacement_under(trace: Trace, state: int, force: float, expected: float) 
     """
     own, missing = float(trace.displacement[state]), force - float(trace.force[state])
     ways, slopes = _beside(trace, state)
-    expected = max(expected, float(np.finfo(np.float64).tiny))
+    expected = max(expected, TINY)
     if len(ways) < 2:
         known = [expected, *(abs(slope) for slope in slopes if slope)]
         return own + missing / min(known)

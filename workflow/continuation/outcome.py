@@ -17,6 +17,25 @@ LATTICE = "discretisation"
 
 
 @dataclass(frozen=True)
+class Reading:
+    """A value that was read, and what its reader knows of its errors, by source.
+
+    Attributes:
+        value: in `unit`.
+        unit: of the model.
+        errors: by source.
+        scale: what the uncertainty is compared with, where that is not the value itself.
+        prescribed: whether the scene prescribes it.
+    """
+
+    value: float
+    unit: str
+    errors: Mapping[str, float] = field(default_factory=dict)
+    scale: float | None = None
+    prescribed: bool = False
+
+
+@dataclass(frozen=True)
 class Result:
     """A number with its errors by source; the uncertainty is their sum, at a coverage of 95 % at least.
 

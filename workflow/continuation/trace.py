@@ -58,6 +58,11 @@ class Trace:
         """How many states."""
         return len(self.displacement)
 
+    @property
+    def lists(self) -> tuple[list[float], list[float]]:
+        """Displacements and forces, as the functions that read a curve take them."""
+        return self.displacement.tolist(), self.force.tolist()
+
     def radius(self, state: int) -> float | None:
         """Contact radius [LU]; None where the bodies do not touch."""
         found = self.contact(state)

@@ -9,7 +9,6 @@ from typing import Any, ClassVar
 
 from contact1d.workflow.continuation.branch import Branch, SecondMaximumError
 from contact1d.workflow.continuation.budget import (
-    Reading,
     Reduction,
     Values,
     budgeted,
@@ -19,7 +18,7 @@ from contact1d.workflow.continuation.budget import (
 )
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.load_control import LoadBranch
-from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import ThroughError, doubts
 from contact1d.workflow.deck.deck import Deck

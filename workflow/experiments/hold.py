@@ -7,8 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from contact1d.workflow.continuation.budget import Reading
-from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import DisplaceInTime, Phase, UnderLoad
 from contact1d.workflow.experiments.experiment import Experiment

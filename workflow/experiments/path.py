@@ -9,10 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from contact1d.analysis.curve_marks import crossing
 from contact1d.analysis.loop import loop_of
 from contact1d.workflow.continuation.budget import (
-    Reading,
     Values,
     budgeted,
     force_errors,
@@ -20,8 +18,8 @@ from contact1d.workflow.continuation.budget import (
     lattice_warning,
 )
 from contact1d.workflow.continuation.context import RunContext
-from contact1d.workflow.continuation.marks import peak_of
-from contact1d.workflow.continuation.outcome import Outcome, Result
+from contact1d.workflow.continuation.marks import unloading
+from contact1d.workflow.continuation.outcome import Outcome, Reading, Result
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import doubts, require_trust
@@ -37,10 +35,6 @@ RELAXATIONS = 14.0
 ROUND_OFF = 1e-9
 EARLINESS = 8.0
 """Square of the longest move of bodies that part over the range squared, per unit of tolerance."""
-PLACE_ERROR = 0.1
-"""How well a parabola places a maximum, over the increment of the displacement."""
-BEND = 0.125
-"""What a straight line between two radii misses at most, over their difference: of a parabola between them."""
 
 
 class PathExperiment(Experiment):
@@ -93,7 +87,7 @@ class PathExperiment(Experiment):
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """What the last unloading has, or without adhesion the deepest state; and the loop."""
         found = _adhesion(trace, scene, settings) if scene.adheres else _largest(trace)
-        if (loop := loop_of(trace.displacement.tolist(), trace.force.tolist())) is not None:
+        if (loop := loop_of(*trace.lists)) is not None:
             errors = {"sampling": loop.uncertainty}
             found["dissipated_energy"] = Reading(loop.area, ENERGY, errors, scale=loop.whole)
         return found
@@ -151,19 +145,9 @@ def _adhesion(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Readi
         return {}
     name = apart[-1] if apart else trace.phase[-1]
     branch = trace.chosen(np.flatnonzero([phase == name for phase in trace.phase]))
-    found: dict[str, Reading] = {}
-    peak = peak_of(branch)
-    if 0 < peak.index < len(branch) - 1 and peak.tension > 0:
-        d, force, i = branch.displacement, branch.force, peak.index
-        rise = max(0.0, float((force[i - 1] - force[i]) / (d[i - 1] - d[i])))
-        early = rise * settings.let_go_early(float(d[i] - d[i + 1]))
-        found["adhesion_force"] = Reading(peak.smooth, FORCE, {"sampling": peak.uncertainty, "instability": early})
-        if (critical := _critical_radius(branch, i, peak.position, scene)) is not None:
-            found["critical_radius"] = critical
+    found = unloading(branch, settings)
     if scene.adhesion is not None:
         found |= _fixed_grips(branch)
-    if (zero := _zero_load(branch)) is not None:
-        found["zero_load_radius"] = zero
     return found
 
 
@@ -176,39 +160,6 @@ def _fixed_grips(branch: Trace) -> dict[str, Reading]:
             errors = {"sampling": 0.5 * abs(before - beyond)}
             return {"fixed_grips_displacement": Reading(0.5 * (before + beyond), LENGTH, errors)}
     return {}
-
-
-def _critical_radius(branch: Trace, peak: int, position: float, scene: Scene) -> Reading | None:
-    """a at the vertex of a smooth maximum, linear between the rows beside it; at the last row before a jump.
-
-    A body that ends at an edge is in contact up to there or not at all.
-    """
-    radii = [branch.radius(i) for i in range(peak - 1, peak + 2)]
-    before, own, after = radii
-    if own is None:
-        return None
-    if before is None or after is None:
-        return Reading(own, LENGTH, {"sampling": 0.0 if scene.bodies.profile.has_edge else own})
-    if position == branch.displacement[peak]:
-        return Reading(own, LENGTH, {"sampling": abs(before - own)})
-    places = branch.displacement[peak - 1 : peak + 2]
-    value = float(np.interp(position, places[::-1], [after, own, before]))
-    bend = abs(own - 0.5 * (before + after))
-    return Reading(value, LENGTH, {"sampling": bend + PLACE_ERROR * abs(before - after)})
-
-
-def _zero_load(branch: Trace) -> Reading | None:
-    """a where the force crosses 0, linear between two rows."""
-    try:
-        index, position = crossing(branch.displacement.tolist(), branch.force.tolist(), 0.0)
-    except ValueError:
-        return None
-    first, second = branch.radius(index), branch.radius(index + 1)
-    if first is None or second is None:
-        return None
-    start, end = branch.displacement[index : index + 2].tolist()
-    part = (position - start) / (end - start) if end != start else 0.0
-    return Reading(first + part * (second - first), LENGTH, {"sampling": BEND * abs(second - first)})
 
 
 def schedule(scene: Scene, settings: Settings) -> tuple[Phase, ...]:

@@ -8,15 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from contact1d.analysis.curve_marks import rivals, smooth_crossing
 from contact1d.analysis.polynomial import through
-from contact1d.workflow.continuation.branch import BEYOND_LIMIT, LOADING_STEPS, PLACE_FACTOR
-from contact1d.workflow.continuation.budget import Reading
+from contact1d.workflow.continuation.branch import BEYOND_LIMIT, LOADING_STEPS
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.holding import held_phase, overshoot
 from contact1d.workflow.continuation.load_control import FEWEST_HELD, SPREAD, top_of
-from contact1d.workflow.continuation.marks import peak_of, radius_at, radius_rate
-from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.continuation.marks import unloading
+from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import require_no_contradiction
 from contact1d.workflow.deck.steps import Phase, displacements
@@ -65,7 +63,7 @@ class PullOffExperiment(Experiment):
         preload = float(loading.force[-1])
         given = Reading(preload, FORCE, {"solver": abs(preload - scene.experiment.preload)}, prescribed=True)
         falling = trace.phases("unloading", "pulling", "separating", "critical")
-        marks = _under_load(falling, scene, settings, preload) if trace.bracket else _by_displacement(falling.falling())
+        marks = _under_load(falling, scene, settings, preload) if trace.bracket else _held(falling.falling(), settings)
         return marks | {"preload": given}
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
@@ -100,35 +98,10 @@ class PullOffExperiment(Experiment):
         return super().advice(scene) + since
 
 
-def _by_displacement(falling: Trace) -> dict[str, Reading]:
-    """F_A at the vertex of the curve, a_cr there, a₀ where the force crosses 0."""
-    peak = peak_of(falling)
-    place = int(np.argmin(np.abs(falling.displacement - peak.position)))
-    rate = radius_rate(falling, place)
-    critical = radius_at(falling, peak.position)
-    tension = {source: max(error, peak.uncertainty * (source == "sampling")) for source, error in falling.doubt.items()}
-    beside = {"sampling": PLACE_FACTOR * abs(rate) * peak.misplaced}
-    missed = sum(tension.values())
-    teeth = (
-        rivals(falling.displacement.tolist(), falling.force.tolist(), peak) if "instability" in falling.doubt else {}
-    )
-    radii = [falling.radius_or_spot(i) for i, excess in teeth.items() if excess > -missed]
-    if teeth:
-        beside["instability"] = max((abs(radius - critical) for radius in radii), default=0.0)
-    found = {
-        "adhesion_force": Reading(peak.smooth, FORCE, tension),
-        "critical_radius": Reading(critical, LENGTH, beside),
-    }
-    zero = _zero(falling)
-    return found | {"zero_load_radius": Reading(radius_at(falling, zero), LENGTH)}
-
-
-def _zero(falling: Trace) -> float:
-    """Displacement [LU] at which the force crosses 0; where it never does, that of the least force."""
-    try:
-        return smooth_crossing(falling.displacement.tolist(), falling.force.tolist(), 0.0)
-    except ValueError:
-        return float(falling.displacement[int(np.argmin(np.abs(falling.force)))])
+def _held(falling: Trace, settings: Settings) -> dict[str, Reading]:
+    """The marks of an unloading under displacement control, which begins at F = 0 where there was no preload."""
+    least = int(np.argmin(np.abs(falling.force)))
+    return {"zero_load_radius": Reading(falling.radius_or_spot(least), LENGTH)} | unloading(falling, settings)
 
 
 def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float) -> dict[str, Reading]:

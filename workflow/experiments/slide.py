@@ -16,11 +16,10 @@ from typing import Any
 import numpy as np
 
 from contact1d.analysis import friction
-from contact1d.workflow.continuation.budget import Reading
 from contact1d.workflow.continuation.contact import TOLD, Contact
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.holding import MOST_HOLDS, Start, at_rest, hold, hold_row
-from contact1d.workflow.continuation.outcome import Outcome, Result
+from contact1d.workflow.continuation.outcome import Outcome, Reading, Result
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import (

@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 from contact1d.analysis.radius import ContactRadius
 from contact1d.analysis.slip import slip, stick_margin, stick_radius
 from contact1d.workflow.continuation.budget import (
-    Reading,
     Values,
     budgeted,
     force_errors,
@@ -27,7 +26,7 @@ from contact1d.workflow.continuation.budget import (
     lattice_warning,
 )
 from contact1d.workflow.continuation.context import RunContext
-from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import UntrustedError, doubts
 from contact1d.workflow.deck.lattice import places
