@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf
 
 import numpy as np
@@ -84,22 +85,22 @@ class Reduction:
         """
         return self.scene.adhesion is not None and self.scene.adheres
 
-
-def lattice_errors(case: Reduction) -> Values:
-    """By name of a result, what the lattice leaves open; infinite where it does not come nearer with finer spacings."""
-    if not (case.on_lattice or case.converges):
-        return {}
-    model = reduced(case.scene, case.settings)
-    own = case.values(model)
-    if case.converges:
-        others = [case.values(model.finer()), case.values(model.finer().finer())]
-        return {
-            name: MARGIN * _extrapolated(value, *(one.get(name, value) for one in others))
-            for name, value in own.items()
-        }
-    phases = MORE_PHASES if case.scene.friction is not None else PHASES
-    others = [case.values(model.shifted(phase)) for phase in phases]
-    return {name: MARGIN * max(abs(one.get(name, value) - value) for one in others) for name, value in own.items()}
+    @cached_property
+    def lattice(self) -> Values:
+        """By name of a result, what the lattice leaves open; infinite where finer spacings bring it no nearer."""
+        if not (self.on_lattice or self.converges):
+            return {}
+        model = reduced(self.scene, self.settings)
+        own = self.values(model)
+        if self.converges:
+            others = [self.values(model.finer()), self.values(model.finer().finer())]
+            return {
+                name: MARGIN * _extrapolated(value, *(one.get(name, value) for one in others))
+                for name, value in own.items()
+            }
+        phases = MORE_PHASES if self.scene.friction is not None else PHASES
+        others = [self.values(model.shifted(phase)) for phase in phases]
+        return {name: MARGIN * max(abs(one.get(name, value) - value) for one in others) for name, value in own.items()}
 
 
 def _extrapolated(coarse: float, fine: float, finest: float) -> float:
@@ -162,7 +163,6 @@ def budgeted(
     case: Reduction,
     trace: Trace,
     force_error: ForceErrors,
-    lattice: Values,
     sampled: bool = False,
     length: float = 0.0,
 ) -> dict[str, Result]:
@@ -172,7 +172,6 @@ def budgeted(
         case: scene, settings, script and reader.
         trace: what was measured.
         force_error: ε of each state.
-        lattice: of `lattice_errors`.
         sampled: whether the scene gives the steps.
         length: over which a tilt of the force is ε [LU]; 0 for none.
     """
@@ -197,7 +196,7 @@ def budgeted(
     between = sampling_errors(case, trace) if sampled else {}
     found = {}
     for name, one in readings.items():
-        errors = {"solver": solver[name], LATTICE: lattice.get(name, 0.0) + read[name]}
+        errors = {"solver": solver[name], LATTICE: case.lattice.get(name, 0.0) + read[name]}
         for source, error in one.errors.items():
             errors[source] = errors.get(source, 0.0) + error
         if name in between:

@@ -95,7 +95,7 @@ def overshoot(settings: Settings, mass: float, load: float, next_load: float) ->
     exp(−πζ/√(1 − ζ²)) of a linear oscillator with the stiffness of the beginning, the largest one under tension.
     """
     moving = settings.plate_mass + settings.particles * mass
-    drag = settings.particles * damping_under(settings, next_load) + settings.plate_damping
+    drag = settings.drag(damping_under(settings, next_load))
     ratio = drag / (2.0 * math.sqrt(stiffness_under(settings, load) * moving))
     return math.exp(-math.pi * ratio / math.sqrt(1.0 - ratio**2)) if ratio < 1.0 else 0.0
 
@@ -108,7 +108,7 @@ def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start:
     """
     damping = damping_under(settings, load)
     inertia = _inertia(scene, settings)
-    drag = settings.particles * damping + settings.plate_damping
+    drag = settings.drag(damping)
     parted = settings.estimate.parted(PARTING_SHARE) if load < 0.0 else _apart(settings)
     steps = max(FEWEST_STEPS, math.ceil(PATIENCE * settings.settle_time / settings.time_step))
     rest = at_rest(settings, scale) / inertia

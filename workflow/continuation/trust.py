@@ -220,7 +220,7 @@ def _mass(scene: Scene, settings: Settings) -> float:
 
 def _drag(scene: Scene, settings: Settings) -> float:
     """Drag on that [FU·TU/LU]."""
-    return settings.damping if scene.plate is None else settings.particles * settings.damping + settings.plate_damping
+    return settings.damping if scene.plate is None else settings.drag()
 
 
 def _steps(scene: Scene, settings: Settings) -> float:

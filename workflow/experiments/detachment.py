@@ -290,7 +290,7 @@ def _lagging(scene: Scene, settings: Settings) -> dict[str, str]:
     """A warning where the load grows by a share of F_A while drag Γ lets F_A move the plate by the range: Γ b Ḟ/F_A."""
     assert isinstance(scene.experiment, PullOff)
     assert settings.law is not None
-    drag, largest = settings.particles * settings.damping + settings.plate_damping, settings.estimate.pull_off_force()
+    drag, largest = settings.drag(), settings.estimate.pull_off_force()
     share = drag * settings.law.longest_range * rate_of(scene, settings) / largest**2
     if share < LAGGING:
         return {}

@@ -10,10 +10,8 @@ from typing import Any, ClassVar
 from contact1d.workflow.continuation.branch import Branch, SecondMaximumError
 from contact1d.workflow.continuation.budget import (
     Reduction,
-    Values,
     budgeted,
     force_errors,
-    lattice_errors,
     lattice_warning,
 )
 from contact1d.workflow.continuation.context import RunContext
@@ -72,8 +70,7 @@ class Experiment(ABC):
         """
         scene, settings = context.deck.scene, context.deck.settings
         case = self.reduction(scene, settings)
-        lattice: Values = {}
-        with branch_of(context, lambda: lattice.update(lattice_errors(case))) as branch:
+        with branch_of(context, lambda: case.lattice) as branch:
             self.script(branch, scene)
             branch.finish()
         trace = branch.trace()
@@ -81,7 +78,7 @@ class Experiment(ABC):
         length = 0.5 * settings.law.longest_range if settings.law is not None else 0.0
         left = branch.unbalance if isinstance(branch, LoadBranch) else None
         errors = force_errors(scene, settings, branch.states, branch.marked.values(), left)
-        results = budgeted(case, trace, errors, lattice, length=length)
+        results = budgeted(case, trace, errors, length=length)
         warnings = doubts(scene, settings, tuple(branch.states)) | lattice_warning(scene, results)
         outcome = Outcome(results, tuple(branch.states), branch.marked, branch.phases, warnings)
         return self.finish(outcome, scene, settings)

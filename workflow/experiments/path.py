@@ -11,10 +11,8 @@ import numpy as np
 
 from contact1d.analysis.loop import loop_of
 from contact1d.workflow.continuation.budget import (
-    Values,
     budgeted,
     force_errors,
-    lattice_errors,
     lattice_warning,
 )
 from contact1d.workflow.continuation.context import RunContext
@@ -46,9 +44,8 @@ class PathExperiment(Experiment):
         """Run the schedule; with noise, each state is a mean over time."""
         scene, settings = context.deck.scene, context.deck.settings
         case, positions = self.reduction(scene, settings), way(scene, settings)
-        lattice: Values = {}
         in_time = scene.method == "dynamic" and scene.noise is None
-        with context.contact(meanwhile=lambda: lattice.update(lattice_errors(case))) as contact:
+        with context.contact(meanwhile=lambda: case.lattice) as contact:
             states = contact.replay(schedule(scene, settings), relaxed=in_time)
             phases = contact.phases
         if scene.noise is not None:
@@ -62,7 +59,7 @@ class PathExperiment(Experiment):
         ends = {"deepest": max(reported, key=lambda s: s.displacement), "final": reported[-1]}
         strongest = (ends["deepest"], min(seen, key=lambda s: s.force), ends["final"])
         errors = force_errors(scene, settings, seen, strongest)
-        results = budgeted(case, of_states(seen), errors, lattice, sampled=scene.noise is None)
+        results = budgeted(case, of_states(seen), errors, sampled=scene.noise is None)
         warnings = self._missing(results, scene, phases) | doubts(scene, settings, tuple(reported))
         tables = {} if scene.noise is None else {"means": _means(settings, reported)}
         warnings |= lattice_warning(scene, results)

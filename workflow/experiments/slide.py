@@ -269,7 +269,7 @@ def _doubts(
             "the last leg on which the drive moves has too few whole periods of the spacing for a mean friction: make "
             f"it longer than {friction.DROPPED + friction.FEWEST_BLOCKS} spacings"
         )
-    drag = settings.particles * settings.damping + settings.plate_damping
+    drag = settings.drag()
     fastest = max(abs(leg.velocity) for leg in motion.legs)
     top = float(np.max(np.abs(motion.friction)))
     if drag * fastest > top:
@@ -346,7 +346,7 @@ def _settled_along(contact: Contact, force: float, scale: float, state: State) -
     scene, settings = contact.scene, _calm(contact.settings)
     row = replace(hold_row(scene, settings, force, scale, Start.HERE), rest=0.0)
     row = replace(row, steps=max(1, round(settings.settle_time / settings.time_step)))
-    near, drag = at_rest(settings, scale), settings.particles * settings.damping + settings.plate_damping
+    near, drag = at_rest(settings, scale), settings.drag()
     for _ in range(MOST_HOLDS):
         friction = -scene.bodies.own_spacing * float(state.profile.shear.sum())
         if max(abs(friction - state.cantilever_force), drag * abs(state.motion["vcm(plate,x)"])) <= near:

@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from contact1d.workflow.continuation.budget import ForceErrors, budgeted, lattice_errors
+from contact1d.workflow.continuation.budget import ForceErrors, budgeted
 from contact1d.workflow.continuation.outcome import LATTICE
 from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.model.adhesion import estimate_on_plane
@@ -84,7 +84,7 @@ def left_by_lattice(scene: Scene) -> float:
     case = kind_of(scene).reduction(scene, settings)
     trace = case.trace(reduced(scene, settings))
     exact = ForceErrors(np.zeros(len(trace)), np.zeros(len(trace)))
-    results = budgeted(case, trace, exact, lattice_errors(case))
+    results = budgeted(case, trace, exact)
     left = [(one.errors[LATTICE], one.size) for name, one in results.items() if not one.prescribed or name in RADII]
     shares = [error / size for error, size in left if size]
     appear = any(

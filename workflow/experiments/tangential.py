@@ -19,10 +19,8 @@ from numpy.typing import NDArray
 from contact1d.analysis.radius import ContactRadius
 from contact1d.analysis.slip import slip, stick_margin, stick_radius
 from contact1d.workflow.continuation.budget import (
-    Values,
     budgeted,
     force_errors,
-    lattice_errors,
     lattice_warning,
 )
 from contact1d.workflow.continuation.context import RunContext
@@ -56,8 +54,7 @@ class TangentialExperiment(Experiment):
         """Run the schedule; the forces must be those of the history of each particle."""
         scene, settings = context.deck.scene, context.deck.settings
         case = self.reduction(scene, settings)
-        lattice: Values = {}
-        with context.contact(meanwhile=lambda: lattice.update(lattice_errors(case))) as contact:
+        with context.contact(meanwhile=lambda: case.lattice) as contact:
             states = contact.replay(self.planned(scene, settings))
             phases = contact.phases
         asked = [one for _, one in passed(scene, _chain(scene, settings), settings)]
@@ -68,7 +65,7 @@ class TangentialExperiment(Experiment):
         kept = [row for row, one in zip(rows, asked, strict=True) if one]
         farthest = reported[int(np.argmax([abs(row.position) for row in kept]))]
         errors = force_errors(scene, settings, states, (states[-1],))
-        results = budgeted(case, trace, errors, lattice)
+        results = budgeted(case, trace, errors)
         warnings = doubts(scene, settings, tuple(reported)) | lattice_warning(scene, results)
         marked = {"farthest": farthest, "final": reported[-1]}
         return Outcome(results, tuple(reported), marked, phases, warnings, columns=_columns(kept))

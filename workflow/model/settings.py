@@ -294,6 +294,10 @@ class Settings:
         """Particles of the lower body, where it has any."""
         return self.particles + self.beyond
 
+    def drag(self, damping: float | None = None) -> float:
+        """On all that moves with the plate [FU·TU/LU], with another coefficient of a particle where one is given."""
+        return self.particles * (self.damping if damping is None else damping) + self.plate_damping
+
     @property
     def gentle(self) -> bool:
         """Whether a relaxation moves no particle by more than `longest_move` at a time, and none swings in time."""

@@ -113,9 +113,6 @@ def _pass(context: RunContext, tolerance: float) -> tuple[Deck, Outcome]:
         for file in folder.iterdir():
             os.replace(file, context.folder / file.name)
     finally:
-        context.lammps_seconds += finer.lammps_seconds
-        context.lammps_cpu_seconds += finer.lammps_cpu_seconds
-        context.rows_seconds += finer.rows_seconds
-        context.steps += finer.steps
+        context.add_time_of(finer)
         shutil.rmtree(folder, ignore_errors=True)
     return finer.deck, outcome
