@@ -11,6 +11,7 @@ import pytest
 from contact1d import RunError, run
 from contact1d.analysis.theory.jkr import Jkr
 from contact1d.workflow.scene import SceneError, scene_from_dict
+from validation.references.indenters import jkr
 
 RADIUS, ENERGY = 1000.0, 0.005
 
@@ -122,3 +123,21 @@ def test_the_finest_tolerance_claims_what_its_particles_leave(tmp_path: Path) ->
 def test_an_adhesive_load_keeps_its_tolerance_in_its_mean_pressure_too(tmp_path: Path) -> None:
     tables = steel(adhesion={"surface_energy": "50 mJ/m²"}, experiment={"kind": "load", "force": "1 N"})
     assert "tolerance" not in run(tables, tmp_path / "run", figures=False).warnings
+
+
+@pytest.mark.parametrize("times", [300.0, 1e4])
+@pytest.mark.parametrize("kind", ["parabola", "circle"])
+def test_a_large_preload_does_not_lose_the_pull_off(kind: str, times: float, tmp_path: Path) -> None:
+    """The attraction is then less than a thousandth of the way back."""
+    exact = jkr(1.0, 1.0, 2.8e-10)
+    spacing = exact.zero_load_radius() / 30.0
+    bodies = {
+        "particles": "auto", "spacing": spacing, "reduction": "mdr", "lower": "rigid_plane",
+        "profile": {"kind": kind, "radius": 1.0}, "bulk_stiffness": spacing,
+    }  # fmt: skip
+    preload = {"kind": "pull_off", "preload": times * exact.pull_off_force()}
+    tables = {"title": "pressed hard", "bodies": bodies, "adhesion": {"work_of_adhesion": 2.8e-10}}
+    found = run(tables | {"experiment": preload}, tmp_path / "run", figures=False).results
+    for name, value in (("adhesion_force", exact.pull_off_force()), ("zero_load_radius", exact.zero_load_radius())):
+        assert found[name].value == pytest.approx(value, rel=1e-3)
+        assert abs(found[name].value - value) <= found[name].uncertainty

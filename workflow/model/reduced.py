@@ -37,6 +37,8 @@ FEWEST = 4.0
 ROUNDS, POINTS, SNAPPING = 5, 24, 10
 """How often the bracket of a displacement is cut, and at how many positions: so many times more at first where pairs
 snap, and the force is a row of teeth."""
+NEAREST = 1e-9
+"""Of the way from the limit point to the largest displacement, the nearest that is looked at."""
 TOUCH = 1e-9
 """Distance over the spacing at which bodies touch: round-off of a displacement of 0."""
 
@@ -106,16 +108,18 @@ class Reduced(ABC):
         """Largest displacement [LU] at which a force [FU] is carried; that of the largest tension if none is."""
         low, high = self.apart, self.deepest + OVERREACH * (abs(self.deepest) + self.estimate.spacing)
         points = POINTS * (SNAPPING if self.estimate.snaps else 1)
+        # The attraction may end within a millionth of the way: what lies near the limit point is looked at by decades.
+        near = low + (high - low) * np.geomspace(NEAREST, 1.0, points)
+        positions = np.union1d(np.linspace(low, high, points), near)
         for _ in range(ROUNDS):
-            positions, step = np.linspace(low, high, points, retstep=True)
             forces = self.held(positions)
             below = np.flatnonzero(forces < force)
             if below.size == 0:
                 return float(positions[int(np.argmin(forces))])
-            last, points = min(int(below[-1]), points - 2), POINTS
-            low, high = float(positions[last]), float(positions[last] + step)
-        ends = forces[last : last + 2]
-        return float(np.interp(force, ends, positions[last : last + 2]))
+            last = min(int(below[-1]), positions.size - 2)
+            bracket, ends = positions[last : last + 2], forces[last : last + 2]
+            positions = np.linspace(bracket[0], bracket[1], POINTS)
+        return float(np.interp(force, ends, bracket))
 
 
 @dataclass(frozen=True, eq=False)
