@@ -58,19 +58,27 @@ Called = dict[str, tuple[float, list[str]]]
 """For each test its time [s] and the functions, file:name."""
 CALLS = ".calls"
 """Where a trace is written."""
-Change = tuple[str, Callable[[], None], Callable[[], None]]
+Change = tuple[str, Callable[[], None]]
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """One change: file, line, its text, what becomes what, the whole new text of the file, the function it is in."""
+    """One change: file, its number there, line, its text, what becomes what, the function it is in."""
 
     file: str
+    number: int
     line: int
     text: str
     change: str
-    source: str
     function: str
+
+    @property
+    def source(self) -> str:
+        """The whole new text of the file."""
+        tree = ast.parse((ROOT / self.file).read_text(encoding="utf-8"))
+        every = [do for node, _ in inner(tree) for _, do in changes(node)]
+        every[self.number]()
+        return ast.unparse(ast.fix_missing_locations(tree))
 
 
 class Trace:
@@ -146,11 +154,10 @@ def shares(tests: Sequence[str]) -> list[list[str]]:
 
 
 def changes(node: ast.AST) -> Iterator[Change]:
-    """(words, do, undo) of every change of this node itself."""
+    """Every change of this node itself: words, and what does it."""
 
     def swap(owner: Any, field: str, new: Any, words: str) -> Change:
-        old = getattr(owner, field)
-        return words, lambda: setattr(owner, field, new), lambda: setattr(owner, field, old)
+        return words, lambda: setattr(owner, field, new)
 
     match node:
         case ast.BinOp(op=op) | ast.AugAssign(op=op) | ast.BoolOp(op=op) if type(op) in OPERATORS:
@@ -193,14 +200,11 @@ def inner(node: ast.AST, function: str = "") -> Iterator[tuple[ast.AST, str]]:
 def mutants(file: str) -> list[Mutant]:
     """Every mutant of a file."""
     source = (ROOT / file).read_text(encoding="utf-8")
-    tree, lines, found = ast.parse(source), source.splitlines(), []
-    for node, function in inner(tree):
-        for words, do, undo in changes(node):
-            line = getattr(node, "lineno", 1)
-            do()
-            text = ast.unparse(ast.fix_missing_locations(tree))
-            undo()
-            found.append(Mutant(file, line, lines[line - 1].strip(), words, text, function))
+    lines, found = source.splitlines(), list[Mutant]()
+    for node, function in inner(ast.parse(source)):
+        line = getattr(node, "lineno", 1)
+        for words, _ in changes(node):
+            found.append(Mutant(file, len(found), line, lines[line - 1].strip(), words, function))
     return found
 
 
