@@ -21,9 +21,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from validation import doors
 from validation.doors import Quantity, Run, Scene
-from validation.figures import Drawing, save
+from validation.figures import Drawing, Panel, Series, figure, save
 from validation.row import Bound, Reference, Row, at_most, verdicts
 
 Scenes = dict[str, Scene]
@@ -32,6 +34,8 @@ PATIENCE, FULL_PATIENCE = 180, 3600
 """Seconds of a run, LAMMPS and all else: what hangs has failed. The long form goes on beside other work for hours."""
 LONGEST = 160
 """Characters of a refusal in a row."""
+DRAWN = 1e-6
+"""Error over the allowed one that is drawn at least."""
 NOTHING = Quantity(math.nan, math.nan, "")
 """Stands for a result of a run that failed."""
 
@@ -157,7 +161,7 @@ class Rows:
 
 @dataclass(frozen=True)
 class Findings:
-    """The rows of a study, its figures by what is added to the study's name, and a text."""
+    """The rows of a study, its own figures by what is added to the study's name, and a text."""
 
     rows: Sequence[Row]
     figures: Mapping[str, Drawing] = field(default_factory=dict)
@@ -309,7 +313,7 @@ def answered(study: Study, folder: Path, full: bool) -> Answer:
         words = f"ended by {type(error).__name__}: {error}"
         found = Findings([at_most(words, math.nan, 0.0, "a study ends with rows", evidence="set bound")])
     captions = {}
-    for suffix, drawing in found.figures.items():
+    for suffix, drawing in (found.figures or margins(found.rows)).items():
         file = f"{study.name}{'_' * bool(suffix)}{suffix}.png"
         save(drawing, folder / file)
         captions[file] = drawing.caption
@@ -318,6 +322,15 @@ def answered(study: Study, folder: Path, full: bool) -> Answer:
         study.name, study.title, study.question, found.text, captions, list(found.rows), count,
         "full" if full else "quick", datetime.date.today().isoformat(), time.perf_counter() - started,
     )  # fmt: skip
+
+
+def margins(rows: Sequence[Row]) -> dict[str, Drawing]:
+    """The figure of a study that draws none of its own: what each of its rows is off, over what it allows."""
+    with np.errstate(divide="ignore"):
+        off = np.asarray(np.clip(1.0 / np.array([row.margin for row in rows]), DRAWN, 1.0 / DRAWN), dtype=np.float64)
+    shown = Series("", 1.0 + np.arange(off.size), off)
+    caption = "What each row is off over what it allows, in the order of the table; dashed: the bound"
+    return figure(caption, Panel("row", "error over the allowed one", [shown], log="y", bound=1.0))
 
 
 def found(run: Run, name: str) -> Quantity:

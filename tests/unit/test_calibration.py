@@ -13,10 +13,11 @@ import pytest
 from contact1d.workflow.cost.study import TARGETS
 from contact1d.workflow.model.settings import CALIBRATION, FILE, Calibration, calibration_of, settings_for
 from contact1d.workflow.scene import Scene
-from validation.tools.calibration import LADDERS, SCENES
-from validation.tools.calibration_choice import (
+from validation.tools.calibration import (
+    LADDERS,
     PART,
     PROMISED,
+    SCENES,
     TOGETHER,
     Row,
     chosen_values,

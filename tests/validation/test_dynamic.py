@@ -46,6 +46,8 @@ NEAR_PULL_OFF = 0.01
 SNAPPING, SNAP_STEP, SNAPS_RADIUS = 0.05, 0.004, 4.0
 """Bulk stiffness with which pairs snap [FU/LU]; the reference's step, finer than a tooth [LU]; a radius there is known
 to a few spacings only [LU]."""
+NEARLY_SNAPPING = 0.9
+"""Steepest attraction of a pair over the stiffness of its springs in series; it snaps at 1."""
 CHAIN, SNAPPING_CHAIN = 160, 80
 STENCIL = 9
 STIFFNESS = 0.83
@@ -55,6 +57,8 @@ LONG: tuple[Term, Term, float] = ((0.4, 0.25), (0.2, 0.5), 50.0)
 PLAIN: tuple[float, bool] = (0.0, False)
 BOTH: tuple[float, bool] = (0.3, True)
 BOTH_VERTICAL: tuple[float, bool] = (0.3, False)
+STIFF: tuple[float, bool] = (1.0, False)
+"""Independent pairs, from which the first tensions follow, are off here: it is the bracket that makes the number."""
 """Stiffness of the neighbour springs, and whether particles may move along x."""
 
 
@@ -101,7 +105,9 @@ def radius(model: ChainModel, state: State) -> float:
 
 
 @pytest.mark.parametrize(
-    ("law", "effects"), [(SHORT, PLAIN), (LONG, BOTH)], ids=["range 0.26", "range 0.5, neighbours, horizontal"]
+    ("law", "effects"),
+    [(SHORT, PLAIN), (LONG, BOTH), (LONG, STIFF)],
+    ids=["range 0.26", "range 0.5, neighbours, horizontal", "range 0.5, stiff neighbours"],
 )
 def test_pull_off(run_tables: RunTables, law: tuple[Term, Term, float], effects: tuple[float, bool]) -> None:
     finished = run_tables(tables(law, effects, {"kind": "pull_off", "preload": 0.5}))
@@ -185,6 +191,21 @@ def test_equilibrium_does_not_depend_on_inertia_and_damping(run_tables: RunTable
     finished = run_tables(scene)
     exact = equilibrium_under(model_of(LONG, PLAIN, finished), 0.5)
     assert abs(finished.outcome.quantities["displacement"].value - exact.displacement) < LOAD_DISPLACEMENT
+
+
+@pytest.mark.parametrize("displacement", [-0.1, 0.08])
+def test_a_path_in_time_waits_for_equilibrium_where_pairs_nearly_snap(
+    run_tables: RunTables, displacement: float
+) -> None:
+    """At these displacements one pair is all but as steep as its springs are stiff, so that it comes to rest slowly."""
+    law = PairInteraction(Exponential(*SHORT[0]), Exponential(*SHORT[1]))
+    steepest = float(law.force_slope(np.asarray(law.extremum_distance(2))))
+    scene = tables(SHORT, PLAIN, {"kind": "path", "displacements": [displacement]})
+    scene["bodies"]["bulk_stiffness"] = stiffness = 2.0 * steepest / NEARLY_SNAPPING
+    del scene["plate"]
+    found = run_tables(scene).outcome.states[-1].force
+    down = np.append(np.arange(-1.0, displacement, 0.05), displacement)
+    assert found == pytest.approx(trace(vertical_model(SHORT, 0.0, stiffness), down)[-1].force, rel=FORCE)
 
 
 def equilibrium_under(model: ChainModel, force: float) -> State:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from validation.doors import Run
-from validation.figures import Series
+from validation.figures import Drawing, Panel, Series, figure
 from validation.row import Row, at_most
 from validation.study import LONGEST, Refused
 
@@ -99,13 +99,17 @@ class Tally:
             ),
         ]
 
-    def series(self) -> list[Series]:
-        """Error over claim, rising, over the share of the numbers that is below; one for each name."""
+    def drawn(self) -> dict[str, Drawing]:
+        """Error over claim, rising, over the share of the numbers that is below; a series for each name."""
         drawn = []
         for name in sorted({error.name for error in self.errors}):
             over = np.sort([max(LEAST, min(e.over_claim, 1.0 / LEAST)) for e in self.errors if e.name == name])
             drawn.append(Series(name, (np.arange(over.size) + 1.0) / over.size, over))
-        return drawn
+        labels = ("share of the numbers", "error over the claim")
+        return figure(
+            "Errors over claims of random scenes, in order; dashed: the bound",
+            Panel(*labels, drawn, log="y", bound=1.0),
+        )
 
 
 def errors_of(scene: str, run: Run, exact: Mapping[str, float], slack: float) -> list[Error]:

@@ -7,13 +7,13 @@ motion stretches; and a rigid plane carries F = k Σ max(0, d − h_i).
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
-from validation.figures import Panel, Series, figure
 from validation.hard.cases import TENSION, PairCase, shaped
 from validation.row import Row, at_most
 from validation.study import Bench, Findings, Refused, Study, claim_row, found
@@ -48,15 +48,8 @@ def measure(bench: Bench) -> Findings:
         at_most(f"force on a plane off, {words}", _off(bench, name, profile, count, d, exact), PLANE, source, limit)
         for name, words, profile, count, d, exact, source in on_plane
     ]
-    rows.append(_too_few(bench))
-    series = []
-    for words, cases in (("mass of the plate", _masses(bench)), ("neighbour springs", _springs(bench, "neighbour")),
-                         ("tangential springs", _springs(bench, "tangential"))):  # fmt: skip
-        rows += cases.values()
-        known = [(factor, max(row.value, 1e-6)) for factor, row in cases.items() if math.isfinite(row.value)]
-        series.append(Series(words, *np.array(known).T))
-    panel = Panel("plate over particle mass, or stiffness over k", "error over claim", series, log="xy", bound=1.0)
-    return Findings(rows, figure("Error over claim far from the usual numbers; dashed: the bound", panel))
+    springs = [row for kind in ("neighbour", "tangential") for row in _springs(bench, kind)]
+    return Findings([*rows, _too_few(bench), *_masses(bench), *springs])
 
 
 def _off(bench: Bench, name: str, profile: dict[str, Any], count: int, d: float, exact: float) -> float:
@@ -76,25 +69,24 @@ def _too_few(bench: Bench) -> Row:
     return at_most(name, wrong, 0.0, "three particles make the least width", evidence="set bound")
 
 
-def _masses(bench: Bench) -> dict[float, Row]:
+def _masses(bench: Bench) -> Iterator[Row]:
     """d of a punch under a load, by the mass of the plate; a refusal beforehand is an answer."""
     case = PairCase("masses", RATIO, shaped("flat_punch", PUNCH, 0.0), PUNCH, 0.0, 1e-3, dynamic=True)
     load = 0.5 * PUNCH * TENSION
-    exact, rows = case.exact().deepest(load), {}
+    exact = case.exact().deepest(load)
     for mass in FULL_MASSES if bench.full else MASSES:
         run = bench.run(
             f"mass_{mass:g}", case.scene() | {"plate": {"mass": mass}, "experiment": {"kind": "load", "force": load}}
         )
         words = f"d under a load off over its claim, plate of {mass:g} particle masses"
         row = claim_row(words, run, "displacement", exact, "independent pairs")
-        rows[mass] = replace(row, value=0.0) if isinstance(run, Refused) and run.before else row
-    return rows
+        yield replace(row, value=0.0) if isinstance(run, Refused) and run.before else row
 
 
-def _springs(bench: Bench, kind: str) -> dict[float, Row]:
+def _springs(bench: Bench, kind: str) -> Iterator[Row]:
     """F_A of a punch with neighbour springs; d of it under a tension with another stiffness along x."""
     case = PairCase("springs", RATIO, shaped("flat_punch", PUNCH, 0.0), PUNCH, TENSION)
-    load, pairs, rows = -0.5 * PUNCH * TENSION, case.exact(), {}
+    load, pairs = -0.5 * PUNCH * TENSION, case.exact()
     tables: dict[str, Any]
     place = float(brentq(lambda d: float(pairs.loading(d)) - load, pairs.adhesion(0.0)[1], 0.05, xtol=1e-15))
     for factor in FULL_STIFFNESSES if bench.full else STIFFNESSES:
@@ -111,10 +103,7 @@ def _springs(bench: Bench, kind: str) -> dict[float, Row]:
             tables = {"bodies": bodies, "horizontal": {}, "experiment": experiment}
             name, exact = "displacement", place
         words = f"{name} of a punch off over its claim, {kind} springs of {factor:g} k"
-        rows[factor] = claim_row(
-            words, bench.run(f"{kind}_{factor:g}", scene | tables), name, exact, "N times one pair"
-        )
-    return rows
+        yield claim_row(words, bench.run(f"{kind}_{factor:g}", scene | tables), name, exact, "N times one pair")
 
 
 EXTREMES = Study(

@@ -10,10 +10,7 @@ import sys
 import time
 from pathlib import Path
 
-import numpy as np
-
 from validation.doors import scene_from_dict, scene_to_toml
-from validation.figures import Panel, Series, figure
 from validation.hard.cases import PAPER_LAW
 from validation.row import at_most
 from validation.study import Bench, Findings, Study
@@ -54,13 +51,11 @@ def measure(bench: Bench) -> Findings:
             "the same scene undisturbed, to the last digit", evidence="set bound")
         for index, name, words in moments
     ]  # fmt: skip
-    codes = []
     for name, size in sizes.items():
         most = max(0, size - 1)
         run = bench.folder / f"full_{most}"
         code, words = _end(_start(scene, run, most))
         bad = code not in CODES or "Traceback" in words or (code == 0 and _force(run) != undisturbed)
-        codes.append((most, code))
         checks.append(
             at_most(f"disk full at the last byte of {name}: a traceback, another exit code than 0, 2, 3, another F_A",
                 float(bad), 0.0, f"exit 0, 2 or 3 and no traceback; it is {code}", evidence="set bound")
@@ -74,14 +69,7 @@ def measure(bench: Bench) -> Findings:
             evidence="set bound",
         )
     )
-    x, y = np.array(codes, dtype=float).T
-    return Findings(
-        checks,
-        figure(
-            "Exit code where no file may grow beyond so many bytes",
-            Panel("bytes that a file may have", "exit code", [Series("disk full", x + 1.0, y)], log="x"),
-        ),
-    )
+    return Findings(checks)
 
 
 def _killed(scene: Path, run: Path, lines: int, file: str, undisturbed: float | None) -> float:

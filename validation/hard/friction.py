@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 
 from validation.doors import Run
-from validation.figures import Panel, figure
 from validation.hard import plane_scenes
 from validation.references.indenters import jkr
 from validation.references.spring_sliders import SpringSliders
@@ -163,9 +162,7 @@ def measure(bench: Bench) -> Findings:
     checks += adhesive_checks(bench)
     tally = plane_scenes.tally(bench)
     checks += tally.checks(NAME, "Galin, Mindlin, Maugis and Barquins")
-    labels = ("share of the numbers", "error over the claim")
-    caption = "Errors over claims of random scenes on the plane, in order; dashed: the bound"
-    return Findings(checks, figure(caption, Panel(*labels, tally.series(), log="y", bound=1.0)))
+    return Findings(checks, tally.drawn())
 
 
 def adhesive_checks(bench: Bench) -> list[Row]:

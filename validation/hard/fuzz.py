@@ -15,11 +15,8 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-
 from validation import doors
 from validation.doors import RunError, SceneError, SettingsError, read_scene, write_whole
-from validation.figures import Panel, Series, figure
 from validation.row import at_most
 from validation.study import Bench, Findings, LateError, Study, at_most_seconds
 
@@ -122,19 +119,7 @@ def _findings(found: Ends, count: int) -> Findings:
             evidence="set bound",
         ),
     ]
-    names = sorted(ends)
-    return Findings(
-        checks,
-        figure(
-            "How many random scenes end how",
-            Panel(
-                "end",
-                "scenes",
-                [Series(f"{i}: {name}"[:60], np.array([i]), np.array([ends[name]])) for i, name in enumerate(names)],
-                log="y",
-            ),
-        ),
-    )
+    return Findings(checks)
 
 
 def edited(text: str, draw: random.Random) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
-from validation.figures import Panel, Series, figure
 from validation.hard.cases import PairCase, reach, shaped
 from validation.row import Reference, Row, absolute, at_most
 from validation.study import Bench, Findings, Refused, Study, over_claim
@@ -36,7 +35,6 @@ def measure(bench: Bench) -> Findings:
     pairs = _case("quasistatic", 0.0).exact()
     largest, place = pairs.adhesion(0.0)
     checks: list[Row] = []
-    drawn = []
     for method in METHODS:
         shares, ways, off = [], [], []
         for share in BELOW:
@@ -72,20 +70,8 @@ def measure(bench: Bench) -> Findings:
                 absolute(EXPONENT, "next term of the fold"),
             )
         )
-        drawn.append(Series(method, np.array(shares), np.maximum(np.array(ways), 1e-12)))
         checks += _above(bench, method, largest)
-    near = np.array(BELOW)
-    curvature = (
-        float(pairs.unloading(place + 1e-4, 0.05)) + float(pairs.unloading(place - 1e-4, 0.05)) + 2 * largest
-    ) / 1e-8
-    law = Series("square root", near, np.sqrt(2.0 * near * largest / curvature))
-    return Findings(
-        checks,
-        figure(
-            "Way from the fold over the distance from F_A",
-            Panel("$1 - F/F_A$", "$d - d_{cr}$ (LU)", drawn, [law], log="xy"),
-        ),
-    )
+    return Findings(checks)
 
 
 def _scene(method: str, force: float) -> dict[str, object]:

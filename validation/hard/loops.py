@@ -7,7 +7,6 @@ import math
 import numpy as np
 
 from validation.doors import Run
-from validation.figures import Panel, Series, figure
 from validation.hard.cases import ATTRACTION, PairCase, reach, shaped
 from validation.references.folded_pairs import FoldedPairs
 from validation.references.interaction import Floats
@@ -32,8 +31,6 @@ NEAR = 1e-3
 def measure(bench: Bench) -> Findings:
     """Both widths of rows for each ratio."""
     checks: list[Row] = []
-    drawn: list[Series] = []
-    lines: list[Series] = []
     for ratio in FULL_RATIOS if bench.full else RATIOS:
         case = PairCase("path", ratio, shaped(KIND, PARTICLES, reach(ratio)), PARTICLES, 0.0)
         pairs = case.exact()
@@ -46,26 +43,8 @@ def measure(bench: Bench) -> Findings:
             scene = case.scene() | {"experiment": {"kind": "path", "displacements": way}}
             found = bench.run(f"path_{ratio:g}_{width:g}", scene)
             checks += _rows(f"ratio {ratio:g}, rows {words}", found, pairs)
-            if not isinstance(found, Refused) and ratio == RATIOS[0] and width == 0.1:
-                curve = found.curve
-                d = np.asarray(curve.displacement)
-                drawn.append(Series("run", d, np.asarray(curve.force)))
-                fine = np.linspace(lowest, DEEPEST, 2000)
-                lines = [
-                    Series(
-                        "closed form",
-                        np.concatenate([fine, fine[::-1]]),
-                        np.concatenate([pairs.loading(fine), pairs.unloading(fine[::-1], DEEPEST)]),
-                    )
-                ]
         checks.append(_beside_snaps(bench, ratio))
-    return Findings(
-        checks,
-        figure(
-            f"A loop at ratio {RATIOS[0]:g}: every row of the run on the closed form",
-            Panel("displacement (LU)", "force (FU)", drawn, lines),
-        ),
-    )
+    return Findings(checks)
 
 
 def _beside_snaps(bench: Bench, ratio: float) -> Row:

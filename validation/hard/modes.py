@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from validation.doors import contact_of
-from validation.figures import Panel, Series, figure
 from validation.hard.cases import PAPER_LAW, SIGMAS, block_mean, chi_square_bound
 from validation.references.interaction import Floats
 from validation.row import Reference, Row, at_most, claim
@@ -59,14 +58,7 @@ def measure_modes(bench: Bench) -> Findings:
                 uncertainty=SIGMAS * float(spread[0]),
             )
         )
-    exact = Series("kT", stiffness, np.ones(PARTICLES))
-    return Findings(
-        checks,
-        figure(
-            "Energy of each mode over kT/2",
-            Panel("stiffness of the mode", "κ⟨q²⟩/kT", [Series("run", stiffness, ratio)], [exact], log="x"),
-        ),
-    )
+    return Findings(checks)
 
 
 def _sampled(folder: Path, samples: int, drag: float | str) -> tuple[Floats, Floats]:

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh
 
 from validation.doors import EngineError, Session, contact_of, scene_from_dict, settings_for
-from validation.figures import Panel, Series, figure
 from validation.hard.cases import BODIES, PAPER_LAW
 from validation.references.energy import EnergySurface
 from validation.references.interaction import Exponential, PairInteraction
@@ -67,15 +66,7 @@ def measure(bench: Bench) -> Findings:
         )
     )
     checks += [_time_step(tables, words) for words, tables in (("", {}), (", neighbours 100 k", _stiff(83.0)))]
-    dt = np.array(TIME_STEPS)
-    law = Series("Δt²", dt, swings[0] * (dt / dt[0]) ** 2)
-    return Findings(
-        checks,
-        figure(
-            "Swing of the energy without damping over the time step",
-            Panel("Δt (TU)", "energy (FU·LU)", [Series("swing", dt, np.array(swings))], [law], log="xy"),
-        ),
-    )
+    return Findings(checks)
 
 
 def _stiff(stiffness: float) -> dict[str, Any]:

@@ -14,7 +14,6 @@ import numpy as np
 from scipy.optimize import brentq
 
 from validation.doors import Contact, Displace, Run, contact_of
-from validation.figures import Panel, Series, figure
 from validation.hard.cases import CORE, LAW, PairCase, shaped
 from validation.row import at_most
 from validation.study import Bench, Findings, Refused, Study, claim_row
@@ -34,7 +33,7 @@ PUSH = 1e-5
 
 def measure_core(bench: Bench) -> Findings:
     """d under shares of what N cores carry over its claim; loads past that are refused in words of this program."""
-    rows, points = [], []
+    rows = []
     for method in ("quasistatic", "dynamic"):
         case = PairCase("core", RATIO, shaped("flat_punch", PUNCH, 0.0), PUNCH, 0.0, 1e-3, method == "dynamic")
 
@@ -46,22 +45,19 @@ def measure_core(bench: Bench) -> Findings:
             words = f"d off over its claim at {share:g} of the core's force, {method}"
             exact = case.exact().deepest(share * PUNCH * CORE)
             rows.append(claim_row(words, pressed(share, bench), "displacement", exact, "independent pairs"))
-            points.append((share, max(rows[-1].value, 1e-6)))
         soon = replace(bench, patience=PATIENCE)
         ends = [pressed(share, soon) for share in PAST]
         bad = sum(not isinstance(end, Refused) or any(word in end.words for word in HANGING) for end in ends)
         words = f"loads of {PAST} core forces that are held, hang, or end in words of LAMMPS, {method}"
         rows.append(at_most(words, bad, 0.0, "the core carries no more"))
-    shown = Series("runs", *np.array(points).T)
-    panel = Panel("load over the core's force", "error of d over its claim", [shown], log="xy", bound=1.0)
-    return Findings(rows, figure("Error over claim up to the core; dashed: the bound", panel))
+    return Findings(rows)
 
 
 def measure_buckling(bench: Bench) -> Findings:
     """Pairs that are pushed aside a little: below the critical force they come back, above it they go on."""
     critical = float(brentq(lambda r: 2.0 * float(LAW.force(np.array(r))) / r - TANGENTIAL, 1e-4, 0.023))
     most = float(LAW.force(np.array(critical)))
-    checks, drawn = [], []
+    checks = []
     for share in BUCKLED:
         r = float(brentq(lambda r, f=share * most: float(LAW.force(np.array(r))) - f, 1e-5, 0.0236, xtol=1e-16))
         case = PairCase("buckling", RATIO, shaped("flat_punch", 3, 0.0), 3, 0.0)
@@ -86,20 +82,7 @@ def measure_buckling(bench: Bench) -> Findings:
                 "where the minimiser stops: some of the push",
             )
         )
-        drawn.append((share, max(offset / PUSH, 1e-9)))
-    return Findings(
-        checks,
-        figure(
-            "What becomes of a small push sideways; dashed: nothing",
-            Panel(
-                "force over the critical one",
-                "offset over the push",
-                [Series("runs", *np.array(drawn).T)],
-                log="y",
-                bound=1.0,
-            ),
-        ),
-    )
+    return Findings(checks)
 
 
 def _pushed(contact: Contact, d: float) -> float:

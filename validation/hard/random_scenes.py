@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from validation.doors import Run, scene_from_dict, settings_for
-from validation.figures import Panel, figure
 from validation.hard.claims import Tally
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
@@ -48,14 +47,7 @@ def measure(bench: Bench) -> Findings:
         except RuntimeError:  # the reference's own chains buckle through each other: a scene that nothing carries
             continue
     checks = tally.checks(NAME, "the independent solver")
-    labels = ("share of the numbers", "error over the claim")
-    return Findings(
-        checks,
-        figure(
-            "Errors over claims of random scenes, in order; dashed: the bound",
-            Panel(*labels, tally.series(), log="y", bound=1.0),
-        ),
-    )
+    return Findings(checks, tally.drawn())
 
 
 def varied(scene: dict[str, Any], random: Random) -> dict[str, Any]:

@@ -16,7 +16,6 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 from validation.doors import Settings, UnderLoad, contact_of
-from validation.figures import Panel, Series, figure
 from validation.hard.cases import ATTRACTION, LAW, PairCase, reach, shaped
 from validation.references.folded_pairs import FoldedPairs
 from validation.references.interaction import Floats
@@ -53,9 +52,8 @@ def measure(bench: Bench) -> Findings:
     pairs = case.exact()
     largest, fold = pairs.adhesion(0.0)
     checks: list[Row] = []
-    drawn, lines = [], []
     for words, sign in (("settle", -1.0), ("part", 1.0)):
-        found, exact = [], []
+        found = []
         for share in FULL_SHARES if bench.full else SHARES:
             load = -largest * (1.0 + sign * share)
             begin = _place(pairs, -START * largest, fold)
@@ -81,7 +79,6 @@ def measure(bench: Bench) -> Findings:
                         break
                     last = place
             found.append(taken)
-            exact.append(expected)
             checks.append(
                 Row(f"time to {words} under (1 {'+−'[sign < 0]} {share:g}) F_A", taken, Reference(expected, SOURCE),
                     relative(TIMES, "particles that lag behind; the table's share of F_A"), unit="TU")
@@ -98,15 +95,7 @@ def measure(bench: Bench) -> Findings:
                 "next term of the fold",
             )
         )
-        drawn.append(Series(f"run: {words}", shares, np.array(found)))
-        lines.append(Series(f"closed form: {words}", shares, np.array(exact)))
-    return Findings(
-        checks,
-        figure(
-            "Time to settle below F_A and to part above it, over the distance from it",
-            Panel("$|1 - W/F_A|$", "time (TU)", drawn, lines, log="xy"),
-        ),
-    )
+    return Findings(checks)
 
 
 def _place(pairs: FoldedPairs, load: float, fold: float) -> float:

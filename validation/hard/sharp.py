@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from validation.figures import Panel, figure
 from validation.hard.cases import ATTRACTION, LAW, TENSION, PairCase, reach, shaped
 from validation.hard.claims import Tally
 from validation.references.folded_pairs import FoldedPairs
@@ -40,14 +39,7 @@ def measure(bench: Bench) -> Findings:
         if case.solvable() and _fits(case):
             tally.add(case.name, group, bench.run(case.name, case.scene()), exact(), REFERENCE)
     checks = tally.checks(NAME, "independent pairs with their folds")
-    labels = ("share of the numbers", "error over the claim")
-    return Findings(
-        checks,
-        figure(
-            "Errors over claims of random sharp scenes, in order; dashed: the bound",
-            Panel(*labels, tally.series(), log="y", bound=1.0),
-        ),
-    )
+    return Findings(checks, tally.drawn())
 
 
 def drawn(rng: np.random.Generator, number: int) -> tuple[PairCase, str, Callable[[], dict[str, float]]]:

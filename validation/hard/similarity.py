@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from validation.figures import Panel, Series, figure
 from validation.hard.cases import TENSION, PairCase, reach, shaped
 from validation.row import Row, at_most
 from validation.study import Bench, Findings, Refused, Study, said
@@ -25,13 +22,11 @@ BY_FORCE = {"quasistatic": False, "dynamic": True}
 def measure(bench: Bench) -> Findings:
     """F_A and a_cr of every scaled scene against those of the scene as it is, which the closed form judges."""
     checks: list[Row] = []
-    drawn = []
     for method, dynamic in BY_FORCE.items():
         case = PairCase("base", RATIO, shaped("parabola", PARTICLES, reach(RATIO)), PARTICLES, TENSION, 1e-3, dynamic)
         exact = case.exact().adhesion(case.preload)[0]
         equal = EQUAL if not dynamic else 1e-2
         for what, factors in (("lengths", LENGTHS), ("energies", ENERGIES)):
-            found = []
             for factor in factors if bench.full or not dynamic else factors[::2]:
                 s, e = (factor, 1.0) if what == "lengths" else (1.0, factor)
                 run = bench.run(f"{method}_{what}_{factor:g}", scaled(case.scene(), s, e))
@@ -40,7 +35,6 @@ def measure(bench: Bench) -> Findings:
                     off = 0.0 if run.before else off
                 else:
                     off = abs(result(run, "adhesion_force").value * s / e / exact - 1.0)
-                found.append((factor, off))
                 checks.append(
                     at_most(
                         f"F_A·s/e off, {what} × {factor:g}, {method}",
@@ -50,14 +44,7 @@ def measure(bench: Bench) -> Findings:
                         said("rounding; dynamic: the tolerance of the bracket", run),
                     )
                 )
-            drawn.append(Series(f"{what}, {method}", *np.array([(f, max(o, 1e-12)) for f, o in found if o == o]).T))
-    return Findings(
-        checks,
-        figure(
-            "Deviation of the reduced F_A over the factor",
-            Panel("factor", "deviation of the reduced $F_A$", drawn, log="xy", bound=EQUAL),
-        ),
-    )
+    return Findings(checks)
 
 
 def scaled(scene: dict[str, Any], s: float, e: float) -> dict[str, Any]:

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from validation.doors import Run, scene_from_dict, settings_for
-from validation.figures import Panel, Series, figure
 from validation.references.prandtl_tomlinson import corrugation
 from validation.references.slide import Trace
 from validation.row import Row, at_most, so
@@ -101,7 +100,6 @@ STICKY = ("no load", "a pull")
 def measure(bench: Bench) -> Findings:
     """Three rows of each slide, what is special of each, and two that end nowhere."""
     checks: list[Row] = []
-    drawn, lines = [], []
     for name, tables in CASES.items():
         scene = scene_from_dict({"title": name} | _clean(tables))
         found = bench.run(name.replace(" ", "_"), _clean(tables))
@@ -110,14 +108,7 @@ def measure(bench: Bench) -> Findings:
             continue
         trace = integrated(scene, settings_for(scene))
         checks += [*_rows(name, found, trace), *_special(name, found, trace)]
-        if name == BACK:
-            drawn.append(Series("run", found.friction["plate_x"][::5], found.friction["friction"][::5]))
-            lines.append(Series("integrator", trace.place, trace.friction))
-    checks += _ends(bench)
-    labels = ("place of the plate (LU)", "friction (FU)")
-    return Findings(
-        checks, figure("A slide that is reversed: friction over the place of the plate", Panel(*labels, drawn, lines))
-    )
+    return Findings([*checks, *_ends(bench)])
 
 
 def _clean(tables: dict[str, Any]) -> dict[str, Any]:

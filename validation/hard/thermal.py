@@ -10,7 +10,6 @@ from scipy.optimize import brentq
 from scipy.stats import chi2
 
 from validation.doors import Run
-from validation.figures import Panel, Series, figure
 from validation.hard.cases import CHANCE, PAPER_LAW, SIGMAS, block_mean, chi_square_bound
 from validation.references.boltzmann_pairs import BoltzmannPairs
 from validation.references.folded_pairs import FoldedPairs
@@ -57,7 +56,6 @@ def measure_boltzmann(bench: Bench) -> Findings:
     still = bench.run("rest", thermal_scene(0.0, 0))
     rows = [claim_row("d at kT = 0 off over its claim", still, "displacement", rest, "independent pairs")]
     source, limit = "Boltzmann's integral over distances and plate", "statistics: 4 of the run's standard errors"
-    known, exacts = [], []
     for kT in TEMPERATURES:
         exact, swing = BoltzmannPairs(LAW_HERE, 0.83, HEIGHTS, kT).displacement(LOAD, NEAR, WIDTH[kT])
         run = bench.run(f"noise_{kT:g}", thermal_scene(kT, 3))
@@ -72,12 +70,7 @@ def measure_boltzmann(bench: Bench) -> Findings:
                     uncertainty=SIGMAS * d.uncertainty, unit="LU")
             )  # fmt: skip
         rows.append(_swing_row(run, kT, swing))
-        known.append((kT, d.value))
-        exacts.append((kT, exact))
-    rows += _shipped(bench)
-    theory = [Series("Boltzmann", *np.array(exacts).T)]
-    panel = Panel("kT (FU·LU)", "mean displacement (LU)", [Series("run", *np.array(known).T)], theory, log="x")
-    return Findings(rows, figure("Mean displacement under a load over the temperature", panel))
+    return Findings([*rows, *_shipped(bench)])
 
 
 def _shipped(bench: Bench) -> list[Row]:
@@ -144,15 +137,7 @@ def measure_seeds(bench: Bench) -> Findings:
             limit,
         ),
     ]
-    return Findings(
-        checks,
-        figure(
-            "Deviation of each seed over its claim",
-            Panel(
-                "seed", "(d − exact)/claim", [Series("seeds", 1.0 + np.arange(float(len(sigmas))), np.array(sigmas))]
-            ),
-        ),
-    )
+    return Findings(checks)
 
 
 CLASSES = (

@@ -15,24 +15,44 @@ is the schedule that decides how well the critical radius is known, now more and
 
 from __future__ import annotations
 
+import csv
+import json
 import math
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
+from statistics import geometric_mean
+from typing import Any
 
 from contact1d.workflow.cost.knobs import at_tolerance
 from contact1d.workflow.cost.measure import Measured, Prepared, measure
 from contact1d.workflow.cost.report import power
 from contact1d.workflow.cost.study import TARGETS, reference_of
 from contact1d.workflow.engine.progress import choose_progress
-from contact1d.workflow.model.settings import CALIBRATION, Calibration, Settings, settings_for
+from contact1d.workflow.model.settings import (
+    CALIBRATION,
+    FILE,
+    Calibration,
+    Settings,
+    calibration_of,
+    meanings,
+    settings_for,
+)
 from contact1d.workflow.scene import Scene, read_scene
 from contact1d.workflow.units import Quantity
-from validation.tools.calibration_choice import TOGETHER, Row, read_rows, write_choice, write_rows
 
 ROOT = Path(__file__).parents[2]
+RECORD = ROOT / "validation" / "results" / "calibration.csv"
+PART = 0.1
+"""Of the tolerance, that one share may add to the error of a main result."""
+SAME_COST = 0.03
+"""Costs that differ by less are the same: tens of times on a machine that does other things too."""
+PROMISED = {"residual": (1e-3, "on a rigid plane forces are promised to 1e-6, tests/validation/test_hertz_plane.py")}
+"""Largest value of a share that something other than the tolerance allows, and what."""
+TOGETHER = "together"
+"""In place of a share's name, of runs with all shares as chosen."""
 ROUNDS, WORKERS = 1, 2
 """Of each run, since a cost is the mean over all scenes and tolerances; and how many at a time."""
 LADDERS = {
@@ -72,6 +92,28 @@ SCENES: dict[str, tuple[str, tuple[str, ...], tuple[str, ...]]] = {
 }
 """Name: a shipped scene, keys that are set, effects that are left out. The one with noise is not among them: a change
 of any setting there gives another sample of the motion, which hides what the setting does."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A scene at a tolerance with one share at one value.
+
+    Attributes:
+        added: what the relative error of a main result is larger than with the finest value, over the tolerance.
+        error: relative error against the reference, over the tolerance; both of the result where it is largest.
+        cpu_s, steps: median processor time in LAMMPS [s]; minimiser iterations or timesteps.
+        trouble: names of warnings that the finest value does not bring, or why there are no numbers.
+    """
+
+    scene: str
+    tolerance: float
+    share: str
+    value: float
+    added: float
+    error: float
+    cpu_s: float
+    steps: int
+    trouble: str
 
 
 def studied(name: str, shares: Mapping[str, Sequence[Calibration]]) -> list[Row]:
@@ -136,13 +178,86 @@ def _rows(
         yield Row(*key, value, max(added, 0.0), error, one.cpu_s, one.steps, ", ".join(warned))
 
 
+def chosen_values(rows: Sequence[Row]) -> dict[str, Any]:
+    """The contents of `calibration.json`: of each setting what it is, its value, and what that was chosen by."""
+    values = {}
+    for share, meaning in meanings().items():
+        ladder = sorted({row.value for row in rows if row.share == share})
+        cases = {value: [row for row in rows if (row.share, row.value) == (share, value)] for value in ladder}
+        refusals = {
+            value: _refusal(share, value, cases[value], coarser, cases.get(coarser))
+            for value, coarser in zip(ladder, [*ladder[1:], math.inf], strict=True)
+        }
+        costs = {value: _cost(cases[value], cases[ladder[0]]) for value in ladder if not refusals[value]}
+        value = next(one for one in costs if costs[one] <= (1.0 + SAME_COST) * min(costs.values()))
+        worst = max(cases[value], key=lambda row: row.added)
+        values[share] = {
+            "is": meaning,
+            "value": value,
+            "adds": float(f"{worst.added:.2g}"),
+            "most_in": f"{worst.scene} at {power(worst.tolerance)}",
+            "cpu_over_finest": float(f"{costs[value]:.3g}"),
+            "next": "".join(
+                f"{one:.3g}: {refusals[one] or f'is no cheaper ({costs[one]:.3g} of the finest)'}"
+                for one in ladder[ladder.index(value) + 1 :][:1]
+            ),
+        }
+    return {
+        "made_by": "python -m validation.tools.calibration",
+        "record": "validation/results/calibration.csv",
+        "tolerances": list(TARGETS),
+        "adds_at_most": PART,
+        "values": values,
+    }
+
+
+def _refusal(share: str, value: float, cases: Sequence[Row], coarser: float, beyond: Sequence[Row] | None) -> str:
+    """Why a value is not taken, by its worst case, or by those of the next coarser value; "" where it could be."""
+    worst = max(cases, key=lambda row: (bool(row.trouble), row.added))
+    where = f"in {worst.scene} at {power(worst.tolerance)}"
+    most, promise = PROMISED.get(share, (math.inf, ""))
+    if value > most:
+        return promise
+    if worst.trouble:
+        return f"{worst.trouble.split(':')[0]} {where}"
+    if worst.added > PART:
+        return f"adds {worst.added:.2g} of the tolerance {where}"
+    if beyond is None:
+        return "nothing coarser was tried"
+    return "" if all(row.added <= 1.0 for row in beyond) else f"{coarser:.3g} misses the tolerance"
+
+
+def _cost(cases: Sequence[Row], finest: Sequence[Row]) -> float:
+    """Geometric mean over scenes and tolerances of the processor time over that with the finest value."""
+    base = {(row.scene, row.tolerance): row.cpu_s for row in finest}
+    return geometric_mean(row.cpu_s / base[row.scene, row.tolerance] for row in cases)
+
+
+def read_rows(path: Path = RECORD) -> list[Row]:
+    """The rows of results/calibration.csv."""
+    kinds: dict[str, Any] = {"scene": str, "share": str, "trouble": str, "steps": int}
+    with path.open(encoding="utf-8", newline="") as file:
+        return [Row(**{k: kinds.get(k, float)(v) for k, v in line.items()}) for line in csv.DictReader(file)]
+
+
+def write_rows(rows: Sequence[Row], path: Path = RECORD) -> None:
+    """Write them, with three digits of what was measured."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([one.name for one in fields(Row)])
+        for row in rows:
+            writer.writerow([f"{v:.3g}" if k in ("added", "error", "cpu_s") else v for k, v in asdict(row).items()])
+
+
 def main(arguments: Sequence[str]) -> None:
     """The command."""
     if "--choose" not in arguments:
         ladders = {share: [replace(CALIBRATION, **{share: one}) for one in many] for share, many in LADDERS.items()}
         write_rows([row for name in SCENES for row in studied(name, ladders)])
     rows = [row for row in read_rows() if row.share != TOGETHER]
-    chosen = {TOGETHER: [write_choice(rows)]}
+    document = chosen_values(rows)
+    FILE.write_text(json.dumps(document, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    chosen = {TOGETHER: [calibration_of(document)]}
     write_rows([*rows, *(row for name in SCENES for row in studied(name, chosen))])
 
 

@@ -9,8 +9,10 @@ import os
 import shutil
 import signal
 import sys
+import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +22,8 @@ ROOT = Path(__file__).parents[2]
 MADE = ("runs", "reproduced", "stability", "speed", "__pycache__")
 """What is made by running, and is not copied from the top."""
 HANGS = "they take too long"
+LIMIT = 300.0
+"""Time limit of a test in `tests/limits.py` [s]; the environment's PATIENCE multiplies it."""
 QUICK = ("-q", "--assert=plain", "-p", "no:cacheprovider")
 LOADED = (
     "numpy",
@@ -40,15 +44,16 @@ def load() -> None:
     assert "contact1d" not in sys.modules, "a fork would test what is loaded, and not its copy"
 
 
-def copy_of_this(folder: Path) -> Path:
-    """A copy of this checkout."""
+@contextmanager
+def copy_of_this() -> Iterator[Path]:
+    """A copy of this checkout, for a while."""
 
     def made(parent: str, names: list[str]) -> list[str]:
         at_top = Path(parent) == ROOT
         return [name for name in names if name.startswith(".") or name == MADE[-1] or (at_top and name in MADE)]
 
-    shutil.copytree(ROOT, folder, symlinks=True, ignore=made)
-    return folder
+    with tempfile.TemporaryDirectory() as temporary:
+        yield Path(shutil.copytree(ROOT, Path(temporary) / "copy", symlinks=True, ignore=made))
 
 
 def in_copy(folder: Path, run: Callable[[], int], patience: float) -> int | None:
@@ -70,30 +75,30 @@ def in_copy(folder: Path, run: Callable[[], int], patience: float) -> int | None
             code = run()
         finally:
             os._exit(code)
-    end = time.monotonic() + patience
-    while time.monotonic() < end:
+    end, found = time.monotonic() + patience, None
+    while found is None and time.monotonic() < end:
         done, status = os.waitpid(child, os.WNOHANG)
-        if done:
-            return os.waitstatus_to_exitcode(status)
+        found = os.waitstatus_to_exitcode(status) if done else None
         time.sleep(0.02)
-    os.killpg(child, signal.SIGKILL)
-    os.waitpid(child, 0)
-    return None
+    with suppress(ProcessLookupError):  # what it started may live on
+        os.killpg(child, signal.SIGKILL)
+    if found is None:
+        os.waitpid(child, 0)
+    return found
 
 
-def run_tests(folder: Path, tests: Sequence[str], plugin: Any, patience: float) -> int | None:
-    """Pytest's exit code for tests of a copy, with a plugin."""
+def run_tests(folder: Path, tests: Sequence[str], plugin: Any, patience: float, longest: float = LIMIT) -> int | None:
+    """Pytest's exit code for tests of a copy, each within `longest` [s], all within `patience` [s], with a plugin."""
 
     def run() -> int:
-        import pytest
-
+        os.environ["PATIENCE"] = str(longest / LIMIT)
         return int(pytest.main([*QUICK, "--rootdir", str(folder), *tests], [plugin]))
 
     return in_copy(folder, run, patience)
 
 
-def first_failure(folder: Path, tests: Sequence[str], patience: float) -> str:
-    """The first test that fails in that copy, HANGS after so many seconds; empty where all pass."""
+def first_failure(folder: Path, tests: Sequence[str], patience: float, longest: float = LIMIT) -> str:
+    """The first test that fails in that copy, HANGS after `patience`; empty where all pass. Times as in `run_tests`."""
     noted = folder / ".failed"
     noted.unlink(missing_ok=True)
 
@@ -105,7 +110,7 @@ def first_failure(folder: Path, tests: Sequence[str], patience: float) -> str:
 
         pytest_collectreport = pytest_runtest_logreport
 
-    code = run_tests(folder, ["-x", *tests], Notes(), patience)
+    code = run_tests(folder, ["-x", *tests], Notes(), patience, longest)
     if code is None:
         return HANGS
     if code in (0, pytest.ExitCode.NO_TESTS_COLLECTED):  # none that ran failed

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import sys
-import tempfile
 import tomllib
 from pathlib import Path
 
@@ -43,8 +42,7 @@ def main() -> int:
     chosen = [fault for fault in listed() if fault["name"] in sys.argv[1:] or not sys.argv[1:]]
     found: dict[str, str] = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {}
     load()
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = copy_of_this(Path(temporary) / "copy")
+    with copy_of_this() as folder:
         for fault in chosen:
             by = found[fault["name"]] = killed_by(fault, folder)
             print(f"{'killed  ' if by else 'SURVIVES'} {fault['name']}: {by}", flush=True)

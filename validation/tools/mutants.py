@@ -1,12 +1,12 @@
 """Random faults: a share of all small ones is put into the code, one at a time, and the tests that reach it must fail.
 
-    python -m validation.tools.mutants [FOLDER ...] [--number 100] [--seed 1] [--tests tests/unit ...]
+    python -m validation.tools.mutants [FOLDER ...] [--number 100] [--seed 1] [--tests tests/unit ...] [--out FILE]
 
 A fault changes one operator, comparison or number in a copy of this checkout. A trace of calls says which tests reach
 its function; these run there, quick ones first, up to the first that fails or LONGEST. One that passes them survives:
 it is printed and listed in results/mutants.json, with the reason if one was written there by hand (kept for the same
 change). What no user could meet is not drawn: messages, types, drawings, and `strict=`. Exit code 1 where fewer than
-ASKED are noticed.
+ASKED are noticed. Every processor has a share of the trace, and a fault at a time.
 """
 
 from __future__ import annotations
@@ -14,17 +14,21 @@ from __future__ import annotations
 import argparse
 import ast
 import json
+import math
 import os
 import random
 import sys
-import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from multiprocessing import get_context
 from pathlib import Path
 from types import CodeType, FrameType
 from typing import Any
+
+import pytest
 
 from validation.tools.copies import ROOT, copy_of_this, first_failure, load, run_tests
 
@@ -33,10 +37,12 @@ FOLDERS = ("workflow", "analysis", "potentials")
 TESTS = ("tests/unit", "tests/decks", "tests/validation", "tests/hard")
 ASKED = 0.85
 """Asked of the share that is noticed."""
-LONGEST, TRACED = 60.0, 7200.0
-"""Time of the tests that look for one fault, as they took when traced, and of the trace of all [s]."""
-PATIENCE = 10.0
-"""Clock of a run over the time that its tests took, on a machine that does other things too."""
+LONGEST = 60.0
+"""Time of the tests that look for one fault, as they took when traced [s]."""
+SHARE, TRACED = 8, 3600.0
+"""Files of tests that are traced in one process, and its time limit [s]."""
+STARTING, SLOWNESS = 30.0, 4.0
+"""Time limit of a test, and of a run: so much to start [s], and so many times what it took when traced."""
 ROUND_OFF = 1e-9
 """A number below it guards against round-off."""
 OPERATORS: dict[type[ast.AST], type[ast.AST]] = {
@@ -50,19 +56,29 @@ SKIPPED = (ast.Assert, ast.Raise, ast.JoinedStr, ast.Import, ast.ImportFrom)
 """Words and types: no fault of these makes a wrong number."""
 Called = dict[str, tuple[float, list[str]]]
 """For each test its time [s] and the functions, file:name."""
-Change = tuple[str, Callable[[], None], Callable[[], None]]
+CALLS = ".calls"
+"""Where a trace is written."""
+Change = tuple[str, Callable[[], None]]
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """One change: file, line, its text, what becomes what, the whole new text of the file, the function it is in."""
+    """One change: file, its number there, line, its text, what becomes what, the function it is in."""
 
     file: str
+    number: int
     line: int
     text: str
     change: str
-    source: str
     function: str
+
+    @property
+    def source(self) -> str:
+        """The whole new text of the file."""
+        tree = ast.parse((ROOT / self.file).read_text(encoding="utf-8"))
+        every = [do for node, _ in inner(tree) for _, do in changes(node)]
+        every[self.number]()
+        return ast.unparse(ast.fix_missing_locations(tree))
 
 
 class Trace:
@@ -71,7 +87,7 @@ class Trace:
     def __init__(self, folder: Path) -> None:
         """Nothing is noted yet."""
         self._root, self._names = f"{folder}{os.sep}", dict[CodeType, str]()
-        self._now, self._of_fixtures, self.found = set[str](), dict[str, set[str]](), Called()
+        self._now, self._failed, self._of_fixtures, self.found = set[str](), set[str](), dict[str, set[str]](), Called()
 
     def note(self, frame: FrameType, event: str, value: object) -> None:
         """A call."""
@@ -82,8 +98,9 @@ class Trace:
             self._names[code] = f"{local}:{code.co_qualname.split('.<locals>')[0]}" if ours else ""
         self._now.add(self._names[code])
 
-    def pytest_runtest_protocol(self, item: Any) -> Iterator[None]:
-        """Trace the test; what is kept (`functools.cache`) is forgotten before it."""
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
+        """Trace the test; what is kept (`functools.cache`) is forgotten before it. One that fails tells nothing."""
         for module in [module for name, module in sys.modules.items() if name.startswith(("contact1d", "tests"))]:
             for kept in list(vars(module).values()):
                 if callable(clear := getattr(kept, "cache_clear", None)):
@@ -91,41 +108,56 @@ class Trace:
         self._now, started = set(), time.monotonic()
         threading.settrace(self.note)
         sys.settrace(self.note)
-        yield
+        done = yield
         sys.settrace(None)
-        file = item.nodeid.partition("::")[0]
-        reached = self._now | self._of_fixtures.get(file, set())
-        self.found[item.nodeid] = time.monotonic() - started, sorted(reached - {""})
+        if item.nodeid not in self._failed:
+            reached = self._now | self._of_fixtures.get(item.nodeid.partition("::")[0], set())
+            self.found[item.nodeid] = time.monotonic() - started, sorted(reached - {""})
+        return done
 
-    def pytest_fixture_setup(self, fixturedef: Any, request: Any) -> Iterator[None]:
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """What fails."""
+        if report.failed:
+            self._failed.add(report.nodeid)
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_fixture_setup(self, request: pytest.FixtureRequest) -> Iterator[None]:
         """What a fixture of a file calls counts for every test of the file."""
         before, self._now = self._now, set()
-        yield
+        done = yield
         self._of_fixtures.setdefault(request.node.nodeid.partition("::")[0], set()).update(self._now)
         self._now |= before
+        return done
 
     def pytest_sessionfinish(self) -> None:
         """Write what was found into the copy."""
-        (Path(self._root) / ".calls").write_text(json.dumps(self.found), encoding="utf-8")
+        (Path(self._root) / CALLS).write_text(json.dumps(self.found), encoding="utf-8")
 
 
-def callers(folder: Path, tests: Sequence[str]) -> Called:
-    """What the tests of a copy call."""
-    import pytest
+def traced(tests: Sequence[str]) -> Called:
+    """What these tests call, where they pass."""
+    with copy_of_this() as folder:
+        run_tests(folder, tests, Trace(folder), TRACED)
+        calls = folder / CALLS
+        return Called(json.loads(calls.read_text(encoding="utf-8")) if calls.exists() else {})
 
-    for name in ("pytest_runtest_protocol", "pytest_fixture_setup"):
-        setattr(Trace, name, pytest.hookimpl(wrapper=True)(getattr(Trace, name)))
-    run_tests(folder, tests, Trace(folder), TRACED)
-    found: Called = json.loads((folder / ".calls").read_text(encoding="utf-8"))
-    return found
+
+def shares(tests: Sequence[str]) -> list[list[str]]:
+    """The files of tests, the rooms mixed: each share takes about as long."""
+    files = [
+        str(path.relative_to(ROOT))
+        for name in tests
+        for path in (sorted((ROOT / name).rglob("test_*.py")) if (ROOT / name).is_dir() else [ROOT / name])
+    ]
+    count = math.ceil(len(files) / SHARE)
+    return [files[first::count] for first in range(count)]
 
 
 def changes(node: ast.AST) -> Iterator[Change]:
-    """(words, do, undo) of every change of this node itself."""
+    """Every change of this node itself: words, and what does it."""
 
     def swap(owner: Any, field: str, new: Any, words: str) -> Change:
-        old = getattr(owner, field)
-        return words, lambda: setattr(owner, field, new), lambda: setattr(owner, field, old)
+        return words, lambda: setattr(owner, field, new)
 
     match node:
         case ast.BinOp(op=op) | ast.AugAssign(op=op) | ast.BoolOp(op=op) if type(op) in OPERATORS:
@@ -168,25 +200,30 @@ def inner(node: ast.AST, function: str = "") -> Iterator[tuple[ast.AST, str]]:
 def mutants(file: str) -> list[Mutant]:
     """Every mutant of a file."""
     source = (ROOT / file).read_text(encoding="utf-8")
-    tree, lines, found = ast.parse(source), source.splitlines(), []
-    for node, function in inner(tree):
-        for words, do, undo in changes(node):
-            line = getattr(node, "lineno", 1)
-            do()
-            text = ast.unparse(ast.fix_missing_locations(tree))
-            undo()
-            found.append(Mutant(file, line, lines[line - 1].strip(), words, text, function))
+    lines, found = source.splitlines(), list[Mutant]()
+    for node, function in inner(ast.parse(source)):
+        line = getattr(node, "lineno", 1)
+        for words, _ in changes(node):
+            found.append(Mutant(file, len(found), line, lines[line - 1].strip(), words, function))
     return found
 
 
 def tests_of(mutant: Mutant, called: Called) -> list[str]:
-    """The tests that call the mutant's function, the quick ones that call little else first, up to LONGEST."""
-    wanted = f"{mutant.file}:{mutant.function.rstrip('.')}"
-    those = {
-        test: taken * len(functions)
-        for test, (taken, functions) in called.items()
-        if any(one == wanted or (not mutant.function and one.startswith(wanted)) for one in functions)
-    }
+    """The tests that call the mutant's function, the quick ones that call little else first, up to LONGEST.
+
+    What none calls runs in another process, or as the file is loaded: tests of its class, its file or its folder do.
+    """
+    inside = mutant.function.rpartition(".")[0]
+    for wanted in (mutant.function, f"{inside}." if inside else "", "", None):
+        place = f"{mutant.file.rpartition('/')[0]}/" if wanted is None else f"{mutant.file}:{wanted}"
+        whole = place.endswith((".", ":", "/"))
+        those = {
+            test: taken * len(functions)
+            for test, (taken, functions) in called.items()
+            if any(one.startswith(place) if whole else one == place for one in functions)
+        }
+        if those:
+            break
     chosen: list[str] = []
     for test in sorted(those, key=lambda test: those[test]):
         if chosen and sum(called[one][0] for one in [*chosen, test]) > LONGEST:
@@ -195,37 +232,40 @@ def tests_of(mutant: Mutant, called: Called) -> list[str]:
     return chosen
 
 
+def killed_by(mutant: Mutant, tests: dict[str, float]) -> str:
+    """The first of these tests (and their times [s]) that fails with the mutant; empty where none does."""
+    with copy_of_this() as folder:
+        (folder / mutant.file).write_text(mutant.source, encoding="utf-8")
+        longest, whole = (STARTING + SLOWNESS * seconds for seconds in (max(tests.values()), sum(tests.values())))
+        return first_failure(folder, list(tests), whole, longest)
+
+
 def main() -> int:
     """Draw faults, look for them, and write down those that no test notices."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folders", nargs="*", default=FOLDERS)
     parser.add_argument("--number", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--tests", nargs="+", default=TESTS)
+    parser.add_argument("--tests", nargs="+", default=TESTS, help="folders or files")
+    parser.add_argument("--out", type=Path, default=RESULTS)
     options = parser.parse_args()
-    files = [
-        str(path.relative_to(ROOT)) for folder in options.folders for path in sorted((ROOT / folder).rglob("*.py"))
-    ]
+    files = [str(path.relative_to(ROOT)) for name in options.folders for path in sorted((ROOT / name).rglob("*.py"))]
     every = [mutant for file in files for mutant in mutants(file)]
     chosen = random.Random(options.seed).sample(every, min(options.number, len(every)))
     old = json.loads(RESULTS.read_text(encoding="utf-8")).get("survivors", []) if RESULTS.exists() else []
     reasons = {(row["file"], row["text"], row["change"]): row["reason"] for row in old}
     load()
-    alive = []
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = copy_of_this(Path(temporary) / "copy")
-        called = callers(folder, options.tests)
-        for mutant in chosen:
-            tests = tests_of(mutant, called)
-            path = folder / mutant.file
-            whole = path.read_text(encoding="utf-8")
-            path.write_text(mutant.source, encoding="utf-8")
-            patience = PATIENCE * (LONGEST + sum(called[test][0] for test in tests))
-            by = first_failure(folder, tests, patience) if tests else ""
-            path.write_text(whole, encoding="utf-8")
+    alive, began = [], time.monotonic()
+    with ProcessPoolExecutor(mp_context=get_context("fork")) as pool:
+        called = Called()
+        for one in pool.map(traced, shares(options.tests)):
+            called |= one
+        print(f"{len(called)} tests are traced: {time.monotonic() - began:.0f} s", flush=True)
+        tests = [{name: called[name][0] for name in tests_of(mutant, called)} for mutant in chosen]
+        for mutant, by in zip(chosen, pool.map(killed_by, chosen, tests), strict=True):
             if not by:
                 alive.append(mutant)
-            word = "killed  " if by else "SURVIVES" if tests else "NO TEST "
+            word = "killed  " if by else "SURVIVES"
             print(f"{word} {mutant.file}:{mutant.line}: {mutant.change}   {by or mutant.text}", flush=True)
     rows = [
         {"file": m.file, "line": m.line, "text": m.text, "change": m.change,
@@ -234,7 +274,7 @@ def main() -> int:
     ]  # fmt: skip
     noticed = 1.0 - len(alive) / len(chosen)
     record = {"asked": ASKED, "seed": options.seed, "faults": len(chosen), "noticed": noticed, "survivors": rows}
-    RESULTS.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    options.out.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     print(f"{len(chosen)} faults, {len(alive)} survive: {100.0 * noticed:.1f} % noticed")
     return int(noticed < ASKED)
 
