@@ -19,9 +19,7 @@ from numpy.typing import NDArray
 from contact1d.analysis.curve import Curve
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import moved_centre
-from contact1d.analysis.theory.jkr import FIXED_GRIPS_RADIUS_RATIO, Jkr, jkr_reduced_force
-from contact1d.analysis.theory.line_adhesion import barquins_reduced_force
-from contact1d.analysis.theory.winkler import winkler_force
+from contact1d.analysis.theory.curves import barquins_reduced_force, jkr_reduced_force
 from contact1d.files import whole
 
 if TYPE_CHECKING:
@@ -64,29 +62,6 @@ def pressure_figure(profiles: Mapping[str, Profile], radii: Mapping[str, float])
     axes[0].set_xlim(-half, half)
     axes[-1].set_xlabel("x (LU)")
     return figure
-
-
-def jkr_curve(adhesion_force: float, zero_load_radius: float, radius: float) -> tuple[Array, Array]:
-    """Displacement [LU] and force [FU] of JKR with this F_A [FU], a₀ and R [LU], up to the radius 1.3 a₀.
-
-    d/d₀ = 3ã² − 2√ã and F/F_A = 4ã³ − 4ã^{3/2}, ã = a/a₀. In the model's own radii d₀ = a₀²/6R: a₀ is twice the radius
-    of the two spheres that it stands for, and their effective radius is R/2 (Section 2 of the paper).
-    """
-    a = np.linspace(0.05, 1.3, 400)
-    return zero_load_radius**2 / (6 * radius) * (3 * a**2 - 2 * np.sqrt(a)), adhesion_force * jkr_reduced_force(a)
-
-
-def jkr_on_plane(radius: float, contact_modulus: float, work_of_adhesion: float) -> tuple[Array, Array]:
-    """Displacement [LU] and force [FU] of JKR, R [LU], E* [FU/LU²], W [FU/LU], from fixed grips' end to 1.3 a₀."""
-    contact = Jkr(radius, contact_modulus, work_of_adhesion)
-    a = contact.zero_load_radius() * np.linspace(FIXED_GRIPS_RADIUS_RATIO, 1.3, 400)
-    return contact.displacement(a), contact.force(a)
-
-
-def hertz_curve(largest: float, radius: float, layer_stiffness: float) -> tuple[Array, Array]:
-    """Displacement [LU] up to `largest` and force [FU] of Hertz, F = (4√2/3) c_n √R d^{3/2}, c_n [FU/LU²]."""
-    displacement = np.linspace(0.0, largest, 200)
-    return displacement, winkler_force(displacement, radius, layer_stiffness)
 
 
 def force_displacement_figure(

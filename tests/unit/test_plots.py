@@ -11,6 +11,7 @@ import pytest
 from contact1d.analysis import plots
 from contact1d.analysis.curve import Curve
 from contact1d.analysis.pressure import Profile
+from contact1d.analysis.theory.curves import hertz_curve, jkr_curve
 
 ROUND_OFF = 1e-12  # relative; closed forms of a few operations
 GRID = 2e-3  # of F_A; the theory is drawn with 400 points
@@ -87,7 +88,7 @@ def test_the_branches_are_drawn_as_measured(curve: Curve) -> None:
 
 def test_jkr_over_displacement_obeys_its_own_equations() -> None:
     """Two spheres of R: effective radius R/2, radii a/2, E* and W from F_A and a₀ (Johnson, Kendall, Roberts 1971)."""
-    displacement, force = plots.jkr_curve(ADHESION, ZERO_LOAD, BODY_RADIUS)
+    displacement, force = jkr_curve(ADHESION, ZERO_LOAD, BODY_RADIUS)
     effective, radius = BODY_RADIUS / 2.0, ZERO_LOAD / 2.0
     work = ADHESION / (1.5 * math.pi * effective)
     modulus = 4.5 * math.pi * work * effective**2 / radius**3
@@ -100,14 +101,14 @@ def test_jkr_over_displacement_obeys_its_own_equations() -> None:
 
 def test_hertz_is_that_of_two_spheres() -> None:
     """c_n = G/2(1−ν), Eq. (3); two equal spheres: effective radius R/2, E* = G/(1−ν) = 2 c_n."""
-    displacement, force = plots.hertz_curve(2.0, BODY_RADIUS, 0.83)
+    displacement, force = hertz_curve(2.0, BODY_RADIUS, 0.83)
     assert displacement[-1] == 2.0
     expected = 4.0 / 3.0 * (2.0 * 0.83) * np.sqrt(BODY_RADIUS / 2.0) * displacement**1.5
     np.testing.assert_allclose(force, expected, rtol=ROUND_OFF)
 
 
 def test_a_theory_is_shown_beside_the_curve_and_within_its_range(curve: Curve) -> None:
-    theory = ("JKR", *plots.jkr_curve(ADHESION, ZERO_LOAD, BODY_RADIUS))
+    theory = ("JKR", *jkr_curve(ADHESION, ZERO_LOAD, BODY_RADIUS))
     drawn = lines(plots.force_displacement_figure(curve, MARKS, theory).axes[0])
     assert drawn["JKR"][:, 1].max() <= max(curve.force) + 0.05 * np.ptp(curve.force)
     assert drawn["JKR"][:, 0].min() >= min(curve.displacement)

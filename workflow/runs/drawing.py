@@ -14,6 +14,7 @@ from contact1d.analysis import body_plots, plots, slip_plots
 from contact1d.analysis.curve import DETACHMENTS, SAMPLE_TABLE, Curve, read_samples
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.slip import stick_margin
+from contact1d.analysis.theory.curves import hertz_curve, jkr_curve, jkr_on_plane
 from contact1d.analysis.theory.mindlin import mindlin_path, sliding_displacement
 from contact1d.analysis.time_plots import samples_figure
 from contact1d.workflow.body.derived import REPORTED
@@ -154,7 +155,7 @@ def _hertz_over_radius(scene: Scene, curve: Curve) -> tuple[str, Array, Array] |
     bodies, radius = scene.bodies, scene.bodies.plane_radius
     if radius is None or scene.interaction is not None or scene.adheres:
         return None
-    d, force = plots.hertz_curve(float(curve.displacement.max()), radius, scene.bulk_stiffness / bodies.spacing)
+    d, force = hertz_curve(float(curve.displacement.max()), radius, scene.bulk_stiffness / bodies.spacing)
     return "Hertz", np.sqrt(2.0 * radius * d), force
 
 
@@ -174,12 +175,10 @@ def _theory(scene: Scene, values: Mapping[str, float], curve: Curve) -> tuple[st
     if radius is None:
         return None
     if scene.adhesion is not None and scene.adheres:
-        return "JKR", *plots.jkr_on_plane(2.0 * radius, scene.bulk_stiffness / bodies.spacing, scene.adhesion.work)
+        return "JKR", *jkr_on_plane(2.0 * radius, scene.bulk_stiffness / bodies.spacing, scene.adhesion.work)
     if _adheres_over_a_width(values):
-        jkr = plots.jkr_curve(values["adhesion_force"], values["zero_load_radius"], radius)
+        jkr = jkr_curve(values["adhesion_force"], values["zero_load_radius"], radius)
         return "JKR, same $F_A$ and $a_0$", *jkr
     if scene.interaction is None:
-        return "Hertz", *plots.hertz_curve(
-            float(curve.displacement.max()), radius, scene.bulk_stiffness / bodies.spacing
-        )
+        return "Hertz", *hertz_curve(float(curve.displacement.max()), radius, scene.bulk_stiffness / bodies.spacing)
     return None
