@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from contact1d.analysis import plots
+from contact1d.analysis import figures, plots
 from contact1d.analysis.curve import Curve
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.theory.curves import hertz_curve, jkr_curve
@@ -46,7 +46,7 @@ def lines(axis: object) -> dict[str, np.ndarray]:
 
 def test_every_particle_that_carries_pressure_is_a_bar_of_its_sign() -> None:
     shown = profile(0.05)
-    (axis,) = plots.pressure_figure({"zero_load": shown}, {"zero_load": 28.0}).axes
+    (axis,) = figures.pressure_figure({"zero_load": shown}, {"zero_load": 28.0}).axes
     (bars,) = axis.collections
     corners = {round(path.vertices[:4, 0].mean()): path.vertices[:4, 1] for path in bars.get_paths()}
     colours = dict(zip(corners, map(tuple, bars.get_facecolors()), strict=True))
@@ -60,7 +60,7 @@ def test_every_particle_that_carries_pressure_is_a_bar_of_its_sign() -> None:
 
 def test_the_contact_radius_is_marked_on_both_sides_and_named() -> None:
     radii = {"zero_load": 28.25, "critical": 15.5}
-    figure = plots.pressure_figure({"zero_load": profile(0.05), "critical": profile(-0.01)}, radii)
+    figure = figures.pressure_figure({"zero_load": profile(0.05), "critical": profile(-0.01)}, radii)
     for axis, (name, radius) in zip(figure.axes, radii.items(), strict=True):
         places = sorted(line.get_xdata()[0] for line in axis.get_lines() if len(set(line.get_xdata())) == 1)
         assert places == [-radius, radius]
@@ -71,12 +71,12 @@ def test_the_contact_radius_is_marked_on_both_sides_and_named() -> None:
 @pytest.mark.parametrize("radii", [{}, {"final": math.nan}])
 def test_a_state_without_contact_says_so(radii: dict[str, float]) -> None:
     x = np.arange(5.0)
-    (axis,) = plots.pressure_figure({"final": Profile(x, x, x, 0.0 * x, x)}, radii).axes
+    (axis,) = figures.pressure_figure({"final": Profile(x, x, x, 0.0 * x, x)}, radii).axes
     assert [text.get_text() for text in axis.texts] == ["no contact"]
 
 
 def test_the_branches_are_drawn_as_measured(curve: Curve) -> None:
-    (axis,) = plots.force_displacement_figure(curve, {}).axes
+    (axis,) = figures.force_displacement_figure(curve, {}).axes
     drawn = lines(axis)
     assert set(drawn) == {"loading", "unloading"}
     points = np.column_stack([curve.displacement, curve.force])
@@ -109,13 +109,13 @@ def test_hertz_is_that_of_two_spheres() -> None:
 
 def test_a_theory_is_shown_beside_the_curve_and_within_its_range(curve: Curve) -> None:
     theory = ("JKR", *jkr_curve(ADHESION, ZERO_LOAD, BODY_RADIUS))
-    drawn = lines(plots.force_displacement_figure(curve, MARKS, theory).axes[0])
+    drawn = lines(figures.force_displacement_figure(curve, MARKS, theory).axes[0])
     assert drawn["JKR"][:, 1].max() <= max(curve.force) + 0.05 * np.ptp(curve.force)
     assert drawn["JKR"][:, 0].min() >= min(curve.displacement)
 
 
 def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(curve: Curve) -> None:
-    (axis,) = plots.force_radius_figure(curve, ADHESION, ZERO_LOAD).axes
+    (axis,) = figures.force_radius_figure(curve, ADHESION, ZERO_LOAD).axes
     drawn = lines(axis)
     run = drawn.pop("this run, unloading")
     assert len(run) == 39
@@ -131,10 +131,10 @@ def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(curve
 def test_every_figure_is_a_whole_file(curve: Curve, tmp_path: Path) -> None:
     columns = {"drive": [0.0, 1.0], "friction": [0.0, 1.0], "normal_force": [1.0, 1.0]}
     for name, figure in {
-        "pressure": plots.pressure_figure({"final": profile(0.05)}, {"final": 28.0}),
-        "force_displacement": plots.force_displacement_figure(curve, MARKS),
-        "force_radius": plots.force_radius_figure(curve, ADHESION, ZERO_LOAD),
-        "friction": plots.friction_figure(columns),
+        "pressure": figures.pressure_figure({"final": profile(0.05)}, {"final": 28.0}),
+        "force_displacement": figures.force_displacement_figure(curve, MARKS),
+        "force_radius": figures.force_radius_figure(curve, ADHESION, ZERO_LOAD),
+        "friction": figures.friction_figure(columns),
     }.items():
         plots.save_figure(figure, tmp_path / f"{name}.png")
     files = sorted(tmp_path.iterdir())
