@@ -277,7 +277,7 @@ def stick_slip_figure(
         radii: half-width of the zone that sticks [LU].
         places: of the body along x [LU].
     """
-    figure, axes = panels(len(profiles), 1.0 + 2.3 * len(profiles))
+    figure, axes = panels(len(profiles), 1.0 + 2.3 * len(profiles), sharex=False)
     for axis, (name, profile) in zip(axes, profiles.items(), strict=True):
         x, touched = profile.x, profile.pressure > 0.0
         limit = coefficient * np.maximum(profile.pressure, 0.0)

@@ -67,10 +67,10 @@ def save_figure(figure: Figure, path: Path) -> None:
         figure.savefig(part, format=path.suffix[1:])
 
 
-def panels(count: int = 1, height: float = SIZE[1], **layout: Any) -> tuple[Figure, list[Axes]]:
-    """An empty figure of that height [inch], and its panels, one below the other over the same axis."""
+def panels(count: int = 1, height: float = SIZE[1], sharex: bool = True, **layout: Any) -> tuple[Figure, list[Axes]]:
+    """An empty figure of that height [inch], and its panels, one below the other, over the same axis if `sharex`."""
     figure = new_figure((SIZE[0], height))
-    return figure, figure.subplots(count, 1, sharex=True, squeeze=False, **layout)[:, 0].tolist()
+    return figure, figure.subplots(count, 1, sharex=sharex, squeeze=False, **layout)[:, 0].tolist()
 
 
 def describe(axis: Axes, x: str = "", y: str = "", title: str = "", zero: bool = True) -> None:

@@ -34,8 +34,8 @@ def curve() -> Curve:
     radius = np.concatenate([100.0 * np.sqrt(down + 0.1), 60.0 * np.sqrt(up + 0.3)])
     radius[-1] = math.nan
     force = np.concatenate([4.0 * down - 0.5, 5.0 * up])
-    branch = ["loading"] * 30 + ["unloading"] * 40
-    return Curve(displacement.tolist(), force.tolist(), radius.tolist(), [0.2] * 70, branch, [0.0] * 70)
+    branch = np.array(["loading"] * 30 + ["unloading"] * 40)
+    return Curve(displacement, force, radius, np.full(70, 0.2), branch, np.zeros(70))
 
 
 def lines(axis: object) -> dict[str, np.ndarray]:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis import figures, plots
-from contact1d.analysis.curve import DETACHMENTS, SAMPLE_TABLE, Curve, read_samples
+from contact1d.analysis.curve import DETACHMENTS, SAMPLE_COLUMNS, SAMPLE_TABLE, Curve, read_columns
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.slip import stick_margin
 from contact1d.analysis.theory.curves import hertz_curve, jkr_curve, jkr_on_plane
@@ -56,7 +56,9 @@ def drawings(run: Run, scales: Scales | None = None) -> Drawings:
     plain = _drawings(run)
     if (kept := run.folder / f"{SAMPLE_TABLE}.csv").is_file():
         measured = np.isin(run.curve.branch, MEASURED)
-        traces = partial(figures.samples_figure, read_samples(kept), measured, _values(run).get("displacement"))
+        traces = partial(
+            figures.samples_figure, read_columns(kept, SAMPLE_COLUMNS), measured, _values(run).get("displacement")
+        )
         plain = plain | {SAMPLE_TABLE: traces} if DETACHMENTS in plain else {SAMPLE_TABLE: traces} | plain
     return {name: partial(dressed, draw) for name, draw in plain.items()}
 
