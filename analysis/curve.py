@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import csv
-import io
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from contact1d.analysis.pressure import Profile
 from contact1d.files import whole
@@ -21,7 +19,7 @@ CHUNK = 100_000
 """Rows that are turned into text at a time."""
 
 
-@dataclass(frozen=True, eq=False, init=False)
+@dataclass(frozen=True, eq=False)
 class Curve:
     """Measured states in the order in which they were passed; arrays (n,). Two are equal if they are the same object.
 
@@ -36,26 +34,14 @@ class Curve:
     branch: NDArray[np.str_]
     contact_radius_uncertainty: Array
 
-    def __init__(
-        self,
-        displacement: ArrayLike,
-        force: ArrayLike,
-        contact_radius: ArrayLike,
-        smallest_distance: ArrayLike,
-        branch: ArrayLike,
-        contact_radius_uncertainty: ArrayLike,
-    ) -> None:
-        """Keep the columns as arrays. Raises ValueError for unequal lengths."""
-        columns = (displacement, force, contact_radius, smallest_distance, branch, contact_radius_uncertainty)
-        for field, column in zip(fields(self), columns, strict=True):
-            kind = np.str_ if field.name == "branch" else np.float64
-            object.__setattr__(self, field.name, np.asarray(column, dtype=kind))
-        lengths = {len(getattr(self, field.name)) for field in fields(self)}
+    def __post_init__(self) -> None:
+        """Check the lengths. Raises ValueError for unequal ones."""
+        lengths = {len(column) for column in vars(self).values()}
         if len(lengths) != 1:
             raise ValueError(f"the columns of a curve must be equally long, got lengths {sorted(lengths)}")
 
 
-PROFILE_COLUMNS = ("x", "z_lower", "z_upper", "pressure", "shear")
+PROFILE_COLUMNS = tuple(field.name for field in fields(Profile))
 FRICTION_COLUMNS = (
     "time", "drive", "plate_x", "plate_z", "friction", "normal_force", "cantilever_force", "cantilever_work",
 )  # fmt: skip
@@ -78,46 +64,36 @@ TANGENTIAL_COLUMNS = (
 def write_columns(path: Path, columns: Mapping[str, Column]) -> None:
     """Write a CSV file with a header; numbers with 17 digits, NaN as an empty cell."""
     with whole(path) as part, part.open("w", newline="", encoding="utf-8") as file:
-        csv.writer(file, lineterminator="\n").writerow(columns)
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
         for start in range(0, max(map(len, columns.values())), CHUNK):
             cells = [_cells(column[start : start + CHUNK]) for column in columns.values()]
-            file.writelines(f"{','.join(row)}\n" for row in zip(*cells, strict=True))
+            writer.writerows(zip(*cells, strict=True))
 
 
-def curve_columns(curve: Curve) -> dict[str, Column]:
-    """Return the columns of curve.csv by name."""
-    return {field.name: getattr(curve, field.name) for field in fields(curve)}
+def _cells(column: Column) -> Sequence[str]:
+    """The cells of a column; one `%` operation for all numbers."""
+    if len(column) and isinstance(column[0], str):
+        return [str(word) for word in column]
+    numbers = np.asarray(column, dtype=np.float64).tolist()
+    cells = ("%.17g\n" * len(numbers) % tuple(numbers)).split()
+    return ["" if cell == "nan" else cell for cell in cells]
 
 
-def read_curve(path: Path) -> Curve:
-    """Read curve.csv.
+def read_columns(path: Path, names: Iterable[str]) -> dict[str, Array]:
+    """Read columns of numbers, as `write_columns` has them, by name.
 
     Raises:
         ValueError: if a column is missing or a cell is no number.
     """
+    return {name: _numbers(cells) for name, cells in _read(path, names).items()}
+
+
+def read_curve(path: Path) -> Curve:
+    """Read curve.csv. Raises ValueError as `read_columns`."""
     columns = _read(path, [field.name for field in fields(Curve)])
-    numbers = {name: _numbers(cells) for name, cells in columns.items() if name != "branch"}
-    return Curve(**numbers, branch=columns["branch"])
-
-
-def read_friction(path: Path) -> dict[str, Array]:
-    """Read friction.csv: FRICTION_COLUMNS by name. Raises ValueError as `read_curve`."""
-    return {name: _numbers(cells) for name, cells in _read(path, FRICTION_COLUMNS).items()}
-
-
-def read_tangential(path: Path) -> dict[str, Array]:
-    """Read the TANGENTIAL_COLUMNS of a curve.csv by name. Raises ValueError as `read_curve`."""
-    return {name: _numbers(cells) for name, cells in _read(path, TANGENTIAL_COLUMNS).items()}
-
-
-def read_detachments(path: Path) -> dict[str, Array]:
-    """Read detachments.csv: DETACHMENT_COLUMNS by name. Raises ValueError as `read_curve`."""
-    return {name: _numbers(cells) for name, cells in _read(path, DETACHMENT_COLUMNS).items()}
-
-
-def read_samples(path: Path) -> dict[str, Array]:
-    """Read samples.csv: SAMPLE_COLUMNS by name. Raises ValueError as `read_curve`."""
-    return {name: _numbers(cells) for name, cells in _read(path, SAMPLE_COLUMNS).items()}
+    branch = np.asarray(columns.pop("branch"))
+    return Curve(**{name: _numbers(cells) for name, cells in columns.items()}, branch=branch)
 
 
 def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Column]:
@@ -129,41 +105,26 @@ def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Column]:
 
 
 def read_profiles(path: Path) -> dict[str, Profile]:
-    """Read profile.csv: profiles by the names of their states. Raises ValueError as `read_curve`."""
+    """Read profile.csv: profiles by the names of their states. Raises ValueError as `read_columns`."""
     columns = _read(path, [*PROFILE_COLUMNS, "state"])
-    states = list(dict.fromkeys(columns["state"]))
-    chosen = np.asarray(columns["state"])
-    arrays = {name: _numbers(columns[name]) for name in PROFILE_COLUMNS}
-    return {state: Profile(*(arrays[name][chosen == state] for name in PROFILE_COLUMNS)) for state in states}
-
-
-def _cells(column: Column) -> list[str]:
-    """The cells of a column; one `%` operation for all numbers, and each different word is quoted once."""
-    if len(column) and isinstance(column[0], str):
-        words = {word: _quoted(str(word)) for word in dict.fromkeys(column)}
-        return [words[word] for word in column]
-    numbers = np.asarray(column, dtype=np.float64)
-    cells = ("%.17g\n" * len(numbers) % tuple(numbers.tolist())).split()
-    return ["" if cell == "nan" else cell for cell in cells] if np.isnan(numbers).any() else cells
-
-
-def _quoted(word: str) -> str:
-    """A word as one of several cells of a row: alone, an empty one would be quoted."""
-    row = io.StringIO()
-    csv.writer(row, lineterminator="\n").writerow([word, 0])
-    return row.getvalue().removesuffix(",0\n")
+    states = np.asarray(columns.pop("state"))
+    numbers = [_numbers(cells) for cells in columns.values()]
+    return {
+        state: Profile(*(column[states == state] for column in numbers)) for state in dict.fromkeys(states.tolist())
+    }
 
 
 def _numbers(cells: Sequence[str]) -> Array:
-    return np.asarray([math.nan if cell == "" else float(cell) for cell in cells])
+    return np.asarray([float(cell or "nan") for cell in cells])
 
 
-def _read(path: Path, names: Sequence[str]) -> dict[str, Sequence[str]]:
+def _read(path: Path, names: Iterable[str]) -> dict[str, Sequence[str]]:
     with path.open(newline="", encoding="utf-8") as file:
         header, *rows = [*csv.reader(file)] or [[]]
-    missing = [name for name in names if rows and name not in header]
-    if missing or not rows:
-        raise ValueError(f"{path}: {'no rows' if not rows else 'no column ' + ', '.join(missing)}")
+    if not rows:
+        raise ValueError(f"{path}: no rows")
+    if missing := [name for name in names if name not in header]:
+        raise ValueError(f"{path}: no column {', '.join(missing)}")
     columns = dict(zip(header, zip(*rows, strict=True), strict=True))
     return {name: columns[name] for name in names}
 
@@ -199,7 +160,7 @@ def states_of(profiles: Sequence[Profile], kept: Sequence[int] | None = None) ->
     rows = _spread(len(profiles), MOST_NUMBERS // len(particles)) if kept is None else np.asarray(kept, dtype=np.int64)
     columns = {
         name: np.asarray([getattr(profiles[row], name)[particles] for row in rows], dtype=np.float32)
-        for name in ("x", "z_lower", "z_upper", "pressure", "shear")
+        for name in PROFILE_COLUMNS
     }
     return States(rows=rows, **columns)
 
@@ -212,7 +173,7 @@ def _spread(count: int, most: int) -> NDArray[np.int64]:
 def write_states(path: Path, states: States) -> None:
     """Write states.npz."""
     with whole(path) as part, part.open("wb") as file:
-        np.savez(file, allow_pickle=False, **{field.name: getattr(states, field.name) for field in fields(states)})
+        np.savez(file, allow_pickle=False, **vars(states))
 
 
 def read_states(path: Path) -> States:

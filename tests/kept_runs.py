@@ -100,7 +100,7 @@ def _run(name: str, entry: dict[str, Any]) -> Run:
         Path(name),
         entry["document"],
         scene_from_dict(entry["scene"]),
-        Curve(**{key: columns[key] if key == "branch" else _numbers(columns[key]) for key in COLUMNS}),
+        Curve(**{key: np.asarray(columns[key]) if key == "branch" else _numbers(columns[key]) for key in COLUMNS}),
         profiles,
         {key: _numbers(column) for key, column in entry.get("friction", nothing).items()},
     )

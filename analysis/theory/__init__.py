@@ -1,5 +1,5 @@
 """Closed forms that users see beside the results: contact with adhesion, other shapes, friction, and Tabor's map.
 
-`sneddon` (Hertz and other shapes), `winkler` (one layer of springs), `jkr`, `dmt`, `maugis_dugdale` (between the two),
-`tabor` (which of them is valid), `adhesive_power`, `line_adhesion`, `mindlin`.
+`indenters` (Hertz, JKR and other shapes), `adhesion` (DMT, Maugis and Dugdale, which theory is valid), `mindlin`;
+`curves` has those that figures show.
 """

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from contact1d import RunError, run
-from contact1d.analysis.theory.jkr import Jkr
+from contact1d.analysis.theory.indenters import PowerLaw
 from contact1d.workflow.scene import SceneError, scene_from_dict
 from validation.references.indenters import jkr
 
@@ -65,7 +65,7 @@ def test_a_tension_that_is_not_held_is_told_what_is(tmp_path: Path) -> None:
     tables = scene(adhesion={"work_of_adhesion": ENERGY}, experiment={"kind": "load", "force": -100.0})
     with pytest.raises(RunError) as caught:
         run(tables, tmp_path / "run", figures=False)
-    held = Jkr(RADIUS, 1.0, ENERGY).pull_off_force()
+    held = PowerLaw.sphere(RADIUS, 1.0, ENERGY).pull_off_force()
     assert f"the largest tension is about {held:.4g} FU. Tried: --set experiment.force=" in str(caught.value)
     assert "gives a result" in str(caught.value)
 
@@ -88,7 +88,7 @@ def test_the_energy_of_many_cycles_is_held_against_their_work_whatever_their_row
 def test_an_adhesive_contact_in_metres_finds_its_own_spacing(experiment: dict[str, Any], tmp_path: Path) -> None:
     found = run(steel(adhesion={"surface_energy": "50 mJ/m²"}, experiment=experiment), tmp_path / "run", figures=False)
     modulus = 210e9 / 2.0 / (1.0 - 0.3**2)
-    radius = Jkr(0.01, modulus, 0.1).zero_load_radius()
+    radius = PowerLaw.sphere(0.01, modulus, 0.1).zero_load_radius()
     assert 20.0 < radius / found.scene.bodies.spacing < 100.0
     if experiment["kind"] == "pull_off":
         force = found.results.adhesion_force

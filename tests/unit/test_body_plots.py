@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from contact1d import Run, run
-from contact1d.analysis.body_plots import body_pressure_figure, entitled, in_si
-from contact1d.analysis.plots import new_figure
+from contact1d.analysis.figures import body_pressure_figure
+from contact1d.analysis.plots import in_si, new_figure
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.units import Scales, scale_of
 
@@ -69,10 +69,6 @@ def test_a_pressure_that_is_infinite_on_the_axis_is_drawn_without_it() -> None:
     figure = body_pressure_figure({"final": (r, p, 1.0)}, {"final": ("theory", r[1:], p[1:])})
     assert np.isfinite(figure.axes[0].get_lines()[0].get_ydata()).all()
     assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()][:2] == ["this run", "theory"]
-
-
-def test_a_title_stands_above() -> None:
-    assert entitled(new_figure((4.0, 3.0)), "Steel on glass").get_suptitle() == "Steel on glass"
 
 
 def pressed(folder: Path, form: bool | str) -> Run:

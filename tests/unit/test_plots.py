@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from contact1d.analysis import plots
+from contact1d.analysis import figures, plots
 from contact1d.analysis.curve import Curve
 from contact1d.analysis.pressure import Profile
+from contact1d.analysis.theory.curves import hertz_curve, jkr_curve
 
 ROUND_OFF = 1e-12  # relative; closed forms of a few operations
 GRID = 2e-3  # of F_A; the theory is drawn with 400 points
@@ -33,8 +34,8 @@ def curve() -> Curve:
     radius = np.concatenate([100.0 * np.sqrt(down + 0.1), 60.0 * np.sqrt(up + 0.3)])
     radius[-1] = math.nan
     force = np.concatenate([4.0 * down - 0.5, 5.0 * up])
-    branch = ["loading"] * 30 + ["unloading"] * 40
-    return Curve(displacement.tolist(), force.tolist(), radius.tolist(), [0.2] * 70, branch, [0.0] * 70)
+    branch = np.array(["loading"] * 30 + ["unloading"] * 40)
+    return Curve(displacement, force, radius, np.full(70, 0.2), branch, np.zeros(70))
 
 
 def lines(axis: object) -> dict[str, np.ndarray]:
@@ -45,7 +46,7 @@ def lines(axis: object) -> dict[str, np.ndarray]:
 
 def test_every_particle_that_carries_pressure_is_a_bar_of_its_sign() -> None:
     shown = profile(0.05)
-    (axis,) = plots.pressure_figure({"zero_load": shown}, {"zero_load": 28.0}).axes
+    (axis,) = figures.pressure_figure({"zero_load": shown}, {"zero_load": 28.0}).axes
     (bars,) = axis.collections
     corners = {round(path.vertices[:4, 0].mean()): path.vertices[:4, 1] for path in bars.get_paths()}
     colours = dict(zip(corners, map(tuple, bars.get_facecolors()), strict=True))
@@ -59,7 +60,7 @@ def test_every_particle_that_carries_pressure_is_a_bar_of_its_sign() -> None:
 
 def test_the_contact_radius_is_marked_on_both_sides_and_named() -> None:
     radii = {"zero_load": 28.25, "critical": 15.5}
-    figure = plots.pressure_figure({"zero_load": profile(0.05), "critical": profile(-0.01)}, radii)
+    figure = figures.pressure_figure({"zero_load": profile(0.05), "critical": profile(-0.01)}, radii)
     for axis, (name, radius) in zip(figure.axes, radii.items(), strict=True):
         places = sorted(line.get_xdata()[0] for line in axis.get_lines() if len(set(line.get_xdata())) == 1)
         assert places == [-radius, radius]
@@ -70,12 +71,12 @@ def test_the_contact_radius_is_marked_on_both_sides_and_named() -> None:
 @pytest.mark.parametrize("radii", [{}, {"final": math.nan}])
 def test_a_state_without_contact_says_so(radii: dict[str, float]) -> None:
     x = np.arange(5.0)
-    (axis,) = plots.pressure_figure({"final": Profile(x, x, x, 0.0 * x, x)}, radii).axes
+    (axis,) = figures.pressure_figure({"final": Profile(x, x, x, 0.0 * x, x)}, radii).axes
     assert [text.get_text() for text in axis.texts] == ["no contact"]
 
 
 def test_the_branches_are_drawn_as_measured(curve: Curve) -> None:
-    (axis,) = plots.force_displacement_figure(curve, {}).axes
+    (axis,) = figures.force_displacement_figure(curve, {}).axes
     drawn = lines(axis)
     assert set(drawn) == {"loading", "unloading"}
     points = np.column_stack([curve.displacement, curve.force])
@@ -87,7 +88,7 @@ def test_the_branches_are_drawn_as_measured(curve: Curve) -> None:
 
 def test_jkr_over_displacement_obeys_its_own_equations() -> None:
     """Two spheres of R: effective radius R/2, radii a/2, E* and W from F_A and a₀ (Johnson, Kendall, Roberts 1971)."""
-    displacement, force = plots.jkr_curve(ADHESION, ZERO_LOAD, BODY_RADIUS)
+    displacement, force = jkr_curve(ADHESION, ZERO_LOAD, BODY_RADIUS)
     effective, radius = BODY_RADIUS / 2.0, ZERO_LOAD / 2.0
     work = ADHESION / (1.5 * math.pi * effective)
     modulus = 4.5 * math.pi * work * effective**2 / radius**3
@@ -100,21 +101,21 @@ def test_jkr_over_displacement_obeys_its_own_equations() -> None:
 
 def test_hertz_is_that_of_two_spheres() -> None:
     """c_n = G/2(1−ν), Eq. (3); two equal spheres: effective radius R/2, E* = G/(1−ν) = 2 c_n."""
-    displacement, force = plots.hertz_curve(2.0, BODY_RADIUS, 0.83)
+    displacement, force = hertz_curve(2.0, BODY_RADIUS, 0.83)
     assert displacement[-1] == 2.0
     expected = 4.0 / 3.0 * (2.0 * 0.83) * np.sqrt(BODY_RADIUS / 2.0) * displacement**1.5
     np.testing.assert_allclose(force, expected, rtol=ROUND_OFF)
 
 
 def test_a_theory_is_shown_beside_the_curve_and_within_its_range(curve: Curve) -> None:
-    theory = ("JKR", *plots.jkr_curve(ADHESION, ZERO_LOAD, BODY_RADIUS))
-    drawn = lines(plots.force_displacement_figure(curve, MARKS, theory).axes[0])
+    theory = ("JKR", *jkr_curve(ADHESION, ZERO_LOAD, BODY_RADIUS))
+    drawn = lines(figures.force_displacement_figure(curve, MARKS, theory).axes[0])
     assert drawn["JKR"][:, 1].max() <= max(curve.force) + 0.05 * np.ptp(curve.force)
     assert drawn["JKR"][:, 0].min() >= min(curve.displacement)
 
 
 def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(curve: Curve) -> None:
-    (axis,) = plots.force_radius_figure(curve, ADHESION, ZERO_LOAD).axes
+    (axis,) = figures.force_radius_figure(curve, ADHESION, ZERO_LOAD).axes
     drawn = lines(axis)
     run = drawn.pop("this run, unloading")
     assert len(run) == 39
@@ -130,10 +131,10 @@ def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(curve
 def test_every_figure_is_a_whole_file(curve: Curve, tmp_path: Path) -> None:
     columns = {"drive": [0.0, 1.0], "friction": [0.0, 1.0], "normal_force": [1.0, 1.0]}
     for name, figure in {
-        "pressure": plots.pressure_figure({"final": profile(0.05)}, {"final": 28.0}),
-        "force_displacement": plots.force_displacement_figure(curve, MARKS),
-        "force_radius": plots.force_radius_figure(curve, ADHESION, ZERO_LOAD),
-        "friction": plots.friction_figure(columns),
+        "pressure": figures.pressure_figure({"final": profile(0.05)}, {"final": 28.0}),
+        "force_displacement": figures.force_displacement_figure(curve, MARKS),
+        "force_radius": figures.force_radius_figure(curve, ADHESION, ZERO_LOAD),
+        "friction": figures.friction_figure(columns),
     }.items():
         plots.save_figure(figure, tmp_path / f"{name}.png")
     files = sorted(tmp_path.iterdir())

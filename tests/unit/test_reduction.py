@@ -1,6 +1,6 @@
 """Claim: a scene without a reduction has the one that is right for its body; the paper's is refused, or has a factor.
 
-References: Galin and Sneddon (`analysis.theory.sneddon`) for the body, the integral over springs for the image.
+References: Galin and Sneddon (`analysis.theory.indenters`) for the body, the integral over springs for the image.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from scipy.optimize import brentq
 
-from contact1d.analysis.theory.sneddon import PowerLaw
+from contact1d.analysis.theory.indenters import PowerLaw
 from contact1d.workflow.body.reading import doubt_of_the_image, of_the_body
 from contact1d.workflow.scene import Scene, SceneError, scene_from_dict, scene_to_toml
 from contact1d.workflow.scene.material import wider_than_body

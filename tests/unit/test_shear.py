@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 
 from contact1d.analysis.shear import kinks_of, shear_load
-from contact1d.analysis.theory.mindlin import mindlin_shear
+from validation.references.mindlin import mindlin_shear
 
 EXACT = 1e-10
 """Of the largest traction: zones of a parabola are parabolas, which splines have exactly."""

@@ -18,7 +18,7 @@ from tests.scenes import chains
 ROUND_OFF = 1e-12
 """Relative: a few operations."""
 LIMIT = 0.08
-"""Relative, of Maugis and Dugdale at μ = 4 beside JKR, and at 0.1 beside DMT (`analysis.theory.tabor`)."""
+"""Relative, of Maugis and Dugdale at μ = 4 beside JKR, and at 0.1 beside DMT (`analysis.theory.adhesion`)."""
 R = 100.0
 PULL = {"kind": "pull_off", "preload": 2.0}
 

@@ -8,16 +8,14 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from contact1d.analysis.theory.mindlin import (
+from contact1d.analysis.theory.mindlin import mindlin_path, mindlin_stick_path, sliding_displacement
+from validation.paper.tangential import stiffness_ratio
+from validation.references.mindlin import (
     mindlin_force,
     mindlin_loop_area,
-    mindlin_path,
     mindlin_shear,
-    mindlin_stick_path,
     mindlin_stick_radius,
     raised_load_force,
-    sliding_displacement,
-    stiffness_ratio,
 )
 from validation.references.spring_sliders import SpringSliders, displacement_under
 

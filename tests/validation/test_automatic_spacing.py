@@ -12,11 +12,10 @@ from typing import Any
 import numpy as np
 
 from contact1d import run
-from contact1d.analysis.theory.adhesive_power import AdhesivePower
-from contact1d.analysis.theory.mindlin import stiffness_ratio
-from contact1d.analysis.theory.sneddon import PowerLaw
+from contact1d.analysis.theory.indenters import PowerLaw
 from contact1d.workflow.scene import scene_from_dict
 from validation.hard.claims import Tally
+from validation.paper.tangential import stiffness_ratio
 
 SCENES, SEED = 24, 20
 KINDS = ("load", "path", "pull_off", "fixed_grips", "tangential")
@@ -62,7 +61,8 @@ def drawn(rng: np.random.Generator, kind: str) -> tuple[dict[str, Any], dict[str
             "stick_radius": stick,
         }
         return tables | {"friction": {"coefficient": friction}, "experiment": experiment}, exact
-    body = AdhesivePower.with_zero_load_radius(law.coefficient, exponent, modulus, radius)
+    unit = PowerLaw(law.coefficient, exponent, modulus, 1.0).zero_load_radius()  # a₀ is a power of W: W^(1/(2n − 1))
+    body = PowerLaw(law.coefficient, exponent, modulus, (radius / unit) ** (2.0 * exponent - 1.0))
     tables["adhesion"] = {"work_of_adhesion": body.work_of_adhesion}
     exact = {"adhesion_force": body.pull_off_force(), "zero_load_radius": radius}
     if kind == "pull_off":

@@ -28,10 +28,11 @@ import pytest
 from numpy.typing import NDArray
 
 from contact1d import Run
-from contact1d.analysis.theory.winkler import rigid_plane_sum, winkler_force, winkler_half_width
 from contact1d.workflow.continuation.state import State
 from tests.scenes import chains
+from validation.references.hertz import hertz_contact_radius, hertz_force
 from validation.references.model import ChainModel
+from validation.references.rigid_plane import rigid_plane_sum
 from validation.references.solver import trace
 
 RunTables = Callable[[dict[str, Any]], Run]
@@ -92,9 +93,9 @@ def test_convergence_towards_the_closed_form(run_tables: RunTables) -> None:
         edges = edge + spacing * ((np.arange(OFFSETS) + 0.5) / OFFSETS - 0.5)
         displacements = edges**2 / (2.0 * radius)
         states = on_plane(run_tables, radius, float(spacing), layer * float(spacing), displacements)
-        closed = winkler_force(displacements, radius, layer)
+        closed = hertz_force(displacements, 0.5 * radius, 2.0 * layer)
         error = np.array([state.force for state in states]) / closed - 1.0
-        half_width = winkler_half_width(displacements, radius)
+        half_width = 2.0 * hertz_contact_radius(displacements, 0.5 * radius)
         first = float(states[0].profile.x[0]) / float(spacing)
         assert error == pytest.approx(bernoulli_error(half_width / spacing, first), abs=CLOSED_FORM)
         assert np.all(error * (half_width / spacing) ** 2 > -0.25 - RATE)

@@ -12,13 +12,13 @@ import pytest
 from scipy.optimize import brentq
 
 from contact1d import Scene, read_scene, run
-from contact1d.analysis.theory.winkler import rigid_plane_sum
 from contact1d.workflow.deck.lattice import start_offset
 from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Tangential
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
 from validation.references.pull_off import pull_off
+from validation.references.rigid_plane import rigid_plane_sum
 from validation.references.slide import Integrator
 from validation.references.solver import ChainSolver, trace
 from validation.references.spring_sliders import SpringSliders

@@ -9,24 +9,17 @@ import math
 
 import pytest
 
-from contact1d.analysis.theory.dmt import Dmt
-from contact1d.analysis.theory.jkr import Jkr
-from contact1d.analysis.theory.maugis_dugdale import (
-    MaugisDugdale,
-    dmt_contact_radius,
-    jkr_contact_radius,
-    maugis_parameter_of_tabor,
-)
-from contact1d.analysis.theory.tabor import (
+from contact1d.analysis.theory.adhesion import (
     DMT_TABOR,
     HERTZ_ADHESION_SHARE,
     JKR_TABOR,
+    Dmt,
+    MaugisDugdale,
     Theory,
-    adhesion_share,
-    rigid_compression,
     tabor_number,
     valid_theory,
 )
+from contact1d.analysis.theory.indenters import PowerLaw
 from validation.references.mdr import edge_elongation
 
 ROUND_OFF = 1e-12
@@ -78,37 +71,39 @@ def test_more_load_ends_in_hertz_and_more_softness_in_jkr() -> None:
 def test_tabor_number_is_a_stretch_over_the_range() -> None:
     mu = tabor_number(RADIUS, MODULUS, ADHESION, RANGE)
     assert mu == pytest.approx((RADIUS * ADHESION**2 / (MODULUS**2 * RANGE**3)) ** (1.0 / 3.0), rel=ROUND_OFF)
-    for sphere, factor in ((Jkr, 3.898), (Dmt, 3.246)):
+    for sphere, factor in ((PowerLaw.sphere, 3.898), (Dmt, 3.246)):
         stretch = edge_elongation(sphere(RADIUS, MODULUS, ADHESION).zero_load_radius(), MODULUS, ADHESION)
         assert stretch / RANGE == pytest.approx(factor * mu, rel=2e-4)  # printed with four digits
     with pytest.raises(ValueError, match="positive"):
         tabor_number(RADIUS, MODULUS, ADHESION, 0.0)
 
 
-def test_rigid_compression_is_hertz_under_the_whole_load() -> None:
-    sphere, load = Dmt(RADIUS, MODULUS, ADHESION), 1.7
-    a = sphere.contact_radius(load * math.pi * ADHESION * RADIUS)
-    mu = tabor_number(RADIUS, MODULUS, ADHESION, RANGE)
-    assert rigid_compression(mu, load) == pytest.approx(float(sphere.displacement(a)) / RANGE, rel=ROUND_OFF)
-
-
-def test_hertz_boundary() -> None:
-    """2/N for DMT and [3 + sqrt(6N+9)]/N for JKR reach 5 % at 40 and at 2520; between the two, in between."""
-    assert adhesion_share(0.01, 40.0) == pytest.approx(HERTZ_ADHESION_SHARE, rel=ROUND_OFF)
-    assert adhesion_share(100.0, 2520.0) == pytest.approx(HERTZ_ADHESION_SHARE, rel=ROUND_OFF)
-    assert adhesion_share(1.0, 40.0) > HERTZ_ADHESION_SHARE > adhesion_share(1.0, 2520.0)
+@pytest.mark.parametrize(("tabor", "load"), [(0.01, 40.0), (100.0, 2520.0)])
+def test_hertz_boundary(tabor: float, load: float) -> None:
+    """2/N for DMT and [3 + sqrt(6N+9)]/N for JKR reach 5 % at 40 and at 2520."""
+    assert valid_theory(tabor, load * (1.0 + ROUND_OFF)).theory is Theory.HERTZ
+    assert valid_theory(tabor, load * (1.0 - ROUND_OFF)).theory is not Theory.HERTZ
     miss = 1.0 - (1.0 / (1.0 + HERTZ_ADHESION_SHARE)) ** (1.0 / 3.0)
     assert miss == pytest.approx(0.016, abs=5e-4)  # of the radius, as the docstring says
 
 
+def test_rigid_boundary_is_hertz_under_the_whole_load() -> None:
+    sphere, load = Dmt(RADIUS, MODULUS, ADHESION), 1.7
+    compression = sphere.displacement(sphere.contact_radius(load * math.pi * ADHESION * RADIUS))
+    for share, rigid in ((0.04999, True), (0.05001, False)):
+        mu = tabor_number(RADIUS, MODULUS, ADHESION, compression / share)
+        assert (valid_theory(mu, load).theory is Theory.RIGID) == rigid
+
+
 @pytest.mark.parametrize("load", [0.0, 1.0, 10.0, 100.0])
 def test_what_the_vertical_lines_cost(load: float) -> None:
-    soft = MaugisDugdale(maugis_parameter_of_tabor(JKR_TABOR))
-    stiff = MaugisDugdale(maugis_parameter_of_tabor(DMT_TABOR))
-    assert 0.0 < jkr_contact_radius(load) / soft.contact_radius(load) - 1.0 < JKR_RADIUS
-    assert 0.0 < 1.0 - dmt_contact_radius(load) / stiff.contact_radius(load) < DMT_RADIUS
-    assert 0.0 < 1.0 - 1.5 / soft.pull_off_load() < JKR_PULL_OFF
-    assert 0.0 < 2.0 / stiff.pull_off_load() - 1.0 < DMT_PULL_OFF
+    unit = 1.0, 0.75, 1.0 / math.pi
+    jkr, dmt = PowerLaw.sphere(*unit), Dmt(*unit)
+    soft, stiff = MaugisDugdale.reduced(JKR_TABOR), MaugisDugdale.reduced(DMT_TABOR)
+    assert 0.0 < jkr.contact_radius(load) / soft.contact_radius(load) - 1.0 < JKR_RADIUS
+    assert 0.0 < 1.0 - dmt.contact_radius(load) / stiff.contact_radius(load) < DMT_RADIUS
+    assert 0.0 < 1.0 - 1.5 / soft.pull_off_force() < JKR_PULL_OFF
+    assert 0.0 < 2.0 / stiff.pull_off_force() - 1.0 < DMT_PULL_OFF
 
 
 def test_what_is_refused() -> None:

@@ -10,22 +10,19 @@ import math
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from scipy.integrate import quad
 
-from contact1d.analysis.theory.dmt import Dmt, dmt_reduced_force
-from contact1d.analysis.theory.jkr import Jkr
-from contact1d.analysis.theory.maugis_dugdale import (
+from contact1d.analysis.theory.adhesion import (
     LAMBDA_OVER_TABOR,
     LENNARD_JONES_STRESS,
+    Dmt,
     MaugisDugdale,
-    dmt_contact_radius,
-    dmt_load,
-    jkr_contact_radius,
-    jkr_load,
-    maugis_parameter,
-    maugis_parameter_of_tabor,
+    tabor_number,
 )
-from contact1d.analysis.theory.tabor import tabor_number
+from contact1d.analysis.theory.indenters import PowerLaw
+
+Array = NDArray[np.float64]
 
 ROUND_OFF = 1e-12
 QUADRATURE = 1e-9
@@ -41,6 +38,23 @@ N_UNIT = math.pi * ADHESION * RADIUS
 D_UNIT = A_UNIT**2 / RADIUS
 
 
+UNIT = 1.0, 0.75, 1.0 / math.pi
+"""R, E* and W with which a is A, F is N and d is D."""
+JKR, DMT = PowerLaw.sphere(*UNIT), Dmt(*UNIT)
+
+
+def of_lambda(transition: float) -> MaugisDugdale:
+    return MaugisDugdale.reduced(transition / LAMBDA_OVER_TABOR)
+
+
+def loads(contact: PowerLaw | Dmt) -> Array:
+    return np.array([contact.force(place) for place in PLACES])
+
+
+def displacements(contact: PowerLaw | Dmt) -> Array:
+    return np.array([contact.displacement(place) for place in PLACES])
+
+
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("transition", LAMBDAS)
 def test_maugis_is_the_cohesive_contact_by_springs_and_quadrature(transition: float, place: float) -> None:
@@ -50,12 +64,12 @@ def test_maugis_is_the_cohesive_contact_by_springs_and_quadrature(transition: fl
     w(r) = (2/pi) int_0^r (q/E*)/sqrt(r^2-x^2) dx, and the gap at c, times s_0, must be W.
     """
     stress = 0.5 * transition * math.cbrt(math.pi * ADHESION * (4.0 / 3.0 * MODULUS) ** 2 / RADIUS)
-    assert maugis_parameter(RADIUS, MODULUS, ADHESION, stress) == pytest.approx(transition, rel=ROUND_OFF)
-    contact = MaugisDugdale(transition)
+    contact = MaugisDugdale(RADIUS, MODULUS, ADHESION, LENNARD_JONES_STRESS * ADHESION / stress)
+    assert contact.transition == pytest.approx(transition, rel=ROUND_OFF)
     a = float(place * A_UNIT)
-    c = a + float(contact.ring_width(place)) * A_UNIT
+    c = a + contact.ring_width(a)
     d = a**2 / RADIUS - 2.0 * stress * math.sqrt(c**2 - a**2) / MODULUS
-    assert float(contact.displacement(place)) * D_UNIT == pytest.approx(d, rel=ROOT, abs=ROOT * D_UNIT)
+    assert contact.displacement(a) == pytest.approx(d, rel=ROOT, abs=ROOT * D_UNIT)
 
     def row(phi: float) -> float:
         x = c * math.sin(phi)  # smooth on both sides of the edge
@@ -63,63 +77,68 @@ def test_maugis_is_the_cohesive_contact_by_springs_and_quadrature(transition: fl
 
     parts = ((0.0, math.asin(a / c)), (math.asin(a / c), 0.5 * math.pi))
     force = sum(2.0 * quad(lambda phi: row(phi) * c * math.cos(phi), *part)[0] for part in parts)
-    assert float(contact.load(place)) * N_UNIT == pytest.approx(force, rel=QUADRATURE, abs=QUADRATURE * N_UNIT)
+    assert contact.force(a) == pytest.approx(force, rel=QUADRATURE, abs=QUADRATURE * N_UNIT)
     lift = sum(2.0 / (math.pi * MODULUS) * quad(row, *part)[0] for part in parts)
     gap = c**2 / (2.0 * RADIUS) - d + lift
     assert stress * gap == pytest.approx(ADHESION, rel=QUADRATURE)
 
 
-def test_units_are_those_of_jkr_and_dmt() -> None:
-    jkr, dmt = Jkr(RADIUS, MODULUS, ADHESION), Dmt(RADIUS, MODULUS, ADHESION)
-    np.testing.assert_allclose(jkr_load(PLACES) * N_UNIT, jkr.force(PLACES * A_UNIT), rtol=ROUND_OFF)
-    np.testing.assert_allclose(dmt_load(PLACES) * N_UNIT, dmt.force(PLACES * A_UNIT), rtol=ROUND_OFF)
-    for load in (-1.4, 0.0, 30.0):
-        assert jkr_contact_radius(load) * A_UNIT == pytest.approx(float(jkr.contact_radius(load * N_UNIT)))
-        assert dmt_contact_radius(load) * A_UNIT == pytest.approx(float(dmt.contact_radius(load * N_UNIT)))
+def test_reduced_units_are_those_of_any_sphere() -> None:
+    """N = F/(pi W R) over A = a/(pi W R^2/K)^(1/3): A^3 - A sqrt(6A) of JKR, A^3 - 2 of DMT."""
+    jkr, dmt = PowerLaw.sphere(RADIUS, MODULUS, ADHESION), Dmt(RADIUS, MODULUS, ADHESION)
+    for place in PLACES:
+        assert jkr.force(place * A_UNIT) == pytest.approx(N_UNIT * (place**3 - place * math.sqrt(6.0 * place)))
+        assert dmt.force(place * A_UNIT) == pytest.approx(N_UNIT * (place**3 - 2.0))
+        assert jkr.force(place * A_UNIT) == pytest.approx(N_UNIT * JKR.force(place), rel=ROUND_OFF)
+        assert jkr.displacement(place * A_UNIT) == pytest.approx(D_UNIT * JKR.displacement(place), rel=ROUND_OFF)
+    same, reduced = MaugisDugdale(RADIUS, MODULUS, ADHESION, 0.01), of_lambda(1.0)
+    assert reduced.transition == pytest.approx(1.0, rel=ROUND_OFF)
+    reduced = of_lambda(same.transition)
+    assert same.pull_off_force() == pytest.approx(N_UNIT * reduced.pull_off_force(), rel=ROUND_OFF)
+    assert same.critical_radius() == pytest.approx(A_UNIT * reduced.critical_radius(), rel=1e-8)  # a flat minimum
 
 
 def test_large_lambda_is_jkr_and_the_error_falls_as_the_square() -> None:
-    contacts = [MaugisDugdale(value) for value in (30.0, 300.0)]
-    loads = [float(np.max(np.abs(contact.load(PLACES) - jkr_load(PLACES)))) for contact in contacts]
-    jkr_displacement = PLACES**2 - 2.0 / 3.0 * np.sqrt(6.0 * PLACES)
-    shifts = [float(np.max(np.abs(contact.displacement(PLACES) - jkr_displacement))) for contact in contacts]
-    pulls = [contact.pull_off_load() - 1.5 for contact in contacts]
+    contacts = [of_lambda(value) for value in (30.0, 300.0)]
+    off = [float(np.max(np.abs(loads(contact) - loads(JKR)))) for contact in contacts]
+    shifts = [float(np.max(np.abs(displacements(contact) - displacements(JKR)))) for contact in contacts]
+    pulls = [contact.pull_off_force() - 1.5 for contact in contacts]
     radii = [6.0 ** (1.0 / 3.0) - contact.zero_load_radius() for contact in contacts]
-    for errors in (loads, shifts, pulls, radii):
-        assert errors[0] < 2e-2
+    ends = [JKR.displacement(JKR.fixed_grips_radius()) - c.displacement(c.fixed_grips_radius()) for c in contacts]
+    for errors in (off, shifts, pulls, radii, ends):
+        assert abs(errors[0]) < 2e-2
         assert errors[0] == pytest.approx(100.0 * errors[1], rel=RATE)
 
 
 def test_small_lambda_is_dmt_and_the_error_falls_as_the_power_three_halves() -> None:
-    contacts = [MaugisDugdale(value) for value in (1e-5, 1e-3)]
-    pulls = [2.0 - contact.pull_off_load() for contact in contacts]
+    pulls = [2.0 - of_lambda(value).pull_off_force() for value in (1e-5, 1e-3)]
     assert 0.0 < pulls[1] < 1e-4
     assert pulls[1] == pytest.approx(1e3 * pulls[0], rel=RATE)
-    tiny = MaugisDugdale(1e-6)
-    np.testing.assert_allclose(tiny.load(PLACES), dmt_load(PLACES), atol=5e-3)  # A sqrt(lambda), from the ring inside a
-    np.testing.assert_allclose(tiny.displacement(PLACES), PLACES**2, atol=2e-3)  # sqrt(lambda)
+    tiny = of_lambda(1e-6)
+    np.testing.assert_allclose(loads(tiny), loads(DMT), atol=5e-3)  # A sqrt(lambda), from the ring inside a
+    np.testing.assert_allclose(displacements(tiny), displacements(DMT), atol=2e-3)  # sqrt(lambda)
     assert tiny.zero_load_radius() == pytest.approx(2.0 ** (1.0 / 3.0), abs=1e-3)
 
 
 def test_the_transition_is_monotonic_and_its_pull_off_is_the_lowest_load() -> None:
-    contacts = [MaugisDugdale(value) for value in (0.01, 0.1, 0.3, 1.0, 3.0, 10.0)]
-    pulls, radii = [c.pull_off_load() for c in contacts], [c.zero_load_radius() for c in contacts]
+    contacts = [of_lambda(value) for value in (0.01, 0.1, 0.3, 1.0, 3.0, 10.0)]
+    pulls, radii = [c.pull_off_force() for c in contacts], [c.zero_load_radius() for c in contacts]
     assert np.all(np.diff(pulls) < 0.0)
     assert np.all(np.diff(radii) > 0.0)
     for contact in contacts:
-        scanned = contact.load(np.linspace(0.0, 2.0, 401))
-        assert -contact.pull_off_load() <= float(np.min(scanned))
-        assert -contact.pull_off_load() == pytest.approx(float(np.min(scanned)), abs=1e-4)  # the grid of the scan
-        assert float(contact.load(contact.contact_radius(0.7))) == pytest.approx(0.7, rel=ROOT)
-        assert abs(float(contact.load(contact.zero_load_radius()))) < ROOT
+        lowest = min(contact.force(place) for place in np.linspace(0.0, 2.0, 401))
+        assert -contact.pull_off_force() <= lowest
+        assert -contact.pull_off_force() == pytest.approx(lowest, abs=1e-4)  # the grid of the scan
+        assert contact.force(contact.contact_radius(0.7)) == pytest.approx(0.7, rel=ROOT)
+        assert abs(contact.force(contact.zero_load_radius())) < ROOT
         with pytest.raises(ValueError, match="exceeds the pull-off"):
-            contact.contact_radius(-contact.pull_off_load() - 1e-6)
+            contact.contact_radius(-contact.pull_off_force() - 1e-6)
 
 
 def test_first_touch_is_the_limit_of_small_contacts() -> None:
-    contact = MaugisDugdale(0.5)
-    for quantity in (contact.load, contact.displacement, contact.ring_width):
-        assert float(quantity(0.0)) == pytest.approx(float(quantity(1e-9)), abs=1e-8)
+    contact = of_lambda(0.5)
+    for quantity in (contact.force, contact.displacement, contact.ring_width):
+        assert quantity(0.0) == pytest.approx(quantity(1e-9), abs=1e-8)
 
 
 def test_lambda_of_tabor() -> None:
@@ -127,10 +146,8 @@ def test_lambda_of_tabor() -> None:
     heights = np.linspace(1.0, 2.0, 100001)
     law = 8.0 / 3.0 * (heights**-3 - heights**-9)
     assert float(np.max(law)) == pytest.approx(LENNARD_JONES_STRESS, rel=1e-9)
-    assert pytest.approx(1.157, abs=5e-4) == LAMBDA_OVER_TABOR
-    mu, z_0 = tabor_number(RADIUS, MODULUS, ADHESION, 0.01), 0.01
-    direct = maugis_parameter(RADIUS, MODULUS, ADHESION, LENNARD_JONES_STRESS * ADHESION / z_0)
-    assert maugis_parameter_of_tabor(mu) == pytest.approx(direct, rel=ROUND_OFF)
+    mu = tabor_number(RADIUS, MODULUS, ADHESION, 0.01)
+    assert MaugisDugdale(RADIUS, MODULUS, ADHESION, 0.01).transition / mu == pytest.approx(1.157, abs=5e-4)
 
 
 def test_dmt_pull_off_is_derjaguins_integral_of_the_attraction() -> None:
@@ -139,17 +156,17 @@ def test_dmt_pull_off_is_derjaguins_integral_of_the_attraction() -> None:
     whole = quad(lambda h: 8.0 * ADHESION / (3.0 * z_0) * ((z_0 / h) ** 3 - (z_0 / h) ** 9), z_0, math.inf)[0]
     sphere = Dmt(RADIUS, MODULUS, ADHESION)
     assert sphere.pull_off_force() == pytest.approx(2.0 * math.pi * RADIUS * whole, rel=QUADRATURE)
-    assert float(sphere.force(0.0)) == -sphere.pull_off_force()
 
 
-def test_dmt_radii_and_reduced_law() -> None:
+def test_dmt_is_hertz_pressed_by_its_attraction() -> None:
     sphere = Dmt(RADIUS, MODULUS, ADHESION)
     a_0 = sphere.zero_load_radius()
-    x = np.linspace(0.0, 2.0, 9)
-    np.testing.assert_allclose(sphere.force(x * a_0) / sphere.pull_off_force(), dmt_reduced_force(x), atol=ROUND_OFF)
-    np.testing.assert_allclose(sphere.contact_radius(sphere.force(x * a_0)), x * a_0, atol=1e-5)  # cbrt of round-off
-    assert a_0 * math.cbrt(3.0) == pytest.approx(Jkr(RADIUS, MODULUS, ADHESION).zero_load_radius(), rel=ROUND_OFF)
-    assert float(sphere.displacement(a_0)) == pytest.approx(a_0**2 / RADIUS, rel=ROUND_OFF)
+    assert a_0 * math.cbrt(3.0) == pytest.approx(
+        PowerLaw.sphere(RADIUS, MODULUS, ADHESION).zero_load_radius(), rel=ROUND_OFF
+    )
+    for x in (0.0, 0.5, 1.5):
+        assert sphere.force(x * a_0) == pytest.approx(sphere.pull_off_force() * (x**3 - 1.0), rel=ROUND_OFF)
+        assert sphere.displacement(x * a_0) == pytest.approx((x * a_0) ** 2 / RADIUS, rel=ROUND_OFF)
     with pytest.raises(ValueError, match="exceeds"):
         sphere.contact_radius(-1.01 * sphere.pull_off_force())
     with pytest.raises(ValueError, match="radius must be positive"):
@@ -157,7 +174,7 @@ def test_dmt_radii_and_reduced_law() -> None:
 
 
 def test_what_is_refused() -> None:
-    with pytest.raises(ValueError, match="transition_parameter"):
-        MaugisDugdale(0.0)
+    with pytest.raises(ValueError, match="range_of_attraction"):
+        MaugisDugdale(*UNIT, 0.0)
     with pytest.raises(ValueError, match="negative"):
-        MaugisDugdale(1.0).load(-0.1)
+        of_lambda(1.0).force(-0.1)

@@ -42,6 +42,18 @@ def contact_on_rigid_plane(gap: Floats, bulk_stiffness: float, neighbour_stiffne
     raise RuntimeError("the set of touching particles does not settle")
 
 
+def rigid_plane_sum(displacement: float, places: Floats, radius: float, bulk_stiffness: float) -> float:
+    """Return F = sum_i k max(0, d - x_i^2/2R) [FU]: one chain without neighbour springs on a rigid plane, exactly.
+
+    Args:
+        displacement: d, zero where a particle at x = 0 would touch [LU].
+        places: x_i, shape (N,) [LU].
+        radius: R [LU].
+        bulk_stiffness: k of a particle [FU/LU].
+    """
+    return float(bulk_stiffness * np.sum(np.maximum(0.0, displacement - places**2 / (2.0 * radius))))
+
+
 def _restoring(lift: Floats, k: float, k_n: float) -> Floats:
     """Return K u, shape (N,)."""
     force = k * lift

@@ -4,7 +4,7 @@
 
 the start and the slopes from independent pairs, without a run. With the radius R₁ of the chain's parabola and the
 stiffness per length c of both chains in series, F_A R₁/(c a₀³) rises from 0 to 4/(9√3) = 0.2566 as the range of the
-interaction falls to 0, where springs break (`line_adhesion`). JKR with the springs that the MDR gives a material,
+interaction falls to 0, where springs break. JKR with the springs that the MDR gives a material,
 R₁ = R/2 and c = E*, has 1/6. The other way, a finished run has the LU and FU of a material (Eq. 9 of the paper).
 """
 
@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from contact1d.analysis.theory.jkr import Jkr, work_of_adhesion
+from contact1d.analysis.theory.indenters import PowerLaw
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.errors import Contact1dError, FolderError, RunError
 from contact1d.workflow.model.pairs import ContactEstimate, particles_estimate
@@ -171,7 +171,7 @@ def material_scene(
 
 def jkr_target(contact_modulus: float, surface_energy: float, radius: float) -> Target:
     """F_A = 3πγR [N] and a₀ = (9πγR²/E*)^{1/3} [m] of JKR; E* [Pa], γ of one side [J/m²], R [m]."""
-    sphere = Jkr(radius, contact_modulus, work_of_adhesion(surface_energy))
+    sphere = PowerLaw.sphere(radius, contact_modulus, work_of_adhesion=2.0 * surface_energy)
     return Target(sphere.pull_off_force(), sphere.zero_load_radius())
 
 

@@ -19,10 +19,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.theory.dmt import Dmt
-from contact1d.analysis.theory.jkr import Jkr
-from contact1d.analysis.theory.maugis_dugdale import MaugisDugdale, maugis_parameter_of_tabor
-from contact1d.analysis.theory.tabor import DMT_TABOR, JKR_TABOR, Verdict, tabor_number, valid_theory
+from contact1d.analysis.theory.adhesion import Dmt, MaugisDugdale, Verdict, of_tabor, tabor_number, valid_theory
+from contact1d.analysis.theory.indenters import Contact, PowerLaw
 from contact1d.workflow.identify.contact import AskedContact
 from contact1d.workflow.identify.interaction import LARGEST_RADIUS_SHARE, IdentifyError
 from contact1d.workflow.units import prefixed
@@ -60,33 +58,26 @@ class Theories:
     def values(self) -> Mapping[str, Mapping[str, float]]:
         """By theory, F_A [N], a₀ [m], a where a fixed load pulls off [m], a under the load [m] where one is given."""
         pair = self.radius, self.contact_modulus, self.work_of_adhesion
-        jkr, dmt = Jkr(*pair), Dmt(*pair)
-        maugis = MaugisDugdale(maugis_parameter_of_tabor(self.tabor))
-        force = math.pi * self.work_of_adhesion * self.radius
-        length = math.cbrt(0.75 * force * self.radius / self.contact_modulus)
-        found = {
-            "JKR": (jkr.pull_off_force(), jkr.zero_load_radius(), jkr.critical_radius()),
-            "DMT": (dmt.pull_off_force(), dmt.zero_load_radius(), 0.0),
-            "Maugis-Dugdale": (
-                force * maugis.pull_off_load(), length * maugis.zero_load_radius(), length * maugis.critical_radius(),
-            ),
+        contacts: dict[str, Contact] = {
+            "JKR": PowerLaw.sphere(*pair), "DMT": Dmt(*pair),
+            "Maugis-Dugdale": MaugisDugdale(*pair, self.range_of_attraction),
         }  # fmt: skip
-        named = {
-            name: dict(zip(("adhesion_force", "zero_load_radius", "critical_radius"), values, strict=True))
-            for name, values in found.items()
-        }
+        marks = {
+            name: {
+                "adhesion_force": contact.pull_off_force(), "zero_load_radius": contact.zero_load_radius(),
+                "critical_radius": contact.critical_radius(),
+            }
+            for name, contact in contacts.items()
+        }  # fmt: skip
         if self.load is not None:
-            named["JKR"]["loaded_radius"] = float(jkr.contact_radius(self.load))
-            named["DMT"]["loaded_radius"] = float(dmt.contact_radius(self.load))
-            named["Maugis-Dugdale"]["loaded_radius"] = length * maugis.contact_radius(self.load / force)
-        return named
+            for name, contact in contacts.items():
+                marks[name]["loaded_radius"] = contact.contact_radius(self.load)
+        return marks
 
     @property
     def holding(self) -> str:
         """The theory of `values` whose numbers to take: by μ, DMT below 0.1, JKR above 5, else Maugis and Dugdale."""
-        if self.tabor < DMT_TABOR:
-            return "DMT"
-        return "JKR" if self.tabor > JKR_TABOR else "Maugis-Dugdale"
+        return str(of_tabor(self.tabor))
 
     @property
     def jkr_error(self) -> float:
@@ -159,8 +150,8 @@ def _no_chain(theories: Theories) -> str:
 def _let_go(contact: AskedContact) -> float:
     """Displacement of JKR's sphere where it parts under fixed grips [m], < 0."""
     assert contact.radius is not None
-    jkr = Jkr(contact.radius, contact.contact_modulus, contact.work_of_adhesion)
-    return float(jkr.displacement(jkr.critical_radius_fixed_grips()))
+    jkr = PowerLaw.sphere(contact.radius, contact.contact_modulus, contact.work_of_adhesion)
+    return jkr.displacement(jkr.fixed_grips_radius())
 
 
 def _down(value: float) -> str:

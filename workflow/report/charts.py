@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.curve import SAMPLE_TABLE, States, read_samples
+from contact1d.analysis.curve import SAMPLE_COLUMNS, SAMPLE_TABLE, States, read_columns
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.sweep.axes import SweepPlan
 from contact1d.workflow.sweep.figures import Line, lines_of, mean_of, roles_of, short, theories_of
@@ -197,7 +197,7 @@ def main_curve(run: Run) -> tuple[str, str, str, Array, Array]:
 def _over_time(run: Run) -> Mapping[str, Array]:
     """What a run has besides its curve, row by row: friction, or samples under heat."""
     kept = run.folder / f"{SAMPLE_TABLE}.csv"
-    return run.friction or (read_samples(kept) if kept.is_file() else {})
+    return run.friction or (read_columns(kept, SAMPLE_COLUMNS) if kept.is_file() else {})
 
 
 def over_axes(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> list[Chart]:

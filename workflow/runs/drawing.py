@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis import body_plots, plots, slip_plots
-from contact1d.analysis.curve import DETACHMENTS, SAMPLE_TABLE, Curve, read_samples
+from contact1d.analysis import figures, plots
+from contact1d.analysis.curve import DETACHMENTS, SAMPLE_COLUMNS, SAMPLE_TABLE, Curve, read_columns
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.slip import stick_margin
+from contact1d.analysis.theory.curves import hertz_curve, jkr_curve, jkr_on_plane
 from contact1d.analysis.theory.mindlin import mindlin_path, sliding_displacement
-from contact1d.analysis.time_plots import samples_figure
 from contact1d.workflow.body.derived import REPORTED
 from contact1d.workflow.body.reading import IMAGE
 from contact1d.workflow.body.theory import Case, applying
@@ -49,13 +49,16 @@ def drawings(run: Run, scales: Scales | None = None) -> Drawings:
     title, scales = f"{run.scene.title}\n(reduction {run.scene.bodies.reduction})", scales or run.scales
 
     def dressed(draw: Callable[[], Figure]) -> Figure:
-        figure = body_plots.entitled(draw(), title)
-        return figure if scales is None else body_plots.in_si(figure, scales.written)
+        figure = draw()
+        figure.suptitle(title, fontsize=11)
+        return figure if scales is None else plots.in_si(figure, scales.written)
 
     plain = _drawings(run)
     if (kept := run.folder / f"{SAMPLE_TABLE}.csv").is_file():
         measured = np.isin(run.curve.branch, MEASURED)
-        traces = partial(samples_figure, read_samples(kept), measured, _values(run).get("displacement"))
+        traces = partial(
+            figures.samples_figure, read_columns(kept, SAMPLE_COLUMNS), measured, _values(run).get("displacement")
+        )
         plain = plain | {SAMPLE_TABLE: traces} if DETACHMENTS in plain else {SAMPLE_TABLE: traces} | plain
     return {name: partial(dressed, draw) for name, draw in plain.items()}
 
@@ -72,24 +75,24 @@ def _drawings(run: Run) -> Drawings:
     pressure: Drawings = {}
     if all(profile.x.size > 1 for profile in profiles.values()):  # one particle has no pressure over x
         radii = {state: _radius(scene, profile) for state, profile in profiles.items()}
-        pressure["pressure"] = partial(plots.pressure_figure, profiles, radii)
+        pressure["pressure"] = partial(figures.pressure_figure, profiles, radii)
     if scene.experiment.goes_along:
         return _sheared(run) | pressure | _body_pressure(run)
     if run.friction:
-        return {"friction": partial(plots.friction_figure, run.friction), **pressure}
+        return {"friction": partial(figures.friction_figure, run.friction), **pressure}
     if run.detachments and run.detachments["force"].size > 1:
-        return {DETACHMENTS: partial(plots.detachments_figure, run.detachments["force"]), **pressure}
+        return {DETACHMENTS: partial(figures.detachments_figure, run.detachments["force"]), **pressure}
     if scene.noise is not None and not scene.experiment.way_is_given:
         return pressure
     values = _values(run)
     found: Drawings = {
-        "force_displacement": partial(plots.force_displacement_figure, curve, values, _theory(scene, values, curve))
+        "force_displacement": partial(figures.force_displacement_figure, curve, values, _theory(scene, values, curve))
     }
     if _adheres_over_a_width(values):
         marks = values["adhesion_force"], values["zero_load_radius"]
-        found["force_radius"] = partial(plots.force_radius_figure, curve, *marks)
+        found["force_radius"] = partial(figures.force_radius_figure, curve, *marks)
     elif np.unique(curve.contact_radius[curve.contact_radius > 0.0]).size > 1:
-        found["force_radius"] = partial(plots.load_radius_figure, curve, _hertz_over_radius(scene, curve))
+        found["force_radius"] = partial(figures.load_radius_figure, curve, _hertz_over_radius(scene, curve))
     return found | pressure | _body_pressure(run)
 
 
@@ -102,11 +105,11 @@ def _values(run: Run) -> dict[str, float]:
 def _sheared(run: Run) -> Drawings:
     """Force over displacement along x, the stick zone and q(r)."""
     theory = _mindlin(run.scene, run.curve, run.friction)
-    loop = partial(slip_plots.tangential_figure, run.friction, run.curve.branch, theory)
+    loop = partial(figures.tangential_figure, run.friction, run.curve.branch, theory)
     found: Drawings = {"tangential": loop, "stick_slip": _stick_slip(run.scene, run.profiles, run.friction)}
     if shears := run.body_shears:
         lines = {name: (one.r, one.shear, one.edge, one.stick) for name, one in shears.items()}
-        found["shear_3d"] = partial(slip_plots.body_shear_figure, lines)
+        found["shear_3d"] = partial(figures.body_shear_figure, lines)
     return found
 
 
@@ -120,7 +123,7 @@ def _body_pressure(run: Run) -> Drawings:
         r = pressures[state].contact_radius * np.sin(np.linspace(0.005, 0.4999 * np.pi, FINE))
         theories[state] = forms[0].name, r, pressure(case, r)
     drawn = {name: (one.r, one.pressure, one.contact_radius) for name, one in pressures.items()}
-    return {"pressure_3d": partial(body_plots.body_pressure_figure, drawn, theories)} if drawn else {}
+    return {"pressure_3d": partial(figures.body_pressure_figure, drawn, theories)} if drawn else {}
 
 
 def _stick_slip(scene: Scene, profiles: Mapping[str, Profile], columns: Mapping[str, Array]) -> Callable[[], Figure]:
@@ -134,7 +137,7 @@ def _stick_slip(scene: Scene, profiles: Mapping[str, Profile], columns: Mapping[
         direction = int(np.sign(moves[moves != 0.0][-1])) if moves.any() else 0
         margins[name] = stick_margin(profile, coefficient, direction)
         radii[name], moved[name] = float(columns["stick_radius"][row]), float(places[row])
-    return partial(slip_plots.stick_slip_figure, profiles, coefficient, margins, radii, moved)
+    return partial(figures.stick_slip_figure, profiles, coefficient, margins, radii, moved)
 
 
 def _mindlin(scene: Scene, curve: Curve, columns: Mapping[str, Array]) -> Array | None:
@@ -154,7 +157,7 @@ def _hertz_over_radius(scene: Scene, curve: Curve) -> tuple[str, Array, Array] |
     bodies, radius = scene.bodies, scene.bodies.plane_radius
     if radius is None or scene.interaction is not None or scene.adheres:
         return None
-    d, force = plots.hertz_curve(float(curve.displacement.max()), radius, scene.bulk_stiffness / bodies.spacing)
+    d, force = hertz_curve(float(curve.displacement.max()), radius, scene.bulk_stiffness / bodies.spacing)
     return "Hertz", np.sqrt(2.0 * radius * d), force
 
 
@@ -174,12 +177,10 @@ def _theory(scene: Scene, values: Mapping[str, float], curve: Curve) -> tuple[st
     if radius is None:
         return None
     if scene.adhesion is not None and scene.adheres:
-        return "JKR", *plots.jkr_on_plane(2.0 * radius, scene.bulk_stiffness / bodies.spacing, scene.adhesion.work)
+        return "JKR", *jkr_on_plane(2.0 * radius, scene.bulk_stiffness / bodies.spacing, scene.adhesion.work)
     if _adheres_over_a_width(values):
-        jkr = plots.jkr_curve(values["adhesion_force"], values["zero_load_radius"], radius)
+        jkr = jkr_curve(values["adhesion_force"], values["zero_load_radius"], radius)
         return "JKR, same $F_A$ and $a_0$", *jkr
     if scene.interaction is None:
-        return "Hertz", *plots.hertz_curve(
-            float(curve.displacement.max()), radius, scene.bulk_stiffness / bodies.spacing
-        )
+        return "Hertz", *hertz_curve(float(curve.displacement.max()), radius, scene.bulk_stiffness / bodies.spacing)
     return None

@@ -15,13 +15,14 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.atoms import atoms
 from contact1d.analysis.curve import (
+    DETACHMENT_COLUMNS,
     DETACHMENTS,
+    FRICTION_COLUMNS,
+    TANGENTIAL_COLUMNS,
     Curve,
+    read_columns,
     read_curve,
-    read_detachments,
-    read_friction,
     read_profiles,
-    read_tangential,
 )
 from contact1d.analysis.pressure import Profile
 from contact1d.workflow.body.traction import BodyPressure, BodyShear, body_pressures, body_shears
@@ -192,13 +193,13 @@ def read_run(folder: Path) -> Run:
             curve, profiles = read_curve(folder / "curve.csv"), read_profiles(folder / "profile.csv")
             friction, detachments = {}, {}
             if isinstance(scene.experiment, Slide):
-                friction = read_friction(folder / "friction.csv")
+                friction = read_columns(folder / "friction.csv", FRICTION_COLUMNS)
             elif isinstance(scene.experiment, Tangential):
-                friction = read_tangential(folder / "curve.csv")
+                friction = read_columns(folder / "curve.csv", TANGENTIAL_COLUMNS)
             elif isinstance(scene.experiment, PullOff) and scene.noise is not None:
-                detachments = read_detachments(folder / f"{DETACHMENTS}.csv")
+                detachments = read_columns(folder / f"{DETACHMENTS}.csv", DETACHMENT_COLUMNS)
         else:
-            curve, profiles, friction, detachments = Curve([], [], [], [], [], []), {}, {}, {}
+            curve, profiles, friction, detachments = Curve(*np.empty((6, 0))), {}, {}, {}
             str(document["error"]["message"])
         return Run(folder.resolve(), document, scene, curve, profiles, friction, detachments)
     except (KeyError, TypeError, AttributeError, ValueError, OSError, SceneError) as error:

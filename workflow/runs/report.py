@@ -16,7 +16,6 @@ import numpy as np
 from contact1d.analysis.curve import (
     Column,
     Curve,
-    curve_columns,
     profile_columns,
     states_of,
     write_columns,
@@ -138,12 +137,12 @@ def curve_of(scene: Scene, outcome: Outcome) -> Curve:
     states = outcome.states
     radii = [state.radius for state in states]
     return Curve(
-        displacement=[s.displacement for s in states],
-        force=[s.force for s in states],
-        contact_radius=[math.nan if r is None else r.value for r in radii],
-        smallest_distance=[s.smallest_distance for s in states],
-        branch=[kind_of(scene).branch(s.phase) for s in states],
-        contact_radius_uncertainty=[math.nan if r is None else r.uncertainty for r in radii],
+        displacement=np.asarray([s.displacement for s in states]),
+        force=np.asarray([s.force for s in states]),
+        contact_radius=np.asarray([math.nan if r is None else r.value for r in radii]),
+        smallest_distance=np.asarray([s.smallest_distance for s in states]),
+        branch=np.asarray([kind_of(scene).branch(s.phase) for s in states]),
+        contact_radius_uncertainty=np.asarray([math.nan if r is None else r.uncertainty for r in radii]),
     )
 
 
@@ -165,7 +164,7 @@ BODY_UNITS = {"r": LENGTH, "pressure": MEAN_PRESSURE, "pressure_uncertainty": ME
 def write_tables(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> None:
     """Write curve.csv, profile.csv, states.npz and, for a slide, friction.csv; with a [material], also SI columns."""
     tables: dict[str, dict[str, Column]] = {
-        "curve.csv": curve_columns(curve),
+        "curve.csv": dict(vars(curve)),
         "profile.csv": profile_columns(outcome.profiles),
     }
     tables["curve.csv"] |= outcome.columns

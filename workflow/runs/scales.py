@@ -8,9 +8,9 @@ With `surface_energy`:   γ = F_A/3πR and E* = 3 F_A R/a₀³ hold in both syst
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
-from contact1d.analysis.theory.jkr import identified_contact_modulus, identified_surface_energy
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import Quantity, Scales
 
@@ -61,13 +61,11 @@ def jkr_scales(
         contact_modulus: E* [Pa].
         surface_energy: γ of one side [J/m²].
     """
-    energy = surface_energy / identified_surface_energy(adhesion_force.value, curvature_radius)
-    modulus = contact_modulus / identified_contact_modulus(
-        adhesion_force.value, curvature_radius, zero_load_radius.value
-    )
+    tension, radius = adhesion_force.value, zero_load_radius.value
+    energy = surface_energy / (tension / (3.0 * math.pi * curvature_radius))
+    modulus = contact_modulus / (3.0 * tension * curvature_radius / radius**3)
     length = energy / modulus
     force = energy * length
     # LU ∝ a₀⁻³ F_A⁰ and FU ∝ a₀⁻³ F_A⁻¹
-    radius = 3.0 * zero_load_radius.uncertainty / zero_load_radius.value
-    tension = adhesion_force.uncertainty / adhesion_force.value
-    return Scales(length, force, length * radius, force * (radius + tension))
+    unsure = 3.0 * zero_load_radius.uncertainty / radius
+    return Scales(length, force, length * unsure, force * (unsure + adhesion_force.uncertainty / tension))

@@ -1,0 +1,326 @@
+"""Figures of a run, drawn as the paper's: pressure profile (Fig. 4), force over displacement and over radius (Fig. 8).
+
+References in them: JKR, F̃ = 4ã³ − 4ã^{3/2} (Eq. 8); Barquins' cylinder, F̃ = 2.1165 (ã² − √ã). Both are scaled on the
+run's own F_A and a₀, so that only the shapes are compared. Each drawing function returns its figure. A theory is its
+name with the values along x and y.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.analysis.curve import Curve
+from contact1d.analysis.plots import (
+    COMPRESSION,
+    LOADING,
+    TENSION,
+    THEORY,
+    UNLOADING,
+    Array,
+    beside,
+    describe,
+    legend,
+    mark,
+    panels,
+)
+from contact1d.analysis.pressure import Profile
+from contact1d.analysis.radius import moved_centre
+from contact1d.analysis.theory.curves import barquins_reduced_force, jkr_reduced_force
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Theory = tuple[str, Array, Array]
+STICKS, SLIPS = COMPRESSION, TENSION
+BEFORE = "#bbbbbb"
+"""Of what is not measured yet: a contact that forgets its start."""
+SEPARATION_SHARE = 1e-3
+"""Largest pressure over that of the other states below which a state is not drawn: the bodies are apart."""
+FEW_ROWS, FEW_ALONG = 19, 25
+"""Up to so many rows a branch also shows where they are: a line through one row would be invisible."""
+SHOWN_SHARE = 0.01
+"""Pressure over the largest one that a figure still shows."""
+VIEW = 2.0
+"""Largest contact radius that is shown, over itself: beyond is only the tail of an attraction."""
+CLEAR = 5.0
+"""Largest pressure that is shown over that at a third of the contact radius: a pole at the edge would hide the rest."""
+BEYOND = 1.15
+"""Half-width of what is shown over that of the contact."""
+
+
+def pressure_figure(profiles: Mapping[str, Profile], radii: Mapping[str, float]) -> Figure:
+    """Pressure over x of each state that has any, one panel below the other, with ±a marked (the paper's Fig. 4)."""
+    largest = {name: float(np.abs(profile.pressure).max(initial=0.0)) for name, profile in profiles.items()}
+    apart = SEPARATION_SHARE * max(largest.values())
+    touching = {name: profile for name, profile in profiles.items() if largest[name] > apart}
+    profiles = touching or dict(list(profiles.items())[:1])
+    figure, axes = panels(len(profiles), 1.0 + 2.3 * len(profiles))
+    half = max(_half_width(profile) for profile in profiles.values())
+    for axis, (name, profile) in zip(axes, profiles.items(), strict=True):
+        view = np.abs(profile.x) <= half
+        pressure = profile.pressure[view]
+        _draw_bars(axis, profile.x[view], pressure, 0.8 * float(np.median(np.diff(profile.x))))
+        radius, centre, marked = radii.get(name, math.nan), moved_centre(profile), ""
+        if radius > 0.0:
+            mark(axis, centre - radius, centre + radius)
+            marked = f", contact radius a = {radius:.4g} LU (dashed)"
+        describe(axis, y="line load (FU/LU)", title=_state(name) + marked)
+        axis.set_ylim(min(1.15 * float(pressure.min()), 0.0), max(1.15 * float(pressure.max()), 0.0) or 1e-12)
+        if not np.any(pressure):
+            axis.set_yticks([0.0])
+            axis.text(0.5, 0.5, "no contact", transform=axis.transAxes, ha="center", color=THEORY)
+    axes[0].set_xlim(-half, half)
+    axes[-1].set_xlabel("x (LU)")
+    return figure
+
+
+def force_displacement_figure(curve: Curve, marks: Mapping[str, float], theory: Theory | None = None) -> Figure:
+    """Force over displacement, loading and unloading; beside it a theory."""
+    figure, (axis,) = panels()
+    displacement, force = curve.displacement, curve.force
+    for branch, colour, width in (("loading", LOADING, 3.2), ("unloading", UNLOADING, 1.4)):
+        chosen = np.flatnonzero(curve.branch == branch)
+        rows = chosen[np.argsort(displacement[chosen], kind="stable")]
+        if rows.size:
+            _line(axis, displacement[rows], force[rows], FEW_ROWS, color=colour, linewidth=width, label=branch)
+    if theory is not None:
+        name, d, f = theory
+        shown = (d >= displacement.min()) & (f <= force.max() + 0.05 * np.ptp(force))
+        beside(axis, (name, d[shown], f[shown]))
+    describe(axis, "displacement (LU), compression positive", "force (FU), compression positive")
+    adhesion = marks.get("adhesion_force")
+    if adhesion:
+        axis.axhline(-adhesion, color=TENSION, linewidth=1.0, linestyle=":")
+        axis.annotate(
+            f"$-F_A$ = \N{MINUS SIGN}{adhesion:.4g} FU", (0.0, -adhesion), xycoords=("axes fraction", "data"),
+            xytext=(6, -4), textcoords="offset points", ha="left", va="top", color=TENSION,
+        )  # fmt: skip
+    axis.margins(y=0.09)
+    legend(axis, "upper left", None)
+    return figure
+
+
+def force_radius_figure(curve: Curve, adhesion_force: float, zero_load_radius: float) -> Figure:
+    """F/F_A over a/a₀ of the unloading branch beside JKR and Barquins (the paper's Fig. 8)."""
+    figure, (axis,) = panels()
+    radius, force = curve.contact_radius / zero_load_radius, curve.force / adhesion_force
+    chosen = (curve.branch == "unloading") & np.isfinite(radius) & (radius > 0.0)
+    top = max(1.3, 1.05 * float(radius[chosen].max(initial=0.0)))
+    a = np.linspace(0.0, top, 400)
+    beside(axis, ("JKR", a, jkr_reduced_force(a)), "-", 1.6)
+    beside(axis, ("Barquins (2D)", a, barquins_reduced_force(a)), width=1.2)
+    axis.plot(radius[chosen], force[chosen], "o", color=UNLOADING, markersize=3.5, label="this run, unloading")
+    describe(axis, r"contact radius $a/a_0$", r"force $F/F_A$, compression positive")
+    axis.set_xlim(0.0, top)
+    axis.set_ylim(-1.25, max(1.0, 1.1 * float(force[chosen].max(initial=0.0))))
+    legend(axis, "upper left", None)
+    return figure
+
+
+def load_radius_figure(curve: Curve, theory: Theory | None = None) -> Figure:
+    """Force over contact radius of the states that touch; beside it a theory."""
+    figure, (axis,) = panels()
+    touching = curve.contact_radius > 0.0
+    for branch in dict.fromkeys(curve.branch[touching].tolist()):
+        chosen = touching & (curve.branch == branch)
+        axis.plot(curve.contact_radius[chosen], curve.force[chosen], "o", markersize=3.5, label=branch)
+    if theory is not None:
+        beside(axis, theory, "-")
+    describe(axis, "contact radius (LU)", "force (FU), compression positive")
+    axis.set_xlim(left=0.0)
+    legend(axis, "upper left", None)
+    return figure
+
+
+def friction_figure(columns: Mapping[str, Sequence[float] | Array]) -> Figure:
+    """Friction over the way of the drive, and the normal force below it."""
+    figure, (upper, lower) = panels(2, height_ratios=(2, 1))
+    upper.plot(columns["drive"], columns["friction"], color=COMPRESSION, linewidth=1.2)
+    describe(upper, y="friction (FU)")
+    lower.plot(columns["drive"], columns["normal_force"], color=TENSION, linewidth=1.2)
+    describe(lower, "way of the drive (LU)", "normal force (FU)", zero=False)
+    return figure
+
+
+def detachments_figure(forces: Array) -> Figure:
+    """How often the bodies parted at a tension [FU], their mean with its standard error; shape (pulls,)."""
+    figure, (axis,) = panels()
+    mean, error = float(forces.mean()), float(forces.std(ddof=1)) / math.sqrt(forces.size)
+    bins = max(4, round(2.0 * forces.size ** (1.0 / 3.0)))  # Rice's rule
+    axis.hist(forces, bins, color=LOADING, edgecolor="white")
+    axis.axvspan(mean - error, mean + error, color=TENSION, alpha=0.3, linewidth=0.0)
+    axis.axvline(mean, color=TENSION, linewidth=1.2, label=f"mean of {forces.size} pulls, standard error")
+    axis.locator_params(axis="y", integer=True)
+    describe(axis, "detachment force (FU)", "pulls", zero=False)
+    legend(axis)
+    return figure
+
+
+def samples_figure(columns: Mapping[str, Array], measured: NDArray[np.bool_], mean: float | None = None) -> Figure:
+    """Displacement and force over time, what comes before the measurement in grey; the load beside the force.
+
+    Args:
+        columns: of samples.csv, `time` [TU], `displacement` [LU], `force` and `load` [FU].
+        measured: which rows are.
+        mean: of the displacement [LU], where it is a result.
+    """
+    figure, (upper, lower) = panels(2)
+    time = columns["time"]
+    for axis, name, unit in ((upper, "displacement", "LU"), (lower, "force", "FU")):
+        axis.plot(time[~measured], columns[name][~measured], ".", color=BEFORE, markersize=3)
+        axis.plot(time[measured], columns[name][measured], ".-", color=COMPRESSION, markersize=3, linewidth=0.6)
+        describe(axis, y=f"{name} ({unit})", zero=False)
+    lower.plot(time, columns["load"], color=TENSION, linewidth=1.2, label="load")
+    legend(lower)
+    if mean is not None:
+        upper.axhline(mean, color=TENSION, linewidth=1.2, label="mean")
+        legend(upper)
+    if not measured.all():
+        upper.set_title("grey: before the measurement", loc="left", fontsize=9, color=THEORY)
+    lower.set_xlabel("time (TU)")
+    return figure
+
+
+def body_pressure_figure(pressures: Mapping[str, tuple[Array, Array, float]], theories: Mapping[str, Theory]) -> Figure:
+    """p over r of each state, one panel below the other, the closed form beside it.
+
+    Args:
+        pressures: r [LU], p [FU/LU²] and the contact radius [LU] by state.
+        theories: by state.
+    """
+    figure, axes = panels(len(pressures), 1.2 + 2.6 * len(pressures))
+    for axis, (name, (r, p, edge)) in zip(axes, pressures.items(), strict=True):
+        shown = np.isfinite(p)
+        axis.plot(r[shown], p[shown], "o", color=COMPRESSION, markersize=3.5, label="this run")
+        if name in theories:
+            beside(axis, theories[name], "-")
+        describe(axis, y="pressure (FU/LU²)", title=_state(name))
+        mark(axis, edge, colour=TENSION, label=f"contact radius a = {edge:.4g} LU")
+        inner = p[shown & (r <= max(edge / 3.0, r[min(2, r.size - 1)]))]
+        top = CLEAR * float(np.abs(inner).max(initial=0.0)) or 1e-12
+        axis.set_ylim(max(1.1 * min(float(p[shown].min()), 0.0), -top), min(1.1 * max(float(p[shown].max()), 0.0), top))
+        legend(axis)
+    axes[-1].set_xlabel("distance from the axis r (LU)")
+    widest = max(edge for _, _, edge in pressures.values())
+    farthest = max(float(r.max()) for r, _, _ in pressures.values())
+    axes[-1].set_xlim(0.0, 1.05 * min(max(farthest, widest), VIEW * widest))
+    return figure
+
+
+def tangential_figure(columns: Mapping[str, Array], branches: NDArray[np.str_], theory: Array | None = None) -> Figure:
+    """F_x over u, and beside it a theory's F_x at the same places; the normal force below where it changes.
+
+    Args:
+        columns: of curve.csv, `tangential_displacement`, `tangential_force`, `normal_force`.
+        branches: "forward" or "backward" of each row.
+        theory: F_x [FU] of Cattaneo and Mindlin, (n,).
+    """
+    u, force, load = (columns[f"{name}"] for name in ("tangential_displacement", "tangential_force", "normal_force"))
+    varies = float(np.ptp(load)) > 1e-9 * float(np.max(np.abs(load)))
+    figure, axes = panels(1 + varies, height_ratios=(2, 1)[: 1 + varies])
+    axis = axes[0]
+    for branch, colour in (("forward", LOADING), ("backward", TENSION)):
+        lines = np.flatnonzero(branches == branch)
+        for part in filter(len, np.split(lines, np.flatnonzero(np.diff(lines) > 1) + 1)):
+            rows = np.arange(max(part[0] - 1, 0), part[-1] + 1)  # a branch begins where the one before it ended
+            label = branch if part[0] == lines[0] else None
+            _line(axis, u[rows], force[rows], FEW_ALONG, color=colour, linewidth=2.6, label=label)
+    if theory is not None:
+        beside(axis, ("Cattaneo–Mindlin", u, theory))
+    describe(axis, y="tangential force (FU)")
+    axis.margins(y=0.09)
+    legend(axis, size=None)
+    if varies:
+        axes[1].plot(u, load, color=SLIPS, linewidth=1.4)
+        describe(axes[1], y="normal force (FU)", zero=False)
+    axes[-1].set_xlabel("displacement along x (LU)")
+    return figure
+
+
+def body_shear_figure(states: Mapping[str, tuple[Array, Array, float, float]]) -> Figure:
+    """Shear traction over the distance from the axis of the body of three dimensions, mirrored at the axis.
+
+    Args:
+        states: by name r [LU], q(r) [FU/LU²], contact and stick radius [LU].
+    """
+    figure, (axis,) = panels()
+    for (name, (r, shear, edge, stick)), colour in zip(states.items(), (TENSION, COMPRESSION), strict=False):
+        both, values = np.concatenate([-r[::-1], r]), np.concatenate([shear[::-1], shear])
+        axis.plot(both, values, color=colour, linewidth=1.8, label=_state(name))
+        if 0.0 < stick < edge:
+            mark(axis, -stick, stick, colour=colour)
+    describe(axis, "r (LU); dashed: stick radius", "shear traction (FU/LU²)")
+    axis.margins(y=0.09)
+    legend(axis, size=None)
+    return figure
+
+
+def stick_slip_figure(
+    profiles: Mapping[str, Profile],
+    coefficient: float,
+    sticking: Mapping[str, Array],
+    radii: Mapping[str, float],
+    places: Mapping[str, float],
+) -> Figure:
+    """Shear traction over x of each state between ±μp, the particles that stick and those that slip in two colours.
+
+    Args:
+        profiles: by the names of the states.
+        coefficient: μ.
+        sticking: what is left of μp of each particle [FU/LU], (n,); 0 where it slips.
+        radii: half-width of the zone that sticks [LU].
+        places: of the body along x [LU].
+    """
+    figure, axes = panels(len(profiles), 1.0 + 2.3 * len(profiles), sharex=False)
+    for axis, (name, profile) in zip(axes, profiles.items(), strict=True):
+        x, touched = profile.x, profile.pressure > 0.0
+        limit = coefficient * np.maximum(profile.pressure, 0.0)
+        for zone, colour, label in ((sticking[name] > 0.0, STICKS, "sticks"), (sticking[name] == 0.0, SLIPS, "slips")):
+            chosen = touched & zone
+            axis.vlines(x[chosen], 0.0, -profile.shear[chosen], color=colour, linewidth=2.0, label=label)
+        beside(axis, ("±μp", x, limit), width=1.2)
+        axis.plot(x, -limit, "--", color=THEORY, linewidth=1.2)
+        radius, marked = radii.get(name, math.nan), ""
+        if radius > 0.0:
+            marked = f", stick radius c = {radius:.4g} LU (shaded)"
+        describe(axis, y="shear (FU/LU)", title=f"{_state(name)}, u = {places[name]:.4g} LU{marked}")
+        if radius > 0.0:
+            axis.axvspan(-radius, radius, color=STICKS, alpha=0.08, linewidth=0.0)
+        half = float(np.abs(x[touched] if touched.any() else x).max())
+        half = max(half, float(x[1] - x[0]))
+        axis.set_xlim(-BEYOND * half, BEYOND * half)
+        legend(axis, "upper right", 8)
+    axes[-1].set_xlabel("x from the body's middle (LU)")
+    return figure
+
+
+def _state(name: str) -> str:
+    return f"{name.replace('_', ' ')} state"
+
+
+def _line(axis: Axes, x: Array, y: Array, few: int, **look: Any) -> None:
+    """A line, with its points where there are `few`."""
+    axis.plot(x, y, marker="o" if len(x) <= few else "", markersize=4, **look)
+
+
+def _draw_bars(axis: Axes, x: Array, height: Array, width: float) -> None:
+    """Bars coloured by sign, as one artist: `Axes.bar` makes one per bar, which takes four times as long."""
+    from matplotlib.collections import PolyCollection
+
+    left, right, zero = x - 0.5 * width, x + 0.5 * width, np.zeros_like(x)
+    corners = np.stack([np.stack([left, left, right, right]), np.stack([zero, height, height, zero])]).T
+    colours = np.where(height >= 0.0, COMPRESSION, TENSION).tolist()
+    axis.add_collection(PolyCollection(list(corners), facecolors=colours, linewidths=0.0))
+
+
+def _half_width(profile: Profile) -> float:
+    size = np.abs(profile.pressure)
+    shown = size > SHOWN_SHARE * float(size.max(initial=0.0))
+    reach = float(np.abs(profile.x[shown]).max()) if shown.any() else float(np.abs(profile.x).max())
+    return min(1.15 * reach + 2.0 * float(np.median(np.diff(profile.x))), float(np.abs(profile.x).max()) + 1.0)

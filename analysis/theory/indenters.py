@@ -1,0 +1,298 @@
+"""Rigid axisymmetric indenters on an elastic half space in closed form, with adhesion of no range or without.
+
+A contact of radius a has, with the power-law profile z = c r^n and kappa_n = (sqrt(pi)/2) n Gamma(n/2)/Gamma((n+1)/2),
+
+    d = kappa_n c a^n - sqrt(2 pi W a/E*),    F = 2n/(n+1) kappa_n c E* a^(n+1) - sqrt(8 pi E* W a^3)
+
+For n = 2, c = 1/2R that is Hertz and, with the work of adhesion W, JKR; for n = 1 Sneddon's cone, with W that of Maugis
+and Barquins. What W adds is a flat punch's tension at the same a. W = 2 gamma is the work of adhesion of two equal
+surfaces, gamma the surface energy of one of them; Geike and Popov (2007) call gamma the work of adhesion. Forces are
+positive in compression. Valid for small slopes, a frictionless half space and, with W, a Tabor number well above 1.
+Sources: I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47; L. A. Galin (1953); K. L. Johnson, K. Kendall, A. D. Roberts,
+Proc. R. Soc. A 324 (1971) 301; K. Kendall, J. Phys. D 4 (1971) 1186; D. Maugis, M. Barquins, J. Phys. Lett. 42 (1981)
+L95; V. L. Popov, M. Hess, Method of Dimensionality Reduction in Contact Mechanics and Friction (2015), section 4.4. Any
+consistent units; E* is the contact modulus [stress].
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+RIM = 1.0 - 1e-12
+"""Of the radius of a whole sphere, up to which its contact is looked for: at the rim there is no bound."""
+POINTS = 200
+"""Of Gauss's quadrature of a smooth function: its error is below round-off."""
+
+
+def galin_factor(exponent: float) -> float:
+    """Return kappa_n = (sqrt(pi)/2) n Gamma(n/2)/Gamma((n+1)/2): pi/2 for a cone, 2 for a paraboloid; `exponent` n."""
+    n = exponent
+    return 0.5 * math.sqrt(math.pi) * n * math.exp(math.lgamma(0.5 * n) - math.lgamma(0.5 * (n + 1.0)))
+
+
+def require_positive(**values: float) -> None:
+    """Raise ValueError, with its name, for a value that is not positive and finite."""
+    for name, value in values.items():
+        if not (math.isfinite(value) and value > 0.0):
+            raise ValueError(f"{name} must be positive and finite, got {value}")
+
+
+class Contact:
+    """One contact by a theory: force and displacement over the contact radius a, and what follows from the two.
+
+    Under a fixed load it pulls off where F(a) is lowest, under fixed grips where d(a) is: beyond, both rise with a.
+    """
+
+    def force(self, contact_radius: float) -> float:
+        """Return F(a) [force], positive in compression; a >= 0 [length]."""
+        raise NotImplementedError
+
+    def displacement(self, contact_radius: float) -> float:
+        """Return d(a) [length]; a >= 0 [length]."""
+        raise NotImplementedError
+
+    @property
+    def reach(self) -> float:
+        """The largest contact radius [length]."""
+        return math.inf
+
+    def critical_radius(self) -> float:
+        """Return a where a fixed load pulls off [length]: dF/da = 0, or 0."""
+        return 0.0
+
+    def fixed_grips_radius(self) -> float:
+        """Return a where a prescribed displacement pulls off [length]: dd/da = 0, or 0."""
+        return 0.0
+
+    def pull_off_force(self) -> float:
+        """Return F_A, the largest tension under a fixed load, a positive magnitude [force]."""
+        return -self.force(self.critical_radius())
+
+    def zero_load_radius(self) -> float:
+        """Return a_0 with F(a_0) = 0 [length]."""
+        return self.contact_radius(0.0)
+
+    def contact_radius(self, force: float) -> float:
+        """Return the stable a with F(a) = `force` [length].
+
+        Raises:
+            ValueError: if the tension exceeds the pull-off force.
+        """
+        low = self.critical_radius()
+        if force < self.force(low):
+            raise ValueError(f"no equilibrium: the tension exceeds the pull-off force {self.pull_off_force()}")
+        return self._where(self.force, force, low)
+
+    def radius_at(self, displacement: float) -> float:
+        """Return the stable a with d(a) = `displacement` under fixed grips [length].
+
+        Raises:
+            ValueError: if the bodies have parted before.
+        """
+        low = self.fixed_grips_radius()
+        if displacement < self.displacement(low):
+            raise ValueError(f"the bodies part at the displacement {self.displacement(low)}")
+        return self._where(self.displacement, displacement, low)
+
+    def _where(self, curve: Callable[[float], float], wanted: float, low: float) -> float:
+        """The radius from `low` on at which a rising curve is `wanted`, to the last digit; `low` where it begins so."""
+        if not wanted > curve(low):
+            return low
+        high = min(2.0 * low or 1.0, self.reach)
+        while curve(high) < wanted and high < self.reach:
+            high = min(2.0 * high, self.reach)
+        while low < (middle := 0.5 * (low + high)) < high:
+            low, high = (middle, high) if curve(middle) < wanted else (low, middle)
+        return high
+
+
+@dataclass(frozen=True)
+class PowerLaw(Contact):
+    """The indenter z = c r^n.
+
+    Args:
+        coefficient: c > 0 [length^(1-n)]: the slope of a cone (n = 1), 1/2R of a paraboloid (n = 2).
+        exponent: n >= 1, any real number.
+        contact_modulus: E* [stress].
+        work_of_adhesion: W >= 0 [force/length].
+
+    Raises:
+        ValueError: if one of them is out of its range.
+    """
+
+    coefficient: float
+    exponent: float
+    contact_modulus: float
+    work_of_adhesion: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the ranges."""
+        require_positive(coefficient=self.coefficient, contact_modulus=self.contact_modulus)
+        if not (self.exponent >= 1.0 and self.work_of_adhesion >= 0.0):
+            raise ValueError(
+                f"exponent must be at least 1 and work_of_adhesion not negative, got {self.exponent} and "
+                f"{self.work_of_adhesion}"
+            )
+
+    @classmethod
+    def sphere(cls, radius: float, contact_modulus: float, work_of_adhesion: float = 0.0) -> PowerLaw:
+        """The paraboloid z = r^2/2R of Hertz, with `work_of_adhesion` that of JKR; arguments as of `PowerLaw`."""
+        require_positive(radius=radius)
+        return cls(0.5 / radius, 2.0, contact_modulus, work_of_adhesion)
+
+    @property
+    def _rise(self) -> float:
+        return galin_factor(self.exponent) * self.coefficient
+
+    def displacement(self, contact_radius: float) -> float:
+        """Return d = kappa_n c a^n - sqrt(2 pi W a/E*) [length]; a >= 0 [length]."""
+        stretch = math.sqrt(2.0 * math.pi * self.work_of_adhesion * contact_radius / self.contact_modulus)
+        return float(self._rise * contact_radius**self.exponent - stretch)
+
+    def force(self, contact_radius: float) -> float:
+        """Return F = 2n/(n+1) kappa_n c E* a^(n+1) - sqrt(8 pi E* W a^3) [force]; a >= 0 [length]."""
+        n, e = self.exponent, self.contact_modulus
+        pressed = 2.0 * n / (n + 1.0) * self._rise * e * contact_radius ** (n + 1.0)
+        return float(pressed - math.sqrt(8.0 * math.pi * e * self.work_of_adhesion * contact_radius**3))
+
+    def critical_radius(self) -> float:
+        """Return a where a fixed load pulls off [length]; of JKR (9 pi W R^2/8E*)^(1/3)."""
+        return self._power(1.5 / (2.0 * self.exponent))
+
+    def fixed_grips_radius(self) -> float:
+        """Return a where a prescribed displacement pulls off [length]; of JKR (pi W R^2/8E*)^(1/3)."""
+        return self._power(0.25 / self.exponent)
+
+    def _power(self, factor: float) -> float:
+        """a with kappa_n c a^(n-1/2) = factor sqrt(8 pi W/E*): where a derivative by a vanishes."""
+        rise = factor * math.sqrt(8.0 * math.pi * self.work_of_adhesion / self.contact_modulus)
+        return float((rise / self._rise) ** (1.0 / (self.exponent - 0.5)))
+
+    def _tension(self, contact_radius: float) -> float:
+        """What adhesion takes from the pressure on the axis [stress]: sqrt(2 E* W/pi a)."""
+        a = contact_radius
+        return math.sqrt(2.0 * self.contact_modulus * self.work_of_adhesion / (math.pi * a)) if a else 0.0
+
+    def central_pressure(self, contact_radius: float) -> float:
+        """Return p(0) = E* kappa_n c a^(n-1)/pi n/(n-1) - sqrt(2 E* W/pi a) [stress], infinite at a cone's tip."""
+        n, a = self.exponent, contact_radius
+        if n == 1.0:
+            return math.inf
+        pressed = self.contact_modulus * self._rise * a ** (n - 1.0) * n / (math.pi * (n - 1.0))
+        return float(pressed - self._tension(a))
+
+    def peak_pressure(self, contact_radius: float) -> float:
+        """Return the largest p [stress]: for n <= 2 p(0); for n > 2 it is off the axis, and has no closed form: NaN."""
+        return self.central_pressure(contact_radius) if self.exponent <= 2.0 else math.nan
+
+    def pressure(self, place: Floats, contact_radius: float) -> Floats:
+        """Return p(r) [stress], positive in compression, of a cone or a paraboloid; 0 from the edge on.
+
+        (E* c/2) arcosh(a/r) or (2 E* a/pi R) sqrt(1 - r^2/a^2), less sqrt(2 E* W/pi a)/sqrt(1 - r^2/a^2).
+
+        Args:
+            place: r >= 0 [length], any shape.
+            contact_radius: a >= 0 [length].
+        """
+        r, a, e = place, contact_radius, self.contact_modulus
+        inside = r < a
+        ratio = np.divide(r, a, out=np.ones_like(r), where=inside)
+        root = np.sqrt(1.0 - ratio**2)
+        with np.errstate(divide="ignore"):
+            cone = 0.5 * e * self.coefficient * np.arccosh(1.0 / ratio)
+        pressed = cone if self.exponent == 1.0 else 4.0 * e * a * self.coefficient / math.pi * root
+        return pressed - np.divide(self._tension(a), root, out=np.zeros_like(r), where=inside)
+
+
+@dataclass(frozen=True)
+class Ellipsoid(Contact):
+    """The whole ellipsoid z = b (1 - sqrt(1 - r^2/c^2)), a sphere that is b/c times as high; a << c gives Hertz.
+
+    Linear elasticity holds for small slopes only, so its use near a = c is to test methods. F loses the digits
+    (c/a)^2 to cancellation: for a > 1e-3 c it is good to 1e-10.
+
+    Args:
+        radius: c [length].
+        half_axis: b [length]; of a sphere c.
+        contact_modulus: E* [stress].
+
+    Raises:
+        ValueError: if one of them is not positive.
+    """
+
+    radius: float
+    half_axis: float
+    contact_modulus: float
+
+    def __post_init__(self) -> None:
+        """Check the signs."""
+        require_positive(**vars(self))
+
+    @property
+    def reach(self) -> float:
+        """The rim [length]."""
+        return RIM * self.radius
+
+    def displacement(self, contact_radius: float) -> float:
+        """Return d = (b/c) a artanh(a/c) [length]; 0 <= a < c [length]."""
+        return self.half_axis / self.radius * contact_radius * math.atanh(contact_radius / self.radius)
+
+    def force(self, contact_radius: float) -> float:
+        """Return F = (b/c) E* [(c^2 + a^2) artanh(a/c) - a c] [force]; 0 <= a < c [length]."""
+        a, c = contact_radius, self.radius
+        return self.half_axis / c * self.contact_modulus * ((c**2 + a**2) * math.atanh(a / c) - a * c)
+
+    def central_pressure(self, contact_radius: float) -> float:
+        """Return p(0) = (E*/pi) int_0^a g'/x dx [stress], g' = (b/c) [artanh(x/c) + x c/(c^2 - x^2)]; a < c [length].
+
+        By quadrature: the first part has no elementary form.
+        """
+        nodes, weights = np.polynomial.legendre.leggauss(POINTS)
+        half, c = 0.5 * contact_radius, self.radius
+        x = half * (nodes + 1.0)
+        rate = float(weights @ (np.arctanh(x / c) / x + c / (c**2 - x**2)))
+        return self.contact_modulus / math.pi * self.half_axis / c * half * rate
+
+    peak_pressure = central_pressure
+
+
+@dataclass(frozen=True)
+class FlatPunch:
+    """A flat-ended cylinder, F = 2 E* a d: the contact radius is given.
+
+    Args:
+        radius: a [length].
+        contact_modulus: E* [stress].
+        work_of_adhesion: W >= 0 [force/length].
+
+    Raises:
+        ValueError: if one of them is out of its range.
+    """
+
+    radius: float
+    contact_modulus: float
+    work_of_adhesion: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the signs."""
+        require_positive(radius=self.radius, contact_modulus=self.contact_modulus)
+
+    @property
+    def stiffness(self) -> float:
+        """F/d = 2 E* a [force/length]."""
+        return 2.0 * self.contact_modulus * self.radius
+
+    def pressure(self, place: Floats | float, displacement: float) -> Floats:
+        """Return p(r) = (E* d/pi) (a^2 - r^2)^(-1/2) [stress], shape of `place` 0 <= r < a [length]; d [length]."""
+        r = np.asarray(place, dtype=np.float64)
+        return np.asarray(self.contact_modulus * displacement / (math.pi * np.sqrt(self.radius**2 - r**2)))
+
+    def pull_off_force(self) -> float:
+        """Return Kendall's F_A = sqrt(8 pi E* W a^3), a positive magnitude [force]."""
+        return math.sqrt(8.0 * math.pi * self.contact_modulus * self.work_of_adhesion * self.radius**3)
