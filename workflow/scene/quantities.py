@@ -63,12 +63,16 @@ class OutOfRange:
 class Table(BaseModel):
     """A table of a scene: immutable, no unknown keys, no conversion between types, finite numbers only.
 
+    The text below a key says what it is, to readers of this file, of the documentation and of the schema alike.
+
     Attributes:
         as_list: it is written as a list of its values.
         one_of: sets of keys of which exactly one must be there, with what to do otherwise.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", strict=True, allow_inf_nan=False, use_attribute_docstrings=True
+    )
 
     as_list: ClassVar[bool] = False
     one_of: ClassVar[tuple[tuple[tuple[str, ...], str], ...]] = ()
@@ -213,7 +217,9 @@ def keys_of(table: type[Table]) -> dict[str, Key]:
     """Every key that may stand in `table`, as written in TOML, in order; kept, since every scene asks for some tens."""
     hints = get_type_hints(table, include_extras=True)
     return {
-        field.alias or name: Key(name, allowed_by(hints[name]), str(field.description), field.get_default())
+        field.alias or name: Key(
+            name, allowed_by(hints[name]), " ".join((field.description or "").split()), field.get_default()
+        )
         for name, field in table.model_fields.items()
     }
 
