@@ -15,14 +15,13 @@ from pydantic_core import ErrorDetails
 
 from contact1d.workflow.scene.experiments import KINDS
 from contact1d.workflow.scene.problems import Problem, as_toml, nearest, path_of, shown
-from contact1d.workflow.scene.quantities import Allowed, Choice, Keys, OutOfRange, Table, keys_of, tables_in
+from contact1d.workflow.scene.quantities import Allowed, Keys, OutOfRange, Table, keys_of, tables_in
 from contact1d.workflow.scene.schema import statement, text_of
-from contact1d.workflow.scene.tables import Tables
+from contact1d.workflow.scene.tables import WHOLE, Tables
 
 UNKNOWN, MISSING, NO_KIND, WRONG_KIND = "extra_forbidden", "missing", "union_tag_not_found", "union_tag_invalid"
 """Pydantic's names of faults."""
 NOTHING = Allowed(())
-WHOLE = Allowed((Choice(Tables),))
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,7 @@ from contact1d.workflow.scene.quantities import (
     RelativeTolerance,
     Stiffness,
     Table,
+    allowed_by,
     keys_of,
 )
 
@@ -244,6 +245,8 @@ class Tables(Table):
         return self.experiment.given_method or default_method(self.effects)
 
 
+WHOLE = allowed_by(Tables)
+"""What a scene is."""
 EFFECT_TABLES: dict[str, type[Effect]] = {
     name: table for name, key in keys_of(Tables).items() if (table := key.allowed.table) and issubclass(table, Effect)
 }
