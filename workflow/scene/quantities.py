@@ -2,8 +2,8 @@
 
 Model units: length LU (the spacing), force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT in FU·LU.
 
-`keys_of` is the one reader of the tables' types, and `places` the one walker of a scene's numbers: reading, checking,
-conversion between units, the schema and the documentation use both.
+`keys_of` is the one reader of the tables' types, and `walk` the one walker of a scene: reading, checking, conversion
+between units, the schema and the documentation use both.
 """
 
 from __future__ import annotations
@@ -237,18 +237,24 @@ def allowed_by(annotation: Any, marks: tuple[Any, ...] = ()) -> Allowed:
 
 @dataclass(frozen=True)
 class Place:
-    """A number's place in a scene: its `keys`, what stands there (or follows from a default), and its unit."""
+    """A place in a scene: its `keys`, what stands there, and what may; `absent`: what counts where nothing stands."""
 
     keys: Keys
     value: Any
-    unit: Unit
-    words: tuple[str, ...] = ()
+    allowed: Allowed
     absent: bool = False
+
+    @property
+    def unit(self) -> Unit:
+        """The unit of a number."""
+        unit = self.allowed.quantity
+        assert unit is not None
+        return unit
 
     @property
     def is_text(self) -> bool:
         """Whether it is a text that can only have meant a number with a unit: one with digits, and no plain number."""
-        if not isinstance(self.value, str) or self.value in self.words or not any(map(str.isdigit, self.value)):
+        if not isinstance(self.value, str) or self.value in self.allowed.words or not any(map(str.isdigit, self.value)):
             return False
         try:
             float(self.value)
@@ -268,25 +274,24 @@ class Place:
         data[self.keys[-1]] = value
 
 
-def places(table: type[Table], data: Mapping[str, Any], keys: Keys = ()) -> Iterator[Place]:
-    """Every place of a number in `data`, a table of this type with the keys of a scene file; absent keys by default."""
-    for name, key in keys_of(table).items():
-        if name in data:
-            yield from _inside(key.allowed, data[name], (*keys, name))
-        elif isinstance(key.default, float) and (unit := key.allowed.quantity):
-            yield Place((*keys, name), key.default, unit, absent=True)
-
-
-def _inside(allowed: Allowed, value: Any, keys: Keys) -> Iterator[Place]:
-    if isinstance(value, Mapping):
-        if table := allowed.table_for(value):
-            yield from places(table, value, keys)
+def walk(allowed: Allowed, value: Any, keys: Keys = (), absent: bool = False) -> Iterator[Place]:
+    """Every place in `value`, a table before what is inside it, which may be mended meanwhile; absent keys, too."""
+    yield Place(keys, value, allowed, absent)
+    if isinstance(value, Mapping) and (table := allowed.table_for(value)):
+        for name, key in keys_of(table).items():
+            yield from walk(key.allowed, value.get(name, key.default), (*keys, name), name not in value)
     elif isinstance(value, list | tuple):
         for items in (choice.items for choice in allowed.choices if choice.items):
             for i, item in enumerate(value):
-                yield from _inside(items, item, (*keys, i))
-    elif unit := allowed.quantity:
-        yield Place(keys, value, unit, allowed.words)
+                yield from walk(items, item, (*keys, i))
+
+
+def places(table: type[Table], data: Mapping[str, Any]) -> Iterator[Place]:
+    """Every place of a number in `data`, a table of this type with the keys of a scene file; absent keys by default."""
+    for place in walk(allowed_by(table), data):
+        nothing = place.absent and not isinstance(place.value, float)
+        if place.allowed.quantity and not nothing and not isinstance(place.value, Mapping | list | tuple):
+            yield place
 
 
 def tables_in(table: type[Table], path: str = "") -> Iterator[tuple[str, Choice]]:
