@@ -40,8 +40,10 @@ REVERSED = (
 class Exponential(Table):
     """One term of the interaction: amplitude · exp(−r/range)."""
 
-    amplitude: Energy = Field(description="energy at distance zero")
-    range: Length = Field(description="decay length")
+    amplitude: Energy
+    """energy at distance zero"""
+    range: Length
+    """decay length"""
 
 
 class Effect(Table):
@@ -63,17 +65,19 @@ class Interaction(Effect):
 
     how = "[interaction] with its repulsion"
 
-    repulsion: Exponential = Field(description="repulsive term, A and a")
-    attraction: Exponential | None = Field(default=None, description="attractive term, B and b; absent: no adhesion")
-    cutoff: AutoLength = Field(
-        default="auto", description='distance beyond which no force acts, or "auto": by the tolerance'
-    )
+    repulsion: Exponential
+    """repulsive term, A and a"""
+    attraction: Exponential | None = None
+    """attractive term, B and b; absent: no adhesion"""
+    cutoff: AutoLength = "auto"
+    """distance beyond which no force acts, or "auto": by the tolerance"""
 
 
 class Neighbours(Effect):
     """Effect: springs between neighbouring particles of one body, with transverse rigidity."""
 
-    stiffness: Stiffness = Field(description="stiffness of a spring between neighbours")
+    stiffness: Stiffness
+    """stiffness of a spring between neighbours"""
 
 
 class Horizontal(Effect):
@@ -87,10 +91,8 @@ class Friction(Effect):
 
     how = "[friction] with its coefficient"
 
-    coefficient: RatioOrZero = Field(
-        description="largest tangential over normal force of a particle; along x it gives as "
-        "bodies.bulk_stiffness_tangential says"
-    )
+    coefficient: RatioOrZero
+    """largest tangential over normal force of a particle; along x it gives as bodies.bulk_stiffness_tangential says"""
 
 
 class Adhesion(Effect):
@@ -104,15 +106,14 @@ class Adhesion(Effect):
         "noise": "particles at rest in their body have no thermal motion of their own",
     }
 
-    work_of_adhesion: LineEnergy | None = Field(
-        default=None, description="W, to part both surfaces: F_A = 1.5 π W R of a sphere"
-    )
-    surface_energy: LineEnergy | None = Field(default=None, description="γ of one side, half the work of adhesion")
-    range: Length | None = Field(
-        default=None,
-        description="z₀ over which the surfaces attract, if known: the run has none, and beside its results stands by "
-        "Tabor's number how far a body of that range is from it",
-    )
+    work_of_adhesion: LineEnergy | None = None
+    """W, to part both surfaces: F_A = 1.5 π W R of a sphere"""
+    surface_energy: LineEnergy | None = None
+    """γ of one side, half the work of adhesion"""
+    range: Length | None = None
+    """z₀ over which the surfaces attract, if known: the run has none, and beside its results stands by Tabor's
+    number how far a body of that range is from it
+    """
 
     @property
     def work(self) -> float:
@@ -129,7 +130,8 @@ class Damping(Effect):
     timed = True
     how = '[damping] with coefficient = "auto"'
 
-    coefficient: AutoDamping = Field(description='drag force over velocity, or "auto": near critical')
+    coefficient: AutoDamping
+    """drag force over velocity, or "auto": near critical"""
 
 
 class Noise(Effect):
@@ -138,8 +140,10 @@ class Noise(Effect):
     timed = True
     how = "[noise] with temperature and seed"
 
-    temperature: Temperature = Field(description="temperature as energy k_BT")
-    seed: Seed = Field(description="seed of the random forces")
+    temperature: Temperature
+    """temperature as energy k_BT"""
+    seed: Seed
+    """seed of the random forces"""
 
 
 def _free_directions(free: tuple[str, ...]) -> tuple[str, ...]:
@@ -159,9 +163,12 @@ class Plate(Effect):
     timed = True
     how = '[plate] with mass = "auto"'
 
-    mass: AutoMass = Field(default="auto", description='mass of the plate, or "auto"')
-    free: Free = Field(default=("z",), description='directions in which the plate may move: ["z"] or ["x", "z"]')
-    damping: AutoDampingOrZero = Field(default="auto", description='drag force over velocity of the plate, or "auto"')
+    mass: AutoMass = "auto"
+    """mass of the plate, or "auto" """
+    free: Free = ("z",)
+    """directions in which the plate may move: ["z"] or ["x", "z"]"""
+    damping: AutoDampingOrZero = "auto"
+    """drag force over velocity of the plate, or "auto" """
 
 
 class Cantilever(Effect):
@@ -170,5 +177,7 @@ class Cantilever(Effect):
     timed = True
     how = "[cantilever] with stiffness and velocity"
 
-    stiffness: Stiffness = Field(description="stiffness of the spring")
-    velocity: Annotated[Velocity, OutOfRange(REVERSED)] = Field(description="velocity of the driven end")
+    stiffness: Stiffness
+    """stiffness of the spring"""
+    velocity: Annotated[Velocity, OutOfRange(REVERSED)]
+    """velocity of the driven end"""

@@ -32,19 +32,24 @@ from contact1d.workflow.scene.quantities import (
 )
 
 Method = Literal["quasistatic", "dynamic"]
-_METHOD = (
+ANY_METHOD = (
     '"quasistatic" (no time) or "dynamic" (as in the paper); absent: "dynamic" with [plate], [damping] or [noise], '
     'else "quasistatic"'
 )
+AnyMethod = Annotated[Method | None, Field(description=ANY_METHOD)]
 
 
 class Span(Table):
     """Evenly spaced displacements from one place to another, by default there and back."""
 
-    from_: Displacement = Field(alias="from", description="displacement at the start")
-    to: Displacement = Field(description="displacement at the turning point")
-    steps: StepCount = Field(description="number of steps of one leg")
-    return_: bool = Field(default=True, alias="return", description="whether to go back to the start as well")
+    from_: Displacement = Field(alias="from")
+    """displacement at the start"""
+    to: Displacement
+    """displacement at the turning point"""
+    steps: StepCount
+    """number of steps of one leg"""
+    return_: bool = Field(default=True, alias="return")
+    """whether to go back to the start as well"""
 
     @model_validator(mode="after")
     def _ends_differ(self) -> Self:
@@ -157,9 +162,11 @@ class Load(Kind):
 
     load_key = "force"
 
-    kind: Literal["load"] = Field(description="equilibrium under a force")
-    force: Force = Field(description="normal force on the upper body, compression positive")
-    method: Method | None = Field(default=None, description=_METHOD)
+    kind: Literal["load"]
+    """equilibrium under a force"""
+    force: Force
+    """normal force on the upper body, compression positive"""
+    method: AnyMethod = None
 
     @property
     def compression(self) -> float:
@@ -178,9 +185,11 @@ class Path(Kind):
     finds_pull_off = True
     way_is_given: ClassVar[bool] = True
 
-    kind: Literal["path"] = Field(description="prescribed displacement, there and back")
-    displacements: Displacements = Field(description="displacements, compression positive: a list or an even span")
-    method: Method | None = Field(default=None, description=_METHOD)
+    kind: Literal["path"]
+    """prescribed displacement, there and back"""
+    displacements: Displacements
+    """displacements, compression positive: a list or an even span"""
+    method: AnyMethod = None
 
     def places(self) -> list[float]:
         """Displacements [LU] in the order in which they are visited, the turning point of a span once."""
@@ -193,23 +202,19 @@ class PullOff(Kind):
     only_with_noise = ("loading_rate", "velocity", "stiffness", "repeats")
     finds_pull_off = True
 
-    kind: Literal["pull_off"] = Field(description="compress by the preload, then the largest tension held")
-    preload: Compression = Field(description="compressive force F_D before the pull")
-    loading_rate: LoadingRate | None = Field(
-        default=None, description="with [noise]: rate at which the load is drawn off until the bodies part"
-    )
-    velocity: Velocity | None = Field(
-        default=None,
-        description="with [noise], in place of loading_rate: velocity at which the far end of a spring draws the plate "
-        "off",
-    )
-    stiffness: Stiffness | None = Field(
-        default=None, description="with velocity: of that spring; absent: that of the contact without load"
-    )
-    repeats: RepeatCount | None = Field(
-        default=None, description="with [noise]: how often, each time with the next seed; absent: once"
-    )
-    method: Method | None = Field(default=None, description=_METHOD)
+    kind: Literal["pull_off"]
+    """compress by the preload, then the largest tension held"""
+    preload: Compression
+    """compressive force F_D before the pull"""
+    loading_rate: LoadingRate | None = None
+    """with [noise]: rate at which the load is drawn off until the bodies part"""
+    velocity: Velocity | None = None
+    """with [noise], in place of loading_rate: velocity at which the far end of a spring draws the plate off"""
+    stiffness: Stiffness | None = None
+    """with velocity: of that spring; absent: that of the contact without load"""
+    repeats: RepeatCount | None = None
+    """with [noise]: how often, each time with the next seed; absent: once"""
+    method: AnyMethod = None
 
     @property
     def compression(self) -> float:
@@ -232,10 +237,10 @@ class Leg(Table):
 
     as_list: ClassVar[bool] = True
 
-    velocity: DriveVelocity = Field(description="velocity of the driven end; negative: back, 0: it rests")
-    distance: Length = Field(
-        description="way of the driven end; where it rests, it does so as long as cantilever.velocity takes for that"
-    )
+    velocity: DriveVelocity
+    """velocity of the driven end; negative: back, 0: it rests"""
+    distance: Length
+    """way of the driven end; where it rests, it does so as long as cantilever.velocity takes for that"""
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core: Any, handler: Any) -> dict[str, Any]:
@@ -258,16 +263,14 @@ class Slide(Kind):
     way_is_given: ClassVar[bool] = True
     motion_is_result: ClassVar[bool] = True
 
-    kind: Literal["slide"] = Field(description="normal force and cantilever; always dynamic")
-    normal_force: Force = Field(
-        description="force held while sliding, compression positive; 0 or a pull where bodies attract each other"
-    )
-    distance: Length | None = Field(
-        default=None, description="way of the driven end of the cantilever at cantilever.velocity; absent with a path"
-    )
-    path: Annotated[tuple[Leg, ...], Field(strict=False), MinLen(1)] | None = Field(
-        default=None, description="legs [velocity, distance] of the driven end in place of one distance"
-    )
+    kind: Literal["slide"]
+    """normal force and cantilever; always dynamic"""
+    normal_force: Force
+    """force held while sliding, compression positive; 0 or a pull where bodies attract each other"""
+    distance: Length | None = None
+    """way of the driven end of the cantilever at cantilever.velocity; absent with a path"""
+    path: Annotated[tuple[Leg, ...], Field(strict=False), MinLen(1)] | None = None
+    """legs [velocity, distance] of the driven end in place of one distance"""
 
     def legs(self, velocity: float) -> tuple[Leg, ...]:
         """The legs; `velocity` [LU/TU] is the cantilever's."""
@@ -311,18 +314,16 @@ class Tangential(Kind):
     way_is_given: ClassVar[bool] = True
     goes_along: ClassVar[bool] = True
 
-    kind: Literal["tangential"] = Field(description="normal load, then displacement along x with friction")
-    normal_force: NormalForces | None = Field(
-        default=None, description="compressive force: one, or one for each of the displacements"
-    )
-    normal_displacement: NormalDisplacements | None = Field(
-        default=None,
-        description="in place of the force: displacement in normal direction, compression positive; one, or one for "
-        "each of the displacements",
-    )
-    displacements: Displacements = Field(
-        description="displacements along x, from 0 on where the load comes on: a list or an even span"
-    )
+    kind: Literal["tangential"]
+    """normal load, then displacement along x with friction"""
+    normal_force: NormalForces | None = None
+    """compressive force: one, or one for each of the displacements"""
+    normal_displacement: NormalDisplacements | None = None
+    """in place of the force: displacement in normal direction, compression positive; one, or one for each of the
+    displacements
+    """
+    displacements: Displacements
+    """displacements along x, from 0 on where the load comes on: a list or an even span"""
 
     @property
     def compression(self) -> float | None:
@@ -355,12 +356,14 @@ class Hold(Kind):
     needs = ("damping",)
     load_key = "force"
 
-    kind: Literal["hold"] = Field(description="hold a displacement or a force for a time; always dynamic")
-    displacement: Displacement | None = Field(default=None, description="displacement held, compression positive")
-    force: Force | None = Field(
-        default=None, description="in place of the displacement: normal force held, compression positive; with [plate]"
-    )
-    duration: Duration = Field(description="how long it is held")
+    kind: Literal["hold"]
+    """hold a displacement or a force for a time; always dynamic"""
+    displacement: Displacement | None = None
+    """displacement held, compression positive"""
+    force: Force | None = None
+    """in place of the displacement: normal force held, compression positive; with [plate]"""
+    duration: Duration
+    """how long it is held"""
 
     @property
     def compression(self) -> float | None:

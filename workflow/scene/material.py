@@ -20,8 +20,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Literal
 
-from pydantic import Field
-
 from contact1d.workflow.scene.profiles import galin_factor
 from contact1d.workflow.scene.quantities import (
     Kilogram,
@@ -39,11 +37,6 @@ LAYER_SHARE = {"geike_popov": 0.5, "mdr": 1.0}
 PARABOLA_SHARE = {"geike_popov": 1.0, "mdr": 0.5}
 """Radius of the plane parabola x²/2R₁ over that of the body that it stands for: the MDR takes x²/2R to x²/R."""
 
-MEANING = (
-    'how the plane model stands for a 3D one: "geike_popov" (profile as drawn) or "mdr" (transformed); absent: "mdr" '
-    'with a material, on a rigid plane and for every profile but a parabola, else "geike_popov"'
-)
-"""What the key `bodies.reduction` is."""
 SPHERES = ("parabola", "circle")
 """Profiles of which two make the pair of spheres of the paper."""
 ALIKE = ("flat_punch", "flat")
@@ -55,8 +48,10 @@ WIDER_THAN_SPHERES = 2.0
 class Elastic(Table):
     """An isotropic elastic body."""
 
-    youngs_modulus: Pascal = Field(description="Young's modulus E")
-    poisson_ratio: Poisson = Field(description="Poisson's ratio ν")
+    youngs_modulus: Pascal
+    """Young's modulus E"""
+    poisson_ratio: Poisson
+    """Poisson's ratio ν"""
 
     @property
     def compliance(self) -> float:
@@ -72,20 +67,20 @@ class Elastic(Table):
 class Material(Table):
     """What the model stands for in SI: elasticity, and either the units or the surface energy."""
 
-    upper: Elastic | None = Field(default=None, description="the upper body")
-    lower: Elastic | None = Field(default=None, description="the lower body")
-    contact_modulus: Pascal | None = Field(default=None, description="E*, in place of the two bodies")
-    length_unit: Metre | None = Field(default=None, description="one LU in metres; absent: 1, where numbers have units")
-    force_unit: Newton | None = Field(
-        default=None, description='one FU in newtons, with bodies.bulk_stiffness = "auto"; absent: from the stiffness'
-    )
-    mass_unit: Kilogram | None = Field(
-        default=None, description="one MU in kilograms, for masses, times and velocities with units"
-    )
-    surface_energy: SurfaceEnergy | None = Field(
-        default=None,
-        description="γ of one side, half the work of adhesion: both units then follow from the run by JKR (Eq. 9)",
-    )
+    upper: Elastic | None = None
+    """the upper body"""
+    lower: Elastic | None = None
+    """the lower body"""
+    contact_modulus: Pascal | None = None
+    """E*, in place of the two bodies"""
+    length_unit: Metre | None = None
+    """one LU in metres; absent: 1, where numbers have units"""
+    force_unit: Newton | None = None
+    """one FU in newtons, with bodies.bulk_stiffness = "auto"; absent: from the stiffness"""
+    mass_unit: Kilogram | None = None
+    """one MU in kilograms, for masses, times and velocities with units"""
+    surface_energy: SurfaceEnergy | None = None
+    """γ of one side, half the work of adhesion: both units then follow from the run by JKR (Eq. 9)"""
 
     def effective_modulus(self) -> float:
         """E* [Pa]."""

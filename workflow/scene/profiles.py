@@ -77,8 +77,10 @@ class Shape(Table):
 class Parabola(Shape):
     """Profile of the upper body: z = x²/2R."""
 
-    kind: Literal["parabola"] = Field(description="z = x²/2R, the paper's circle")
-    radius: Length = Field(description="radius of curvature R at the apex")
+    kind: Literal["parabola"]
+    """z = x²/2R, the paper's circle"""
+    radius: Length
+    """radius of curvature R at the apex"""
 
     def height(self, x: Array) -> Array:
         """z = x²/2R."""
@@ -97,8 +99,10 @@ class Parabola(Shape):
 class Circle(Shape):
     """Profile of the upper body: an exact circle, z = R − √(R² − x²)."""
 
-    kind: Literal["circle"] = Field(description="z = R − √(R² − x²), an exact circle")
-    radius: Length = Field(description="radius R")
+    kind: Literal["circle"]
+    """z = R − √(R² − x²), an exact circle"""
+    radius: Length
+    """radius R"""
 
     def height(self, x: Array) -> Array:
         """z = R − √(R² − x²), written without the difference of large numbers."""
@@ -125,9 +129,12 @@ class Circle(Shape):
 class Ellipsoid(Shape):
     """Profile of the upper body: an ellipsoid of revolution, z = b − b √(1 − x²/c²)."""
 
-    kind: Literal["ellipsoid"] = Field(description="z = b − b √(1 − x²/c²), an ellipsoid of revolution about the load")
-    radius: Length = Field(description="half axis c across the load")
-    half_axis: Length = Field(alias="height", description="half axis b along the load")
+    kind: Literal["ellipsoid"]
+    """z = b − b √(1 − x²/c²), an ellipsoid of revolution about the load"""
+    radius: Length
+    """half axis c across the load"""
+    half_axis: Length = Field(alias="height")
+    """half axis b along the load"""
 
     def height(self, x: Array) -> Array:
         """z = b (x/c)²/(1 + √(1 − x²/c²))."""
@@ -155,8 +162,10 @@ class Ellipsoid(Shape):
 class Cone(Shape):
     """Profile of the upper body: z = s |x|."""
 
-    kind: Literal["cone"] = Field(description="z = s |x|")
-    slope: Ratio = Field(description="slope s, the tangent of the angle between flank and plane")
+    kind: Literal["cone"]
+    """z = s |x|"""
+    slope: Ratio
+    """slope s, the tangent of the angle between flank and plane"""
 
     def height(self, x: Array) -> Array:
         """z = s |x|."""
@@ -184,14 +193,17 @@ class Level(Shape):
 class Flat(Level):
     """Profile of the upper body: z = 0 without end; its chain closes on itself (`bodies.periodic`)."""
 
-    kind: Literal["flat"] = Field(description="z = 0 without end, with bodies.periodic")
+    kind: Literal["flat"]
+    """z = 0 without end, with bodies.periodic"""
 
 
 class FlatPunch(Level):
     """Profile of the upper body: z = 0 out to the edge, and no body beyond it."""
 
-    kind: Literal["flat_punch"] = Field(description="z = 0 within the radius, no body beyond it")
-    radius: Length = Field(description="radius, a whole number of half spacings")
+    kind: Literal["flat_punch"]
+    """z = 0 within the radius, no body beyond it"""
+    radius: Length
+    """radius, a whole number of half spacings"""
 
     @property
     def reach(self) -> float:
@@ -202,10 +214,14 @@ class FlatPunch(Level):
 class Power(Shape):
     """Profile of the upper body: z = h (|x|/a)ⁿ."""
 
-    kind: Literal["power"] = Field(description="z = h (|x|/a)ⁿ")
-    exponent: Exponent = Field(description="exponent n")
-    radius: Length = Field(description="radius a at which the height is given")
-    height_there: Length = Field(alias="height", description="height h at that radius")
+    kind: Literal["power"]
+    """z = h (|x|/a)ⁿ"""
+    exponent: Exponent
+    """exponent n"""
+    radius: Length
+    """radius a at which the height is given"""
+    height_there: Length = Field(alias="height")
+    """height h at that radius"""
 
     def height(self, x: Array) -> Array:
         """z = h (|x|/a)ⁿ."""
@@ -228,17 +244,18 @@ class Measured(Shape):
     Between its points it is a monotone cubic: no overshoot, a continuous slope, a paraboloid met exactly.
     """
 
-    kind: Literal["table"] = Field(description="measured points, monotone cubics between them")
-    file: str | None = Field(
-        default=None,
-        description="CSV file with the columns r and z, or r [µm] and z [µm], read into the keys r and z; from −x to x "
-        "the mean of both sides is taken",
-    )
-    scale: Length | None = Field(
-        default=None, description="length of one unit of a file's numbers that has no units in it; absent: 1 LU"
-    )
-    r: Radii | None = Field(default=None, description="radii of the points, from 0, rising")
-    z: Heights | None = Field(default=None, description="heights at these radii; the first one counts as 0")
+    kind: Literal["table"]
+    """measured points, monotone cubics between them"""
+    file: str | None = None
+    """CSV file with the columns r and z, or r [µm] and z [µm], read into the keys r and z; from −x to x the mean of
+    both sides is taken
+    """
+    scale: Length | None = None
+    """length of one unit of a file's numbers that has no units in it; absent: 1 LU"""
+    r: Radii | None = None
+    """radii of the points, from 0, rising"""
+    z: Heights | None = None
+    """heights at these radii; the first one counts as 0"""
 
     @model_validator(mode="after")
     def _is_a_profile(self) -> Self:

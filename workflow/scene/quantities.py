@@ -2,8 +2,8 @@
 
 Model units: length LU (the spacing), force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT in FU·LU.
 
-`keys_of` is the one reader of the tables' types, and `places` the one walker of a scene's numbers: reading, checking,
-conversion between units, the schema and the documentation use both.
+`keys_of` is the one reader of the tables' types, and `walk` the one walker of a scene: reading, checking, conversion
+between units, the schema and the documentation use both.
 """
 
 from __future__ import annotations
@@ -63,12 +63,16 @@ class OutOfRange:
 class Table(BaseModel):
     """A table of a scene: immutable, no unknown keys, no conversion between types, finite numbers only.
 
+    The text below a key says what it is, to readers of this file, of the documentation and of the schema alike.
+
     Attributes:
         as_list: it is written as a list of its values.
         one_of: sets of keys of which exactly one must be there, with what to do otherwise.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", strict=True, allow_inf_nan=False, use_attribute_docstrings=True
+    )
 
     as_list: ClassVar[bool] = False
     one_of: ClassVar[tuple[tuple[tuple[str, ...], str], ...]] = ()
@@ -213,7 +217,9 @@ def keys_of(table: type[Table]) -> dict[str, Key]:
     """Every key that may stand in `table`, as written in TOML, in order; kept, since every scene asks for some tens."""
     hints = get_type_hints(table, include_extras=True)
     return {
-        field.alias or name: Key(name, allowed_by(hints[name]), str(field.description), field.get_default())
+        field.alias or name: Key(
+            name, allowed_by(hints[name]), " ".join((field.description or "").split()), field.get_default()
+        )
         for name, field in table.model_fields.items()
     }
 
@@ -231,18 +237,24 @@ def allowed_by(annotation: Any, marks: tuple[Any, ...] = ()) -> Allowed:
 
 @dataclass(frozen=True)
 class Place:
-    """A number's place in a scene: its `keys`, what stands there (or follows from a default), and its unit."""
+    """A place in a scene: its `keys`, what stands there, and what may; `absent`: what counts where nothing stands."""
 
     keys: Keys
     value: Any
-    unit: Unit
-    words: tuple[str, ...] = ()
+    allowed: Allowed
     absent: bool = False
+
+    @property
+    def unit(self) -> Unit:
+        """The unit of a number."""
+        unit = self.allowed.quantity
+        assert unit is not None
+        return unit
 
     @property
     def is_text(self) -> bool:
         """Whether it is a text that can only have meant a number with a unit: one with digits, and no plain number."""
-        if not isinstance(self.value, str) or self.value in self.words or not any(map(str.isdigit, self.value)):
+        if not isinstance(self.value, str) or self.value in self.allowed.words or not any(map(str.isdigit, self.value)):
             return False
         try:
             float(self.value)
@@ -262,25 +274,24 @@ class Place:
         data[self.keys[-1]] = value
 
 
-def places(table: type[Table], data: Mapping[str, Any], keys: Keys = ()) -> Iterator[Place]:
-    """Every place of a number in `data`, a table of this type with the keys of a scene file; absent keys by default."""
-    for name, key in keys_of(table).items():
-        if name in data:
-            yield from _inside(key.allowed, data[name], (*keys, name))
-        elif isinstance(key.default, float) and (unit := key.allowed.quantity):
-            yield Place((*keys, name), key.default, unit, absent=True)
-
-
-def _inside(allowed: Allowed, value: Any, keys: Keys) -> Iterator[Place]:
-    if isinstance(value, Mapping):
-        if table := allowed.table_for(value):
-            yield from places(table, value, keys)
+def walk(allowed: Allowed, value: Any, keys: Keys = (), absent: bool = False) -> Iterator[Place]:
+    """Every place in `value`, a table before what is inside it, which may be mended meanwhile; absent keys, too."""
+    yield Place(keys, value, allowed, absent)
+    if isinstance(value, Mapping) and (table := allowed.table_for(value)):
+        for name, key in keys_of(table).items():
+            yield from walk(key.allowed, value.get(name, key.default), (*keys, name), name not in value)
     elif isinstance(value, list | tuple):
         for items in (choice.items for choice in allowed.choices if choice.items):
             for i, item in enumerate(value):
-                yield from _inside(items, item, (*keys, i))
-    elif unit := allowed.quantity:
-        yield Place(keys, value, unit, allowed.words)
+                yield from walk(items, item, (*keys, i))
+
+
+def places(table: type[Table], data: Mapping[str, Any]) -> Iterator[Place]:
+    """Every place of a number in `data`, a table of this type with the keys of a scene file; absent keys by default."""
+    for place in walk(allowed_by(table), data):
+        nothing = place.absent and not isinstance(place.value, float)
+        if place.allowed.quantity and not nothing and not isinstance(place.value, Mapping | list | tuple):
+            yield place
 
 
 def tables_in(table: type[Table], path: str = "") -> Iterator[tuple[str, Choice]]:

@@ -146,12 +146,12 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
     columns, unread = _with_points(plain, folder)
     _with_legs(plain)
     converted = Conversion(plain, columns)
-    checked = check_tables(plain, Scene, converted.reported)
-    found = (*unread, *converted.problems, *checked.problems, *check_fit(plain, checked.unsound))
+    scene, wrong, unsound = check_tables(plain, Scene, converted.reported)
+    found = (*unread, *converted.problems, *wrong, *check_fit(plain, unsound))
     problems += [_as_written(problem, converted.texts, columns, plain) for problem in found]
-    if problems or not isinstance(checked.scene, Scene):
+    if problems or scene is None:
         raise SceneError(sorted(problems, key=_rank))
-    return checked.scene
+    return scene
 
 
 def _as_written(

@@ -14,7 +14,7 @@ from fractions import Fraction
 from typing import Any
 
 from contact1d.workflow.scene.problems import Problem, path_of, shown
-from contact1d.workflow.scene.quantities import Keys, Place, Unit, places
+from contact1d.workflow.scene.quantities import Keys, Length, Place, Stiffness, allowed_by, places
 from contact1d.workflow.scene.si_text import UnitTextError, example, si_value
 from contact1d.workflow.scene.tables import Tables
 from contact1d.workflow.units import SI
@@ -27,6 +27,7 @@ ELASTIC = frozenset({"upper", "lower", "contact_modulus"})
 """Keys of [material] that say how stiff the bodies are."""
 LISTED = 3
 """Places that a message names before it counts the rest."""
+LENGTH = allowed_by(Length)
 FILE = ("bodies", "profile", "file")
 
 
@@ -63,7 +64,7 @@ class Conversion:
     def __post_init__(self) -> None:
         """Convert them: those in SI first, since they say what LU, FU and MU are."""
         found = [place for place in places(Tables, self.data) if place.is_text]
-        found += [Place(keys, column.unit, Unit("LU")) for keys, column in self.columns.items() if column.unit]
+        found += [Place(keys, column.unit, LENGTH) for keys, column in self.columns.items() if column.unit]
         read = [(place, value) for place in found if (value := self._si(place)) is not None]
         for place, value in read:
             if not place.unit.bases:
@@ -126,7 +127,7 @@ class Conversion:
         fixed = "FU" in chosen and elastic and stiffness != "auto"
         plain = [place for place in self._plain() if place.unit.bases & chosen]
         if fixed and own not in self.reported:
-            self._report(Place(own, stiffness, Unit("FU/LU")), "follows from the material here", 'write "auto"')
+            self._report(Place(own, stiffness, allowed_by(Stiffness)), "follows from the material here", 'write "auto"')
         elif plain and not fixed:
             self.problems.append(self._mixed(plain, first, chosen))
         # also where a problem was reported, so that the rules across tables don't report its consequences
@@ -146,7 +147,7 @@ class Conversion:
                 yield place
             elif column.file not in files:
                 files.add(column.file)
-                yield Place(FILE, column.file, Unit("LU"))
+                yield Place(FILE, column.file, LENGTH)
 
     def _mixed(self, plain: list[Place], text: Place, chosen: frozenset[str]) -> Problem:
         """Plain numbers beside numbers with a unit, and nothing says what the units of the model are."""

@@ -21,7 +21,7 @@ from contact1d.workflow.scene.effects import (
     Plate,
 )
 from contact1d.workflow.scene.experiments import Experiment, Method
-from contact1d.workflow.scene.material import MEANING, PARABOLA_SHARE, Material, Reduction, default_reduction
+from contact1d.workflow.scene.material import PARABOLA_SHARE, Material, Reduction, default_reduction
 from contact1d.workflow.scene.problems import tables_as_toml
 from contact1d.workflow.scene.profiles import Flat, Parabola, Profile
 from contact1d.workflow.scene.quantities import (
@@ -36,6 +36,7 @@ from contact1d.workflow.scene.quantities import (
     RelativeTolerance,
     Stiffness,
     Table,
+    allowed_by,
     keys_of,
 )
 
@@ -47,43 +48,38 @@ if TYPE_CHECKING:
 class Bodies(Table):
     """The two bodies: chains of particles, each particle held to its own bulk by a spring."""
 
-    particles: AutoParticleCount = Field(
-        description='particles per body, or of the lower one, or "auto": as many as the contact needs'
-    )
-    given_spacing: AutoLength = Field(
-        alias="spacing",
-        description='distance of neighbouring particles, or on a rigid plane "auto": so near that all results keep '
-        "`accuracy.tolerance`",
-    )
-    profile: Profile = Field(description="shape of the upper body")
-    reduction: Reduction = Field(default=cast("Reduction", None), description=MEANING)
-    bulk_stiffness: AutoStiffness = Field(
-        default="auto",
-        description='stiffness of each particle to its bulk, normal direction, or "auto": from the material',
-    )
-    bulk_stiffness_tangential: Stiffness | None = Field(
-        default=None,
-        description="stiffness of each particle to its bulk, along x; absent: as in normal direction, or with E and ν "
-        "of both bodies G*/E* of that",
-    )
-    mass: Mass = Field(default=1.0, description="mass of a particle; matters only where something moves in time")
-    lower: Literal["particles", "rigid_plane", "rigid_chain"] = Field(
-        default="particles",
-        description='lower body: "particles" like the upper one, a "rigid_plane", or a "rigid_chain" of particles '
-        "without springs",
-    )
-    periodic: bool = Field(default=False, description="whether both bodies, which are flat, go on for ever along x")
-    upper_particles: AnyParticleCount | None = Field(
-        default=None, description="particles of the upper body; absent: as many as the lower one has"
-    )
-    upper_spacing: Length | None = Field(
-        default=None, description="distance of neighbouring particles of the upper body; absent: the spacing"
-    )
-    upper_offset: Displacement | None = Field(
-        default=None,
-        description="place of the upper body's middle along x; absent: 0, and in a slide such that its particles begin "
-        "between those of the lower one",
-    )
+    particles: AutoParticleCount
+    """particles per body, or of the lower one, or "auto": as many as the contact needs"""
+    given_spacing: AutoLength = Field(alias="spacing")
+    """distance of neighbouring particles, or on a rigid plane "auto": so near that all results keep
+    `accuracy.tolerance`
+    """
+    profile: Profile
+    """shape of the upper body"""
+    reduction: Reduction = cast("Reduction", None)
+    """how the plane model stands for a 3D one: "geike_popov" (profile as drawn) or "mdr" (transformed); absent: "mdr"
+    with a material, on a rigid plane and for every profile but a parabola, else "geike_popov"
+    """
+    bulk_stiffness: AutoStiffness = "auto"
+    """stiffness of each particle to its bulk, normal direction, or "auto": from the material"""
+    bulk_stiffness_tangential: Stiffness | None = None
+    """stiffness of each particle to its bulk, along x; absent: as in normal direction, or with E and ν of both
+    bodies G*/E* of that
+    """
+    mass: Mass = 1.0
+    """mass of a particle; matters only where something moves in time"""
+    lower: Literal["particles", "rigid_plane", "rigid_chain"] = "particles"
+    """lower body: "particles" like the upper one, a "rigid_plane", or a "rigid_chain" of particles without springs"""
+    periodic: bool = False
+    """whether both bodies, which are flat, go on for ever along x"""
+    upper_particles: AnyParticleCount | None = None
+    """particles of the upper body; absent: as many as the lower one has"""
+    upper_spacing: Length | None = None
+    """distance of neighbouring particles of the upper body; absent: the spacing"""
+    upper_offset: Displacement | None = None
+    """place of the upper body's middle along x; absent: 0, and in a slide such that its particles begin between
+    those of the lower one
+    """
 
     def height(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Height [LU] of the upper chain above its apex at the places `x` [LU], as its reduction has it."""
@@ -117,17 +113,18 @@ class Bodies(Table):
 class Accuracy(Table):
     """How exact the results are to be; chooses every numerical setting that the scene leaves open."""
 
-    tolerance: RelativeTolerance = Field(default=1e-3, description="relative error allowed in the main results")
+    tolerance: RelativeTolerance = 1e-3
+    """relative error allowed in the main results"""
 
 
 class Output(Table):
     """What is kept besides the results."""
 
-    states: AllOrSome = Field(
-        description="how many states of the whole way states.lammpstrj holds, each with all atoms' places and the "
-        'force of the opposite body on them: so many, evenly among the rows of curve.csv, or "all" of these; without '
-        "this table it has the reported states only"
-    )
+    states: AllOrSome
+    """how many states of the whole way states.lammpstrj holds, each with all atoms' places and the force of the
+    opposite body on them: so many, evenly among the rows of curve.csv, or "all" of these; without this table it has
+    the reported states only
+    """
 
 
 def _one_line(title: str) -> str:
@@ -141,21 +138,36 @@ class Tables(Table):
 
     model_config = ConfigDict(defer_build=True)  # built once, by that
 
-    title: Annotated[str, AfterValidator(_one_line)] = Field(description="what the scene shows, one line")
-    bodies: Bodies = Field(description="the two bodies")
-    interaction: Interaction | None = Field(default=None, description="forces between opposite bodies")
-    neighbours: Neighbours | None = Field(default=None, description="springs between neighbouring particles")
-    horizontal: Horizontal | None = Field(default=None, description="particles may also move along x")
-    adhesion: Adhesion | None = Field(default=None, description="adhesion to a rigid plane")
-    friction: Friction | None = Field(default=None, description="friction on a rigid plane")
-    damping: Damping | None = Field(default=None, description="viscous damping of particles")
-    noise: Noise | None = Field(default=None, description="thermal forces")
-    plate: Plate | None = Field(default=None, description="the upper plate moves under a force")
-    cantilever: Cantilever | None = Field(default=None, description="the plate is pulled through a spring")
-    material: Material | None = Field(default=None, description="what the model stands for in SI")
-    accuracy: Accuracy = Field(default=Accuracy(), description="how exact")
-    output: Output | None = Field(default=None, description="what is kept besides the results")
-    experiment: Experiment = Field(description="what is done")
+    title: Annotated[str, AfterValidator(_one_line)]
+    """what the scene shows, one line"""
+    bodies: Bodies
+    """the two bodies"""
+    interaction: Interaction | None = None
+    """forces between opposite bodies"""
+    neighbours: Neighbours | None = None
+    """springs between neighbouring particles"""
+    horizontal: Horizontal | None = None
+    """particles may also move along x"""
+    adhesion: Adhesion | None = None
+    """adhesion to a rigid plane"""
+    friction: Friction | None = None
+    """friction on a rigid plane"""
+    damping: Damping | None = None
+    """viscous damping of particles"""
+    noise: Noise | None = None
+    """thermal forces"""
+    plate: Plate | None = None
+    """the upper plate moves under a force"""
+    cantilever: Cantilever | None = None
+    """the plate is pulled through a spring"""
+    material: Material | None = None
+    """what the model stands for in SI"""
+    accuracy: Accuracy = Accuracy()
+    """how exact"""
+    output: Output | None = None
+    """what is kept besides the results"""
+    experiment: Experiment
+    """what is done"""
 
     @model_validator(mode="after")
     def _choose_reduction(self) -> Self:
@@ -233,6 +245,8 @@ class Tables(Table):
         return self.experiment.given_method or default_method(self.effects)
 
 
+WHOLE = allowed_by(Tables)
+"""What a scene is."""
 EFFECT_TABLES: dict[str, type[Effect]] = {
     name: table for name, key in keys_of(Tables).items() if (table := key.allowed.table) and issubclass(table, Effect)
 }
