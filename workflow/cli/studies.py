@@ -69,7 +69,7 @@ def cost(
     folder = out if out is not None else Path("costs") / scene.stem
     with command("the study", kept="it begins anew next time") as progress:
         asked = read(scene, set_, without)
-        from contact1d.workflow.cost.report import closing, summary, write_report
+        from contact1d.workflow.cost.report import summary, write_report
         from contact1d.workflow.cost.study import cost_of
         from contact1d.workflow.experiments.spacing import with_spacing
         from contact1d.workflow.model.settings import settings_for
@@ -80,8 +80,7 @@ def cost(
         folder.mkdir(parents=True, exist_ok=True)
         record = cost_of(checked, scene.stem, folder, repeats, workers or cores(), progress)
         write_report(record, folder)
-    typer.echo("\n".join(summary(record)))
-    typer.echo(f"\n{closing(record)}; {folder}")
+    typer.echo("\n".join(summary(record)) + f"; {folder}")
 
 
 def report(
