@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
+from itertools import cycle
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 from contact1d.analysis.curve import SAMPLE_TABLE, States, read_samples
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.sweep.axes import SweepPlan
-from contact1d.workflow.sweep.figures import Line, lines_of, mean_of, roles_of, short, theories_of
+from contact1d.workflow.sweep.figures import forms_of, label_of, lines_of, roles_of
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999933")
 """Okabe and Ito's, which the colour-blind can tell apart."""
@@ -201,43 +202,29 @@ def _over_time(run: Run) -> Mapping[str, Array]:
 
 
 def over_axes(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> list[Chart]:
-    """Each result of a sweep over its axes."""
-    along, others = roles_of(plan)
-    found, beside, unit_along = [], theories_of(folder, plan), along.numbers()[1]
-    place = f"{along.key} ({unit_along})" if unit_along else along.key
-    for name, unit in units.items():
-        lines, theory = lines_of(folder, plan, name), beside.get(name, {})
-        traces = [_line(labels, line, [short(other.key) for other in others], colour,
-                        covered=any(labels in said for said in theory.values()))
-                  for (labels, line), colour in zip(lines.items(), _colours(len(lines)), strict=True)]  # fmt: skip
-        for (form, said), dash in zip(theory.items(), DASHES * len(theory), strict=False):
-            traces += [
-                _theory(form, said[labels], dash, colour, shown=number == 0)
-                for number, (labels, colour) in enumerate(zip(lines, _colours(len(lines)), strict=True))
-                if labels in said
+    """Each result of a sweep over its axes; where a closed form speaks of a line, the runs are points on it."""
+    found = []
+    for name, lines in lines_of(folder, plan, units).items():
+        forms, colours = dict(zip(forms_of(lines), cycle(DASHES), strict=False)), _colours(len(lines))
+        traces = []
+        for line, colour in zip(lines, colours, strict=True):
+            mode = "markers" if line.forms else "lines+markers"
+            errors = {"type": "data", "array": _listed(line.errors), "thickness": 1}
+            made = trace(line.x, line.values, label_of(plan, line) or "runs", colour, mode)
+            traces.append(made | {"marker": {"size": 7}, "error_y": errors})
+        for form, dash in forms.items():
+            beside = [
+                (*line.forms[form], colour) for line, colour in zip(lines, colours, strict=True) if form in line.forms
             ]
-        found.append(
-            chart(name.replace("_", " "), place, f"{name.replace('_', ' ')} ({unit})", traces,
-                  showlegend=bool(others or theory))
-        )  # fmt: skip
+            for number, (x, values, colour) in enumerate(beside):
+                made = trace(x, values, form, colour, "lines" if len(x) > 1 else "markers", dash=dash)
+                hover = f"{form} %{{y:.5g}}<extra></extra>"
+                traces.append(made | {"legendgroup": form, "showlegend": number == 0, "hovertemplate": hover})
+        along, others = roles_of(plan)
+        words = name.replace("_", " ")
+        shown = bool(others or forms)
+        found.append(chart(words, along.title, f"{words} ({units[name]})", traces, showlegend=shown))
     return found
-
-
-def _theory(form: str, said: Mapping[float, float], dash: str, colour: str, shown: bool) -> dict[str, Any]:
-    """A closed form along a line of a sweep, in its colour; `shown` in the legend."""
-    places = sorted(said)
-    mode = "lines" if len(places) > 1 else "markers"
-    made = trace(places, [said[place] for place in places], form, colour, mode, dash=dash)
-    return made | {"legendgroup": form, "showlegend": shown, "hovertemplate": f"{form} %{{y:.5g}}<extra></extra>"}
-
-
-def _line(labels: Sequence[str], line: Line, names: Sequence[str], colour: str, covered: bool) -> dict[str, Any]:
-    """The runs of a line; where theory has it `covered`, as points."""
-    places = sorted(line)
-    means, errors = np.transpose([mean_of(line[place]) for place in places])
-    label = ", ".join(f"{name} = {value}" for name, value in zip(names, labels, strict=True))
-    made = trace(places, means, label or "runs", colour, "markers" if covered else "lines+markers")
-    return made | {"marker": {"size": 7}, "error_y": {"type": "data", "array": _listed(errors), "thickness": 1}}
 
 
 def half_width(x: np.ndarray[Any, Any], pressure: np.ndarray[Any, Any]) -> float:
