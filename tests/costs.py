@@ -4,20 +4,12 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from contact1d.workflow.cost.report import (
-    EFFECT_COLUMNS,
-    Advice,
-    CostRecord,
-    EffectCost,
-    KnobRecord,
-    Order,
-    VariantRecord,
-    effect_row,
-)
+from pydantic import TypeAdapter
+
+from contact1d.workflow.cost.report import EFFECT_COLUMNS, CostRecord, effect_row
 
 
 def effects_markdown(record: CostRecord) -> str:
@@ -28,30 +20,16 @@ def effects_markdown(record: CostRecord) -> str:
     return table + "\n" + "".join(f"- {one.text}\n" for one in record.advice)
 
 
-def read_record(path: Path) -> CostRecord:
-    """Read a cost.json. Raises OSError, and ValueError, KeyError or TypeError where it is none."""
-    data: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    knobs = [_numbers(one) | {"order": Order(**one["order"]) if one["order"] else None} for one in data["knobs"]]
-    variants = [
-        _numbers(one) | {"scene_keys": tuple(one["scene_keys"]), "cpu_runs": tuple(one["cpu_runs"])}
-        for one in data["variants"]
-    ]
-    return CostRecord(
-        **data
-        | {
-            "effects": tuple(data["effects"]),
-            "knobs": tuple(KnobRecord(**one) for one in knobs),
-            "variants": tuple(VariantRecord(**one) for one in variants),
-            "effect_costs": tuple(EffectCost(**_numbers(one)) for one in data["effect_costs"]),
-            "pareto": tuple(data["pareto"]),
-            "advice": tuple(Advice(**one) for one in data["advice"]),
-        }
-    )
-
-
-NUMBERS = {"own", "value", "error", "cpu_s", "total_s", "memory_mb", "with_us", "without_us", "ratio", "ratio_error"}
+NUMBERS = {"own", "value", "error", "memory_mb", "with_us", "without_us", "ratio", "ratio_error"}
 """Fields in which null stands for NaN."""
 
 
-def _numbers(entry: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: math.nan if value is None and name in NUMBERS else value for name, value in entry.items()}
+def read_record(path: Path) -> CostRecord:
+    """Read a cost.json. Raises OSError, and ValueError where it is none."""
+    return TypeAdapter(CostRecord).validate_python(json.loads(path.read_text(encoding="utf-8"), object_hook=_entry))
+
+
+def _entry(entry: dict[str, Any]) -> dict[str, Any]:
+    numbers = {name: math.nan for name, value in entry.items() if value is None and name in NUMBERS}
+    empty = {name: {} for name in ("values", "errors") if name in entry and entry[name] is None}
+    return entry | numbers | empty

@@ -9,8 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from contact1d.workflow.cli.app import app
-from contact1d.workflow.cli.arguments import scene_files
+from contact1d.workflow.cli.app import app, scene_files
 from contact1d.workflow.scene import EFFECTS
 
 PROGRAM = "import sys; from contact1d.workflow.cli.app import main; main()"

@@ -82,13 +82,6 @@ def test_an_error_becomes_a_sentence_and_an_exit_code(
     assert capsys.readouterr().err.startswith(words)
 
 
-def test_a_scene_that_is_not_the_callers_own_is_no_mistake_of_his(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as ended, ending.command("the reproduction", blame=ending.RUN_FAILED):
-        raise IdentifyError("out of reach")
-    assert ended.value.code == ending.RUN_FAILED
-    assert capsys.readouterr().err.endswith("the reproduction failed: out of reach\n")
-
-
 @pytest.mark.parametrize("error", [ZeroDivisionError(), typer.Exit(4), BrokenPipeError(errno.EPIPE, "Broken pipe")])
 def test_a_defect_of_the_program_and_an_end_of_typers_pass(error: Exception) -> None:
     with pytest.raises(type(error)), ending.command("the run", quiet=True):

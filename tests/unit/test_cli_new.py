@@ -11,8 +11,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner, Result
 
-from contact1d.workflow.cli.app import app
-from contact1d.workflow.cli.scenes import Kind
+from contact1d.workflow.cli.app import Kind, app
 from contact1d.workflow.cli.starter import SCENES, starter
 from contact1d.workflow.scene import Scene, read_scene
 from contact1d.workflow.scene.quantities import keys_of

@@ -15,18 +15,9 @@ import numpy as np
 import pytest
 
 from contact1d import read_scene
-from contact1d.workflow.cost.knobs import at_tolerance, base_change, knobs_of, left_out
-from contact1d.workflow.cost.report import (
-    COLUMNS,
-    Advice,
-    CostRecord,
-    EffectCost,
-    KnobRecord,
-    Order,
-    VariantRecord,
-    csv_text,
-    summary,
-)
+from contact1d.workflow.cost.knobs import Knob, Order, at_tolerance, base_keys, changed, knobs_of
+from contact1d.workflow.cost.measure import EffectCost
+from contact1d.workflow.cost.report import Advice, CostRecord, Variant, summary, write_report
 from contact1d.workflow.cost.study import TARGETS, advise, choice, fit_order, judged, pareto_front
 from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene
@@ -38,10 +29,6 @@ ROOT = Path(__file__).parents[2]
 SCENES = ROOT / "lammps_inputs" / "scenes"
 BEGIN, END = "<!-- cost: begin -->\n", "<!-- cost: end -->\n"
 ROUND_OFF = 1e-12
-
-
-def names(scene: Scene) -> set[str]:
-    return {knob.name for knob in knobs_of(scene, settings_for(scene))}
 
 
 ALWAYS = {"tolerance", "chain length"}
@@ -60,19 +47,21 @@ ALWAYS = {"tolerance", "chain length"}
 )
 def test_a_scene_has_the_knobs_that_its_file_can_turn(name: str, wanted: set[str]) -> None:
     scene = read_scene(SCENES / f"{name}.toml")
-    assert names(scene) == ALWAYS | wanted
-    assert not names(scene) & left_out(scene).keys()
-    assert ("spacing" in left_out(scene)) == ("spacing" not in wanted)
+    knobs, left_out = knobs_of(scene, settings_for(scene))
+    names = {knob.name for knob in knobs}
+    assert names == ALWAYS | wanted
+    assert not names & left_out.keys()
+    assert ("spacing" in left_out) == ("spacing" not in wanted)
 
 
 def test_a_spacing_keeps_stiffness_per_length() -> None:
     scene = read_scene(SCENES / "hertz_plane.toml")
-    base, knobs = base_change(scene), knobs_of(scene, settings_for(scene))
+    knobs, _ = knobs_of(scene, settings_for(scene))
     spacing = next(knob for knob in knobs if knob.name == "spacing")
     for level in spacing.levels:
-        changed = (base + level.change).scene(scene)
-        assert changed.bodies.spacing == level.value
-        assert changed.bulk_stiffness / changed.bodies.spacing == pytest.approx(0.5, rel=ROUND_OFF)
+        other = changed(scene, base_keys(scene) + level.keys)
+        assert other.bodies.spacing == level.value
+        assert other.bulk_stiffness / other.bodies.spacing == pytest.approx(0.5, rel=ROUND_OFF)
 
 
 def test_the_order_of_synthetic_errors_is_found_with_its_standard_error() -> None:
@@ -96,11 +85,11 @@ def test_the_pareto_front_is_what_nothing_else_beats() -> None:
     assert pareto_front([], []) == []
 
 
-def variant(label: str, error: float, cpu: float, **more: Any) -> VariantRecord:
-    return VariantRecord(label, more.pop("knob", "tolerance"), 1e-3, error=error, cpu_s=cpu, cpu_runs=(cpu,), **more)
+def variant(label: str, error: float, cpu: float, knob: str = "tolerance", **more: Any) -> Variant:
+    return Variant(label=label, knob=knob, value=1e-3, error=error, cpu_runs=(cpu,), **more)
 
 
-def tolerance(value: float, error: float, cpu: float, **more: Any) -> VariantRecord:
+def tolerance(value: float, error: float, cpu: float, **more: Any) -> Variant:
     label, details = f"accuracy.tolerance = {value:g}", more.pop("details", "table of 2000 points")
     return replace(variant(label, error, cpu, **more), value=value, details=details)
 
@@ -138,9 +127,10 @@ def test_the_kept_advice_is_what_the_tolerance_uses() -> None:
     scene = read_scene(SCENES / "pull_off.toml")
     assert [one.tolerance for one in kept.advice] == list(TARGETS)
     for one in kept.advice:
-        asked = at_tolerance(scene, one.tolerance).scene(scene)
-        assert kept.variant(one.chosen).value == one.tolerance
-        assert kept.variant(one.chosen).details == choice(asked, settings_for(asked))
+        asked = changed(scene, at_tolerance(scene, one.tolerance))
+        chosen = next(variant for variant in kept.variants if variant.label == one.chosen)
+        assert chosen.value == one.tolerance
+        assert chosen.details == choice(asked, settings_for(asked))
         assert f"chooses {choice(asked, settings_for(asked))}: error " in one.text
 
 
@@ -149,29 +139,30 @@ def test_with_noise_an_error_counts_with_its_standard_error() -> None:
     assert advise(1e-2, [lucky], noisy=True).label == "lucky"
     assert advise(1e-3, [lucky], noisy=True).text.endswith("(best 5.0e-03, by its noise: lucky)")
     reference = {"displacement": Quantity(2.0, 0.003, "LU")}
-    found = judged(variant("a", math.nan, 1.0), {"displacement": Quantity(2.02, 0.004, "LU")}, reference, noisy=True)
+    ran = variant("a", math.nan, 1.0, quantities={"displacement": Quantity(2.02, 0.004, "LU")})
+    found = judged(ran, reference, noisy=True)
     assert found.error == pytest.approx(0.01)
     assert found.spread == pytest.approx(0.0025)
 
 
 def record() -> CostRecord:
-    failed = VariantRecord("the scene as it is", "scene", math.nan, failure="particles flew\napart")
+    failed = Variant(label="the scene as it is", knob="scene", failure="particles flew\napart")
     good = variant(
         "accuracy.tolerance = 0.01", 1e-4, 0.2, values={"adhesion_force": 1.5}, errors={"adhesion_force": 1e-4},
-        steps=70, memory_mb=61.0, total_s=0.4, scene_keys=("accuracy.tolerance=0.01",),
+        steps=70, memory_mb=61.0, scene_keys=("accuracy.tolerance=0.01",),
     )  # fmt: skip
     return CostRecord(
         title="a pull-off", scene="pull_off", method="quasistatic", tolerance=1e-3,
         effects=("interaction", "neighbours"), reference="quasistatic", reference_values={"adhesion_force": 1.5},
         reference_uncertainties={"adhesion_force": 1e-9}, base="base", base_error=1e-8, repeats=3,
         knobs=(
-            KnobRecord("tolerance", "of all", "smaller", 1e-3, False, Order(0.94, 0.04, 4)),
-            KnobRecord("method dynamic", "the other", "smaller", math.nan, False, None),
+            Knob("tolerance", "of all", 1e-3, order=Order(0.94, 0.04, 4)),
+            Knob("method dynamic", "the other", math.nan),
         ),
         variants=(good, failed),
         effect_costs=(
-            EffectCost("interaction", 17.0, math.nan, math.nan, math.nan, 400, "interaction missing"),
-            EffectCost("neighbours", 17.0, 15.0, 1.133, 0.004, 400, "", {"adhesion_force": 6e-5}),
+            EffectCost("interaction", 400, 17.0, reason="interaction missing"),
+            EffectCost("neighbours", 400, 17.0, 15.0, 1.133, 0.004, changes={"adhesion_force": 6e-5}),
         ),
         left_out={"spacing": "it would change the physics"}, pareto=(good.label,),
         advice=(Advice(1e-3, "tolerance 1e-3: take it", "", good.label),),
@@ -180,16 +171,24 @@ def record() -> CostRecord:
 
 
 def test_a_record_survives_its_file(tmp_path: Path) -> None:
-    (tmp_path / "cost.json").write_text(record().to_json(), encoding="utf-8")
-    assert read_record(tmp_path / "cost.json").to_json() == record().to_json()
-    assert read_record(tmp_path / "cost.json").variants[1].failure == "particles flew\napart"
-    assert read_record(tmp_path / "cost.json").knobs[0] == record().knobs[0]
+    for folder in ("written", "again"):
+        (tmp_path / folder).mkdir()
+    write_report(record(), tmp_path / "written")
+    read = read_record(tmp_path / "written" / "cost.json")
+    write_report(read, tmp_path / "again")
+    assert (tmp_path / "again" / "cost.json").read_text() == (tmp_path / "written" / "cost.json").read_text()
+    assert read.variants[1].failure == "particles flew\napart"
+    assert read.knobs[0] == record().knobs[0]
 
 
-def test_the_table_has_a_row_for_every_variant_and_failures_a_reason() -> None:
-    rows = list(csv.DictReader(StringIO(csv_text(record()))))
-    assert list(rows[0]) == [*COLUMNS, "error_adhesion_force"]
-    assert (rows[0]["error"], rows[0]["lammps_cpu_s"], rows[0]["pareto"]) == ("0.0001", "0.2", "1")
+def test_the_table_has_a_row_for_every_variant_and_failures_a_reason(tmp_path: Path) -> None:
+    write_report(record(), tmp_path)
+    rows = list(csv.DictReader(StringIO((tmp_path / "cost.csv").read_text(encoding="utf-8"))))
+    assert list(rows[0]) == [
+        "knob", "label", "value", "error", "error_spread", "lammps_cpu_s", "wall_s", "steps", "memory_mb", "runs",
+        "pareto", "failure", "details", "error_adhesion_force",
+    ]  # fmt: skip
+    assert (float(rows[0]["error"]), float(rows[0]["lammps_cpu_s"]), rows[0]["pareto"]) == (1e-4, 0.2, "1")
     assert (rows[1]["error"], rows[1]["failure"], rows[1]["runs"]) == ("", "particles flew apart", "0")
 
 

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from contact1d import read_scene
 from contact1d.workflow.cli.app import app
-from contact1d.workflow.cost.measure import Prepared, measure
+from contact1d.workflow.cost.measure import measure
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.model.settings import settings_for
 from tests.costs import read_record
@@ -39,7 +39,7 @@ def test_a_variant_that_fails_is_listed_and_does_not_stop_the_others(make_scene:
     scene = make_scene(bodies={"particles": "auto"})
     usual = settings_for(scene)
     loose = replace(usual, force_tolerance=1e3)
-    ready = [Prepared("loose", scene, loose), Prepared("usual", scene, usual)]
+    ready = {"loose": (scene, loose), "usual": (scene, usual)}
     done = measure(ready, tmp_path, repeats=2, workers=1, progress=Silent())
     assert "not converged" in done["loose"].failure
     assert not done["usual"].failure
@@ -75,5 +75,5 @@ def test_the_command_studies_a_scene_from_end_to_end(tmp_path: Path, monkeypatch
 def test_a_variant_that_its_run_refuses_is_a_row_with_the_reason(tmp_path: Path) -> None:
     """A lower chain that is too short for the way is found as the run begins."""
     scene = read_scene(SCENES / "slide.toml", ["bodies.particles=34"])
-    done = measure([Prepared("short", scene, settings_for(scene))], tmp_path, 1, 1, Silent())
+    done = measure({"short": (scene, settings_for(scene))}, tmp_path, 1, 1, Silent())
     assert "too short for the way" in done["short"].failure

@@ -65,11 +65,10 @@ def test_body_on_a_rigid_one_has_its_own_modulus() -> None:
     assert contact.contact_modulus == pytest.approx(210e9 / (1.0 - 0.3**2), rel=ROUND_OFF)
 
 
-def test_range_that_nobody_gave_is_said_to_be_assumed() -> None:
+def test_range_that_nobody_gave_is_the_usual_one() -> None:
     known = {"radius": "1 um", "contact_modulus": "1 GPa", "surface_energy": 0.05}
-    assert read_contact(known).range_is_assumed
     assert read_contact(known).range == 0.3e-9
-    assert not read_contact(known | {"range": "0.3 nm"}).range_is_assumed
+    assert read_contact(known | {"range": "0.2 nm"}).range == pytest.approx(0.2e-9, rel=ROUND_OFF)
 
 
 def test_every_problem_is_told_at_once() -> None:

@@ -61,7 +61,7 @@ def test_every_scene_contact_and_sweep_is_one() -> None:
         elif "bodies" in tables:
             assert read_scene(text).title == tables["title"]
         else:
-            assert read_contact(tables).title == tables["title"]
+            assert read_contact(tables).scene.title == tables["title"]
         kinds.append("axes" in tables or "bodies" in tables)
     assert len(kinds) >= 3
 

@@ -9,7 +9,7 @@ import pytest
 
 from contact1d import sweep
 from contact1d.workflow.sweep.axes import read_sweep
-from contact1d.workflow.sweep.table import PARQUET, write_parquet
+from contact1d.workflow.sweep.table import PARQUET, TABLE, write_parquet
 from tests.sweeps import FORCE, RADIUS, Here, axis, plane, rows
 
 
@@ -23,11 +23,15 @@ def test_parquet_says_the_same_as_the_table(tmp_path: Path) -> None:
 
 
 def test_seeds_are_averaged_and_lines_told_apart(tmp_path: Path) -> None:
-    from contact1d.workflow.sweep.figures import sweep_figure
+    from contact1d.workflow.sweep.figures import lines_of, sweep_figure
 
     plan = read_sweep(plane(axis(FORCE, 0.5, 1.0), axis(RADIUS, 50.0, 100.0), axis("noise.seed", 1, 2)))
-    lines = {("50.0",): {0.5: [(1.0, 0.1), (3.0, 0.1)], 1.0: [(4.0, 0.2)]}, ("100.0",): {0.5: [(5.0, 0.1)]}}
-    figure = sweep_figure(plan, "displacement", "LU", lines)
+    (tmp_path / TABLE).write_text(
+        f"{FORCE},{RADIUS},noise.seed,status,reason,run,displacement,displacement_uncertainty\n"
+        "0.5,50.0,1,done,,,1.0,0.1\n0.5,50.0,2,done,,,3.0,0.1\n1.0,50.0,1,done,,,4.0,0.2\n0.5,100.0,1,done,,,5.0,0.1\n"
+        "1.0,100.0,1,failed,why,,,\n"
+    )
+    figure = sweep_figure(plan, "displacement", "LU", lines_of(tmp_path, plan, ["displacement"])["displacement"])
     first, second = figure.axes[0].containers
     np.testing.assert_allclose(first[0].get_ydata(), [2.0, 4.0])
     np.testing.assert_allclose(second[0].get_ydata(), [5.0])
@@ -40,7 +44,7 @@ def test_seeds_are_averaged_and_lines_told_apart(tmp_path: Path) -> None:
 def test_closed_forms_are_the_lines_of_a_sweeps_figures_and_the_runs_points_on_them(tmp_path: Path) -> None:
     """Hertz over the force for two radii: in the figure and on the page, in the colours of the runs beside them."""
     from contact1d.workflow.report.charts import over_axes
-    from contact1d.workflow.sweep.figures import lines_of, sweep_figure, theories_of
+    from contact1d.workflow.sweep.figures import lines_of, sweep_figure
 
     bodies = {
         "particles": "auto", "spacing": 1.0, "lower": "rigid_plane", "reduction": "mdr", "bulk_stiffness": 0.5,
@@ -53,18 +57,14 @@ def test_closed_forms_are_the_lines_of_a_sweeps_figures_and_the_runs_points_on_t
     done = sweep(tables, tmp_path / "s", workers=1, figures="svg")
     assert (done.folder / "displacement.svg").is_file()
     plan = read_sweep(tables)
-    said = theories_of(done.folder, plan)["displacement"]["Hertz"]
-    for radius in radii:
+    lines = lines_of(done.folder, plan, ["displacement"])["displacement"]
+    assert [line.labels for line in lines] == [(str(radius),) for radius in radii]
+    for line, radius in zip(lines, radii, strict=True):
         hertz = [(0.75 * force / 0.5 / radius**0.5) ** (2.0 / 3.0) for force in forces]
-        beside = [said[(str(radius),)][force] for force in forces]
+        x, beside = line.forms["Hertz"]
+        assert x.tolist() == forces
         assert beside == pytest.approx(hertz, rel=1e-9)  # of the force that is held
-    figure = sweep_figure(
-        plan,
-        "displacement",
-        "LU",
-        lines_of(done.folder, plan, "displacement"),
-        theories_of(done.folder, plan)["displacement"],
-    )
+    figure = sweep_figure(plan, "displacement", "LU", lines)
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
     assert labels == ["Hertz", "profile.radius = 500.0", "profile.radius = 1000.0"]
     chart = next(

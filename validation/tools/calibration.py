@@ -26,8 +26,8 @@ from pathlib import Path
 from statistics import geometric_mean
 from typing import Any
 
-from contact1d.workflow.cost.knobs import at_tolerance
-from contact1d.workflow.cost.measure import Measured, Prepared, measure
+from contact1d.workflow.cost.knobs import at_tolerance, changed
+from contact1d.workflow.cost.measure import Measured, measure
 from contact1d.workflow.cost.report import power
 from contact1d.workflow.cost.study import TARGETS, reference_of
 from contact1d.workflow.engine.progress import choose_progress
@@ -125,15 +125,15 @@ def studied(name: str, shares: Mapping[str, Sequence[Calibration]]) -> list[Row]
     with tempfile.TemporaryDirectory() as place:
         _, reference = reference_of(scene, Path(place))
         for tolerance in TARGETS:
-            asked = at_tolerance(scene, tolerance).scene(scene)
+            asked = changed(scene, at_tolerance(scene, tolerance))
             chosen = {
                 (share, one): settings_for(asked, calibration=one) for share, many in shares.items() for one in many
             }
             same = {key: _effective(asked, settings) for key, settings in chosen.items()}
-            ready = {same[key]: Prepared(same[key], asked, settings) for key, settings in chosen.items()}
+            ready = {same[key]: (asked, settings) for key, settings in chosen.items()}
             progress = choose_progress()
             progress.phase(f"{name}, tolerance {power(tolerance)}", ROUNDS * len(ready))
-            done = measure(list(ready.values()), Path(place), ROUNDS, WORKERS, progress)
+            done = measure(ready, Path(place), ROUNDS, WORKERS, progress)
             progress.close()
             for share, many in shares.items():
                 if len({same[share, one] for one in many}) > 1 or share == TOGETHER:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import gc
+import os
+from enum import StrEnum
 from pathlib import Path
+from shlex import quote
 from typing import Annotated
 
 import typer
 
-from contact1d.workflow.cli.arguments import Format, SceneFile, Set, Without
-from contact1d.workflow.cli.ending import FAILS, Commands, command, read, say
+from contact1d.workflow.cli.ending import CALL_IS_WRONG, FAILS, RUN_FAILED, Commands, command, read, say, stop
 from contact1d.workflow.cli.identify import identify
-from contact1d.workflow.cli.scenes import new, schema
-from contact1d.workflow.cli.studies import animate, cost, report, sweep
 
 GARBAGE_THRESHOLD = 100_000
 """New objects after which Python looks for garbage: at 700, a tenth of what the imports take goes into looking."""
@@ -51,6 +51,58 @@ def contact1d(
     """
 
 
+def scene_files(incomplete: str) -> list[str]:
+    """The *.toml files and the folders that begin with `incomplete`; a folder that is the only one is opened."""
+    folder, start = os.path.split(incomplete)
+    try:
+        entries = sorted(os.scandir(folder or "."), key=lambda entry: entry.name)
+    except OSError:
+        return []
+    shown = [entry for entry in entries if entry.name.startswith(start) and entry.name[0] != "."]
+    files = [os.path.join(folder, entry.name) for entry in shown if entry.name.endswith(".toml")]
+    folders = [os.path.join(folder, entry.name, "") for entry in shown if entry.is_dir()]
+    return scene_files(folders[0]) if len(folders) == 1 and not files else files + folders
+
+
+def effect_names(incomplete: str) -> list[str]:
+    """The effects that begin with `incomplete`."""
+    from contact1d.workflow.scene import EFFECTS
+
+    return [name for name in EFFECTS if name.startswith(incomplete)]
+
+
+Format = StrEnum("Format", ["PNG", "SVG", "PDF"])
+"""Of figures."""
+
+
+SceneFile = Annotated[
+    Path,
+    typer.Argument(
+        metavar="SCENE", help="A scene file (TOML); `new` writes one.", show_default=False, autocompletion=scene_files
+    ),
+]
+Set = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="TABLE.KEY=VALUE",
+        help="Change one value of the scene, as often as needed: `--set bodies.profile.radius=2000`.",
+        show_default=False,
+    ),
+]
+Without = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="EFFECT",
+        help="Leave out an effect's table: `--without noise`.",
+        show_default=False,
+        autocompletion=effect_names,
+    ),
+]
+Figures = Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures.")]
+FigureFormat = Annotated[Format, typer.Option("--format", help="Of the figures.")]
+
+
 def run(
     scene: SceneFile,
     out: Annotated[
@@ -59,8 +111,8 @@ def run(
     ] = None,
     set_: Set = None,
     without: Without = None,
-    figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures.")] = True,
-    format_: Annotated[Format, typer.Option("--format", help="Of the figures.")] = Format.PNG,
+    figures: Figures = True,
+    format_: FigureFormat = Format.PNG,
     time_limit: Annotated[float, typer.Option(min=0.1, help="Seconds of wall time for LAMMPS, per pass.")] = 3600.0,
     workers: Annotated[
         int | None, typer.Option(min=1, help="Repeats of a thermal pull-off at a time.", show_default="processors")
@@ -124,6 +176,167 @@ def doctor() -> None:
             typer.echo(f"     {check.advice}")
     if bad:
         raise typer.Exit(FAILS)
+
+
+def sweep(
+    file: Annotated[
+        Path,
+        typer.Argument(metavar="SWEEP", help="A sweep file (TOML).", show_default=False, autocompletion=scene_files),
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder of the sweep; what is done there is kept.", show_default="sweeps/<name of the file>"),
+    ] = None,
+    executor: Annotated[str, typer.Option(help="`local`: processes here; `slurm`: jobs of a cluster.")] = "local",
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Processes, or jobs, at a time.", show_default="processors")
+    ] = None,
+    partition: Annotated[str | None, typer.Option(help="Of Slurm.", show_default="its default")] = None,
+    figures: Figures = True,
+    format_: FigureFormat = Format.PNG,
+    parquet: Annotated[bool, typer.Option("--parquet", help="Write the table as Parquet as well.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the end only.")] = False,
+) -> None:
+    """Run a scene at each point of a sweep; one table, results.csv, has all results.
+
+    The file names a base scene and [[axes]], each with a key of the scene and its values. Broken off at any moment, the
+    same command goes on with what is missing. Exit code 3: a point failed or can't be run; the table says why.
+    """
+    folder = out if out is not None else Path("sweeps") / file.stem
+    kept = f"finished runs are kept in {folder}, and the same command goes on"
+    with command("the sweep", kept=kept, quiet=quiet) as progress:
+        from contact1d.workflow.sweep.sweep import sweep as do
+        from contact1d.workflow.sweep.table import TABLE, write_parquet
+
+        done = do(file, folder, executor, workers, format_.value if figures else False, progress, partition)
+        if parquet:
+            write_parquet(done.folder)
+    counts = ", ".join(f"{count} {status}" for status, count in sorted(done.counts.items()))
+    typer.echo(f"{counts}; {folder / TABLE}")
+    if set(done.counts) != {"done"}:
+        raise typer.Exit(RUN_FAILED)
+
+
+def cost(
+    scene: SceneFile,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for cost.json, cost.csv, cost.png.", show_default="costs/<name of the scene>"),
+    ] = None,
+    set_: Set = None,
+    without: Without = None,
+    repeats: Annotated[int, typer.Option(min=1, help="Runs of each variant; times are their medians.")] = 3,
+    workers: Annotated[int | None, typer.Option(min=1, help="Runs at a time.", show_default="processors")] = None,
+) -> None:
+    """Measure what accuracy costs in time: every numerical knob of a scene, its error beside its CPU time.
+
+    Leaves cost.json, cost.csv and a work-precision figure, cost.png, and says for each tolerance what reaches it at
+    the least cost. The scene itself is not changed.
+    """
+    folder = out if out is not None else Path("costs") / scene.stem
+    with command("the study", kept="it begins anew next time") as progress:
+        asked = read(scene, set_, without)
+        from contact1d.workflow.cost.report import summary, write_report
+        from contact1d.workflow.cost.study import cost_of
+        from contact1d.workflow.experiments.spacing import with_spacing
+        from contact1d.workflow.model.settings import settings_for
+        from contact1d.workflow.runs.processors import cores
+
+        checked = with_spacing(asked)
+        settings_for(checked)
+        folder.mkdir(parents=True, exist_ok=True)
+        record = cost_of(checked, scene.stem, folder, repeats, workers or cores(), progress)
+        write_report(record, folder)
+    typer.echo("\n".join(summary(record)) + f"; {folder}")
+
+
+def report(
+    folders: Annotated[
+        list[Path],
+        typer.Argument(metavar="DIR…", help="Run folders, which are overlaid; or one sweep's.", show_default=False),
+    ],
+    out: Annotated[Path, typer.Option(help="The page.")] = Path("report.html"),
+) -> None:
+    """Write a page of runs or of a sweep, with figures that answer to the hand; it needs no network, no other file."""
+    with command("the report", quiet=True):
+        from contact1d.workflow.report.report import report as write
+
+        path = write(folders, out)
+    typer.echo(path)
+
+
+def animate(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a finished run.", show_default=False)],
+    out: Annotated[
+        Path | None, typer.Option(help="The file, .gif or .mp4.", show_default="way.gif in the folder")
+    ] = None,
+    speed: Annotated[int, typer.Option(min=1, max=50, help="States a second.")] = 10,
+    ovito: Annotated[
+        bool, typer.Option("--ovito", help="In place of pictures a script in the folder, by which OVITO shows the way.")
+    ] = False,
+) -> None:
+    """Write the way of a run as moving pictures: bodies and springs, particles coloured by pressure, the force.
+
+    It has the states that the run kept: those of its curve, thinned where they are many; or, in states.lammpstrj, too,
+    all of them with `[output] states = "all"` in the scene.
+    """
+    with command("the picture", quiet=True):
+        from contact1d.workflow.report.animation import animate as write
+        from contact1d.workflow.report.animation import ovito_script
+
+        path = ovito_script(folder) if ovito else write(folder, out, speed)
+    typer.echo(path)
+
+
+Kind = StrEnum("Kind", ["PULL_OFF", "LOAD", "PATH", "HOLD", "SLIDE", "TANGENTIAL"])
+"""The experiments."""
+
+
+def new(
+    name: Annotated[Path, typer.Argument(metavar="NAME", help="The file; .toml is added if need be.")],
+    kind: Annotated[Kind, typer.Option(help="What is done with the bodies.")] = Kind.PULL_OFF,
+) -> None:
+    """Write a scene file to start from: it runs as it stands, and says of every key what it is and may be."""
+    if name.name in ("", ".."):
+        stop(f"{name} is a folder; give the file a name", CALL_IS_WRONG)
+    path = name if name.suffix == ".toml" else name.with_name(name.name + ".toml")
+    from contact1d.workflow.cli.starter import starter
+
+    _write(path, starter(kind.value), "choose another name")
+    typer.echo(f"{path}: run it with contact1d run {quote(str(path))}")
+
+
+def schema(
+    out: Annotated[Path | None, typer.Option(help="Write it to this new file.", show_default="printed")] = None,
+) -> None:
+    """Print the JSON schema of scene files, with which an editor completes keys, explains them and marks mistakes.
+
+    For taplo, or Even Better TOML in VS Code: `contact1d schema --out scene.schema.json` beside your scenes, and in
+    each of them the first line `#:schema scene.schema.json`.
+    """
+    from contact1d.workflow.scene.schema import schema_text
+
+    if out is None:
+        typer.echo(schema_text(), nl=False)
+        return
+    _write(out, schema_text(), "remove it first, or choose another name")
+    typer.echo(f"{out}: in a scene file beside it, write as first line #:schema {out.name}")
+
+
+def _write(path: Path, text: str, instead: str) -> None:
+    """Write a file that is not there yet."""
+    if path.parent.is_file():
+        stop(f"{path.parent} is a file; a folder is needed", CALL_IS_WRONG)
+    if not path.parent.is_dir():
+        stop(f"there is no folder {path.parent}; make it first: mkdir -p {quote(str(path.parent))}", CALL_IS_WRONG)
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        stop(f"{path} is there already and stays as it is; {instead}", CALL_IS_WRONG)
+    except OSError:
+        path.unlink(missing_ok=True)  # whole or not at all
+        raise
 
 
 for one in (new, run, sweep, report, animate, deck, cost, identify, schema, doctor):

@@ -85,9 +85,7 @@ def problems_in(where: str, problems: Sequence[object]) -> str:
 
 
 @contextmanager
-def command(
-    what: str, folder: Path | None = None, kept: str = "", quiet: bool = False, blame: int = CALL_IS_WRONG
-) -> Iterator[Progress]:
+def command(what: str, folder: Path | None = None, kept: str = "", quiet: bool = False) -> Iterator[Progress]:
     """Do the work of a command; what goes wrong in it ends it in words and with the exit code that belongs to it.
 
     Args:
@@ -95,7 +93,6 @@ def command(
         folder: where files are; named if it is there when the work breaks off.
         kept: what is left then, and what to do, as words.
         quiet: whether nobody is told how far the work is.
-        blame: the exit code of a scene that leads to no system: RUN_FAILED where it is not the caller's own.
     """
     from contact1d.workflow.engine.progress import Silent, choose_progress
 
@@ -108,46 +105,52 @@ def command(
         left = [kept] if kept else []
         if folder is not None and os.path.isdir(folder):
             left.append(f"files are kept in {folder}")
-        ended = _of_system(error, what, folder, left) or _of_program(error, what, blame)
-        if ended is None:
-            raise
-        stop(*ended)
+        if isinstance(error, KeyboardInterrupt):
+            stop("; ".join(["interrupted", *left]), INTERRUPTED)
+        if sentence := _of_the_call(error, str(folder or "")):
+            stop(sentence, CALL_IS_WRONG)
+        if isinstance(error, ImportError) and not (error.name or "").startswith("contact1d"):
+            stop(f"this installation is not whole ({error}): `contact1d doctor` says what to do", FAILS)
+        if sentence := _of_the_run(error):
+            stop(f"{what} failed: {sentence}", RUN_FAILED)
+        if reason := _of_the_machine(error):
+            stop("; ".join([f"{what} failed: {reason}", *left]), RUN_FAILED)
+        raise
 
 
-def _of_system(error: BaseException, what: str, folder: Path | None, left: list[str]) -> tuple[str, int] | None:
-    """Sentence and exit code of what came from outside: a key, the disk, a package; None for anything else."""
-    from concurrent.futures.process import BrokenProcessPool
+def _of_the_call(error: BaseException, folder: str) -> str:
+    """What is wrong with the scene, an option or a place that the caller chose; "" where it is something else."""
+    from contact1d.workflow.errors import Contact1dError
 
-    if isinstance(error, KeyboardInterrupt):
-        return "; ".join(["interrupted", *left]), INTERRUPTED
-    if isinstance(error, ImportError) and not (error.name or "").startswith("contact1d"):
-        return f"this installation is not whole ({error}): `contact1d doctor` says what to do", FAILS
-    reason = ""
-    if isinstance(error, OSError) and error.errno != errno.EPIPE:  # a reader that went away is no error: typer ends
-        place = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else str(folder or "")
-        reason = FULL_DISK.get(error.errno or 0, error.strerror or str(error))
+    if isinstance(error, Contact1dError) and error.exit_code == CALL_IS_WRONG:
+        problems = getattr(error, "problems", ())
+        return problems_in("the scene", problems) if problems else str(error)
+    if isinstance(error, OSError):
+        place = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else folder
         if error.errno in (errno.EEXIST, errno.ENOTDIR) and os.path.isfile(place):
-            return f"{place} is a file; a folder is needed", CALL_IS_WRONG
+            return f"{place} is a file; a folder is needed"
         if error.errno in BAD_PLACE and place:
-            return f"{place} cannot be written: {reason}", CALL_IS_WRONG
-        reason += f" ({place})" if error.filename else ""
-    elif isinstance(error, BrokenProcessPool):
-        reason = "a process of it was killed, most often because the machine was out of memory"
-    elif isinstance(error, MemoryError):
-        reason = "the machine is out of memory"
-    return ("; ".join([f"{what} failed: {reason}", *left]), RUN_FAILED) if reason else None
+            return f"{place} cannot be written: {error.strerror}"
+    return ""
 
 
-def _of_program(error: BaseException, what: str, blame: int) -> tuple[str, int] | None:
-    """Sentence and exit code of an error that the program raises for the person; None for a defect of its own."""
+def _of_the_run(error: BaseException) -> str:
+    """Why a run gave no numbers; a folder that was there for a while only is not named."""
     from contact1d.workflow.errors import Contact1dError
 
     if not isinstance(error, Contact1dError):
-        return None
-    if problems := getattr(error, "problems", ()):
-        return problems_in("the scene", problems), blame
-    if error.exit_code == RUN_FAILED:  # a folder that was there for a while only is not named
-        folder, message = getattr(error, "folder", None), getattr(error, "message", error)
-        return f"{what} failed: {error if folder is not None and folder.is_dir() else message}", RUN_FAILED
-    code = blame if isinstance(error, ValueError) else error.exit_code  # a value of the scene, or a place
-    return (str(error) if code == CALL_IS_WRONG else f"{what} failed: {error}"), code
+        return ""
+    folder = getattr(error, "folder", None)
+    return str(error if folder is not None and folder.is_dir() else getattr(error, "message", error))
+
+
+def _of_the_machine(error: BaseException) -> str:
+    """What the disk or the memory did; "" where it is neither, and a defect of the program."""
+    from concurrent.futures.process import BrokenProcessPool
+
+    if isinstance(error, OSError) and error.errno != errno.EPIPE:  # a reader that went away is no error: typer ends
+        reason = FULL_DISK.get(error.errno or 0, error.strerror or str(error))
+        return f"{reason} ({os.fsdecode(error.filename)})" if error.filename else reason
+    if isinstance(error, BrokenProcessPool):
+        return "a process of it was killed, most often because the machine was out of memory"
+    return "the machine is out of memory" if isinstance(error, MemoryError) else ""

@@ -144,7 +144,14 @@ def _from_material(file: Path, out: Path) -> None:
     from contact1d.workflow.cli.summary import beside_theories, quantities, regime
 
     table = list(beside_theories(found))
-    lines = [found.contact.title, *regime(found), "", *quantities(found.run.document), *([""] if table else []), *table]
+    lines = [
+        found.contact.scene.title,
+        *regime(found),
+        "",
+        *quantities(found.run.document),
+        *([""] if table else []),
+        *table,
+    ]
     say(lines, {**found.doubts, **found.run.warnings}, found.run.folder / "scene.toml")
 
 

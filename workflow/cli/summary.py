@@ -131,7 +131,7 @@ def regime(found: MaterialRun) -> Iterator[str]:
     said = [f"E* = {prefixed(contact.contact_modulus, 'Pa')}"]
     if contact.work_of_adhesion:
         said.append(f"work of adhesion W = 2γ = {contact.work_of_adhesion:.4g} J/m²")
-        assumed = " (assumed: no range was given)" if contact.range_is_assumed else ""
+        assumed = " (assumed: no range was given)" if "range" not in contact.given else ""
         said.append(f"range z_0 = {prefixed(contact.range, 'm')}{assumed}")
     if contact.load is not None:
         said.append(f"load {prefixed(contact.load, 'N')}")

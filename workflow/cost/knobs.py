@@ -1,16 +1,18 @@
 """The numerical knobs of a scene: what its file can turn without changing the physics, the values to try, and how.
 
-They are turned one at a time from a base that is much more exact than the scene asks for (`base_change`), so that an
-error belongs to the knob. base + one knob's change = a variant;  base + several = a combination. A spacing is turned
+They are turned one at a time from a base that is much more exact than the scene asks for (`base_keys`), so that an
+error belongs to the knob. base + one knob's keys = a variant;  base + several = a combination. A spacing is turned
 with stiffness and drag per length kept, and of neighbour springs stiffness times length.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal, NamedTuple
+
+from pydantic import Field
 
 from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.model.settings import Settings, settings_for
@@ -21,53 +23,39 @@ from contact1d.workflow.units import Quantity
 
 BASE_TOLERANCE = 1e-5
 """Of the base of a quasistatic scene; in time the scene's own is taken, since time costs by the tolerance."""
+Keys = tuple[str, ...]
+"""What makes a variant of a scene: "table.key=value", as `--set` takes it, of two the later one; "without <effect>"."""
+WITHOUT = "without "
 
 
-@dataclass(frozen=True)
-class Change:
-    """What makes a variant of a scene.
-
-    Attributes:
-        overrides: "table.key=value", as `--set` takes them.
-        without: effects left out.
-    """
-
-    overrides: tuple[str, ...] = ()
-    without: tuple[str, ...] = ()
-
-    def __add__(self, later: Change) -> Change:
-        """Both; where they meet, the later one prevails."""
-        return Change(self.overrides + later.overrides, tuple(dict.fromkeys(self.without + later.without)))
-
-    def scene(self, scene: Scene) -> Scene:
-        """The changed scene. Raises SceneError where it is none."""
-        return scene_from_dict(scene, self.overrides, self.without)
+def changed(scene: Scene, keys: Keys) -> Scene:
+    """The scene with these keys. Raises SceneError where it is none."""
+    values = [key for key in keys if not key.startswith(WITHOUT)]
+    return scene_from_dict(scene, values, [key.removeprefix(WITHOUT) for key in keys if key.startswith(WITHOUT)])
 
 
-def base_change(scene: Scene) -> Change:
+def base_keys(scene: Scene) -> Keys:
     """Much more exact than the scene (in time: as exact), on a chain and with a cutoff that are long enough."""
     tolerance = scene.accuracy.tolerance
-    if scene.method == "quasistatic":
-        tolerance = min(BASE_TOLERANCE, tolerance)
-    return at_tolerance(scene, tolerance)
+    return at_tolerance(scene, min(BASE_TOLERANCE, tolerance) if scene.method == "quasistatic" else tolerance)
 
 
-def at_tolerance(scene: Scene, tolerance: float) -> Change:
+def at_tolerance(scene: Scene, tolerance: float) -> Keys:
     """The tolerance, and nothing numerical that the scene fixed by itself."""
-    overrides = [f"accuracy.tolerance={tolerance!r}"]
+    keys = [f"accuracy.tolerance={tolerance!r}"]
     if not scene.bodies.profile.has_edge:
-        overrides.append("bodies.particles=auto")
+        keys.append("bodies.particles=auto")
     if scene.interaction is not None and scene.interaction.attraction is not None:
-        overrides.append("interaction.cutoff=auto")
-    return Change(tuple(overrides))
+        keys.append("interaction.cutoff=auto")
+    return tuple(keys)
 
 
-def with_method(scene: Scene, method: str) -> Change:
+def with_method(scene: Scene, method: str) -> Keys:
     """The scene with the other method: what exists in time only goes, or comes as far as the experiment needs it."""
     if method == "quasistatic":
-        return Change(("experiment.method=quasistatic",), tuple(name for name in TIMED if name in scene.effects))
-    needed = ["damping.coefficient=auto"] + ([] if scene.experiment.way_is_given else ["plate.mass=auto"])
-    return Change(("experiment.method=dynamic", *needed))
+        return ("experiment.method=quasistatic", *(WITHOUT + name for name in TIMED if name in scene.effects))
+    plate = () if scene.experiment.way_is_given else ("plate.mass=auto",)
+    return ("experiment.method=dynamic", "damping.coefficient=auto", *plate)
 
 
 def is_sampled(scene: Scene) -> bool:
@@ -82,36 +70,6 @@ def main_results(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, 
     return {name: one for name, one in named.items() if one.value != 0.0 and math.isfinite(one.value)}
 
 
-SPACING_FACTORS = (4.0, 2.0, 1.0, 0.5, 0.125)
-"""Over the scene's own."""
-
-
-def spacing_is_physics(scene: Scene) -> str:
-    """Why the spacing cannot be turned with the physics kept; "" where it can."""
-    if scene.bodies.profile.has_edge:
-        return "a flat punch is as wide as its particles make it"
-    if scene.noise is not None:
-        return "thermal motion of a particle belongs to its spacing"
-    if scene.interaction is not None:
-        return "the force of a row of opposite particles belongs to its spacing: no amplitudes keep it at another one"
-    return ""
-
-
-def at_spacing(scene: Scene, spacing: float) -> tuple[str, ...]:
-    """Scene keys that go with the spacing [LU]."""
-    factor, bodies = spacing / scene.bodies.spacing, scene.bodies
-    keys = [f"bodies.spacing={spacing!r}", f"bodies.mass={factor * bodies.mass!r}"]
-    if bodies.bulk_stiffness != "auto":
-        keys.append(f"bodies.bulk_stiffness={factor * scene.bulk_stiffness!r}")
-    if bodies.bulk_stiffness_tangential is not None:
-        keys.append(f"bodies.bulk_stiffness_tangential={factor * bodies.bulk_stiffness_tangential!r}")
-    if scene.neighbours is not None:
-        keys.append(f"neighbours.stiffness={scene.neighbours.stiffness / factor!r}")
-    if scene.damping is not None and scene.damping.coefficient != "auto":
-        keys.append(f"damping.coefficient={factor * scene.damping.coefficient!r}")
-    return tuple(keys)
-
-
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 TOLERANCE_FACTORS = (8.0, 4.0, 2.0, 1.0, 0.5)
 """Of a scene whose results are averages over time, which cost by the square of the tolerance; over its own."""
@@ -123,15 +81,29 @@ CHAIN_FACTORS = (0.6, 0.7, 0.8, 0.9)
 """Over the length that is automatic for the scene's tolerance."""
 INCREMENT_FACTORS = (4.0, 2.0, 1.0, 0.5)
 DAMPING_FACTORS = (0.25, 0.5, 1.0, 2.0, 4.0)
+SPACING_FACTORS = (4.0, 2.0, 1.0, 0.5, 0.125)
+"""Over the scene's own."""
 
 
-@dataclass(frozen=True)
-class Level:
+class Level(NamedTuple):
     """One value of a knob; `label` says it with its unit."""
 
     value: float
     label: str
-    change: Change
+    keys: Keys
+
+
+@dataclass(frozen=True)
+class Order:
+    """p of error ∝ h^p, its standard error, and how many points it comes from."""
+
+    order: float
+    standard_error: float
+    points: int
+
+    def __str__(self) -> str:
+        """`0.94 ± 0.04`."""
+        return f"{self.order:.2f} ± {self.standard_error:.2f}"
 
 
 @dataclass(frozen=True)
@@ -141,114 +113,133 @@ class Knob:
     Attributes:
         name: one word or two.
         meaning: of its value, with the unit.
-        finer: which values are the more exact ones.
-        levels: to try.
         own: the value that the scene has, by itself or by the rules; NaN where there is no such.
-        has_order: whether its error is expected to be a power of the value.
+        levels: to try.
+        finer: which values are the more exact ones.
         own_reference: whether its errors are against its own finest level, since the reference does not have it.
+        order: of its error, None where there is none to be fitted.
+        has_order: whether its error is expected to be a power of the value.
         alternative: whether it is another way, to be compared with the scene's own and not combined with it.
     """
 
     name: str
     meaning: str
-    finer: Literal["larger", "smaller"]
-    levels: tuple[Level, ...]
     own: float
-    has_order: bool = True
+    levels: Annotated[tuple[Level, ...], Field(exclude=True)] = ()
+    finer: Literal["larger", "smaller"] = "smaller"
     own_reference: bool = False
-    alternative: bool = False
+    order: Order | None = None
+    has_order: Annotated[bool, Field(exclude=True)] = True
+    alternative: Annotated[bool, Field(exclude=True)] = False
+
+    def coarseness(self, value: float) -> float:
+        """What falls as the knob gets finer."""
+        return value if self.finer == "smaller" else 1.0 / value
 
 
-def knobs_of(scene: Scene, own: Settings) -> tuple[Knob, ...]:
-    """The knobs that a scene has; `own` are the settings of the scene as it is."""
-    found = [_tolerance(scene), *_cutoff(scene, own), *_chain(scene, own)]
-    if scene.damping is not None:
-        found.append(_damping(own))
-    return (*found, *_increment(scene), *_method(scene), *_spacing(scene))
+def knobs_of(scene: Scene, own: Settings) -> tuple[tuple[Knob, ...], dict[str, str]]:
+    """The knobs that a scene has; and those that one could think of and that are not turned, each with the reason.
 
-
-def left_out(scene: Scene) -> dict[str, str]:
-    """Knobs that one could think of and that are not turned, each with the reason."""
-    reasons = {}
-    if scene.interaction is not None and scene.interaction.attraction is None:
-        reasons["cutoff"] = "without attraction displacements count from the cutoff, so it is physics"
-    if reason := spacing_is_physics(scene):
-        reasons["spacing"] = reason
-    if scene.bodies.profile.has_edge:
-        reasons["chain length"] = "a flat punch is as long as it is wide"
-    if scene.noise is not None or scene.experiment.motion_is_result:
-        reasons["method"] = "what is asked for exists in time only"
-    if scene.experiment.goes_along:
-        reasons["method"] = "a row is one step, exact as it is"
-    return reasons
+    Args:
+        scene: whose file is turned.
+        own: settings of the scene as it is.
+    """
+    found = {
+        "tolerance": _tolerance(scene),
+        "cutoff": _cutoff(scene, own),
+        "chain length": _chain(scene, own),
+        "damping": _damping(scene, own),
+        "load increment": _increment(scene),
+        "method": _method(scene),
+        "spacing": _spacing(scene),
+    }
+    reasons = {name: knob for name, knob in found.items() if isinstance(knob, str) and knob}
+    return tuple(knob for knob in found.values() if isinstance(knob, Knob)), reasons
 
 
 def _tolerance(scene: Scene) -> Knob:
     own = scene.accuracy.tolerance
-    values: tuple[float, ...] = TOLERANCES
+    values: tuple[float, ...] = TOLERANCES[:-1] if scene.method == "dynamic" else TOLERANCES
     if is_sampled(scene):
         values = tuple(min(own * factor, 0.1) for factor in TOLERANCE_FACTORS)
-    elif scene.method == "dynamic":
-        values = TOLERANCES[:-1]
-    levels = [Level(t, f"accuracy.tolerance = {t:g}", at_tolerance(scene, t)) for t in dict.fromkeys(values)]
-    return Knob("tolerance", "accuracy.tolerance, which sets all others", "smaller", tuple(levels), own)
+    levels = (Level(t, f"accuracy.tolerance = {t:g}", at_tolerance(scene, t)) for t in dict.fromkeys(values))
+    return Knob("tolerance", "accuracy.tolerance, which sets all others", own, tuple(levels))
 
 
-def _cutoff(scene: Scene, own: Settings) -> Iterator[Knob]:
+def _cutoff(scene: Scene, own: Settings) -> Knob | str:
     if own.law is None or own.law.attraction is None:
-        return
-    levels = []
-    for share in CUTOFF_SHARES:
-        cutoff = own.law.cutoff_for(share)
-        levels.append(Level(share, f"cutoff {cutoff:.3g} LU", Change((f"interaction.cutoff={cutoff!r}",))))
+        physics = "without attraction displacements count from the cutoff, so it is physics"
+        return "" if scene.interaction is None else physics
+    cutoffs = {share: own.law.cutoff_for(share) for share in CUTOFF_SHARES}
+    levels = (Level(share, f"cutoff {c:.3g} LU", (f"interaction.cutoff={c!r}",)) for share, c in cutoffs.items())
     share = math.exp(-(own.cutoff - own.law.force_free_distance()) / own.law.longest_range)
-    yield Knob("cutoff", "force at the cutoff over the law's own", "smaller", tuple(levels), share)
+    return Knob("cutoff", "force at the cutoff over the law's own", share, tuple(levels))
 
 
-def _chain(scene: Scene, own: Settings) -> Iterator[Knob]:
+def _chain(scene: Scene, own: Settings) -> Knob | str:
     if scene.bodies.profile.has_edge:
-        return
-    automatic = settings_for(at_tolerance(scene, scene.accuracy.tolerance).scene(scene)).particles
+        return "a flat punch is as long as it is wide"
+    automatic = settings_for(changed(scene, at_tolerance(scene, scene.accuracy.tolerance))).particles
     counts = dict.fromkeys(max(4, 2 * round(0.5 * factor * automatic)) for factor in CHAIN_FACTORS)
-    levels = [Level(n, f"chain of {n} particles", Change((f"bodies.particles={n}",))) for n in counts]
+    levels = (Level(n, f"chain of {n} particles", (f"bodies.particles={n}",)) for n in counts)
     # The tail of the pressure falls exponentially where a cutoff ends it, algebraically where springs carry it on.
-    yield Knob("chain length", "particles per body", "larger", tuple(levels), own.particles, has_order=False)
+    return Knob("chain length", "particles per body", own.particles, tuple(levels), "larger", has_order=False)
 
 
-def _damping(own: Settings) -> Knob:
-    values = [factor * own.damping for factor in DAMPING_FACTORS]
-    levels = [Level(c, f"damping {c:.3g} FU·TU/LU", Change((f"damping.coefficient={c!r}",))) for c in values]
-    return Knob("damping", "damping of a particle [FU·TU/LU]", "smaller", tuple(levels), own.damping, has_order=False)
+def _damping(scene: Scene, own: Settings) -> Knob | str:
+    if scene.damping is None:
+        return ""
+    values = (factor * own.damping for factor in DAMPING_FACTORS)
+    levels = (Level(c, f"damping {c:.3g} FU·TU/LU", (f"damping.coefficient={c!r}",)) for c in values)
+    return Knob("damping", "damping of a particle [FU·TU/LU]", own.damping, tuple(levels), has_order=False)
 
 
-def _increment(scene: Scene) -> Iterator[Knob]:
+def _increment(scene: Scene) -> Knob | str:
     span = None if scene.experiment.goes_along else getattr(scene.experiment, "displacements", None)
     if not isinstance(span, Span):
-        return
-    own = span.steps
-    counts = dict.fromkeys(max(1, round(own / factor)) for factor in INCREMENT_FACTORS)
-    rows = [Level(n, f"{n} increments", Change((f"experiment.displacements.steps={n}",))) for n in counts]
-    yield Knob("load increment", "increments of a leg", "larger", tuple(rows), own, own_reference=True)
+        return ""
+    counts = dict.fromkeys(max(1, round(span.steps / factor)) for factor in INCREMENT_FACTORS)
+    levels = (Level(n, f"{n} increments", (f"experiment.displacements.steps={n}",)) for n in counts)
+    return Knob("load increment", "increments of a leg", span.steps, tuple(levels), "larger", own_reference=True)
 
 
-def _method(scene: Scene) -> Iterator[Knob]:
-    experiment = scene.experiment
-    if scene.noise is not None or experiment.motion_is_result or experiment.goes_along:
-        return
+def _method(scene: Scene) -> Knob | str:
+    if scene.experiment.goes_along:
+        return "a row is one step, exact as it is"
+    if is_sampled(scene):
+        return "what is asked for exists in time only"
     other = "dynamic" if scene.method == "quasistatic" else "quasistatic"
-    change = with_method(scene, other)
-    levels = [
-        Level(t, f"{other}, accuracy.tolerance = {t:g}", at_tolerance(scene, t) + change) for t in OTHER_METHOD[other]
-    ]
+    keys = with_method(scene, other)
+    levels = (
+        Level(t, f"{other}, accuracy.tolerance = {t:g}", at_tolerance(scene, t) + keys) for t in OTHER_METHOD[other]
+    )
     meaning = f"the other method, {other}, by its accuracy.tolerance"
-    yield Knob(f"method {other}", meaning, "smaller", tuple(levels), math.nan, has_order=False, alternative=True)
+    return Knob(f"method {other}", meaning, math.nan, tuple(levels), has_order=False, alternative=True)
 
 
-def _spacing(scene: Scene) -> Iterator[Knob]:
-    if spacing_is_physics(scene):
-        return
-    spacing = scene.bodies.spacing
-    values = [factor * spacing for factor in SPACING_FACTORS]
-    levels = [Level(h, f"spacing {h:g} LU", Change(at_spacing(scene, h))) for h in values]
+def _spacing(scene: Scene) -> Knob | str:
+    if scene.bodies.profile.has_edge:
+        return "a flat punch is as wide as its particles make it"
+    if scene.noise is not None:
+        return "thermal motion of a particle belongs to its spacing"
+    if scene.interaction is not None:
+        return "the force of a row of opposite particles belongs to its spacing: no amplitudes keep it at another one"
+    values = (factor * scene.bodies.spacing for factor in SPACING_FACTORS)
+    levels = (Level(h, f"spacing {h:g} LU", _at_spacing(scene, h)) for h in values)
     meaning = "spacing [LU], same stiffness per length"
-    yield Knob("spacing", meaning, "smaller", tuple(levels), spacing, own_reference=True)
+    return Knob("spacing", meaning, scene.bodies.spacing, tuple(levels), own_reference=True)
+
+
+def _at_spacing(scene: Scene, spacing: float) -> Keys:
+    """Scene keys that go with the spacing [LU]."""
+    factor, bodies = spacing / scene.bodies.spacing, scene.bodies
+    values: dict[str, float] = {"bodies.spacing": spacing, "bodies.mass": factor * bodies.mass}
+    if bodies.bulk_stiffness != "auto":
+        values["bodies.bulk_stiffness"] = factor * scene.bulk_stiffness
+    if bodies.bulk_stiffness_tangential is not None:
+        values["bodies.bulk_stiffness_tangential"] = factor * bodies.bulk_stiffness_tangential
+    if scene.neighbours is not None:
+        values["neighbours.stiffness"] = scene.neighbours.stiffness / factor
+    if scene.damping is not None and scene.damping.coefficient != "auto":
+        values["damping.coefficient"] = factor * scene.damping.coefficient
+    return tuple(f"{key}={value!r}" for key, value in values.items())

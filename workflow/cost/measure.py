@@ -9,15 +9,17 @@ from __future__ import annotations
 import math
 import os
 import shutil
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from concurrent.futures import as_completed
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from statistics import median, stdev
+from typing import Annotated
 
-from contact1d.workflow.cost.knobs import Change
-from contact1d.workflow.cost.report import EffectCost
+from pydantic import Field, computed_field
+
+from contact1d.workflow.cost.knobs import WITHOUT, Keys, changed
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.fragments import DeckError
 from contact1d.workflow.deck.steps import Displace, Draw
@@ -35,15 +37,8 @@ from contact1d.workflow.units import Quantity
 
 LONG_RUN = 4.0
 """Wall time [s] from which on a run is not repeated: what disturbs a timing is short against it."""
-
-
-@dataclass(frozen=True)
-class Prepared:
-    """A variant that is ready to run."""
-
-    label: str
-    scene: Scene
-    settings: Settings
+Prepared = tuple[Scene, Settings]
+"""A variant that is ready to run."""
 
 
 @dataclass(frozen=True)
@@ -52,39 +47,46 @@ class Measured:
 
     Attributes:
         quantities: main results and all others, by name; the same in every run.
-        cpu_runs, total_runs: CPU time in LAMMPS and wall time of each run [s].
-        steps: of a run.
-        warnings: names of what limits the results; "tolerance <result>" where one is known less well than asked for.
+        cpu_runs, total_runs: CPU time in LAMMPS and wall time of each run, LAMMPS and all around it [s].
+        steps: minimiser iterations or timesteps of a run.
         memory_mb: peak resident memory of the LAMMPS process, NaN where the system does not tell.
         failure: why there are no numbers, "" where there are.
+        warnings: names of what limits the results; "tolerance <result>" where one is known less well than asked for.
     """
 
-    quantities: Mapping[str, Quantity] = field(default_factory=dict)
+    quantities: Annotated[Mapping[str, Quantity], Field(exclude=True)] = field(default_factory=dict)
     cpu_runs: tuple[float, ...] = ()
-    total_runs: tuple[float, ...] = ()
+    total_runs: Annotated[tuple[float, ...], Field(exclude=True)] = ()
     steps: int = 0
-    memory_mb: float = float("nan")
+    memory_mb: float = math.nan
     failure: str = ""
-    warnings: frozenset[str] = frozenset()
+    warnings: Annotated[frozenset[str], Field(exclude=True)] = frozenset()
 
+    @computed_field  # type: ignore[prop-decorator]
     @property
     def cpu_s(self) -> float:
         """Median CPU time in LAMMPS [s]."""
-        return median(self.cpu_runs) if self.cpu_runs else float("nan")
+        return median(self.cpu_runs or (math.nan,))
 
+    @computed_field  # type: ignore[prop-decorator]
     @property
     def total_s(self) -> float:
         """Median wall time [s]."""
-        return median(self.total_runs) if self.total_runs else float("nan")
+        return median(self.total_runs or (math.nan,))
+
+    def __add__(self, later: Measured) -> Measured:
+        """With the times of a later run, or its failure."""
+        runs, totals = self.cpu_runs + later.cpu_runs, self.total_runs + later.total_runs
+        return later if later.failure else replace(self, cpu_runs=runs, total_runs=totals)
 
 
 def measure(
-    variants: Sequence[Prepared], folder: Path, repeats: int, workers: int, progress: Progress
+    variants: Mapping[str, Prepared], folder: Path, repeats: int, workers: int, progress: Progress
 ) -> dict[str, Measured]:
     """Run every variant `repeats` times, interleaved; run folders are removed, failures are results.
 
     Args:
-        variants: with labels of their own.
+        variants: by their labels, at least one.
         folder: for run folders.
         repeats: rounds; runs longer than LONG_RUN take part in the first one only.
         workers: runs at a time.
@@ -93,14 +95,14 @@ def measure(
     done: dict[str, Measured] = {}
     with pool(min(workers, len(variants))) as executor:
         for turn in range(repeats):
-            again = [one for one in variants if turn == 0 or _worth_repeating(done[one.label])]
+            again = [label for label in variants if turn == 0 or done[label].total_s < LONG_RUN]
             futures = {
-                executor.submit(run_once, one, folder / f"{turn}_{index}", turn == 0): one.label
-                for index, one in enumerate(again)
+                executor.submit(run_once, variants[label], folder / f"{turn}_{index}", fresh=turn == 0): label
+                for index, label in enumerate(again)
             }
             for future in as_completed(futures):
                 label = futures[future]
-                done[label] = _together(done.get(label), future.result())
+                done[label] = done[label] + future.result() if turn else future.result()
                 progress.advance(1)
             progress.advance(len(variants) - len(again))
     return done
@@ -110,22 +112,23 @@ def run_once(variant: Prepared, folder: Path, fresh: bool) -> Measured:
     """Run a variant; with `fresh` in a LAMMPS process of its own, whose peak memory is its."""
     if fresh:
         stop_idle()
+    scene, settings = variant
     try:
-        finished = run(variant.scene, folder, figures=False, settings=variant.settings)
+        finished = run(scene, folder, figures=False, settings=settings)
     except (RunError, FolderError, DeckError, SettingsError) as error:
         return Measured(failure=getattr(error, "message", str(error)))
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     timing, outcome = finished.timing, finished.outcome
     assert outcome is not None
-    open_ = open_results(variant.scene, outcome)
+    open_ = (f"tolerance {name}" for name in open_results(scene, outcome))
     return Measured(
         outcome.quantities,
         (timing["lammps_cpu_s"],),
         (timing["total_s"],),
         int(timing["steps"]),
-        children_peak_mb() if fresh else float("nan"),
-        warnings=frozenset({*outcome.warnings, *(f"tolerance {name}" for name in open_)}),
+        children_peak_mb() if fresh else math.nan,
+        warnings=frozenset({*outcome.warnings, *open_}),
     )
 
 
@@ -137,18 +140,7 @@ def children_peak_mb() -> float:
         lines = [line for child in children for line in Path(f"/proc/{child}/status").read_text().splitlines()]
         return max(int(line.split()[1]) for line in lines if line.startswith("VmHWM:")) / 1024.0
     except (OSError, ValueError):
-        return float("nan")
-
-
-def _worth_repeating(measured: Measured) -> bool:
-    return not measured.failure and measured.total_s < LONG_RUN
-
-
-def _together(before: Measured | None, latest: Measured) -> Measured:
-    if before is None or latest.failure:
-        return latest
-    runs, totals = before.cpu_runs + latest.cpu_runs, before.total_runs + latest.total_runs
-    return replace(before, cpu_runs=runs, total_runs=totals)
+        return math.nan
 
 
 STEPS = 2_000
@@ -157,74 +149,91 @@ MEDIAN_ERROR = 1.25
 """Standard error of a median over that of a mean."""
 
 
-def without_effects(scene: Scene) -> tuple[dict[str, Change], dict[str, str]]:
+@dataclass(frozen=True)
+class EffectCost:
+    """What an effect costs per timestep, or per force evaluation of a minimiser, which is the same work.
+
+    Attributes:
+        name: the effect.
+        particles: of both bodies.
+        with_us, without_us: CPU time of a step with all effects, and without this one [µs]; medians.
+        ratio, ratio_error: of the two, median over turns, and its standard error.
+        reason: why it cannot be left out; "" where it can.
+        changes: what the main results become without it, over those with it, minus 1.
+    """
+
+    name: str
+    particles: int
+    with_us: float
+    without_us: float = math.nan
+    ratio: float = math.nan
+    ratio_error: float = math.nan
+    reason: str = ""
+    changes: Mapping[str, float] | None = None
+
+    @property
+    def ns_per_particle(self) -> float:
+        """What it adds to a step, per particle [ns], by the ratio."""
+        return 1e3 * self.with_us * (1.0 - 1.0 / self.ratio) / self.particles
+
+
+def without_effects(scene: Scene) -> tuple[dict[str, Keys], dict[str, str]]:
     """How to leave out each effect that can be, by its name; and why others cannot."""
     has_one = scene.experiment.motion_is_result or scene.experiment.goes_along
     method = () if has_one else (f"experiment.method={scene.method}",)
-    changes, reasons = {}, {}
+    found, reasons = {}, {}
     for effect in scene.effects:
-        change = Change(method, (effect,))
+        keys = (*method, WITHOUT + effect)
         try:
-            change.scene(scene)
+            changed(scene, keys)
         except SceneError as error:
             reasons[effect] = "; ".join(f"{problem.path} {problem.message}" for problem in error.problems)
         else:
-            changes[effect] = change
-    return changes, reasons
-
-
-def standing_without(scene: Scene) -> dict[str, Deck]:
-    """Decks of a slide without what it could not run without, but take steps: by the effect, and "" where none pulls.
-
-    With the settings of the whole scene, so that they have its particles, its cutoff and its table.
-    """
-    if not scene.experiment.motion_is_result:
-        return {}
-    gone: dict[str, tuple[str, ...]] = {"cantilever": ("cantilever",), "plate": ("cantilever", "plate")}
-    if scene.noise is None:
-        gone["damping"] = ("damping",)
-    settings = settings_for(scene)
-    return {
-        effect: Deck(scene.model_copy(update=dict.fromkeys(names)), settings)
-        for effect, names in gone.items()
-        if effect in scene.effects
-    }
+            found[effect] = keys
+    return found, reasons
 
 
 def effect_costs(scene: Scene, folder: Path, turns: int = TURNS) -> tuple[EffectCost, ...]:
     """CPU time of a step with and without each effect; medians over `turns` (at least 2) blocks of STEPS steps.
 
-    A plate that is pulled is measured beside a deck without cantilever, with and without it.
+    What a slide could not run without, but take steps, is left out with the settings of the whole scene, so that its
+    particles, its cutoff and its table are the same; a plate that is pulled is measured beside a deck without
+    cantilever, with and without it.
     """
-    changes, reasons = without_effects(scene)
-    scenes = {"": scene} | {effect: change.scene(scene) for effect, change in changes.items()}
+    settings, (keys, reasons) = settings_for(scene), without_effects(scene)
+    decks = {"": Deck(scene, settings)}
+    for effect in keys:
+        other = changed(scene, keys[effect])
+        decks[effect] = Deck(other, settings_for(other))
+    if scene.experiment.motion_is_result:
+        gone = {"cantilever": ["cantilever"], "plate": ["cantilever", "plate"]}
+        gone |= {} if scene.noise is not None else {"damping": ["damping"]}
+        for effect in gone.keys() & set(scene.effects):
+            decks[effect] = Deck(scene.model_copy(update=dict.fromkeys(gone[effect])), settings)
+    times = _interleaved(decks, folder, turns)
+    found = []
+    for effect in scene.effects:
+        beside = times["cantilever" if effect == "plate" and scene.experiment.motion_is_result else ""]
+        cost = EffectCost(effect, settings.particles * scene.chains, median(beside), reason=reasons.get(effect, ""))
+        if effect in times:
+            ratios = [both / without for both, without in zip(beside, times[effect], strict=True)]
+            error = MEDIAN_ERROR * stdev(ratios) / math.sqrt(turns)
+            cost = replace(cost, without_us=median(times[effect]), ratio=median(ratios), ratio_error=error, reason="")
+        found.append(cost)
+    return tuple(found)
+
+
+def _interleaved(decks: Mapping[str, Deck], folder: Path, turns: int) -> dict[str, list[float]]:
+    """CPU time of a step [µs] in each turn of each deck; the first block warms up."""
+    blocks: dict[str, list[float]] = {effect: [] for effect in decks}
     with ExitStack() as stack:
-        decks = {effect: Deck(changed, settings_for(changed)) for effect, changed in scenes.items()}
-        decks |= (standing := standing_without(scene))
-        sessions = {
-            effect: stack.enter_context(opened(deck, folder / f"step_{effect}")) for effect, deck in decks.items()
-        }
-        times = _interleaved(sessions, {effect: _steps(deck) for effect, deck in decks.items()}, turns)
-    particles = settings_for(scene).particles * scene.chains
-    return tuple(
-        _cost(effect, times, particles, "cantilever" if effect == "plate" and effect in standing else "")
-        if effect in decks
-        else _cost_of_all(effect, times, particles, reasons)
-        for effect in scene.effects
-    )
-
-
-def _cost(effect: str, times: Mapping[str, list[float]], particles: int, beside: str) -> EffectCost:
-    ratios = [both / without for both, without in zip(times[beside], times[effect], strict=True)]
-    error = MEDIAN_ERROR * stdev(ratios) / math.sqrt(len(ratios))
-    return EffectCost(effect, median(times[beside]), median(times[effect]), median(ratios), error, particles)
-
-
-def _cost_of_all(
-    effect: str, times: Mapping[str, list[float]], particles: int, reasons: Mapping[str, str]
-) -> EffectCost:
-    none = math.nan
-    return EffectCost(effect, median(times[""]), none, none, none, particles, reasons[effect])
+        sessions = {name: stack.enter_context(opened(deck, folder / f"step_{name}")) for name, deck in decks.items()}
+        for _ in range(turns + 1):
+            for effect, session in sessions.items():
+                before = session.lammps_cpu_seconds
+                session.execute(_steps(decks[effect]))
+                blocks[effect].append(1e6 * (session.lammps_cpu_seconds - before) / STEPS)
+    return {effect: times[1:] for effect, times in blocks.items()}
 
 
 @contextmanager
@@ -241,14 +250,3 @@ def _steps(deck: Deck) -> str:
     """STEPS steps: of time, or where nothing has to come to rest as many rows."""
     row = Draw(0.0, 0.0) if deck.scene.experiment.goes_along else Displace(0.0)
     return deck.in_one_run((row,) * STEPS) if deck.stepped else f"run {STEPS}"
-
-
-def _interleaved(sessions: Mapping[str, Session], texts: Mapping[str, str], turns: int) -> dict[str, list[float]]:
-    """CPU time of a step [µs] in each turn of each session; the first block warms up."""
-    blocks: dict[str, list[float]] = {effect: [] for effect in sessions}
-    for _ in range(turns + 1):
-        for effect, session in sessions.items():
-            before = session.lammps_cpu_seconds
-            session.execute(texts[effect])
-            blocks[effect].append(1e6 * (session.lammps_cpu_seconds - before) / STEPS)
-    return {effect: times[1:] for effect, times in blocks.items()}

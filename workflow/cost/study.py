@@ -11,37 +11,34 @@ import math
 import tempfile
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from contact1d.workflow.cost.knobs import (
-    Change,
+    Keys,
     Knob,
+    Level,
+    Order,
     at_tolerance,
-    base_change,
+    base_keys,
+    changed,
     is_sampled,
     knobs_of,
-    left_out,
     main_results,
     with_method,
 )
-from contact1d.workflow.cost.measure import Measured, Prepared, effect_costs, measure, run_once, without_effects
-from contact1d.workflow.cost.report import (
-    AS_IT_IS,
-    BASE,
-    COMBINED,
-    EFFECT,
-    Advice,
-    CostRecord,
+from contact1d.workflow.cost.measure import (
     EffectCost,
-    KnobRecord,
-    Order,
-    VariantRecord,
-    power,
+    Measured,
+    Prepared,
+    effect_costs,
+    measure,
+    run_once,
+    without_effects,
 )
+from contact1d.workflow.cost.report import AS_IT_IS, BASE, COMBINED, EFFECT, Advice, CostRecord, Variant, power
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.errors import RunError
 from contact1d.workflow.model.settings import Settings, SettingsError, settings_for
@@ -55,19 +52,7 @@ REFERENCE_SHARES = (0.1, 0.3)
 """Of the scene's own tolerance, tried in turn where the result exists in time only."""
 NOISY_SHARE = 0.25
 """The same with noise: sixteen times as many samples, as far as the program takes them."""
-
-
-@dataclass(frozen=True)
-class Planned:
-    """A variant before it runs: its record without numbers, and how it is made."""
-
-    record: VariantRecord
-    change: Change
-
-
-def _plan(label: str, group: str, change: Change, value: float = math.nan, **more: Any) -> Planned:
-    keys = change.overrides + tuple(f"without {effect}" for effect in change.without)
-    return Planned(VariantRecord(label, group, value, scene_keys=keys, **more), change)
+Results = Mapping[str, Quantity]
 
 
 def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, progress: Progress) -> CostRecord:
@@ -86,28 +71,25 @@ def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, p
         RunError: no reference could be computed.
     """
     started = time.perf_counter()
-    own = settings_for(scene)
+    (knobs, left_out), noisy = knobs_of(scene, settings_for(scene)), is_sampled(scene)
     with tempfile.TemporaryDirectory(prefix=".cost-", dir=folder) as place:
         runs = Path(place)
         progress.phase("reference")
         label, reference = reference_of(scene, runs)
-        change = base_change(scene)
-        knobs = knobs_of(scene, own)
-        planned = _planned(scene, knobs, change)
-        progress.phase("runs", repeats * len(planned))
-        records = _measured(scene, planned, runs, repeats, workers, progress, reference)
-        records = _against_own(records, knobs)
-        if not is_sampled(scene):
-            found = [
-                _plan(label, COMBINED, one, details=text) for label, text, one in combinations(knobs, records, change)
-            ]
-            if found:
-                progress.phase("combinations", repeats * len(found))
-                records += _measured(scene, found, runs, repeats, workers, progress, reference)
+
+        def ran(phase: str, planned: Sequence[Variant]) -> list[Variant]:
+            progress.phase(phase, repeats * len(planned))
+            ready, failures = _prepared(scene, planned)
+            done = (measure(ready, runs, repeats, workers, progress) if ready else {}) | failures
+            return [judged(replace(one, **vars(done[one.label])), reference, noisy) for one in planned]
+
+        variants = _against_own(ran("runs", list(_planned(scene, knobs))), knobs)
+        found = [] if noisy else list(combinations(knobs, variants, base_keys(scene)))
+        variants += ran("combinations", found) if found else []
         progress.phase("effects, step by step")
-        effects = _with_changes(effect_costs(scene, runs), records)
-    base = next(one for one in records if one.knob == BASE)
-    competing = [one for one in records if one.competes]
+        effects = _with_changes(effect_costs(scene, runs), variants)
+    base = next(one for one in variants if one.knob == BASE)
+    competing = [one for one in variants if one.competes]
     front = pareto_front([one.cpu_s for one in competing], [one.error for one in competing])
     return CostRecord(
         title=scene.title,
@@ -121,12 +103,12 @@ def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, p
         base=base.label,
         base_error=base.error,
         repeats=repeats,
-        knobs=tuple(_knob_record(knob, records, 0.0 if knob.own_reference else base.error, scene) for knob in knobs),
-        variants=tuple(one for one in records if one.knob == AS_IT_IS or not one.failure),
+        knobs=knobs if noisy else tuple(_with_order(knob, variants, base.error) for knob in knobs),
+        variants=tuple(one for one in variants if one.knob == AS_IT_IS or not one.failure),
         effect_costs=effects,
-        left_out=left_out(scene),
+        left_out=left_out,
         pareto=tuple(competing[i].label for i in front),
-        advice=tuple(advise(target, competing, is_sampled(scene)) for target in TARGETS),
+        advice=tuple(advise(target, competing, noisy) for target in TARGETS),
         versions=versions(),
         wall_s=time.perf_counter() - started,
     )
@@ -139,146 +121,114 @@ def reference_of(scene: Scene, folder: Path) -> tuple[str, dict[str, Quantity]]:
         RunError: none works.
     """
     own, failures = scene.accuracy.tolerance, []
-    candidates: list[tuple[str, Change]] = []
+    candidates: list[tuple[str, Keys]] = []
     if scene.noise is not None:
-        seed = Change((f"noise.seed={scene.noise.seed + 1}",))
-        candidates.append(("with noise of another seed", at_tolerance(scene, NOISY_SHARE * own) + seed))
+        seed = f"noise.seed={scene.noise.seed + 1}"
+        candidates.append(("with noise of another seed", (*at_tolerance(scene, NOISY_SHARE * own), seed)))
     elif not scene.experiment.motion_is_result:
-        still = with_method(scene, "quasistatic") if scene.method == "dynamic" else Change()
+        still = with_method(scene, "quasistatic") if scene.method == "dynamic" else ()
         candidates += [("quasistatic", at_tolerance(scene, t) + still) for t in REFERENCE_TOLERANCES if t < own]
     if scene.noise is None and scene.method == "dynamic":
         candidates += [("dynamic", at_tolerance(scene, share * own)) for share in REFERENCE_SHARES]
-    for text, change in candidates:
-        changed = change.scene(scene)
-        done = run_once(Prepared(text, changed, settings_for(changed)), folder / "reference", fresh=False)
-        main = main_results(changed, done.quantities)
-        if main:
-            return f"{text}, accuracy.tolerance = {changed.accuracy.tolerance:g}", main
+    for text, keys in candidates:
+        other = changed(scene, keys)
+        done = run_once((other, settings_for(other)), folder / "reference", fresh=False)
+        if main := main_results(other, done.quantities):
+            return f"{text}, accuracy.tolerance = {other.accuracy.tolerance:g}", main
         failures.append(done.failure or "it has no main result other than 0")
     raise RunError(f"no reference of higher accuracy could be computed: {failures[-1] if failures else ''}", folder)
 
 
-def _planned(scene: Scene, knobs: Sequence[Knob], base: Change) -> list[Planned]:
-    found = [_plan("the scene as it is", AS_IT_IS, Change()), _plan("base", BASE, base)]
+def _planned(scene: Scene, knobs: Sequence[Knob]) -> Iterator[Variant]:
+    base = base_keys(scene)
+    yield Variant(label="the scene as it is", knob=AS_IT_IS)
+    yield Variant(label="base", knob=BASE, scene_keys=base)
     for knob in knobs:
-        for level in knob.levels:
+        for value, label, keys in knob.levels:
             whole = knob.name == "tolerance" or knob.alternative
-            change = level.change if whole else base + level.change
-            details = _choice(scene, change) if knob.name == "tolerance" else ""
-            found.append(
-                _plan(level.label, knob.name, change, level.value, details=details, own_reference=knob.own_reference)
-            )
-    changes, _ = without_effects(scene)
-    return found + [_plan(f"without {effect}", EFFECT, one, same_physics=False) for effect, one in changes.items()]
+            yield Variant(
+                label=label, knob=knob.name, value=value, scene_keys=keys if whole else base + keys,
+                details=_choice(scene, keys) if knob.name == "tolerance" else "", own_reference=knob.own_reference,
+            )  # fmt: skip
+    for effect, keys in without_effects(scene)[0].items():
+        yield Variant(label=f"without {effect}", knob=EFFECT, scene_keys=keys)
 
 
-def _choice(scene: Scene, change: Change) -> str:
+def _choice(scene: Scene, keys: Keys) -> str:
     try:
-        changed = change.scene(scene)
-        return choice(changed, settings_for(changed))
+        other = changed(scene, keys)
+        return choice(other, settings_for(other))
     except (SceneError, SettingsError):  # which the run will tell
         return ""
 
 
-def _measured(
-    scene: Scene,
-    planned: Sequence[Planned],
-    folder: Path,
-    repeats: int,
-    workers: int,
-    progress: Progress,
-    reference: Mapping[str, Quantity],
-) -> list[VariantRecord]:
-    ready, failures = [], {}
+def _prepared(scene: Scene, planned: Sequence[Variant]) -> tuple[dict[str, Prepared], dict[str, Measured]]:
+    """By their labels the variants that can run, and the failures of those that can't."""
+    ready, failures = {}, {}
     for one in planned:
         try:
-            changed = one.change.scene(scene)
-            ready.append(Prepared(one.record.label, changed, settings_for(changed)))
+            other = changed(scene, one.scene_keys)
+            ready[one.label] = other, settings_for(other)
         except (SceneError, SettingsError) as error:
-            failures[one.record.label] = Measured(failure=str(error))
-    done = (measure(ready, folder, repeats, workers, progress) if ready else {}) | failures
-    return [_record(one.record, done[one.record.label], reference, is_sampled(scene)) for one in planned]
+            failures[one.label] = Measured(failure=str(error))
+    return ready, failures
 
 
-def _record(
-    planned: VariantRecord, measured: Measured, reference: Mapping[str, Quantity], noisy: bool
-) -> VariantRecord:
-    record = replace(
-        planned,
-        cpu_s=measured.cpu_s,
-        cpu_runs=measured.cpu_runs,
-        total_s=measured.total_s,
-        steps=measured.steps,
-        memory_mb=measured.memory_mb,
-        failure=measured.failure,
-    )
-    if measured.failure:
-        return record
-    found = measured.quantities
-    if not record.same_physics:
-        return replace(record, values={name: found[name].value for name in reference if name in found})
-    return judged(record, found, reference, noisy)
-
-
-def judged(
-    record: VariantRecord, quantities: Mapping[str, Quantity], reference: Mapping[str, Quantity], noisy: bool
-) -> VariantRecord:
-    """The record with its errors; one that lacks a main result has failed.
+def judged(one: Variant, reference: Results, noisy: bool) -> Variant:
+    """A variant that ran with its values and errors; one that lacks a main result has failed.
 
     Args:
-        record: a variant that ran.
-        quantities: that it found.
+        one: with its quantities.
         reference: main results of the reference.
         noisy: whether uncertainties are standard errors, from which those of the errors follow (`is_sampled`).
     """
-    if missing := [name for name in reference if name not in quantities]:
-        return replace(record, failure=f"found no {' and no '.join(missing)}")
-    values = {name: quantities[name].value for name in reference}
+    if one.failure:
+        return one
+    found = {name: one.quantities[name] for name in reference if name in one.quantities}
+    values = {name: quantity.value for name, quantity in found.items()}
+    if not one.same_physics:
+        return replace(one, values=values)
+    if missing := [name for name in reference if name not in found]:
+        return replace(one, failure=f"found no {' and no '.join(missing)}")
     errors = {name: abs(values[name] / reference[name].value - 1.0) for name in reference}
     worst = max(errors, key=lambda name: errors[name])
-    spread = 0.0
-    if noisy:
-        both = math.hypot(quantities[worst].uncertainty, reference[worst].uncertainty)
-        spread = both / abs(reference[worst].value)
-    return replace(record, values=values, errors=errors, error=errors[worst], spread=spread)
+    both = math.hypot(found[worst].uncertainty, reference[worst].uncertainty) / abs(reference[worst].value)
+    return replace(one, values=values, errors=errors, error=errors[worst], spread=both if noisy else 0.0)
 
 
-def _against_own(records: Sequence[VariantRecord], knobs: Sequence[Knob]) -> list[VariantRecord]:
+def _ran(knob: Knob, variants: Sequence[Variant]) -> list[Variant]:
+    return [one for one in variants if one.knob == knob.name and not one.failure]
+
+
+def _against_own(variants: Sequence[Variant], knobs: Sequence[Knob]) -> list[Variant]:
     """Errors of the knobs that the reference does not have, against the finest level that ran."""
-    finest: dict[str, VariantRecord] = {}
-    for knob in (one for one in knobs if one.own_reference):
-        ran = [one for one in records if one.knob == knob.name and not one.failure]
-        if ran:
-            finest[knob.name] = (min if knob.finer == "smaller" else max)(ran, key=lambda one: one.value)
-    return [_relative(one, finest[one.knob]) if one.knob in finest and not one.failure else one for one in records]
+    found = {one.label: one for one in variants}
+    for knob in knobs:
+        ran = _ran(knob, variants) if knob.own_reference else []
+        for finest in sorted(ran, key=lambda one: knob.coarseness(one.value))[:1]:
+            for one in ran:
+                errors = {name: abs(one.values[name] / value - 1.0) for name, value in finest.values.items()}
+                largest = math.nan if one is finest else max(errors.values())
+                found[one.label] = replace(one, errors=errors, error=largest)
+    return list(found.values())
 
 
-def _relative(one: VariantRecord, finest: VariantRecord) -> VariantRecord:
-    errors = {name: abs((one.values or {})[name] / value - 1.0) for name, value in (finest.values or {}).items()}
-    return replace(one, errors=errors, error=float("nan") if one is finest else max(errors.values()))
+def _with_order(knob: Knob, variants: Sequence[Variant], base_error: float) -> Knob:
+    """The knob with the order of its error, where it has one; the base's own error limits what is turned from it."""
+    ran = _ran(knob, variants) if knob.has_order else []
+    floor = 0.0 if knob.own_reference or knob.name == "tolerance" else base_error
+    order = fit_order([knob.coarseness(one.value) for one in ran], [one.error for one in ran], floor)
+    return replace(knob, order=order)
 
 
-def _knob_record(knob: Knob, records: Sequence[VariantRecord], floor: float, scene: Scene) -> KnobRecord:
-    order = None
-    if knob.has_order and not is_sampled(scene):
-        mine = [one for one in records if one.knob == knob.name and not one.failure]
-        h = [one.value if knob.finer == "smaller" else 1.0 / one.value for one in mine]
-        order = fit_order(h, [one.error for one in mine], floor if knob.name != "tolerance" else 0.0)
-    return KnobRecord(knob.name, knob.meaning, knob.finer, knob.own, knob.own_reference, order)
-
-
-def _with_changes(effects: Sequence[EffectCost], records: Sequence[VariantRecord]) -> tuple[EffectCost, ...]:
+def _with_changes(effects: Sequence[EffectCost], variants: Sequence[Variant]) -> tuple[EffectCost, ...]:
     """The costs with what leaving an effect out does to the main results."""
-    scene = next(one for one in records if one.knob == AS_IT_IS)
-    left = {one.label: one for one in records if one.knob == EFFECT and not one.failure}
+    own = next(one for one in variants if one.knob == AS_IT_IS).values
+    left = {one.label: one.values for one in variants if one.knob == EFFECT and not one.failure}
     found = []
     for effect in effects:
-        without = left.get(f"without {effect.name}")
-        if without is None or not scene.values:
-            found.append(effect)
-            continue
-        values = without.values or {}
-        changes = {name: value / scene.values[name] - 1.0 for name, value in values.items() if name in scene.values}
+        values = left.get(f"without {effect.name}", {})
+        changes = {name: value / own[name] - 1.0 for name, value in values.items() if name in own}
         found.append(replace(effect, changes=changes))
     return tuple(found)
 
@@ -305,34 +255,26 @@ def fit_order(h: Sequence[float], errors: Sequence[float], floor: float = 0.0) -
         The order with its standard error, √(Σ residual²/(n − 2)/Σ(x − x̄)²), or None with fewer than FEWEST_POINTS
         points between the floor and ASYMPTOTIC.
     """
-    used = [
-        (math.log(one), math.log(error))
-        for one, error in zip(h, errors, strict=True)
-        if math.isfinite(error) and max(FLOOR_FACTOR * floor, ROUND_OFF) < error < ASYMPTOTIC
-    ]
-    if len(used) < FEWEST_POINTS or len({x for x, _ in used}) < FEWEST_POINTS:
+    x, y = np.asarray(h, dtype=float), np.asarray(errors, dtype=float)
+    used = (y > max(FLOOR_FACTOR * floor, ROUND_OFF)) & (y < ASYMPTOTIC)
+    if len(np.unique(x[used])) < FEWEST_POINTS:
         return None
-    x, y = np.asarray(used).T
-    spread = float(np.sum((x - x.mean()) ** 2))
-    slope = float(np.sum((x - x.mean()) * (y - y.mean()))) / spread
-    residual = y - y.mean() - slope * (x - x.mean())
-    return Order(slope, math.sqrt(float(np.sum(residual**2)) / (len(used) - 2) / spread), len(used))
+    (slope, _), covariance = np.polyfit(np.log(x[used]), np.log(y[used]), 1, cov=True)
+    return Order(float(slope), math.sqrt(covariance[0, 0]), int(used.sum()))
 
 
 def pareto_front(costs: Sequence[float], errors: Sequence[float]) -> list[int]:
     """Indices of the points that no other beats in both cost and error, the cheapest first; NaN is no point."""
-    order = sorted(
-        (i for i in range(len(costs)) if math.isfinite(costs[i]) and math.isfinite(errors[i])),
-        key=lambda i: (costs[i], errors[i]),
+    points = sorted(
+        (cost, error, i)
+        for i, (cost, error) in enumerate(zip(costs, errors, strict=True))
+        if math.isfinite(cost) and math.isfinite(error)
     )
     front: list[int] = []
-    for i in order:
-        if not front or errors[i] < errors[front[-1]]:
+    for _, error, i in points:
+        if not front or error < errors[front[-1]]:
             front.append(i)
     return front
-
-
-TABLE, FIGURE = "cost.csv", "cost.png"
 
 
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-5)
@@ -342,32 +284,24 @@ WORTHWHILE_SAVING = 0.9
 """CPU time over that of what the tolerance chooses, below which something is worth saying: medians differ by less."""
 
 
-def combinations(
-    knobs: Sequence[Knob], records: Sequence[VariantRecord], base: Change
-) -> Iterator[tuple[str, str, Change]]:
+def combinations(knobs: Sequence[Knob], variants: Sequence[Variant], base: Keys) -> Iterator[Variant]:
     """For each tolerance, every knob at its coarsest value with an error within KNOB_SHARE of it."""
-    turned = [knob for knob in knobs if not knob.own_reference and not knob.alternative]
     for target in TARGETS:
-        change = base
-        found: list[str] = []
-        for knob in turned:
-            level = _coarsest(knob, records, KNOB_SHARE * target)
-            if level is not None:
-                change += knob.levels[level].change
-                found.append(knob.levels[level].label)
-        if found:
-            yield f"combined for {power(target)}", ", ".join(found), change
+        turned = (knob for knob in knobs if not knob.own_reference and not knob.alternative)
+        levels = [level for knob in turned if (level := _coarsest(knob, variants, KNOB_SHARE * target))]
+        if levels:
+            keys = base + tuple(key for level in levels for key in level.keys)
+            details = ", ".join(level.label for level in levels)
+            yield Variant(label=f"combined for {power(target)}", knob=COMBINED, scene_keys=keys, details=details)
 
 
-def _coarsest(knob: Knob, records: Sequence[VariantRecord], error: float) -> int | None:
-    """Index of the coarsest level within that error; of a knob without a scale of errors, of the cheapest one."""
-    measured = {one.label: one for one in records if one.knob == knob.name and one.competes and one.error <= error}
-    within = [i for i, level in enumerate(knob.levels) if level.label in measured]
-    if not within:
-        return None
+def _coarsest(knob: Knob, variants: Sequence[Variant], error: float) -> Level | None:
+    """The coarsest level within that error; of a knob without a scale of errors, the cheapest one."""
+    cpu = {one.label: one.cpu_s for one in variants if one.knob == knob.name and one.competes and one.error <= error}
+    within = [level for level in knob.levels if level.label in cpu]
     if knob.name == "damping":
-        return min(within, key=lambda i: measured[knob.levels[i].label].cpu_s)
-    return (max if knob.finer == "smaller" else min)(within, key=lambda i: knob.levels[i].value)
+        return min(within, key=lambda level: cpu[level.label], default=None)
+    return max(within, key=lambda level: knob.coarseness(level.value), default=None)
 
 
 def choice(scene: Scene, settings: Settings) -> str:
@@ -388,7 +322,7 @@ def choice(scene: Scene, settings: Settings) -> str:
     return ", ".join(words)
 
 
-def advise(tolerance: float, variants: Sequence[VariantRecord], noisy: bool) -> Advice:
+def advise(tolerance: float, variants: Sequence[Variant], noisy: bool) -> Advice:
     """One line: what `[accuracy] tolerance` chooses and what that was measured to be, and what reaches it for less.
 
     Args:
@@ -398,30 +332,23 @@ def advise(tolerance: float, variants: Sequence[VariantRecord], noisy: bool) -> 
     """
     chosen = next((one for one in variants if one.knob == "tolerance" and math.isclose(one.value, tolerance)), None)
     reaching = sorted((one for one in variants if one.bound <= tolerance), key=lambda one: one.cpu_s)
+    limit, text = math.inf, f"tolerance {power(tolerance)}: "
     if chosen is None:
-        text = f"tolerance {power(tolerance)}: was not run"
+        text += "was not run"
     else:
-        text = f"tolerance {power(tolerance)}: chooses {chosen.details}: {_in_words(chosen)}"
-        text += "" if chosen in reaching else ", which is not enough"
-    limit = WORTHWHILE_SAVING * chosen.cpu_s if chosen in reaching and chosen is not None else math.inf
-    less = [one for one in reaching if one.cpu_s < limit]
-    if less:
-        text += f"; {'cheaper' if limit < math.inf else 'the cheapest'} in this scene: {said(less[0])}"
-    elif limit < math.inf:
+        limit = WORTHWHILE_SAVING * chosen.cpu_s if chosen in reaching else math.inf
+        enough = "" if chosen in reaching else ", which is not enough"
+        text += f"chooses {chosen.details}: {chosen.in_words}{enough}"
+    if reaching and reaching[0].cpu_s < limit:
+        best = reaching[0]
+        details = f" ({best.details})" if best.details and best.knob != "tolerance" else ""
+        comparison = "cheaper" if limit < math.inf else "the cheapest"
+        text += f"; {comparison} in this scene: {best.label}{details}, {best.in_words}"
+    elif reaching:
         text += "; nothing else that was tried is clearly cheaper"
     else:
-        best = min(variants, key=lambda one: one.bound, default=None)
-        nearest = "" if best is None else f" (best {best.bound:.1e}{', by its noise' if noisy else ''}: {best.label})"
-        text += f"; not reached by any setting tried{nearest}"
+        nearest = min(variants, key=lambda one: one.bound, default=None)
+        noise = ", by its noise" if noisy else ""
+        best_of = "" if nearest is None else f" (best {nearest.bound:.1e}{noise}: {nearest.label})"
+        text += f"; not reached by any setting tried{best_of}"
     return Advice(tolerance, text, "" if chosen is None else chosen.label, reaching[0].label if reaching else "")
-
-
-def said(one: VariantRecord) -> str:
-    """Label, what it is made of if the label does not say it, error and CPU time."""
-    details = f" ({one.details})" if one.details and one.knob != "tolerance" else ""
-    return f"{one.label}{details}, {_in_words(one)}"
-
-
-def _in_words(one: VariantRecord) -> str:
-    spread = f" ± {one.spread:.0e}" if one.spread else ""
-    return f"error {one.error:.1e}{spread} in {one.cpu_s:.2g} s of CPU"

@@ -17,13 +17,15 @@ from contact1d.workflow.identify.theories import (
     contact_radius,
     judged,
     largest_tension,
-    profile_in,
     require_size,
 )
 from contact1d.workflow.runs import advised
 from contact1d.workflow.runs.campaign import AnyPath
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene, scene_from_dict
+from contact1d.workflow.scene.quantities import places
+from contact1d.workflow.scene.read import plain_data
+from contact1d.workflow.units import Scales
 
 PRELOAD_SHARE = 0.7
 """Preload of a pull-off over JKR's F_A, where no load is given."""
@@ -72,64 +74,49 @@ def chosen(contact: AskedContact) -> Choice:
 
 
 def _on_plane(contact: AskedContact, radius: float, count: int) -> Scene:
-    """The scene of a chain with so many particles in the contact radius [m]: a whole number, as a punch needs."""
+    """The contact's scene with so many particles in the contact radius [m]: a whole number, as a punch needs.
+
+    A pull-off where something holds, else the load.
+    """
     unit = radius / count
-    force = contact.contact_modulus * unit**2
-    data = {
-        "title": contact.title,
-        "bodies": {
-            "particles": "auto",
-            "spacing": 1.0,
-            "profile": profile_in(contact, unit),
-            "reduction": "mdr",
-            "lower": "rigid_plane",
-            "bulk_stiffness": "auto",
-        },
-        "material": _material(contact) | {"length_unit": unit, "force_unit": force},
-        "accuracy": {"tolerance": contact.tolerance},
-        "experiment": _experiment(contact, force, unit),
-    }
+    scales = Scales(unit, contact.contact_modulus * unit**2)
+    data: dict[str, Any] = plain_data(contact.scene)
+    data["bodies"]["spacing"] = unit
+    if contact.is_rigid:
+        data["material"] = {"contact_modulus": contact.contact_modulus}
+    data["material"] |= {"length_unit": unit, "force_unit": scales.force}
+    data.pop("adhesion", None)
     if contact.work_of_adhesion:
-        data["adhesion"] = {"work_of_adhesion": contact.work_of_adhesion * unit / force}
+        data["adhesion"] = {"work_of_adhesion": contact.work_of_adhesion}
+        load = contact.load or PRELOAD_SHARE * largest_tension(contact)
+        data["experiment"] = {"kind": "pull_off", "preload": load}
+    for place in places(Scene, data):
+        if place.is_number and not place.absent and scales.know(place.unit.name):
+            place.put(data, place.value / scales.factor(place.unit.name))
     return scene_from_dict(data)
-
-
-def _experiment(contact: AskedContact, force: float, unit: float) -> dict[str, Any]:
-    """A pull-off where something holds, else the load."""
-    if not contact.work_of_adhesion:
-        assert contact.load is not None
-        return {"kind": "load", "force": contact.load / force}
-    load = contact.load or PRELOAD_SHARE * largest_tension(contact)
-    return {"kind": "pull_off", "preload": load / force}
-
-
-def _material(contact: AskedContact) -> dict[str, Any]:
-    if contact.bodies:
-        return {name: body.model_dump() for name, body in contact.bodies.items()}
-    return {"contact_modulus": contact.contact_modulus}
 
 
 def _particles(contact: AskedContact, theories: Theories | None, doubts: dict[str, str]) -> Choice:
     """Two chains, whose interaction is to give JKR's F_A and a₀."""
-    if theories is None or contact.radius is None or contact.profile["kind"] != "parabola":
+    if theories is None or contact.radius is None or contact.shape.kind != "parabola":
         raise IdentifyError(
             'model = "particles" is for an adhesive sphere, with a radius and a work_of_adhesion: leave it out, and a '
             "chain on a rigid plane stands for the body"
         )
     wanted = jkr_target(contact.contact_modulus, 0.5 * contact.work_of_adhesion, contact.radius)
-    scene, target = material_scene(contact.contact_modulus, contact.radius, wanted, tolerance=contact.tolerance)
-    data = scene.model_dump(by_alias=True, exclude_none=True)
-    data["title"] = contact.title
+    tolerance = contact.scene.accuracy.tolerance
+    scene, target = material_scene(contact.contact_modulus, contact.radius, wanted, tolerance=tolerance)
+    changes: dict[str, Any] = {"title": contact.scene.title}
     assert scene.material is not None
     assert scene.material.force_unit is not None
     if contact.load:
-        data["experiment"]["preload"] = contact.load / scene.material.force_unit
+        changes["experiment.preload"] = contact.load / scene.material.force_unit
     image = (
         "of two chains only F_A and a_0 are JKR's, since the interaction is searched for by them: displacement, "
         'critical radius and work are those of the one-dimensional image. Without model = "particles" all of them are '
         "JKR's"
     )
-    return Choice(scene_from_dict(data), theories, target, doubts | {"image": image}, wanted.zero_load_radius)
+    return Choice(scene.with_(changes), theories, target, doubts | {"image": image}, wanted.zero_load_radius)
 
 
 @dataclass(frozen=True)

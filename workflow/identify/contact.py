@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, Literal
 
-from contact1d.workflow.scene import Problem, SceneError, read_tables, scene_from_dict
-from contact1d.workflow.scene.material import Elastic
+from contact1d.workflow.scene import Problem, Scene, SceneError, read_tables, scene_from_dict
+from contact1d.workflow.scene.material import SPHERES
 from contact1d.workflow.scene.problems import nearest, shown
 from contact1d.workflow.scene.profile_file import ProfileFileError, ScaleError, read_profile
 from contact1d.workflow.scene.profiles import Profile as Shape
@@ -55,38 +55,56 @@ class AskedContact:
     """A body on a flat one, in SI.
 
     Attributes:
-        title: one line.
-        profile: of the upper body, with the keys of a scene's; numbers in metres.
-        shape: the same, as a scene in metres has it.
-        contact_modulus: E* [Pa].
-        bodies: both, where their elasticity is given; empty where E* is, or one of them is rigid.
-        work_of_adhesion: W = 2γ [J/m²]; 0: no attraction.
-        range: z₀ of the attraction [m].
-        range_is_assumed: whether it is the usual one and nobody gave it.
-        load: [N]; None: not given.
+        scene: a chain on a rigid plane with what was given, in metres and newtons; what was not given stands in.
+        given: the description.
         roughness: rms height [m]; None: not given.
-        tolerance: of the scene.
-        model: "plane", a chain on a rigid plane; "particles", two chains with an interaction that is searched for.
     """
 
-    title: str
-    profile: Mapping[str, Any]
-    shape: Shape
-    contact_modulus: float
-    bodies: Mapping[str, Elastic] = field(default_factory=dict)
-    work_of_adhesion: float = 0.0
-    range: float = USUAL_RANGE
-    range_is_assumed: bool = True
-    load: float | None = None
+    scene: Scene
+    given: Mapping[str, Any]
     roughness: float | None = None
-    tolerance: float = DEFAULT_TOLERANCE
-    model: Model = "plane"
+
+    @property
+    def shape(self) -> Shape:
+        """The upper body's profile."""
+        return self.scene.bodies.profile
 
     @property
     def radius(self) -> float | None:
         """R of a sphere [m], None of another body."""
-        sphere = self.profile.get("kind") in ("parabola", "circle")
-        return float(self.profile["radius"]) if sphere else None
+        return self.shape.curvature_radius if self.shape.kind in SPHERES else None
+
+    @property
+    def is_rigid(self) -> bool:
+        """Whether one of the bodies is, so that the scene has the other one twice."""
+        return RIGID in (self.given.get("upper"), self.given.get("lower"))
+
+    @property
+    def contact_modulus(self) -> float:
+        """E* [Pa]."""
+        assert self.scene.material is not None
+        return self.scene.material.effective_modulus() * (2.0 if self.is_rigid else 1.0)
+
+    @property
+    def work_of_adhesion(self) -> float:
+        """W = 2γ [J/m²]; 0: no attraction."""
+        return 0.0 if self.scene.adhesion is None or not _adheres(self.given) else self.scene.adhesion.work
+
+    @property
+    def range(self) -> float:
+        """z₀ of the attraction [m]."""
+        adhesion = self.scene.adhesion
+        return USUAL_RANGE if adhesion is None or adhesion.range is None else adhesion.range
+
+    @property
+    def load(self) -> float | None:
+        """Its load [N]; None: not given."""
+        return self.scene.experiment.compression if "load" in self.given else None
+
+    @property
+    def model(self) -> Model:
+        """A chain on a rigid plane, or two chains with an interaction that is searched for."""
+        return "particles" if self.given.get("model") == "particles" else "plane"
 
 
 def read_contact(source: AnyContact) -> AskedContact:
@@ -110,24 +128,7 @@ def read_contact(source: AnyContact) -> AskedContact:
     roughness = _length(data, "roughness", problems)
     if problems or scene is None:
         raise SceneError(sorted(problems, key=lambda one: _rank(one, data)))
-    material, adhesion = scene.material, scene.adhesion
-    assert material is not None
-    rigid = RIGID in (data.get("upper"), data.get("lower"))
-    bodies = {name: body for name in ("upper", "lower") if (body := getattr(material, name)) is not None}
-    return AskedContact(
-        title=scene.title,
-        profile=scene.bodies.profile.model_dump(by_alias=True, exclude_none=True),
-        shape=scene.bodies.profile,
-        contact_modulus=material.effective_modulus() * (2.0 if rigid else 1.0),
-        bodies={} if rigid else bodies,
-        work_of_adhesion=0.0 if adhesion is None or not _adheres(data) else adhesion.work,
-        range=USUAL_RANGE if adhesion is None or adhesion.range is None else adhesion.range,
-        range_is_assumed="range" not in data,
-        load=scene.experiment.compression if "load" in data else None,
-        roughness=roughness,
-        tolerance=scene.accuracy.tolerance if "tolerance" in data else DEFAULT_TOLERANCE,
-        model=data.get("model", "plane"),
-    )
+    return AskedContact(scene, data, roughness)
 
 
 def _adheres(data: Mapping[str, Any]) -> bool:
@@ -190,14 +191,13 @@ def _as_scene(data: Mapping[str, Any]) -> dict[str, Any]:
         "bodies": {"particles": "auto", "spacing": "auto", "profile": profile, "reduction": "mdr",
                    "lower": "rigid_plane", "bulk_stiffness": "auto"},
         "material": {**bodies, **modulus, "length_unit": 1.0, "force_unit": 1.0},
+        "accuracy": {"tolerance": data.get("tolerance", DEFAULT_TOLERANCE)},
         "experiment": {"kind": "load", "force": data.get("load", 0.0) or 1.0},
     }  # fmt: skip
     energy = {key: data[key] for key in ("surface_energy", "work_of_adhesion") if data.get(key)}
     if energy or "range" in data:
         reach = {"range": data["range"]} if "range" in data else {}
         tables["adhesion"] = (energy or {"work_of_adhesion": 1.0}) | reach
-    if "tolerance" in data:
-        tables["accuracy"] = {"tolerance": data["tolerance"]}
     return tables
 
 

@@ -14,7 +14,6 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -178,18 +177,6 @@ SHORTEST, LONGEST, PLACES = 1e-12, 1e4, 8000
 """Radii [m] among which that of a contact is looked for, in a geometric row, and how many."""
 INSIDE = 0.999999
 """Largest of them over the half-width of a body that ends: the transform of a circle has no bound there."""
-
-
-def profile_in(contact: AskedContact, unit: float) -> dict[str, Any]:
-    """The profile in units of the scene [m]."""
-    profile = dict(contact.profile)
-    for key in ("radius", "height"):
-        if key in profile:
-            profile[key] /= unit
-    for key in ("r", "z"):
-        if key in profile:
-            profile[key] = [value / unit for value in profile[key]]
-    return profile
 
 
 def curve(contact: AskedContact) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

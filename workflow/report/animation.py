@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,6 @@ from contact1d.analysis.plots import COMPRESSION, DPI, TENSION, THEORY, plain_ax
 from contact1d.files import whole, write_whole
 from contact1d.workflow.deck.keeping import STATES
 from contact1d.workflow.errors import Contact1dError, FolderError
-from contact1d.workflow.pages.parts import text_of
 from contact1d.workflow.report.charts import main_curve, rows_of_branches, window
 from contact1d.workflow.runs.campaign import AnyPath
 from contact1d.workflow.runs.finished import Run, load_run
@@ -70,7 +70,7 @@ def ovito_script(folder: AnyPath) -> Path:
     if missing:
         raise FolderError(f"{folder} lacks {' and '.join(missing)}, which OVITO reads: run the scene again")
     path = run.folder / OVITO
-    write_whole(path, text_of("contact1d.workflow.report", OVITO))
+    write_whole(path, files("contact1d.workflow.report").joinpath(OVITO).read_text(encoding="utf-8"))
     return path
 
 
@@ -139,13 +139,14 @@ def _segments(x: NDArray[np.float32], z: NDArray[np.float32], length: float) -> 
 
 def _trace(axis: Axes, run: Run, states: States) -> Any:
     """The main curve with a mark; returns what moves it."""
-    _, name_x, name_y, x, y = main_curve(run)
+    main = main_curve(run)
+    x, y = main.x, main.y
     for rows in rows_of_branches(run.curve.branch, x).values():
         axis.plot(x[rows], y[rows], color=COMPRESSION, linewidth=1.2)
     axis.axhline(0.0, color=THEORY, linewidth=0.6)
     (mark,) = axis.plot([], [], "o", color=TENSION, markersize=8)
-    axis.set_xlabel(name_x)
-    axis.set_ylabel(name_y)
+    axis.set_xlabel(main.x_name)
+    axis.set_ylabel(main.y_name)
 
     def move(frame: int) -> list[Any]:
         row = states.rows[frame]

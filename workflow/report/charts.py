@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from itertools import cycle
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +15,7 @@ from numpy.typing import NDArray
 from contact1d.analysis.curve import SAMPLE_COLUMNS, SAMPLE_TABLE, States, read_columns
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.sweep.axes import SweepPlan
-from contact1d.workflow.sweep.figures import Line, lines_of, mean_of, roles_of, short, theories_of
+from contact1d.workflow.sweep.figures import forms_of, label_of, lines_of, roles_of
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999933")
 """Okabe and Ito's, which the colour-blind can tell apart."""
@@ -25,24 +27,41 @@ DASHES = ("solid", "dash", "dot", "dashdot")
 Array = NDArray[np.float64]
 Chart = dict[str, Any]
 ALONG = (
-    ("time", "Friction over time", "time (TU)", ("friction", "friction (FU)")),
-    ("time", "Displacement over time", "time (TU)", ("displacement", "displacement (LU)")),
     ("tangential_displacement", "Tangential force over displacement", "displacement along x (LU)",
-     ("tangential_force", "tangential force (FU)")),
+     "tangential_force", "tangential force (FU)"),
+    ("time", "Displacement over time", "time (TU)", "displacement", "displacement (LU)"),
+    ("time", "Friction over time", "time (TU)", "friction", "friction (FU)"),
 )  # fmt: skip
 """Of what happens along x, or in time: column along x of a figure, its title and name, column along y and its name."""
-DRAWN: dict[str, Any] = {"x": [], "y": [], "mode": "lines+markers", "marker": {"size": 4}}
-"""A line that the slider fills."""
 
 
-def chart(title: str, x: str, y: str, traces: Iterable[Mapping[str, Any]], **layout: Any) -> Chart:
+@dataclass(frozen=True)
+class Relation:
+    """One quantity of a run over another.
+
+    Attributes:
+        title, x_name, y_name: of the figure and its axes, with units.
+        x, y: columns.
+        branch: of each row; None where there are none.
+        mode: of plotly's traces.
+    """
+
+    title: str
+    x_name: str
+    y_name: str
+    x: Array
+    y: Array
+    branch: NDArray[np.str_] | None = None
+    mode: str = "lines"
+
+
+def chart(title: str, x: str, y: str, traces: Iterable[Mapping[str, Any]] = (), **layout: Any) -> Chart:
     """A figure with its axes' names."""
+    axis = {"showline": True, "ticks": "outside", "automargin": True}
     frame = {
         "title": {"text": title, "x": 0, "xanchor": "left", "font": {"size": 15}},
-        "xaxis": {"title": {"text": x}, "zeroline": False, "showline": True, "ticks": "outside",
-                  "automargin": True},
-        "yaxis": {"title": {"text": y}, "zerolinecolor": "#888", "showline": True, "ticks": "outside",
-                  "automargin": True},
+        "xaxis": {"title": {"text": x}, "zeroline": False, **axis},
+        "yaxis": {"title": {"text": y}, "zerolinecolor": "#888", **axis},
         "template": "none", "margin": {"l": 70, "r": 15, "t": 45, "b": 60}, "hovermode": "closest",
         "legend": {"orientation": "h", "y": -0.22},
     }  # fmt: skip
@@ -55,115 +74,118 @@ def trace(x: Iterable[Any], y: Iterable[Any], name: str, colour: str, mode: str,
             "line": {"color": colour} | line}  # fmt: skip
 
 
+def relations(run: Run) -> list[Relation]:
+    """What happens along x or in time, if anything does; then force over displacement and over contact radius."""
+    kept = run.folder / f"{SAMPLE_TABLE}.csv"
+    columns = run.friction or (read_columns(kept, SAMPLE_COLUMNS) if kept.is_file() else {})
+    mode = "markers" if "time" in columns else "lines+markers"  # a motion has no one line
+    over = {"displacement": "displacement (LU), compression positive", "contact_radius": "contact radius (LU)"}
+    return [
+        *(
+            Relation(title, x, y, columns[along], columns[column])
+            for along, title, x, column, y in ALONG
+            if {along, column} <= {*columns}
+        ),
+        *(
+            Relation(
+                f"Force over {name.replace('_', ' ')}", label, "force (FU)", getattr(run.curve, name), run.curve.force,
+                run.curve.branch, mode,
+            )
+            for name, label in over.items()
+        ),
+    ]  # fmt: skip
+
+
+def main_curve(run: Run) -> Relation:
+    """The curve that the slider's mark moves on, with a row for each state."""
+    branch, count = run.curve.branch, len(run.curve.force)
+    for one in relations(run):
+        loaded = count - len(one.x)  # a slide begins with a state under the load, before it is driven
+        if 0 <= loaded <= 1:
+            x, y = np.concatenate([[0.0] * loaded, one.x]), np.concatenate([[math.nan] * loaded, one.y])
+            return replace(one, x=x, y=y, branch=branch)
+    raise AssertionError("force over displacement has a row for each state")
+
+
 def curves(runs: Mapping[str, Run]) -> list[Chart]:
-    """Force over displacement and over contact radius of the runs, overlaid; of a slide friction over time."""
-    found: list[Chart] = []
-    for key, title, x, y in ALONG:
-        every = {name: _over_time(run) for name, run in runs.items()}
-        kept = {name: columns for name, columns in every.items() if {key, y[0]} <= {*columns}}
-        traces = [
-            trace(columns[key], columns[y[0]], name, colour, "lines")
-            for (name, columns), colour in zip(kept.items(), _colours(len(kept)), strict=True)
-        ]
-        if traces:
-            found.insert(0, chart(title, x, y[1], traces))
-    moved = {name: run for name, run in runs.items() if _moves(run.curve.displacement)}
-    touching = {name: run for name, run in moved.items() if np.isfinite(run.curve.contact_radius).sum() > 1}
-    for column, label, some in (
-        ("displacement", "displacement (LU), compression positive", moved),
-        ("contact_radius", "contact radius (LU)", touching),
-    ):
-        if some:
-            title = f"Force over {column.replace('_', ' ')}"
-            found.append(chart(title, label, "force (FU)", _traces(some, column, "force")))
-    return found
+    """What the runs have of `relations`, overlaid: a line for each branch of each run."""
+    found: dict[str, Chart] = {}
+    for (name, run), colour in zip(runs.items(), cycle(COLOURS), strict=False):
+        for one in relations(run):
+            if one.branch is not None and not (_moves(run) and np.isfinite(one.x).sum() > 1):
+                continue
+            traces = found.setdefault(one.title, chart(one.title, one.x_name, one.y_name))["data"]
+            if one.branch is None:
+                traces.append(trace(one.x, one.y, name, colour, one.mode))
+                continue
+            for (branch, rows), dash in zip(rows_of_branches(one.branch, one.x).items(), cycle(DASHES), strict=False):
+                label = branch if len(runs) == 1 else f"{name}, {branch}"
+                made = trace(one.x[rows], one.y[rows], label, colour, one.mode, dash=dash)
+                hover = f"{_with_value(one.x_name, '%{x:.5g}')}<br>force %{{y:.5g}} FU<br>state %{{customdata}}"
+                traces.append(made | {"customdata": rows.tolist(), "hovertemplate": hover})
+    return list(found.values())
 
 
-def _moves(places: Array) -> bool:
+def _moves(run: Run) -> bool:
     """Whether a body came nearer or went away at all."""
+    places = run.curve.displacement
     return len(places) > 1 and float(np.ptp(places)) > ROUND_OFF * float(np.max(np.abs(places)))
-
-
-def _traces(runs: Mapping[str, Run], x: str, y: str) -> list[dict[str, Any]]:
-    """A line for each branch of each run; hovering tells all columns of the state."""
-    traces = []
-    for (name, run), colour in zip(runs.items(), _colours(len(runs)), strict=True):
-        mode = "markers" if "time" in _over_time(run) else "lines+markers"  # a motion has no one line
-        branches = rows_of_branches(run.curve.branch, run.curve.displacement)
-        for (branch, rows), dash in zip(branches.items(), DASHES * len(branches), strict=False):
-            label = branch if len(runs) == 1 else f"{name}, {branch}"
-            made = trace(getattr(run.curve, x)[rows], getattr(run.curve, y)[rows], label, colour, mode, dash=dash)
-            hover = f"{x.replace('_', ' ')} %{{x:.5g}}<br>{y} %{{y:.5g}}<br>state %{{customdata}}"
-            traces.append(made | {"customdata": rows.tolist(), "hovertemplate": hover})
-    return traces
 
 
 def pressures(runs: Mapping[str, Run]) -> Chart | None:
     """Pressure over x of the reported states that touch."""
-    traces = []
-    for (name, run), colour in zip(runs.items(), _colours(len(runs)), strict=True):
-        for (state, profile), dash in zip(run.profiles.items(), DASHES * len(run.profiles), strict=False):
+    traces, half = [], 0.0
+    for (name, run), colour in zip(runs.items(), cycle(COLOURS), strict=False):
+        for (state, profile), dash in zip(run.profiles.items(), cycle(DASHES), strict=False):
             if np.any(profile.pressure):
                 label = state.replace("_", " ") if len(runs) == 1 else f"{name}, {state.replace('_', ' ')}"
-                traces.append(
-                    trace(profile.x, profile.pressure, label, colour, "lines+markers", dash=dash, shape="hvh")
-                )
-    if not traces:
-        return None
-    half = 1.1 * max(half_width(np.asarray(trace["x"]), np.asarray(trace["y"])) for trace in traces)
-    made = chart("Pressure, line load of the chain", "x (LU)", "pressure (FU/LU), compression positive", traces)
-    made["layout"]["xaxis"]["range"] = [-half, half]
-    return made
+                half = max(half, 1.1 * half_width(profile.x, profile.pressure))
+                line = {"dash": dash, "shape": "hvh"}
+                traces.append(trace(profile.x, profile.pressure, label, colour, "lines+markers", **line))
+    words = "Pressure, line load of the chain", "x (LU)", "pressure (FU/LU), compression positive"
+    return within(chart(*words, traces), half) if traces else None
 
 
 def way(run: Run, states: States) -> dict[str, Any]:
     """What the slider moves through: for each kept state its place on the curve, profile, bodies and words."""
-    curve, rows = run.curve, states.rows
+    curve, rows, main = run.curve, states.rows, main_curve(run)
     half, view = window(states)
     kept = {name: getattr(states, name)[:, view] for name in ("x", "z_lower", "z_upper", "pressure", "shear")}
-    title, name_x, name_y, x, y = main_curve(run)
     words = []
     for row in rows:
-        radius = curve.contact_radius[row]
+        radius, x, y = curve.contact_radius[row], f"{main.x[row]:.5g}", f"{main.y[row]:.5g}"
         touching = "" if math.isnan(radius) else f", contact radius {radius:.4g} LU"
-        words.append(f"{_with_value(name_x, x[row])}, {_with_value(name_y, y[row])}, {curve.branch[row]}{touching}")
-    force = chart(title, name_x, name_y, [
-        {**_branches(x, y, curve.branch), "mode": "lines", "line": {"color": "#999999"}},
-        {"x": [], "y": [], "mode": "markers", "marker": {"size": 12, "color": COLOURS[1]}},
-    ], showlegend=False)  # fmt: skip
-    sheared = bool(np.any(kept["shear"]))
-    load = chart("Pressure", "x (LU)", "pressure (FU/LU)", [
-        DRAWN | {"name": "pressure", "line": {"color": COLOURS[0], "shape": "hvh"}},
-        DRAWN | {"name": "shear", "line": {"color": COLOURS[1], "shape": "hvh"}, "visible": sheared},
-    ])  # fmt: skip
-    bodies = chart("Bodies, heights drawn larger", "x (LU)", "z (LU)", [
-        DRAWN | {"name": "upper", "line": {"color": COLOURS[0]}},
-        DRAWN | {"name": "lower", "line": {"color": COLOURS[2]}},
-    ])  # fmt: skip
-    for made, columns in ((load, ("pressure", "shear")), (bodies, ("z_lower", "z_upper"))):
-        made["layout"]["xaxis"]["range"] = [-half, half]
-        made["layout"]["yaxis"]["range"] = _range(*(kept[name] for name in columns))
+        place = f"{_with_value(main.x_name, x)}, {_with_value(main.y_name, y)}"
+        words.append(f"{place}, {curve.branch[row]}{touching}")
+    gap, branches = [-1], rows_of_branches(curve.branch, main.x).values()
+    order = np.concatenate([[*rows, *gap] for rows in branches])
+    line = trace(np.append(main.x, math.nan)[order], np.append(main.y, math.nan)[order], "", "#999999", "lines")
+    mark = {"x": [], "y": [], "mode": "markers", "marker": {"size": 12, "color": COLOURS[1]}}
+    load = [_filled("pressure", COLOURS[0], shape="hvh"), _filled("shear", COLOURS[1], shape="hvh")]
+    load[1]["visible"] = bool(np.any(kept["shear"]))
+    bodies = [_filled("upper", COLOURS[0]), _filled("lower", COLOURS[2])]
+    heights = kept["z_lower"], kept["z_upper"]
     return {
-        "along": _listed(x[rows]), "against": _listed(y[rows]), "words": words,
-        "start": int(np.nanargmax(np.abs(y[rows]))),
-        "charts": [force, load, bodies], **{name: [_listed(row) for row in array] for name, array in kept.items()},
+        "along": _listed(main.x[rows]), "against": _listed(main.y[rows]), "words": words,
+        "start": int(np.nanargmax(np.abs(main.y[rows]))),
+        "charts": [
+            chart(main.title, main.x_name, main.y_name, [line, mark], showlegend=False),
+            within(chart("Pressure", "x (LU)", "pressure (FU/LU)", load), half, kept["pressure"], kept["shear"]),
+            within(chart("Bodies, heights drawn larger", "x (LU)", "z (LU)", bodies), half, *heights),
+        ],
+        **{name: [_listed(row) for row in array] for name, array in kept.items()},
     }  # fmt: skip
 
 
-def _with_value(name: str, value: float) -> str:
+def _filled(name: str, colour: str, **line: Any) -> dict[str, Any]:
+    """A line that the slider fills."""
+    return trace((), (), name, colour, "lines+markers", **line)
+
+
+def _with_value(name: str, value: str) -> str:
     """`force (FU)` and a number: `force 1.2 FU`."""
-    quantity, _, unit = name.partition(" (")
-    return f"{quantity} {value:.5g} {unit.rstrip(')')}"
-
-
-def _branches(x: Array, y: Array, branch: NDArray[np.str_]) -> dict[str, list[Any]]:
-    """A line through the states, branch after branch, with a gap between them."""
-    places: list[float] = []
-    values: list[float] = []
-    for rows in rows_of_branches(branch, x).values():
-        places += [*x[rows], math.nan]
-        values += [*y[rows], math.nan]
-    return {"x": _listed(places), "y": _listed(values)}
+    quantity, _, rest = name.partition(" (")
+    return f"{quantity} {value} {rest.partition(')')[0]}"
 
 
 def rows_of_branches(branch: NDArray[np.str_], along: Array) -> dict[str, NDArray[np.int64]]:
@@ -181,79 +203,45 @@ def window(states: States) -> tuple[float, NDArray[np.bool_]]:
     return half, np.abs(states.x).min(axis=0) <= half
 
 
-def main_curve(run: Run) -> tuple[str, str, str, Array, Array]:
-    """The curve that the slider's mark moves on: title, names of the axes, and the columns, a row for each state."""
-    count, columns = len(run.curve.force), _over_time(run)
-    for key, title, x, (column, y) in ALONG:
-        if {key, column} <= {*columns} and 0 <= count - len(columns[key]) <= 1:
-            loaded = count - len(columns[key])  # a slide begins with a state under the load, before it is driven
-            along, against = (
-                np.concatenate([[first] * loaded, columns[name]]) for name, first in ((key, 0.0), (column, math.nan))
-            )
-            return title, x, y, along, against
-    return "Force over displacement", "displacement (LU)", "force (FU)", run.curve.displacement, run.curve.force
-
-
-def _over_time(run: Run) -> Mapping[str, Array]:
-    """What a run has besides its curve, row by row: friction, or samples under heat."""
-    kept = run.folder / f"{SAMPLE_TABLE}.csv"
-    return run.friction or (read_columns(kept, SAMPLE_COLUMNS) if kept.is_file() else {})
+def within(made: Chart, half: float, *columns: Array) -> Chart:
+    """The figure from -half to half [LU], and as high as what is drawn in it."""
+    made["layout"]["xaxis"]["range"] = [-half, half]
+    if columns:
+        low, high = float(np.min(columns)), float(np.max(columns))
+        margin = 0.06 * (high - low) or 1e-12
+        made["layout"]["yaxis"]["range"] = [low - margin, high + margin]
+    return made
 
 
 def over_axes(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> list[Chart]:
-    """Each result of a sweep over its axes."""
-    along, others = roles_of(plan)
-    found, beside, unit_along = [], theories_of(folder, plan), along.numbers()[1]
-    place = f"{along.key} ({unit_along})" if unit_along else along.key
-    for name, unit in units.items():
-        lines, theory = lines_of(folder, plan, name), beside.get(name, {})
-        traces = [_line(labels, line, [short(other.key) for other in others], colour,
-                        covered=any(labels in said for said in theory.values()))
-                  for (labels, line), colour in zip(lines.items(), _colours(len(lines)), strict=True)]  # fmt: skip
-        for (form, said), dash in zip(theory.items(), DASHES * len(theory), strict=False):
-            traces += [
-                _theory(form, said[labels], dash, colour, shown=number == 0)
-                for number, (labels, colour) in enumerate(zip(lines, _colours(len(lines)), strict=True))
-                if labels in said
-            ]
-        found.append(
-            chart(name.replace("_", " "), place, f"{name.replace('_', ' ')} ({unit})", traces,
-                  showlegend=bool(others or theory))
-        )  # fmt: skip
+    """Each result of a sweep over its axes; where a closed form speaks of a line, the runs are points on it."""
+    found = []
+    for name, lines in lines_of(folder, plan, units).items():
+        forms = dict(zip(forms_of(lines), cycle(DASHES), strict=False))
+        coloured = list(zip(lines, cycle(COLOURS), strict=False))
+        traces = []
+        for line, colour in coloured:
+            mode = "markers" if line.forms else "lines+markers"
+            errors = {"type": "data", "array": _listed(line.errors), "thickness": 1}
+            made = trace(line.x, line.values, label_of(plan, line) or "runs", colour, mode)
+            traces.append(made | {"marker": {"size": 7}, "error_y": errors})
+        for form, dash in forms.items():
+            beside = [(*line.forms[form], colour) for line, colour in coloured if form in line.forms]
+            for number, (x, values, colour) in enumerate(beside):
+                made = trace(x, values, form, colour, "lines" if len(x) > 1 else "markers", dash=dash)
+                hover = f"{form} %{{y:.5g}}<extra></extra>"
+                traces.append(made | {"legendgroup": form, "showlegend": number == 0, "hovertemplate": hover})
+        along, others = roles_of(plan)
+        words = name.replace("_", " ")
+        shown = bool(others or forms)
+        found.append(chart(words, along.title, f"{words} ({units[name]})", traces, showlegend=shown))
     return found
-
-
-def _theory(form: str, said: Mapping[float, float], dash: str, colour: str, shown: bool) -> dict[str, Any]:
-    """A closed form along a line of a sweep, in its colour; `shown` in the legend."""
-    places = sorted(said)
-    mode = "lines" if len(places) > 1 else "markers"
-    made = trace(places, [said[place] for place in places], form, colour, mode, dash=dash)
-    return made | {"legendgroup": form, "showlegend": shown, "hovertemplate": f"{form} %{{y:.5g}}<extra></extra>"}
-
-
-def _line(labels: Sequence[str], line: Line, names: Sequence[str], colour: str, covered: bool) -> dict[str, Any]:
-    """The runs of a line; where theory has it `covered`, as points."""
-    places = sorted(line)
-    means, errors = np.transpose([mean_of(line[place]) for place in places])
-    label = ", ".join(f"{name} = {value}" for name, value in zip(names, labels, strict=True))
-    made = trace(places, means, label or "runs", colour, "markers" if covered else "lines+markers")
-    return made | {"marker": {"size": 7}, "error_y": {"type": "data", "array": _listed(errors), "thickness": 1}}
 
 
 def half_width(x: np.ndarray[Any, Any], pressure: np.ndarray[Any, Any]) -> float:
     """Largest |x| at which there is pressure to be seen; a tenth of the body where there is none."""
     carrying = np.abs(pressure) > 0.01 * np.max(np.abs(pressure), initial=0.0)
     return float(np.max(np.abs(x[carrying]))) if carrying.any() else 0.1 * float(np.max(np.abs(x)))
-
-
-def _range(*columns: np.ndarray[Any, Any]) -> list[float]:
-    low, high = min(float(c.min()) for c in columns), max(float(c.max()) for c in columns)
-    margin = 0.06 * (high - low) or 1e-12
-    return [low - margin, high + margin]
-
-
-def _colours(count: int) -> list[str]:
-    return [COLOURS[place % len(COLOURS)] for place in range(count)]
 
 
 def _listed(values: Iterable[Any]) -> list[Any]:

@@ -6,66 +6,37 @@ A scene is put in words for somebody who has not seen its file, from the tables'
 from __future__ import annotations
 
 import json
+import re
+import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from html import escape
+from importlib.resources import files
 from itertools import islice
 from pathlib import Path
 from typing import Any
+
+from jinja2 import Environment, FunctionLoader, StrictUndefined
 
 from contact1d.analysis.curve import read_states
 from contact1d.files import write_whole
 from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.errors import FolderError
-from contact1d.workflow.pages.parts import environment, text_of
 from contact1d.workflow.report.charts import Chart, curves, over_axes, pressures, way
 from contact1d.workflow.runs.campaign import AnyPath
 from contact1d.workflow.runs.finished import Run, read_run
 from contact1d.workflow.scene import Scene, Table, scene_to_toml
 from contact1d.workflow.scene.quantities import keys_of
 from contact1d.workflow.sweep.axes import read_sweep
-from contact1d.workflow.sweep.table import RECORD, TABLE, read_table, units_in
+from contact1d.workflow.sweep.table import RECORD, TABLE, counts_in, read_table, units_in
 
-PACKAGE = "contact1d.workflow.report"
+PACKAGE = files("contact1d.workflow.report")
 MOST_ROWS = 500
 """Rows of a sweep's table that the page shows; results.csv has all."""
 MOST_RUNS = 24
 """Runs on one page: more make neither a table nor a figure that can be read; that is what a sweep is for."""
-
-
-@dataclass(frozen=True)
-class Told:
-    """A run as the page tells it.
-
-    Attributes:
-        name: of its folder; anchor: its `id` on the page.
-        run: what was read.
-        scene: in words.
-        error: why it gave no numbers; empty if it did.
-        toml, deck: the scene and in.lammps, as text.
-    """
-
-    name: str
-    anchor: str
-    run: Run
-    scene: Sequence[Said]
-    error: str
-    toml: str
-    deck: str
-
-    @property
-    def facts(self) -> dict[str, str]:
-        """What accuracy cost: tolerance, refinements, steps, times."""
-        document, timing = self.run.document, self.run.timing
-        accuracy: Mapping[str, Any] = document.get("accuracy", {})
-        asked = self.run.scene.accuracy.tolerance
-        return {
-            "tolerance asked for": f"{asked:g}",
-            "tolerance of the settings": f"{accuracy.get('tolerance', asked):g}",
-            "refinements": str(accuracy.get("refinements", 0)),
-            "LAMMPS steps": f"{timing['steps']:,.0f}".replace(",", "\u202f"),
-            "time in LAMMPS": f"{timing['lammps_s']:.2f} s",
-            "time in all": f"{timing['total_s']:.2f} s",
-        }
+INDEX = re.compile(r"(?<!\w)([^\W\d_][\u0303\u0304]?)_(\w{1,3})(?!\w)")
+TOGETHER = re.compile(r" ?= ?(?=[\d−-])|(?<=\d) (?=(?:LU|FU|nm|[µm]N|[MG]Pa)\b|%)")
+EXPONENT = re.compile(r"\^(?:\{([^{}]+)\}|([−-]?\d+(?:[./]\d+)?|[a-z](?!\w)))")
 
 
 def report(folders: Sequence[AnyPath], out: AnyPath = "report.html") -> Path:
@@ -82,105 +53,105 @@ def report(folders: Sequence[AnyPath], out: AnyPath = "report.html") -> Path:
         FolderError: a folder holds neither a run nor a sweep, or there are too many.
     """
     places = [Path(folder) for folder in folders]
-    if len(places) == 1 and (places[0] / RECORD).is_file():
-        page = _of_sweep(places[0])
-    else:
-        if len(places) > MOST_RUNS:
-            raise FolderError(f"{len(places)} runs are more than the {MOST_RUNS} that one page can show")
-        for place in places:
-            if (place / RECORD).is_file():
-                raise FolderError(f"{place} holds a sweep: a page shows one sweep, or runs")
-        page = _of_runs([_told(place, number) for number, place in enumerate(places)])
-    write_whole(Path(out), page)
+    sweeps = [place for place in places if (place / RECORD).is_file()]
+    if sweeps and len(places) > 1:
+        raise FolderError(f"{sweeps[0]} holds a sweep: a page shows one sweep, or runs")
+    if len(places) > MOST_RUNS:
+        raise FolderError(f"{len(places)} runs are more than the {MOST_RUNS} that one page can show")
+    write_whole(Path(out), _of_sweep(places[0]) if sweeps else _of_runs([read_run(place) for place in places]))
     return Path(out)
 
 
-def _told(place: Path, number: int) -> Told:
-    run = read_run(place)
-    error = "" if run.status == "done" else str(run.document["error"]["message"])
-    deck = place / "in.lammps"
-    return Told(
-        name=run.folder.name,
-        anchor=f"run-{number + 1}",
-        run=run,
-        scene=scene_in_words(run.scene),
-        error=error,
-        toml=scene_to_toml(run.scene),
-        deck=deck.read_text(encoding="utf-8") if deck.is_file() else "",
-    )
-
-
-def _of_runs(told: Sequence[Told]) -> str:
-    names = _names(told)
-    done = {name: one.run for name, one in zip(names, told, strict=True) if not one.error}
+def _of_runs(runs: Sequence[Run]) -> str:
+    """Runs in words for somebody who has not seen their scenes; one that failed says why."""
+    names = _names(runs)
+    done = {name: run for name, run in zip(names, runs, strict=True) if run.status == "done"}
     charts = [*curves(done), *filter(None, [pressures(done)])]
     moving = None
-    if len(told) == 1 and done:
-        states = told[0].run.folder / "states.npz"
-        if states.is_file() and len(told[0].run.curve.displacement) > 1:
-            moving = way(told[0].run, read_states(states))
+    if len(runs) == 1 and done:
+        states = runs[0].folder / "states.npz"
+        if states.is_file() and len(runs[0].curve.displacement) > 1:
+            moving = way(runs[0], read_states(states))
     quantities = list(dict.fromkeys(name for run in done.values() for name in run.results))
+    told = [
+        {
+            "name": run.folder.name, "anchor": f"run-{number}", "run": run, "facts": _facts(run),
+            "error": "" if run.status == "done" else run.document["error"]["message"],
+            "scene": scene_in_words(run.scene), "toml": scene_to_toml(run.scene),
+            "deck": _text(run.folder / "in.lammps"),
+        }
+        for number, run in enumerate(runs, 1)
+    ]  # fmt: skip
     return _page("runs.html", charts, moving, told=told, names=names, done=done, quantities=quantities, beside=in_words)
 
 
-def _names(told: Sequence[Told]) -> list[str]:
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8") if path.is_file() else ""
+
+
+def _facts(run: Run) -> dict[str, str]:
+    """What accuracy cost: tolerance, refinements, steps, times."""
+    accuracy: Mapping[str, Any] = run.document.get("accuracy", {})
+    asked, timing = run.scene.accuracy.tolerance, run.timing
+    return {
+        "tolerance asked for": f"{asked:g}",
+        "tolerance of the settings": f"{accuracy.get('tolerance', asked):g}",
+        "refinements": str(accuracy.get("refinements", 0)),
+        "LAMMPS steps": f"{timing['steps']:,.0f}".replace(",", "\u202f"),
+        "time in LAMMPS": f"{timing['lammps_s']:.2f} s",
+        "time in all": f"{timing['total_s']:.2f} s",
+    }
+
+
+def _names(runs: Sequence[Run]) -> list[str]:
     """What each run is called on the page: its title, or its folder where titles are the same."""
-    titles = [one.run.scene.title for one in told]
-    names = titles if len(set(titles)) == len(titles) else [one.name for one in told]
-    return names if len(set(names)) == len(names) else [str(one.run.folder) for one in told]
+    for names in ([run.scene.title for run in runs], [run.folder.name for run in runs]):
+        if len(set(names)) == len(names):
+            return names
+    return [str(run.folder) for run in runs]
 
 
 def _of_sweep(folder: Path) -> str:
-    from tomllib import loads
-
     if not (folder / TABLE).is_file():
         raise FolderError(f"{folder} holds a sweep without {TABLE}: start it again, it goes on")
-    plan = read_sweep(loads((folder / RECORD).read_text(encoding="utf-8")))
-    units = units_in(folder)
-    rows = list(islice(read_table(folder), MOST_ROWS))
-    counts: dict[str, int] = {}
-    for row in read_table(folder):
-        counts[row["status"]] = counts.get(row["status"], 0) + 1
-    charts = over_axes(folder, plan, units)
+    plan, units = read_sweep(tomllib.loads(_text(folder / RECORD))), units_in(folder)
     return _page(
-        "sweep.html", charts, None, plan=plan, units=units, rows=rows, counts=counts, folder=folder,
+        "sweep.html", over_axes(folder, plan, units), None, plan=plan, units=units, folder=folder,
+        rows=list(islice(read_table(folder), MOST_ROWS)), counts=counts_in(folder),
         base=json.dumps(plan.base, indent=2, ensure_ascii=False),
     )  # fmt: skip
 
 
 def _page(template: str, charts: Sequence[Chart], moving: Mapping[str, Any] | None, **values: Any) -> str:
-    from jinja2 import FunctionLoader
+    """A page that needs nothing beside it. Texts are plain; through `symbols` `F_A` and `R^0.5` become HTML."""
     from plotly.offline import get_plotlyjs
 
-    made = environment()
-    made.loader = FunctionLoader(lambda name: text_of(PACKAGE, name))
-    data = json.dumps({"charts": list(charts), "way": moving}, ensure_ascii=False, allow_nan=False)
-    values |= {"charts": charts, "moving": moving is not None}
-    if moving is not None:
-        values |= {"last": len(moving["words"]) - 1, "start": moving["start"]}
-    page = {"plotly": get_plotlyjs(), "script": text_of(PACKAGE, "page.js"), "data": data.replace("</", "<\\/")}
-    return made.get_template(template).render(page | values)
+    made = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
+        loader=FunctionLoader(lambda name: PACKAGE.joinpath(name).read_text(encoding="utf-8")),
+    )  # fmt: skip
+    made.filters["symbols"] = symbols
+    data = json.dumps({"charts": charts, "way": moving}, ensure_ascii=False, allow_nan=False).replace("</", "<\\/")
+    return made.get_template(template).render(values, plotly=get_plotlyjs(), data=data, charts=charts, moving=moving)
+
+
+def symbols(text: str) -> str:
+    """Return `text` as HTML, escaped: `F_A` has an index, `R^{2/3}` an exponent, no line ends inside `R = 1000 LU`."""
+    whole = TOGETHER.sub(lambda found: found[0].replace(" ", "\u00a0"), escape(text))
+    indexed = INDEX.sub(r"<i>\1</i><sub>\2</sub>", whole)
+    return EXPONENT.sub(lambda found: f"<sup>{found[1] or found[2]}</sup>", indexed)
 
 
 MOST_ITEMS = 6
 """Items of a list that are shown; of more, the ends."""
 
 
-@dataclass(frozen=True)
-class Said:
-    """A table of the scene: its name, what it stands for, and its values: what each is, and the value with its unit."""
-
-    name: str
-    meaning: str
-    values: tuple[tuple[str, str], ...]
-
-
-def scene_in_words(scene: Scene) -> list[Said]:
-    """Every table that the scene has, in the order of a scene file."""
-    tables = ((name, getattr(scene, name)) for name in Scene.model_fields)
+def scene_in_words(scene: Scene) -> list[dict[str, Any]]:
+    """Every table that the scene has, in order: its name, what it stands for, what each value is, with its unit."""
+    tables = {name: getattr(scene, name) for name in Scene.model_fields}
     return [
-        Said(name.replace("_", " "), _meaning(table), tuple(_values(table)))
-        for name, table in tables
+        {"name": name.replace("_", " "), "meaning": _meaning(table), "values": list(_values(table))}
+        for name, table in tables.items()
         if isinstance(table, Table)
     ]
 

@@ -51,6 +51,12 @@ class Axis:
         units = {unit for _, unit in parts}
         return (tuple(float(number) for number, _ in parts), units.pop()) if len(units) == 1 else ((), "")
 
+    @property
+    def title(self) -> str:
+        """The key with its unit, for a figure."""
+        unit = self.numbers()[1]
+        return f"{self.key} ({unit})" if unit else self.key
+
 
 @dataclass(frozen=True)
 class SweepPlan:

@@ -40,7 +40,7 @@ class Answer:
 
 def answer_in(folder: Path, name: str) -> Answer | None:
     """What the run of that name in a sweep's folder says; None where none came to its end there."""
-    document = _document(folder / RUNS / name)
+    document = document_in(folder / RUNS / name)
     if document is None:
         return None
     status = str(document["status"])
@@ -89,11 +89,12 @@ def write_parquet(folder: Path) -> None:
 
 
 def _quantities(folder: Path, answer: Answer) -> dict[str, dict[str, Any]]:
-    document = _document(folder / answer.run) if answer.status == "done" else None
+    document = document_in(folder / answer.run) if answer.status == "done" else None
     return {name: entry for name, entry in (document or {}).items() if isinstance(entry, dict) and "value" in entry}
 
 
-def _document(folder: Path) -> dict[str, Any] | None:
+def document_in(folder: Path) -> dict[str, Any] | None:
+    """What results.json in a run folder holds; None where it can't be read."""
     try:
         document: dict[str, Any] = json.loads((folder / RESULTS).read_text(encoding="utf-8"))
     except (OSError, ValueError):

@@ -1,1 +1,0 @@
-"""Parts of HTML pages that need nothing beside them: the style, texts with indices, figures as data."""
