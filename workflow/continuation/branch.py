@@ -1,12 +1,7 @@
 """A connected branch of states under displacement control: visit, reach a force, find the largest tension.
 
-How it may be refined follows from what the particles remember:
-
-    reversible       a state does not depend on the path: a position is visited whenever it is wanted
-    irreversible     pairs snap: the schedule is run again from the start, with the wanted positions in their order
-
-Rows on a rigid plane are steps of one run and cost next to nothing; the reduced model of such a contact is the
-deck's own law, so that its limit points and forces are known beforehand.
+Here a state does not depend on the path, so that a position is visited whenever it is wanted. Where that is not so
+(`replayed`), and where rows cost next to nothing (`stepped`), the same is done in another way.
 """
 
 from __future__ import annotations
@@ -18,21 +13,19 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.curve_marks import Peak, promised, rivals, smooth_crossing
+from contact1d.analysis.curve_marks import Peak, promised, rivals
 from contact1d.workflow.continuation.context import ContactBranch, RunContext
-from contact1d.workflow.continuation.marks import PLACE_FACTOR, cut_short, early_loss, peak_of, radius_rate
+from contact1d.workflow.continuation.marks import PLACE_FACTOR, peak_of, radius_rate
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace, of_states
-from contact1d.workflow.continuation.trust import DigitsError, TensionError, UntrustedError
-from contact1d.workflow.deck.steps import Displace, DisplaceInTime, Phase, displacements
-from contact1d.workflow.model.settings import Settings
+from contact1d.workflow.continuation.trust import TensionError, UntrustedError
+from contact1d.workflow.deck.steps import Displace, DisplaceInTime, displacements
 
 Array = NDArray[np.float64]
 MOST_INCREMENTS = 10_000
 """Rows of one stretch of a search; a search that needs more has no end in sight."""
 MOST_ROUNDS = 60
 """Refinements of a largest tension, each of which may halve the increment beside it: a sharp one needs some."""
-MOST_REPLAYS = 8
 SEPARATION_ROWS = 1_000.0
 """Rows in which an unloading comes from any displacement to where nothing is felt any more."""
 FORCE_ACCURACY = 1e-3
@@ -43,7 +36,7 @@ SEPARATION_SHARE = 0.02
 """Tension over the largest one at which bodies that move apart count as separated."""
 GROWTH_SHARE = 0.5
 """Tension over the largest one below which increments may grow."""
-GROWTH, SMOOTH_GROWTH = 1.2, 1.6
+GROWTH = 1.6
 OVERSHOOT = 1.02
 """Secant steps aim a little beyond, so that a bracket forms instead of a slow approach from one side."""
 RETURN_SHARE = 0.5
@@ -52,17 +45,6 @@ SAME = 1e-12
 """Displacements nearer than this over the spacing are the same: a force that still differs has jumped."""
 APPROACH_STEPS = 20
 """Timesteps of a move on the way to a displacement that is held for a time."""
-LOADING_STEPS = 24
-"""Rows on the way to a force that is known beforehand."""
-CURVE_STEPS, CURVE_NUMBERS = 100, 200_000
-"""Increments of a load where rows are steps of one run, for the sake of its curve: they cost some tens of microseconds
-each. Of long chains there are so many that positions times rows stay below the second."""
-PULLING_STEPS = 48
-"""Rows from F = 0 to the limit point, where it is known."""
-LAST = 1e-9
-"""How much of that is left before it."""
-BEYOND_LIMIT = 1.05
-"""End of the way over the limit point."""
 ROWS_BEYOND_PEAK = 3
 """Rows beyond the largest tension that its polynomials need."""
 HALVINGS_AT_PEAK = 2
@@ -73,9 +55,6 @@ MOST_RIVALS = 200
 """Looks at teeth that may be higher than the highest row."""
 READ_SHARE = 0.5
 """Part of a radius's uncertainty below which it is looked at no closer: reading between particles limits it."""
-WINDOW_ROWS, ZOOM_FACTOR, RIVAL_SHARE = 8, 0.25, 0.05
-"""Of a schedule that is run again: rows on either side of the largest tension, width of that window over the one
-before, and teeth within this share of the largest that are all looked at in the first one."""
 
 JUMPS = (
     'the force jumps there, as particles snap or slip. Use kind = "path" to see it, or stiffer springs or a longer '
@@ -97,12 +76,6 @@ class Branch(ContactBranch):
         self.tolerance = SEARCH_SHARE * self.settings.tolerance
         self.missed, self.on_the_way = 0.0, 0
         self._targets: dict[str, float] = {}
-        self._finished = False
-
-    @property
-    def reversible(self) -> bool:
-        """Whether a state does not depend on the path."""
-        return not self.settings.snaps
 
     def trace(self) -> Trace:
         """What a reader sees."""
@@ -121,22 +94,7 @@ class Branch(ContactBranch):
 
     @property
     def _limit(self) -> float:
-        return self.model.apart if self.contact.deck.stepped and self.scene.adheres else -math.inf
-
-    def begin(self, name: str) -> None:
-        """Begin a phase; of a finished schedule nothing is left to do."""
-        if not self._finished:
-            super().begin(name)
-
-    def mark(self, name: str) -> None:
-        """Report the last state."""
-        if not self._finished:
-            super().mark(name)
-
-    def finish(self) -> None:
-        """End the schedule."""
-        if not self._finished:
-            super().finish()
+        return -math.inf
 
     def visit(self, positions: Sequence[float] | Array, phases: str = "falling") -> list[State]:
         """Rows at displacements [LU] that are known beforehand."""
@@ -162,8 +120,6 @@ class Branch(ContactBranch):
         Raises:
             UntrustedError: see `require_trust`; also where the force cannot be held.
         """
-        if self._finished:
-            return
         falls = bool(self.loading)
         direction, states = (-1, self.falling) if falls else (1, self.loading)
         self._targets["zero" if falls else "deepest"] = force
@@ -189,26 +145,9 @@ class Branch(ContactBranch):
             states.append(self._at(_secant(before, beyond, states, force, direction * step)))
 
     def _first_rows(self, force: float, direction: int) -> None:
-        """The first rows of a stretch: where they cost next to nothing, up to where the model has the force.
-
-        Raises:
-            TensionError: no contact holds the force.
-        """
-        start = self.loading[-1].displacement if direction < 0 else 0.0
-        states = self.loading if direction > 0 else self.falling
-        if not self.contact.deck.stepped:
-            states.append(self._at(start))
-            return
-        end = self.model.displacement_at(force)
-        held = float(self.model.held(np.asarray([end]))[0])
-        if force < 0.0 and held > (1.0 - self.settings.tolerance) * force:
-            raise TensionError(force, self.scale)
-        if direction * (end - start) <= 0.0:
-            states.append(self._at(start))
-            return
-        steps = LOADING_STEPS if self.scene.adheres else curve_steps(self.settings)
-        rows = np.linspace(start, end, steps + 1)
-        self.visit(rows if direction > 0 else rows[1:], "loading" if direction > 0 else "falling")
+        """The first rows of a stretch towards a force [FU]: the place where it begins."""
+        states, start = (self.loading, 0.0) if direction > 0 else (self.falling, self.loading[-1].displacement)
+        states.append(self._at(start))
 
     def _require_within_reach(self, force: float, falls: bool, before: State, beyond: State | None) -> None:
         """Refuse a force that the branch jumps past, never comes to, or comes to in no time."""
@@ -234,60 +173,11 @@ class Branch(ContactBranch):
     def maximum(self) -> None:
         """Find the largest tension on the way apart; the last state is then at it.
 
+        Rows past it, back to it, and at half the distance beside it until they change nothing. Just below snapping F(d)
+        has a tooth for each pair that is lost: every one that may be the highest is looked at.
+
         Raises:
             UntrustedError: see `require_trust`; it is not found.
-        """
-        if self.contact.deck.stepped:
-            self._maximum_above_limit()
-        elif self.reversible:
-            self._maximum_by_visits()
-        else:
-            self._maximum_by_replays()
-
-    def open(self) -> None:
-        """Pull the bodies apart.
-
-        Raises:
-            UntrustedError: a larger tension comes after the one that was found.
-        """
-        if self._finished:
-            return
-        before = self.peak
-        if self.contact.deck.stepped:
-            self.visit(np.linspace(self._last.displacement, BEYOND_LIMIT * self.model.apart, LOADING_STEPS + 1)[1:])
-            return
-        # On from where the bodies have been, yet no longer a way at once than the search for a maximum goes past it.
-        nearest = self._last.displacement - (ROWS_BEYOND_PEAK + 1) * self.settings.increment()
-        self._separate(max(nearest, min(s.displacement for s in self.falling)))
-        after = self.peak
-        if abs(after.smooth - before.smooth) > self.tolerance * after.smooth:
-            raise SecondMaximumError(
-                f"the tension rises again to {after.tension:.6g} FU after its largest maximum was {before.smooth:.6g} "
-                'FU: use kind = "path" through all of it'
-            )
-
-    def _maximum_above_limit(self) -> None:
-        """Rows from F = 0 to just before the limit point, then about the largest tension."""
-        zero, last = self._last.displacement, self.model.apart
-        end = zero + (1.0 - LAST) * (last - zero)
-        self.visit(np.linspace(zero, end, PULLING_STEPS + 1)[1:])
-        before = self.peak
-        step = (zero - last) / PULLING_STEPS
-        self.visit(np.clip(before.position + step * np.asarray((0.5, -0.5, 0.25, -0.25)), end, zero))
-        self.visit([min(max(self.peak.position, end), zero)])
-        self.missed = abs(self.peak.smooth - before.smooth)
-        digits = self._last.residual * self.settings.particles
-        if self.peak.smooth <= digits:
-            raise DigitsError(
-                f"the largest tension, about {self.scale:.2g} FU, is nothing beside {digits:.2g} FU, which "
-                "the last digits of positions make of the contact's force",
-                "take a larger adhesion.work_of_adhesion, or a smaller preload",
-            )
-
-    def _maximum_by_visits(self) -> None:
-        """Rows past the largest tension, back to it, and at half the distance beside it until they change nothing.
-
-        Just below snapping F(d) has a tooth for each pair that is lost: every one that may be the highest is looked at.
         """
         beside = self._pass_maximum()
         expected, cuts, changed = self.peak, 0, math.inf
@@ -312,6 +202,23 @@ class Branch(ContactBranch):
             expected = self.peak
             changed = max(surprise, abs(expected.smooth - found.smooth))
         raise UntrustedError(f"the largest tension is not found near {expected.position:.6g} LU: {JUMPS}")
+
+    def open(self) -> None:
+        """Pull the bodies apart.
+
+        Raises:
+            UntrustedError: a larger tension comes after the one that was found.
+        """
+        before = self.peak
+        # On from where the bodies have been, yet no longer a way at once than the search for a maximum goes past it.
+        nearest = self._last.displacement - (ROWS_BEYOND_PEAK + 1) * self.settings.increment()
+        self._separate(max(nearest, min(s.displacement for s in self.falling)))
+        after = self.peak
+        if abs(after.smooth - before.smooth) > self.tolerance * after.smooth:
+            raise SecondMaximumError(
+                f"the tension rises again to {after.tension:.6g} FU after its largest maximum was {before.smooth:.6g} "
+                'FU: use kind = "path" through all of it'
+            )
 
     def _pass_maximum(self) -> float:
         """Rows down until the largest tension is passed; where there are teeth, all that may exceed it.
@@ -374,82 +281,6 @@ class Branch(ContactBranch):
         radius = self._last.radius_or_spot
         return max(self.tolerance * radius.value, READ_SHARE * radius.uncertainty)
 
-    # --- where pairs snap
-
-    def _maximum_by_replays(self) -> None:
-        """Pull the bodies apart, then run the schedule again and again, each time finer about the largest tension.
-
-        The numbers are those of the last schedule, which holds the positions of F_D, F = 0 and the largest tension; it
-        ends when two of them agree.
-        """
-        self._separate(self._last.displacement)
-        window = self._unloading_step(self.loading[-1].displacement)
-        for number in range(MOST_REPLAYS):
-            before = self.peak
-            self._replay(window, first=number == 0)
-            window *= ZOOM_FACTOR
-            if self._agrees(before):
-                teeth = rivals(*self.unloading.lists, self.peak)
-                self.missed = abs(self.peak.smooth - before.smooth) + max((0.0, *teeth.values()))
-                self._finished = True
-                return
-        raise UntrustedError(
-            f"the pull-off force still changes from {before.tension:.6g} to {self.peak.tension:.6g} FU after "
-            f"{MOST_REPLAYS} refinements of the path, by more than a tolerance of {self.settings.tolerance:g} allows: "
-            "take a larger [accuracy] tolerance, or stiffer springs or a longer range, with which particles do not snap"
-        )
-
-    def _replay(self, window: float, first: bool) -> None:
-        """Run the schedule again from the start, with the marks of the one before and a window about its peak [LU]."""
-        deepest = _displacement_of(self.loading, self._targets["deepest"])
-        way, peak = self.unloading, self.peak
-        d, force = way.displacement, way.force
-        same = 1e-9 * (deepest - d[-1])
-        climbed = sorted({s.displacement for s in self.loading[:-1] if s.force < self._targets["deepest"]})
-        zero = smooth_crossing(*way.lists, self._targets["zero"])
-        half, step = max(window, early_loss(way, peak, self.settings)), window / WINDOW_ROWS
-        high, low = peak.position + half, peak.position - half
-        if first:  # which tooth is the highest can't be told from coarse rows
-            close = d[-force >= (1.0 - RIVAL_SHARE) * peak.tension]
-            high, low = max(high, float(close.max())), min(low, float(close.min()))
-        fine = high - step * np.arange(round((high - low) / step) + 1)
-        fine = fine[fine < zero - same]
-        rows = {deepest, zero, peak.position, *d[(d > fine[0]) | (d < fine[-1])].tolist(), *fine.tolist()}
-        falling = sorted((row for row in rows if row <= deepest), reverse=True)
-        parts = {
-            "unloading": [row for row in falling if row >= zero],
-            "pulling": [row for row in falling if peak.position <= row < zero],
-            "separating": [row for row in falling if row < peak.position],
-        }
-        loading = [row for row in climbed if row < deepest - same] + [deepest]
-        phases = [Phase("loading", displacements(loading))]
-        phases += [Phase(name, displacements(rows), state=name != "separating") for name, rows in parts.items()]
-        self._open.close()
-        purpose = "the whole path again, finer at the largest tension"
-        self.contact = self._open.enter_context(self.context.contact(purpose))
-        states = self.contact.replay(phases)
-        self.loading, self.falling = states[: len(loading)], states[len(loading) :]
-        held = len(parts["unloading"])
-        marks = (self.falling[held - 1], self.falling[held + len(parts["pulling"]) - 1])
-        self.marked = dict(zip(("zero_load", "critical"), marks, strict=True))
-
-    def _agrees(self, before: Peak) -> bool:
-        """Whether two schedules give the same results, and the marks of the latest one are where they belong."""
-        peak, critical = self.peak, self.marked["critical"]
-        allowed, radius = self.tolerance * peak.smooth, critical.radius_or_spot
-        way = self.unloading
-        rate = radius_rate(way, int(np.argmin(np.abs(way.displacement - critical.displacement))))
-        preload = self._targets["deepest"]
-        return (
-            abs(peak.smooth - before.smooth) <= allowed
-            and peak.uncertainty + cut_short(way, peak, self.settings) <= allowed
-            and abs(self.loading[-1].force - preload) <= self.tolerance * preload
-            and abs(self.marked["zero_load"].force) <= allowed
-            and peak.smooth + critical.force <= allowed
-            and abs(rate * (peak.position - critical.displacement))
-            <= max(self.tolerance * radius.value, READ_SHARE * radius.uncertainty)
-        )
-
     # --- moves
 
     @property
@@ -470,7 +301,6 @@ class Branch(ContactBranch):
     def _separate(self, start: float) -> None:
         """Rows of falling displacement from `start` [LU] until the tension has passed its largest value and is gone."""
         largest = max((-s.force for s in self.falling), default=0.0)
-        smooth = self.reversible
         self.falling.append(self._at(start))
         displacement, step = start, self._unloading_step(start)
         for _ in range(MOST_INCREMENTS):
@@ -478,16 +308,18 @@ class Branch(ContactBranch):
             state = self._at(displacement)
             self.falling.append(state)
             largest = max(largest, -state.force)
-            past = 0.0 <= -state.force < GROWTH_SHARE * largest
-            if past and (smooth or self._still_held(state) < largest):
-                # Longer moves lose particles early: only where no tooth can be higher any more.
-                step *= SMOOTH_GROWTH if smooth else GROWTH
+            if 0.0 <= -state.force < GROWTH_SHARE * largest:
+                step *= self._growth(state, largest)
             gone = abs(state.force) < SEPARATION_SHARE * largest
             if (gone and self._still_held(state) < SEPARATION_SHARE * largest) or (
                 state.smallest_distance > self.settings.cutoff
             ):
                 return
         raise UntrustedError(f"the bodies did not separate within {MOST_INCREMENTS} increments of the displacement")
+
+    def _growth(self, state: State, largest: float) -> float:
+        """Of moves apart beyond the `largest` tension [FU]."""
+        return GROWTH
 
     def _unloading_step(self, start: float) -> float:
         """First increment [LU] of an unloading: soft springs follow the attraction farther than they were pressed."""
@@ -504,11 +336,6 @@ class Branch(ContactBranch):
         held = self.scene.bodies.spacing * np.maximum(0.0, -profile.pressure)
         near = profile.z_upper - profile.z_lower < distance
         return float(np.sum(np.where(near, np.maximum(held, largest), held)))
-
-
-def curve_steps(settings: Settings) -> int:
-    """Increments of a load's curve where rows are steps of one run."""
-    return max(LOADING_STEPS, min(CURVE_STEPS, CURVE_NUMBERS // settings.particles))
 
 
 class SecondMaximumError(UntrustedError):
@@ -533,12 +360,3 @@ def _is_passed(states: Sequence[State]) -> bool:
     tension = [-s.force for s in states]
     largest = max(tension)
     return largest > 0.0 and tension.index(largest) < len(tension) - ROWS_BEYOND_PEAK
-
-
-def _displacement_of(states: Sequence[State], force: float) -> float:
-    """Displacement [LU] of a force [FU] on a rising branch, through its two nearest rows."""
-    near = sorted(states, key=lambda s: abs(s.force - force))[:2]
-    if len(near) < 2 or near[0].force == near[1].force:
-        return near[0].displacement
-    part = (force - near[0].force) / (near[1].force - near[0].force)
-    return near[0].displacement + part * (near[1].displacement - near[0].displacement)

@@ -17,6 +17,8 @@ from contact1d.workflow.continuation.budget import (
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.load_control import LoadBranch
 from contact1d.workflow.continuation.outcome import Outcome, Reading
+from contact1d.workflow.continuation.replayed import ReplayedBranch
+from contact1d.workflow.continuation.stepped import SteppedBranch
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import ThroughError, doubts
 from contact1d.workflow.deck.deck import Deck
@@ -106,10 +108,13 @@ class Experiment(ABC):
 
 
 def branch_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | LoadBranch:
-    """A new contact, under displacement control or in time under load control."""
+    """A new contact, under load control in time, else under displacement control."""
     scene = context.deck.scene
-    in_time = scene.method == "dynamic" and scene.experiment.compression is not None
-    return (LoadBranch if in_time else Branch)(context, meanwhile)
+    if scene.method == "dynamic" and scene.experiment.compression is not None:
+        return LoadBranch(context, meanwhile)
+    if scene.is_stepped:
+        return SteppedBranch(context, meanwhile)
+    return (ReplayedBranch if context.deck.settings.snaps else Branch)(context, meanwhile)
 
 
 def in_smaller_steps(run: Callable[[RunContext], Outcome]) -> Callable[[RunContext], Outcome]:

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from contact1d.workflow.continuation.branch import LOADING_STEPS, curve_steps
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.holding import held_phase, stiffness_under
 from contact1d.workflow.continuation.load_control import FIRST_RISE, LoadBranch
 from contact1d.workflow.continuation.marks import BRANCH_DISTANCE, displacement_under, radius_rate
 from contact1d.workflow.continuation.outcome import Outcome, Reading
+from contact1d.workflow.continuation.stepped import LOADING_STEPS, curve_steps
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import Phase, displacements
 from contact1d.workflow.experiments.experiment import Experiment

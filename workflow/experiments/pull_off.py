@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from contact1d.analysis.polynomial import through
-from contact1d.workflow.continuation.branch import BEYOND_LIMIT, LOADING_STEPS
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.holding import held_phase, overshoot
 from contact1d.workflow.continuation.load_control import FEWEST_HELD, SPREAD, top_of
 from contact1d.workflow.continuation.marks import unloading
 from contact1d.workflow.continuation.outcome import Outcome, Reading
+from contact1d.workflow.continuation.stepped import BEYOND_LIMIT, LOADING_STEPS
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import require_no_contradiction
 from contact1d.workflow.deck.steps import Phase, displacements

@@ -1,0 +1,144 @@
+"""A branch of states that depend on the path, since pairs snap: the schedule is run again from the start.
+
+Each time it has the wanted positions in their order, more of them about the largest tension.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from contact1d.analysis.curve_marks import Peak, rivals, smooth_crossing
+from contact1d.workflow.continuation.branch import READ_SHARE, Branch
+from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.marks import cut_short, early_loss, radius_rate
+from contact1d.workflow.continuation.state import State
+from contact1d.workflow.continuation.trust import UntrustedError
+from contact1d.workflow.deck.steps import Phase, displacements
+
+MOST_REPLAYS = 8
+GROWTH = 1.2
+"""Of moves apart: longer ones lose particles early."""
+SAME = 1e-9
+"""Distance of two rows over the way that are one."""
+WINDOW_ROWS, ZOOM_FACTOR, RIVAL_SHARE = 8, 0.25, 0.05
+"""Of a schedule that is run again: rows on either side of the largest tension, width of that window over the one
+before, and teeth within this share of the largest that are all looked at in the first one."""
+
+
+class ReplayedBranch(Branch):
+    """States where pairs snap."""
+
+    def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
+        """Prepare a contact."""
+        super().__init__(context, meanwhile)
+        self._finished = False
+
+    def begin(self, name: str) -> None:
+        """Begin a phase; of a finished schedule nothing is left to do."""
+        if not self._finished:
+            super().begin(name)
+
+    def mark(self, name: str) -> None:
+        """Report the last state."""
+        if not self._finished:
+            super().mark(name)
+
+    def finish(self) -> None:
+        """End the schedule."""
+        if not self._finished:
+            super().finish()
+
+    def maximum(self) -> None:
+        """Pull the bodies apart, then run the schedule again and again, each time finer about the largest tension.
+
+        The numbers are those of the last schedule, which holds the positions of F_D, F = 0 and the largest tension; it
+        ends when two of them agree.
+
+        Raises:
+            UntrustedError: they never do.
+        """
+        self._separate(self._last.displacement)
+        window = self._unloading_step(self.loading[-1].displacement)
+        for number in range(MOST_REPLAYS):
+            before = self.peak
+            self._replay(window, first=number == 0)
+            window *= ZOOM_FACTOR
+            if self._agrees(before):
+                teeth = rivals(*self.unloading.lists, self.peak)
+                self.missed = abs(self.peak.smooth - before.smooth) + max((0.0, *teeth.values()))
+                self._finished = True
+                return
+        raise UntrustedError(
+            f"the pull-off force still changes from {before.tension:.6g} to {self.peak.tension:.6g} FU after "
+            f"{MOST_REPLAYS} refinements of the path, by more than a tolerance of {self.settings.tolerance:g} allows: "
+            "take a larger [accuracy] tolerance, or stiffer springs or a longer range, with which particles do not snap"
+        )
+
+    def _replay(self, window: float, first: bool) -> None:
+        """Run the schedule again from the start, with the marks of the one before and a window about its peak [LU]."""
+        deepest = _displacement_of(self.loading, self._targets["deepest"])
+        way, peak = self.unloading, self.peak
+        d, force = way.displacement, way.force
+        same = SAME * (deepest - d[-1])
+        climbed = sorted({s.displacement for s in self.loading[:-1] if s.force < self._targets["deepest"]})
+        zero = smooth_crossing(*way.lists, self._targets["zero"])
+        half, step = max(window, early_loss(way, peak, self.settings)), window / WINDOW_ROWS
+        high, low = peak.position + half, peak.position - half
+        if first:  # which tooth is the highest can't be told from coarse rows
+            close = d[-force >= (1.0 - RIVAL_SHARE) * peak.tension]
+            high, low = max(high, float(close.max())), min(low, float(close.min()))
+        fine = high - step * np.arange(round((high - low) / step) + 1)
+        fine = fine[fine < zero - same]
+        rows = {deepest, zero, peak.position, *d[(d > fine[0]) | (d < fine[-1])].tolist(), *fine.tolist()}
+        falling = sorted((row for row in rows if row <= deepest), reverse=True)
+        parts = {
+            "unloading": [row for row in falling if row >= zero],
+            "pulling": [row for row in falling if peak.position <= row < zero],
+            "separating": [row for row in falling if row < peak.position],
+        }
+        loading = [row for row in climbed if row < deepest - same] + [deepest]
+        phases = [Phase("loading", displacements(loading))]
+        phases += [Phase(name, displacements(rows), state=name != "separating") for name, rows in parts.items()]
+        self._open.close()
+        purpose = "the whole path again, finer at the largest tension"
+        self.contact = self._open.enter_context(self.context.contact(purpose))
+        states = self.contact.replay(phases)
+        self.loading, self.falling = states[: len(loading)], states[len(loading) :]
+        held = len(parts["unloading"])
+        marks = (self.falling[held - 1], self.falling[held + len(parts["pulling"]) - 1])
+        self.marked = dict(zip(("zero_load", "critical"), marks, strict=True))
+
+    def _agrees(self, before: Peak) -> bool:
+        """Whether two schedules give the same results, and the marks of the latest one are where they belong."""
+        peak, critical = self.peak, self.marked["critical"]
+        allowed, radius = self.tolerance * peak.smooth, critical.radius_or_spot
+        way = self.unloading
+        rate = radius_rate(way, int(np.argmin(np.abs(way.displacement - critical.displacement))))
+        preload = self._targets["deepest"]
+        return (
+            abs(peak.smooth - before.smooth) <= allowed
+            and peak.uncertainty + cut_short(way, peak, self.settings) <= allowed
+            and abs(self.loading[-1].force - preload) <= self.tolerance * preload
+            and abs(self.marked["zero_load"].force) <= allowed
+            and peak.smooth + critical.force <= allowed
+            and abs(rate * (peak.position - critical.displacement))
+            <= max(self.tolerance * radius.value, READ_SHARE * radius.uncertainty)
+        )
+
+    def open(self) -> None:
+        """Nothing: a schedule that was run again has parted the bodies."""
+
+    def _growth(self, state: State, largest: float) -> float:
+        """They grow only where no tooth can be higher any more."""
+        return GROWTH if self._still_held(state) < largest else 1.0
+
+
+def _displacement_of(states: Sequence[State], force: float) -> float:
+    """Displacement [LU] of a force [FU] on a rising branch, through its two nearest rows."""
+    near = sorted(states, key=lambda s: abs(s.force - force))[:2]
+    if len(near) < 2 or near[0].force == near[1].force:
+        return near[0].displacement
+    part = (force - near[0].force) / (near[1].force - near[0].force)
+    return near[0].displacement + part * (near[1].displacement - near[0].displacement)

@@ -1,0 +1,83 @@
+"""A branch whose rows are steps of one run, on a rigid plane: they cost next to nothing.
+
+The reduced model of such a contact is the deck's own law, so that its limit points and forces are known beforehand.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from contact1d.workflow.continuation.branch import Branch
+from contact1d.workflow.continuation.trust import DigitsError, TensionError
+from contact1d.workflow.model.settings import Settings
+
+LOADING_STEPS = 24
+"""Rows on the way to a force that is known beforehand."""
+CURVE_STEPS, CURVE_NUMBERS = 100, 200_000
+"""Increments of a load where rows are steps of one run, for the sake of its curve: they cost some tens of microseconds
+each. Of long chains there are so many that positions times rows stay below the second."""
+PULLING_STEPS = 48
+"""Rows from F = 0 to the limit point, where it is known."""
+LAST = 1e-9
+"""How much of that is left before it."""
+BEYOND_LIMIT = 1.05
+"""End of the way over the limit point."""
+
+
+class SteppedBranch(Branch):
+    """States on a rigid plane."""
+
+    @property
+    def _limit(self) -> float:
+        return self.model.apart if self.scene.adheres else -math.inf
+
+    def _first_rows(self, force: float, direction: int) -> None:
+        """Rows up to where the model has the force [FU].
+
+        Raises:
+            TensionError: no contact holds the force.
+        """
+        start = self.loading[-1].displacement if direction < 0 else 0.0
+        end = self.model.displacement_at(force)
+        held = float(self.model.held(np.asarray([end]))[0])
+        if force < 0.0 and held > (1.0 - self.settings.tolerance) * force:
+            raise TensionError(force, self.scale)
+        if direction * (end - start) <= 0.0:
+            super()._first_rows(force, direction)
+            return
+        steps = LOADING_STEPS if self.scene.adheres else curve_steps(self.settings)
+        rows = np.linspace(start, end, steps + 1)
+        self.visit(rows if direction > 0 else rows[1:], "loading" if direction > 0 else "falling")
+
+    def maximum(self) -> None:
+        """Rows from F = 0 to just before the limit point, then about the largest tension.
+
+        Raises:
+            DigitsError: it is nothing beside the last digits of positions.
+        """
+        zero, last = self._last.displacement, self.model.apart
+        end = zero + (1.0 - LAST) * (last - zero)
+        self.visit(np.linspace(zero, end, PULLING_STEPS + 1)[1:])
+        before = self.peak
+        step = (zero - last) / PULLING_STEPS
+        self.visit(np.clip(before.position + step * np.asarray((0.5, -0.5, 0.25, -0.25)), end, zero))
+        self.visit([min(max(self.peak.position, end), zero)])
+        self.missed = abs(self.peak.smooth - before.smooth)
+        digits = self._last.residual * self.settings.particles
+        if self.peak.smooth <= digits:
+            raise DigitsError(
+                f"the largest tension, about {self.scale:.2g} FU, is nothing beside {digits:.2g} FU, which "
+                "the last digits of positions make of the contact's force",
+                "take a larger adhesion.work_of_adhesion, or a smaller preload",
+            )
+
+    def open(self) -> None:
+        """Rows over the limit point."""
+        self.visit(np.linspace(self._last.displacement, BEYOND_LIMIT * self.model.apart, LOADING_STEPS + 1)[1:])
+
+
+def curve_steps(settings: Settings) -> int:
+    """Increments of a load's curve where rows are steps of one run."""
+    return max(LOADING_STEPS, min(CURVE_STEPS, CURVE_NUMBERS // settings.particles))
