@@ -29,7 +29,13 @@ FRICTION: dict[str, Any] = {
 }
 NAMES = ("load_thermal", "path", "pull_off_dynamic", "plane_adhesion", "slide")
 SCENES = {name: OTHERS[name] for name in NAMES} | {
-    "snapping": chains(50.0, 0.2, (0.18, 0.065, 0.09, 0.13), experiment={"kind": "pull_off", "preload": 0.2}),
+    "snapping": chains(
+        20.0,
+        0.2,
+        (0.18, 0.065, 0.09, 0.13),
+        accuracy={"tolerance": 1e-2},
+        experiment={"kind": "pull_off", "preload": 0.05},
+    ),
     "tangential": FRICTION,
     "units": {
         "bodies": MICRO | {"lower": "rigid_plane"},

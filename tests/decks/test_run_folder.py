@@ -88,7 +88,7 @@ SCENES: dict[str, dict[str, Any]] = {
         "damping": {"coefficient": "auto"},
         "plate": {"free": ["x", "z"]},
         "cantilever": {"stiffness": 20.0, "velocity": 0.05},
-        "experiment": {"kind": "slide", "normal_force": 1.0, "distance": 6.0},
+        "experiment": {"kind": "slide", "normal_force": 1.0, "distance": 3.0},
     }
     | COARSE,
 }
@@ -231,9 +231,12 @@ def test_a_run_read_from_its_folder_is_the_one_that_was_made(finished: Run) -> N
 QUICK = {
     "hertz_plane": ["experiment.displacements.steps=4", "bodies.particles=160"],
     "load": ["bodies.particles=60"],
-    "path_hysteresis": ["experiment.displacements.steps=10", "bodies.particles=60"],
+    "paper": ["bodies.particles=60"],
+    "path_hysteresis": ["experiment.displacements.steps=4", "bodies.particles=60"],
+    "prandtl_tomlinson": ["experiment.distance=1.0"],
     "pull_off": ["bodies.particles=60"],
     "pull_off_dynamic": ["bodies.particles=20"],
+    "slide": ["experiment.distance=1.0"],
     "thermal_load": ["bodies.particles=20"],
 }
 SHIPPED = sorted(path.stem for path in (ROOT / "lammps_inputs" / "scenes").glob("*.toml"))

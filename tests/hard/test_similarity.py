@@ -25,7 +25,7 @@ from tests.scenes import chains
 SAME = 1e-6
 """Of reduced numbers: the minimisers stop at a residual, and round-off decides by how much they fall below it. Most
 decks are the same to the last digits and agree within 1e-8."""
-FACTORS = [(1e-9, 1.0), (1e-3, 1.0), (1e1, 1.0), (1.0, 1e9), (1e-9, 1e-9), (1e6, 1e9)]
+FACTORS = [(1e-9, 1.0), (1e1, 1.0), (1e-9, 1e-9), (1e6, 1e9)]
 DIMENSIONS = {
     "spacing": (1, 0), "radius": (1, 0), "range": (1, 0), "amplitude": (0, 1), "bulk_stiffness": (-2, 1),
     "bulk_stiffness_tangential": (-2, 1), "stiffness": (-2, 1), "force": (-1, 1), "preload": (-1, 1),

@@ -49,8 +49,9 @@ def scene(profile: str, ratio: float, tolerance: float = 1e-2) -> dict[str, Any]
 
 
 CASES = [
-    ("flat punch", 1.05), ("flat punch", 3.0), ("sharp", 1.05), ("very sharp", 3.0), ("cone", 1.05),
-    pytest.param("flat punch", 30.0, marks=pytest.mark.slow), pytest.param("sharp", 3.0, marks=pytest.mark.slow),
+    ("flat punch", 1.05), ("flat punch", 3.0), ("very sharp", 3.0), ("cone", 1.05),
+    pytest.param("flat punch", 30.0, marks=pytest.mark.slow),
+    pytest.param("sharp", 1.05, marks=pytest.mark.slow), pytest.param("sharp", 3.0, marks=pytest.mark.slow),
     pytest.param("cone", 3.0, marks=pytest.mark.slow),
 ]  # fmt: skip
 
@@ -69,7 +70,7 @@ def test_adhesion_force_is_that_of_the_highest_tooth(tmp_path: Path, profile: st
     assert max(-state.force for state in outcome.states) <= found.value + found.uncertainty
 
 
-@pytest.mark.parametrize("ratio", [0.9, 0.99])
+@pytest.mark.parametrize("ratio", [0.99])
 def test_a_tension_in_time_is_carried_by_the_next_tooth_where_pairs_nearly_snap(tmp_path: Path, ratio: float) -> None:
     """With the drag of a smooth contact the plate swung past it: 1.5 % too small, 270 times the claim."""
     case = PairCase("tooth", ratio, shaped("parabola", 21, reach(ratio)), 21, 1.5 * TENSION, 1e-4, dynamic=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -76,6 +77,12 @@ def carried(scene: Scene) -> tuple[float, float]:
     return state.displacement, np.inf
 
 
+@cache
+def share(seed: int) -> float:
+    """Largest force of a pair over its core's on the solver's way to the load of a random scene; infinite: too much."""
+    return carried(scene_from_dict(random_load(seed)))[1]
+
+
 KINDS = {
     "load": lambda force: {"kind": "load", "force": force},
     "pull_off": lambda force: {"kind": "pull_off", "preload": force},
@@ -88,7 +95,7 @@ def refused(seeds: Sequence[int], folder: Path, kind: str = "load", timed: bool 
     solvable, failures = 0, {}
     for seed in seeds:
         tables = random_load(seed)
-        if carried(scene_from_dict(tables))[1] > CARRIED:
+        if share(seed) > CARRIED:
             continue
         solvable += 1
         tables |= {"experiment": KINDS[kind](tables["experiment"]["force"])} | (IN_TIME if timed else {})
@@ -99,10 +106,16 @@ def refused(seeds: Sequence[int], folder: Path, kind: str = "load", timed: bool 
     return solvable, failures
 
 
+SHARES = {4: 0.077, 5: 0.311, 6: 0.042, 7: 0.223, 8: 0.379, 10: 0.036, 13: 0.365}
+"""`share` of these seeds: of the solver alone, which takes ten times as long as the runs."""
+DIGITS = 2e-3
+"""Of a share, as it is written down."""
+
+
 def test_scenes_that_the_solver_carries_run(tmp_path: Path) -> None:
-    solvable, failures = refused(range(4, 9), tmp_path)
-    assert solvable >= 2
-    assert failures == {}
+    assert share(8) == pytest.approx(SHARES[8], abs=DIGITS)
+    for seed in SHARES:
+        assert run(scene_from_dict(random_load(seed)), tmp_path / str(seed), figures=False).status == "done"
 
 
 def slowly(kind: str, seed: int) -> Any:
@@ -142,7 +155,7 @@ def test_pairs_that_snap_together_under_a_small_load_stay_in_front_of_each_other
     assert "gentle_move" in (tmp_path / "run" / "in.lammps").read_text()  # the deck that found it, and no other
 
 
-@pytest.mark.parametrize("ratio", [0.9, 1.01, 1.1, 2.0])
+@pytest.mark.parametrize("ratio", [0.9, 1.01, 2.0])
 def test_a_dynamic_path_comes_to_rest_where_pairs_snap(ratio: float, tmp_path: Path) -> None:
     """`ratio` is the pair's greatest negative stiffness over the springs in series, k/2."""
     stiffness = 2.0 * STEEPEST / ratio

@@ -5,9 +5,11 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from contextlib import chdir
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 from contact1d.workflow.cli.app import app, scene_files
 from contact1d.workflow.scene import EFFECTS
@@ -18,9 +20,9 @@ PROGRAM = "import sys; from contact1d.workflow.cli.app import main; main()"
 def completed(words: str, cwd: Path) -> set[str]:
     """What bash is offered for the last of `words`."""
     asked = {"_CONTACT1D_COMPLETE": "complete_bash", "COMP_WORDS": words, "COMP_CWORD": str(words.count(" "))}
-    command = [sys.executable, "-c", PROGRAM]
-    done = subprocess.run(command, cwd=cwd, env=os.environ | asked, capture_output=True, text=True, timeout=60)
-    assert done.returncode == 0, done.stderr
+    with chdir(cwd):
+        done = CliRunner().invoke(app, env=asked, prog_name="contact1d")
+    assert done.exit_code == 0, done.stderr
     return set(done.stdout.split())
 
 

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from validation.references.independent_pairs import IndependentPairs
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
-from validation.references.pull_off import pull_off
+from validation.references.pull_off import PullOff, pull_off
 from validation.references.tension_radius import band_limited_radius, state_radius, tension_radius
 
 SEARCH = 1e-8
@@ -27,11 +27,20 @@ NARROW = PairInteraction(Exponential(0.18 / 75.0, 0.015), Exponential(0.09 / 75.
 PAPERLIKE = PairInteraction(Exponential(0.18, 0.13), Exponential(0.09, 0.26))
 
 
-@pytest.mark.parametrize("radius", [4000.0, 6000.0])
-def test_closed_form_of_independent_pairs(radius: float) -> None:
-    exact = IndependentPairs(NARROW, 0.83, radius)
-    model = ChainModel(200, 0.83, NARROW, radius=radius)
-    result = pull_off(model, preload=0.01)
+RADIUS = 4000.0
+"""Of the contact that the closed form is compared with [LU]."""
+
+
+@pytest.fixture(scope="module")
+def narrow() -> tuple[ChainModel, PullOff]:
+    """A chain whose pairs feel nothing of each other, and its pull-off."""
+    model = ChainModel(200, 0.83, NARROW, radius=RADIUS)
+    return model, pull_off(model, preload=0.01)
+
+
+def test_closed_form_of_independent_pairs(narrow: tuple[ChainModel, PullOff]) -> None:
+    exact = IndependentPairs(NARROW, 0.83, RADIUS)
+    model, result = narrow
     assert result.adhesion_force == pytest.approx(exact.adhesion_force(), rel=CHAIN_END)
     assert result.preload == pytest.approx(0.01, rel=SEARCH)
     assert result.zero_load.force == pytest.approx(0.0, abs=SEARCH * 0.01)
@@ -41,11 +50,9 @@ def test_closed_form_of_independent_pairs(radius: float) -> None:
     assert state_radius(model, result.critical, 9) == pytest.approx(exact.critical_radius(), rel=STENCIL_OF_9)
 
 
-@pytest.mark.parametrize("radius", [4000.0, 6000.0])
-def test_band_limited_interpolation_finds_the_radius_of_the_closed_form(radius: float) -> None:
-    exact = IndependentPairs(NARROW, 0.83, radius)
-    model = ChainModel(200, 0.83, NARROW, radius=radius)
-    result = pull_off(model, preload=0.01)
+def test_band_limited_interpolation_finds_the_radius_of_the_closed_form(narrow: tuple[ChainModel, PullOff]) -> None:
+    exact = IndependentPairs(NARROW, 0.83, RADIUS)
+    model, result = narrow
     for state, known in ((result.zero_load, exact.zero_load_radius()), (result.critical, exact.critical_radius())):
         found = band_limited_radius(model.places(), state.pair_force[:, 1])
         assert found == pytest.approx(known, rel=BAND_LIMITED)
@@ -67,7 +74,7 @@ def test_interpolated_radius_converges_with_the_stencil() -> None:
 
 
 def test_result_does_not_depend_on_the_coarse_step() -> None:
-    model = ChainModel(120, 0.83, PAPERLIKE, radius=400.0, neighbour_stiffness=0.3, horizontal=True)
+    model = ChainModel(80, 0.83, PAPERLIKE, radius=200.0, neighbour_stiffness=0.3, horizontal=True)
     fine, coarse = pull_off(model, 0.3), pull_off(model, 0.3, step=0.03)
     assert coarse.adhesion_force == pytest.approx(fine.adhesion_force, rel=SEARCH)
     assert coarse.zero_load_radius == pytest.approx(fine.zero_load_radius, rel=SEARCH)

@@ -66,7 +66,7 @@ def test_closed_form(measured: dict[float, Mapping[str, Quantity]], radius: floa
         assert abs(found[name].value - exact[name]) <= found[name].uncertainty
 
 
-@pytest.mark.parametrize("radius", [32_000.0, 128_000.0])
+@pytest.mark.parametrize("radius", [64_000.0])
 def test_a_coarse_law_under_a_blunt_body_is_within_the_claim(run_tables: Callable[..., Run], radius: float) -> None:
     """Hundreds of particles leave nothing to interpolation: what a short cutoff moves is all there is. Spacing 7."""
     pairs = IndependentPairs(PairInteraction(*(Exponential(*LAW[i : i + 2]) for i in (0, 2))), STIFFNESS, radius, 7.0)

@@ -114,7 +114,7 @@ def test_soft_springs_have_two(run_tables: RunTables) -> None:
     stiffness = 0.25 * CRITICAL_STIFFNESS
     pair = fold(stiffness)
     assert pair.off > pair.on
-    loading, unloading, energy = round_trip(run_tables, stiffness, -0.4, 250)
+    loading, unloading, energy = round_trip(run_tables, stiffness, -0.4, 160)
     d = np.array([state.displacement for state in loading])
     there, back = (np.array([state.force for state in branch]) for branch in (loading, unloading))
     assert np.all(there - back > -COINCIDE * -back.min())

@@ -43,9 +43,9 @@ INTEGRATOR = 1e-3
 """Relative bias of a variance: the tolerance of the scene, from which the time step follows."""
 TEMPERATURE, STIFFNESS, TANGENTIAL, MASS, DAMPING = 0.01, 0.83, 0.5, 1.0, 1.5
 PARTICLES = 100
-SAMPLES, BLOCKS, INTERVAL = 800, 20, 3.0
-"""Samples, blocks that they fall into, and the time between two samples [TU]: 1.7 relaxation times γ/k of u, so that a
-block is 66 of them long."""
+SAMPLES, BLOCKS, INTERVAL = 800, 20, 1.5
+"""Samples, blocks that they fall into, and the time between two samples [TU]: 0.8 relaxation times γ/k of u, so that a
+block is 33 of them long."""
 APART = 30.0
 """Distance that the bodies are moved apart by [LU], far beyond the cutoff."""
 

@@ -74,7 +74,7 @@ def test_the_reference_is_the_sum_over_the_row() -> None:
 
 @pytest.mark.parametrize(("eta", "velocity"), [(1.0, 2e-3), pytest.param(5.0, 2e-3, marks=pytest.mark.slow)])
 def test_the_friction_is_that_of_the_equation_of_motion(eta: float, velocity: float, tmp_path: Path) -> None:
-    scene = scene_of(eta, velocity, 5.0)
+    scene = scene_of(eta, velocity, 4.0)
     settings = settings_for(scene)
     found = run(scene, tmp_path / "run", figures=False).results
     body = Integrator(slide_model(scene, settings))

@@ -27,7 +27,9 @@ CANCELLED = 0.02
 """Of the peak where particles are out of step: what is left of forces that cancel to 1e-3 of themselves and less."""
 SHARP = 1e-3
 QUICK = (5, 12)
-"""A flat and a curved one, each some seconds."""
+"""A flat and a curved one."""
+QUICK_WAY = 4.0
+"""Their way over the spacing: as much as a mean needs."""
 TRACED, COVERED, DRAWN = 20, 40, 48
 """Slides held against the integrator, and against finer and longer ones; drawn for these, as some carry no load."""
 WORKERS = 2
@@ -123,7 +125,9 @@ def off(scene: Scene, found: Run) -> tuple[float, float]:
 
 @pytest.mark.parametrize("number", QUICK)
 def test_a_random_slide_is_that_of_the_integrator(number: int, tmp_path: Path) -> None:
-    scene = next(islice(slides(), number, None))[1].with_({"accuracy.tolerance": SHARP})
+    drawn = next(islice(slides(), number, None))[1]
+    way = QUICK_WAY * drawn.bodies.spacing
+    scene = drawn.with_({"accuracy.tolerance": SHARP, "experiment.distance": way})
     found = slid(scene, tmp_path / "run")
     assert found is not None
     trace, mean = off(scene, found)

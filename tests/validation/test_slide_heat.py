@@ -34,7 +34,7 @@ def hot(tmp_path_factory: pytest.TempPathFactory) -> Run:
 
 def test_the_plate_is_as_warm_as_its_particles(tmp_path: Path) -> None:
     """A drag of 4 beside 8 · 0.4 of the particles would cool it to 0.44 T if it had no heat of its own."""
-    at_rest = {"kind": "slide", "normal_force": 1.6, "path": [[0.0, 20.0]]}
+    at_rest = {"kind": "slide", "normal_force": 1.6, "path": [[0.0, 12.0]]}
     found = run(scene_of().with_({"experiment": at_rest}), tmp_path / "run", figures=False).results["plate_temperature"]
     sigma = found.uncertainty / 2.0
     assert found.value / TEMPERATURE == pytest.approx(1.0, abs=SIGMAS * sigma / TEMPERATURE)

@@ -23,7 +23,10 @@ from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import scene_from_dict
 from validation.hard.random_scenes import SOLVER, exact_results, model_of, random_scene
 
-SEED, SCENES, QUICK = 20071, 60, 12
+SEED, SCENES = 20071, 60
+QUICK_SEED, QUICK = 59, 12
+"""Seven pull-offs, five loads, one of them in time and one on the plane; five sideways, seven with neighbour springs. A
+pull-off in time takes as long as all of these: it is among the sixty."""
 WITHIN_TOLERANCE, WITHIN_UNCERTAINTY = 0.99, 0.95
 CHANCE = 0.01
 """Of a right program to fail here: so few of a dozen scenes' results may be covered by chance."""
@@ -60,12 +63,12 @@ def errors_of(scene: dict[str, Any], folder: Path) -> list[Error]:
     return errors
 
 
-def collected(count: int, folder: Path) -> list[Error]:
+def collected(first: int, count: int, folder: Path) -> list[Error]:
     """Errors of all results of so many scenes; nothing is asked of a single one, so nothing is shrunk or replayed."""
     errors: list[Error] = []
     drawn, refused = 0, 0
 
-    @seed(SEED)
+    @seed(first)
     @settings(
         max_examples=count,
         database=None,
@@ -100,10 +103,10 @@ def require(errors: list[Error], covered_at_least: float) -> None:
 
 
 def test_a_dozen_random_scenes_are_as_exact_as_asked(tmp_path: Path) -> None:
-    errors = collected(QUICK, tmp_path)  # too few for the share itself: what it lets happen by chance
+    errors = collected(QUICK_SEED, QUICK, tmp_path)  # too few for the share itself: what it lets happen by chance
     require(errors, binom.ppf(CHANCE, len(errors), WITHIN_UNCERTAINTY) / len(errors))
 
 
 @pytest.mark.slow
 def test_sixty_random_scenes_are_as_exact_as_asked(tmp_path: Path) -> None:
-    require(collected(SCENES, tmp_path), WITHIN_UNCERTAINTY)
+    require(collected(SEED, SCENES, tmp_path), WITHIN_UNCERTAINTY)
