@@ -152,6 +152,7 @@ def beside_theories(found: MaterialRun) -> Iterator[str]:
     theories = found.theories
     if theories is None:
         return
+    yield ""
     columns = {name: f"{name}*" if name == theories.holding else name for name in theories.values}
     yield f"  {'':<28} {'this run':<26}" + "".join(f"{shown:<{WIDTH}}" for shown in columns.values()) + "beside JKR"
     for name, unit in THEORY.items():
