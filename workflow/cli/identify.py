@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Any
 
 import typer
 
 from contact1d.workflow.cli.ending import CALL_IS_WRONG, command, problems_in, say, stop
-
-if TYPE_CHECKING:
-    from contact1d.workflow.identify import Target
 
 
 def identify(
@@ -70,38 +67,32 @@ def identify(
     the material (Eq. 9, Table 1). With `--radius`: a scene whose interaction has JKR's F_A and a_0 of that sphere, or
     measured ones, found by a solver and verified by a run, which stays in the folder.
     """
-    given = {
+    options = {
         "contact-modulus": contact_modulus, "surface-energy": surface_energy, "radius": radius,
-        "adhesion-force": adhesion_force, "zero-load-radius": zero_load_radius, "length-unit": length_unit,
+        "adhesion-force": adhesion_force, "zero-load-radius": zero_load_radius, "length-unit": length_unit, "run": run,
     }  # fmt: skip
-    if material is not None:
-        others = [f"--{name}" for name, value in given.items() if value is not None] + ["--run"] * (run is not None)
-        if others:
-            stop(f"{', '.join(others)}: with MATERIAL everything is in the file", CALL_IS_WRONG)
-        _from_material(material, out or Path("runs") / material.stem)
-        return
-    out = out or Path("runs/identified")
-    if problems := _mistakes({name: value for name, value in given.items() if value is not None}, run):
+    given: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
+    if problems := _mistakes(given, material):
         stop("\n".join(problems), CALL_IS_WRONG)
-    assert contact_modulus is not None
-    if run is not None and surface_energy is not None:
-        _units_of_run(run, contact_modulus, surface_energy)
-    elif radius is not None:
-        from contact1d.workflow.identify import Target, jkr_target
-
-        if adhesion_force is not None and zero_load_radius is not None:
-            target = Target(adhesion_force, zero_load_radius)
-        else:
-            assert surface_energy is not None
-            target = jkr_target(contact_modulus, surface_energy, radius)
-        _scene_of_material(contact_modulus, radius, target, length_unit, tolerance, out)
+    if material is not None:
+        _from_material(material, out or Path("runs") / material.stem)
+    elif run is not None:
+        _units_of_run(run, given["contact-modulus"], given["surface-energy"])
+    else:
+        _scene_of_sphere(given, tolerance, out or Path("runs/identified"))
 
 
-def _mistakes(given: Mapping[str, float], run: Path | None) -> list[str]:
+def _mistakes(given: Mapping[str, Any], material: Path | None) -> list[str]:
     """What is wrong with the options `given`, or with having them together."""
-    wrong = {name: value for name, value in given.items() if not 0.0 < value < float("inf")}
-    problems = [f"--{name} must be greater than 0, not {value:g}" for name, value in wrong.items()]
-    if (run is None) == ("radius" not in given):
+    if material is not None:
+        others = ", ".join(f"--{name}" for name in given)
+        return [f"{others}: with MATERIAL everything is in the file"] if others else []
+    problems = [
+        f"--{name} must be greater than 0, not {value:g}"
+        for name, value in given.items()
+        if name != "run" and not 0.0 < value < float("inf")
+    ]
+    if ("run" in given) == ("radius" in given):
         problems.append(
             "give MATERIAL, a file that describes a contact; or either --run (a model looks for its material) or "
             "--radius (a material for its model)"
@@ -113,7 +104,7 @@ def _mistakes(given: Mapping[str, float], run: Path | None) -> list[str]:
         problems.append("--adhesion-force and --zero-load-radius go together")
     elif bool(measured) == ("surface-energy" in given):
         problems.append("give --surface-energy, or --adhesion-force together with --zero-load-radius")
-    elif run is not None and (measured or "length-unit" in given):
+    elif "run" in given and (measured or "length-unit" in given):
         problems.append("with --run only --contact-modulus and --surface-energy have a meaning: the rest is in the run")
     return problems
 
@@ -143,37 +134,30 @@ def _from_material(file: Path, out: Path) -> None:
             stop(problems_in(str(file), error.problems), CALL_IS_WRONG)
     from contact1d.workflow.cli.summary import beside_theories, quantities, regime
 
-    table = list(beside_theories(found))
-    lines = [
-        found.contact.scene.title,
-        *regime(found),
-        "",
-        *quantities(found.run.document),
-        *([""] if table else []),
-        *table,
-    ]
+    lines = [found.scene.title, *regime(found), "", *quantities(found.run.document), *beside_theories(found)]
     say(lines, {**found.doubts, **found.run.warnings}, found.run.folder / "scene.toml")
 
 
-def _scene_of_material(
-    contact_modulus: float, radius: float, target: Target, length_unit: float | None, tolerance: float, out: Path
-) -> None:
+def _scene_of_sphere(given: Mapping[str, float], tolerance: float, out: Path) -> None:
     """Identify, run, and say what came out."""
+    modulus, radius = given["contact-modulus"], given["radius"]
     with command("the run", out) as progress:
+        from contact1d.workflow.identify import Target, jkr_target, material_scene
         from contact1d.workflow.identify import identify as search
-        from contact1d.workflow.identify import material_scene
 
-        scene, wanted = material_scene(contact_modulus, radius, target, length_unit, tolerance)
-        found = search(scene, wanted, out, progress)
+        if "surface-energy" in given:
+            target = jkr_target(modulus, given["surface-energy"], radius)
+        else:
+            target = Target(given["adhesion-force"], given["zero-load-radius"])
+        found = search(*material_scene(modulus, radius, target, given.get("length-unit"), tolerance), out, progress)
     from contact1d.workflow.cli.summary import in_si, quantities
 
-    results, terms = found.run.document, found.scene.interaction
     lines = [f"identified in {found.runs} run{'s' if found.runs > 1 else ''}"]
     for (name, asked), unit in zip(vars(target).items(), ("N", "m"), strict=True):
         said = in_si({"value": asked, "uncertainty": 0.0, "unit": unit})
-        off = results[name]["si"]["value"] / asked - 1.0
+        off = found.run.document[name]["si"]["value"] / asked - 1.0
         lines.append(f"  {name.replace('_', ' ')}: wanted {said}, off by {off:+.1e}")
-    for name, term in terms or ():
+    for name, term in found.scene.interaction or ():
         if name in ("repulsion", "attraction"):
             lines.append(f"  {name:<28} amplitude {term.amplitude:.6g} FU·LU, range {term.range:.6g} LU")
-    say([*lines, *quantities(results)], found.run.warnings, found.run.folder / "scene.toml")
+    say([*lines, *quantities(found.run.document)], found.run.warnings, found.run.folder / "scene.toml")

@@ -34,6 +34,8 @@ EXACTNESS = 1e-9
 """A relative uncertainty below it, as of a unit that was given, is left out."""
 COLUMNS = 64
 ROWS = 9
+SHOWN_SHARE = 0.01
+"""Pressure over the largest one that is still shown."""
 BLOCK, EMPTY, AXIS = "█", " ", "─"
 
 
@@ -81,11 +83,10 @@ def pressure_plot(profile: Profile, radius: float, units: Mapping[str, Any] | No
 
     In SI where `units`, those of results.json, say what LU and FU are.
     """
-    scale = float(np.max(np.abs(profile.pressure), initial=0.0))
-    if scale == 0.0:
+    largest = float(np.max(np.abs(profile.pressure), initial=0.0))
+    if largest == 0.0:
         return ["  no pressure"]
-    carrying = np.abs(profile.pressure) > 0.01 * scale
-    half = 1.1 * float(np.max(np.abs(profile.x[carrying])))
+    half = 1.1 * float(np.max(np.abs(profile.x[np.abs(profile.pressure) > SHOWN_SHARE * largest])))
     x = np.linspace(-half, half, COLUMNS)
     pressure = np.interp(x, profile.x, profile.pressure, left=0.0, right=0.0)
     step = (pressure.max() - min(pressure.min(), 0.0)) / ROWS or 1.0
@@ -93,20 +94,17 @@ def pressure_plot(profile: Profile, radius: float, units: Mapping[str, Any] | No
     load, load_unit, length, length_unit = _axes(float(np.max(np.abs(pressure))), half, units)
     lines = []
     for level in range(top, bottom - 1, -1):
-        if level == 0:
-            lines.append(f"{0.0:>12.3g} {AXIS * COLUMNS}")
-            continue
-        reached = pressure > (level - 0.5) * step if level > 0 else pressure < (level + 0.5) * step
-        lines.append(f"{level * step * load:>12.3g} " + "".join(BLOCK if r else EMPTY for r in reached))
-    ends_of_contact = [moved_centre(profile) + side * radius for side in (-1.0, 1.0)]
-    if math.isfinite(radius) and radius > 0.0 and max(map(abs, ends_of_contact)) < half:
-        marks = [EMPTY] * COLUMNS
-        for place in ends_of_contact:
-            marks[round((place + half) / (2 * half) * (COLUMNS - 1))] = "^"
-        lines.append(" " * 13 + "".join(marks) + "  ± a")
-    ends = f"x from {-half * length:.1f} to {half * length:.1f} {length_unit}"
-    lines.append(f"{load_unit:>12} {ends.center(COLUMNS)}")
-    return lines
+        beyond = (level - math.copysign(0.5, level)) * step
+        reached = pressure > beyond if level > 0 else pressure < beyond
+        bars = "".join(np.where(reached, BLOCK, EMPTY)) if level else AXIS * COLUMNS
+        lines.append(f"{level * step * load:>12.3g} {bars}")
+    ends = [moved_centre(profile) + side * radius for side in (-1.0, 1.0)]
+    if radius > 0.0 and max(map(abs, ends)) < half:
+        places = [round((end + half) / (2 * half) * (COLUMNS - 1)) for end in ends]
+        marks = "".join("^" if place in places else EMPTY for place in range(COLUMNS))
+        lines.append(f"{'':13}{marks}  ± a")
+    extent = f"x from {-half * length:.1f} to {half * length:.1f} {length_unit}"
+    return [*lines, f"{load_unit:>12} {extent.center(COLUMNS)}"]
 
 
 def _axes(load: float, half: float, units: Mapping[str, Any] | None) -> tuple[float, str, float, str]:
@@ -152,6 +150,7 @@ def beside_theories(found: MaterialRun) -> Iterator[str]:
     theories = found.theories
     if theories is None:
         return
+    yield ""
     columns = {name: f"{name}*" if name == theories.holding else name for name in theories.values}
     yield f"  {'':<28} {'this run':<26}" + "".join(f"{shown:<{WIDTH}}" for shown in columns.values()) + "beside JKR"
     for name, unit in THEORY.items():
@@ -170,14 +169,10 @@ def beside_theories(found: MaterialRun) -> Iterator[str]:
 def _own(found: MaterialRun, name: str) -> Mapping[str, Any] | None:
     """The run's own value in SI, as in results.json; the radius under the load is that of the last loading row."""
     if name != "loaded_radius":
-        entry = found.run.document.get(name)
-        return entry.get("si") if isinstance(entry, dict) else None
-    curve, material = found.run.curve, found.scene.material
-    loading = [i for i, branch in enumerate(curve.branch) if branch == "loading"]
-    if not loading or material is None or material.length_unit is None:
+        entry: Mapping[str, Any] = found.run.document.get(name, {})
+        return entry.get("si")
+    curve, scales = found.run.curve, found.run.scales
+    loading = np.flatnonzero(curve.branch == "loading")
+    if scales is None or not loading.size or not math.isfinite(radius := curve.contact_radius[loading[-1]]):
         return None
-    radius, spread = curve.contact_radius[loading[-1]], curve.contact_radius_uncertainty[loading[-1]]
-    if not math.isfinite(radius):
-        return None
-    unit = material.length_unit
-    return {"value": radius * unit, "uncertainty": spread * unit, "unit": "m"}
+    return scales.in_si(float(radius), float(curve.contact_radius_uncertainty[loading[-1]]), "LU")

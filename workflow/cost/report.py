@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import cycle
 from pathlib import Path
@@ -133,26 +133,28 @@ def write_report(record: CostRecord, folder: Path) -> None:
     save_figure(cost_figure(record), folder / "cost.png")
 
 
+COLUMNS = {
+    "knob": "knob", "label": "label", "value": "value", "error": "error", "error_spread": "spread",
+    "lammps_cpu_s": "cpu_s", "wall_s": "total_s", "steps": "steps", "memory_mb": "memory_mb",
+}  # fmt: skip
+"""Of cost.csv: what a variant calls them."""
+
+
 def _columns(record: CostRecord) -> dict[str, list[Any]]:
     """The columns of cost.csv, a row for each variant: what it is and costs, the error of each main result."""
     several = record.variants
-    columns: dict[str, list[Any]] = {
-        "knob": [one.knob for one in several],
-        "label": [one.label for one in several],
-        "value": [one.value for one in several],
-        "error": [one.error for one in several],
-        "error_spread": [one.spread for one in several],
-        "lammps_cpu_s": [one.cpu_s for one in several],
-        "wall_s": [one.total_s for one in several],
-        "steps": [one.steps for one in several],
-        "memory_mb": [one.memory_mb for one in several],
-        "runs": [len(one.cpu_runs) for one in several],
-        "pareto": [one.label in record.pareto for one in several],
-        "failure": [" ".join(one.failure.split()) for one in several],
-        "details": [one.details for one in several],
-    }
-    names = record.reference_values
-    return columns | {f"error_{name}": [one.errors.get(name, math.nan) for one in several] for name in names}
+    columns = {name: [getattr(one, attribute) for one in several] for name, attribute in COLUMNS.items()}
+    columns["runs"] = [len(one.cpu_runs) for one in several]
+    columns["pareto"] = [one.label in record.pareto for one in several]
+    columns["failure"] = [_on_one_line(one.failure) for one in several]
+    columns["details"] = [one.details for one in several]
+    for name in record.reference_values:
+        columns[f"error_{name}"] = [one.errors.get(name, math.nan) for one in several]
+    return columns
+
+
+def _on_one_line(text: str) -> str:
+    return " ".join(text.split())
 
 
 def summary(record: CostRecord) -> list[str]:
@@ -166,7 +168,7 @@ def summary(record: CostRecord) -> list[str]:
         lines += _aligned([EFFECT_COLUMNS, *map(effect_row, record.effect_costs)])
     failures = [one for one in record.variants if one.failure]
     if failures:
-        lines += ["", "gave no numbers:", *(f"  {one.label}: {' '.join(one.failure.split())}" for one in failures)]
+        lines += ["", "gave no numbers:", *(f"  {one.label}: {_on_one_line(one.failure)}" for one in failures)]
     runs = sum(len(one.cpu_runs) for one in record.variants)
     done = f"{runs} runs of {len(record.variants)} variants in {record.wall_s:.0f} s"
     return [
@@ -227,44 +229,42 @@ def cost_figure(record: CostRecord) -> Figure:
     figure = new_figure(SIZE)
     left, right = figure.subplots(1, 2, sharey=True)
     for knob, colour, marker in zip(record.knobs, cycle(COLOURS), cycle(MARKERS), strict=False):
-        levels = _shown(one for one in record.variants if one.knob == knob.name)
-        levels.sort(key=lambda one: one.value)
-        errors, style = [one.error for one in levels], {"color": colour, "markersize": 5, "fillstyle": "none"}
+        levels = sorted(_shown(record, knob.name), key=lambda one: one.value)
+        style = {"color": colour, "marker": marker, "markersize": 5, "fillstyle": "none"}
         if levels and not knob.own_reference:
-            spread = [one.spread for one in levels] if any(one.spread for one in levels) else None
-            cpu = [one.cpu_s for one in levels]
-            left.errorbar(cpu, errors, spread, marker=marker, linewidth=0.6, label=knob.name, **style)
+            spread = [one.spread or math.nan for one in levels]  # without noise there is no bar
+            left.errorbar(*_cost_and_error(levels), spread, linewidth=0.6, label=knob.name, **style)
         if levels and math.isfinite(knob.own):
             coarser = [knob.coarseness(one.value) / knob.coarseness(knob.own) for one in levels]
             label = knob.name if knob.order is None else f"{knob.name}, order {knob.order}"
-            right.loglog(coarser, errors, marker=marker, linewidth=0.9, label=label, **style)
+            right.loglog(coarser, [one.error for one in levels], linewidth=0.9, label=label, **style)
     for group, marker, size, label in OTHERS:
-        if found := _shown(one for one in record.variants if one.knob == group and one.competes):
-            cpu, errors = [one.cpu_s for one in found], [one.error for one in found]
-            left.plot(cpu, errors, marker, color=COLOURS[0], markersize=size, label=label, zorder=3)
-    front = _shown(one for label in record.pareto for one in record.variants if one.label == label)
-    cpu, errors = [one.cpu_s for one in front], [one.error for one in front]
-    left.step(cpu, errors, where="post", color=THEORY, linewidth=5.0, alpha=0.35, label="Pareto front", zorder=0)
+        if found := _shown(record, group):
+            left.plot(*_cost_and_error(found), marker, color=COLOURS[0], markersize=size, label=label, zorder=3)
+    front = sorted((one for one in _shown(record) if one.label in record.pareto), key=lambda one: one.cpu_s)
+    style = {"color": THEORY, "linewidth": 5.0, "alpha": 0.35}
+    left.step(*_cost_and_error(front), where="post", label="Pareto front", zorder=0, **style)
     for axis, columns in ((left, 3), (right, 2)):
         axis.axhline(record.tolerance, color=THEORY, linewidth=0.8, linestyle=":")
         axis.legend(frameon=False, fontsize=7, ncols=columns, loc="upper center", bbox_to_anchor=(0.5, -0.13))
-    left.set(xscale="log", yscale="log")
+    left.set(xscale="log", yscale="log", xlabel="CPU time in LAMMPS (s)")
     left.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     left.xaxis.set_major_formatter("{x:g}")
     left.xaxis.set_minor_formatter("")
-    left.set_xlabel("CPU time in LAMMPS (s)")
     left.set_ylabel("largest relative error of the main results")
     right.axvline(1.0, color=THEORY, linewidth=0.8)
     right.set_xlabel("how much coarser than in the scene as it is")
-    right.annotate(
-        "accuracy.tolerance", (0.01, record.tolerance), xycoords=("axes fraction", "data"), ha="left", va="bottom",
-        fontsize=8, color=THEORY,
-    )  # fmt: skip
+    place = {"xycoords": ("axes fraction", "data"), "ha": "left", "va": "bottom"}
+    right.annotate("accuracy.tolerance", (0.01, record.tolerance), fontsize=8, color=THEORY, **place)
     left.set_title(record.title, loc="left", fontsize=10)
     right.set_title("one knob at a time; at 1 stands what the scene has", loc="left", fontsize=10)
     return figure
 
 
-def _shown(variants: Iterable[Variant]) -> list[Variant]:
-    """Those with an error that a logarithmic axis has a place for."""
-    return [one for one in variants if one.error > 0.0]
+def _shown(record: CostRecord, knob: str = "") -> list[Variant]:
+    """The variants (of a knob) with an error that a logarithmic axis has a place for."""
+    return [one for one in record.variants if one.error > 0.0 and knob in ("", one.knob)]
+
+
+def _cost_and_error(variants: Sequence[Variant]) -> tuple[list[float], list[float]]:
+    return [one.cpu_s for one in variants], [one.error for one in variants]

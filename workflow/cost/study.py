@@ -13,6 +13,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -77,15 +78,19 @@ def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, p
         progress.phase("reference")
         label, reference = reference_of(scene, runs)
 
-        def ran(phase: str, planned: Sequence[Variant]) -> list[Variant]:
+        def run_all(phase: str, planned: Sequence[Variant]) -> list[Variant]:
             progress.phase(phase, repeats * len(planned))
-            ready, failures = _prepared(scene, planned)
-            done = (measure(ready, runs, repeats, workers, progress) if ready else {}) | failures
-            return [judged(replace(one, **vars(done[one.label])), reference, noisy) for one in planned]
+            ready, done = _prepared(scene, planned)
+            done |= measure(ready, runs, repeats, workers, progress) if ready else {}
+            ran = []
+            for one in planned:
+                details = choice(*ready[one.label]) if one.knob == "tolerance" and one.label in ready else one.details
+                ran.append(judged(replace(one, **vars(done[one.label]), details=details), reference, noisy))
+            return ran
 
-        variants = _against_own(ran("runs", list(_planned(scene, knobs))), knobs)
+        variants = _against_own(run_all("runs", list(_planned(scene, knobs))), knobs)
         found = [] if noisy else list(combinations(knobs, variants, base_keys(scene)))
-        variants += ran("combinations", found) if found else []
+        variants += run_all("combinations", found) if found else []
         progress.phase("effects, step by step")
         effects = _with_changes(effect_costs(scene, runs), variants)
     base = next(one for one in variants if one.knob == BASE)
@@ -146,20 +151,10 @@ def _planned(scene: Scene, knobs: Sequence[Knob]) -> Iterator[Variant]:
     for knob in knobs:
         for value, label, keys in knob.levels:
             whole = knob.name == "tolerance" or knob.alternative
-            yield Variant(
-                label=label, knob=knob.name, value=value, scene_keys=keys if whole else base + keys,
-                details=_choice(scene, keys) if knob.name == "tolerance" else "", own_reference=knob.own_reference,
-            )  # fmt: skip
+            known: dict[str, Any] = {"value": value, "own_reference": knob.own_reference}
+            yield Variant(label=label, knob=knob.name, scene_keys=keys if whole else base + keys, **known)
     for effect, keys in without_effects(scene)[0].items():
         yield Variant(label=f"without {effect}", knob=EFFECT, scene_keys=keys)
-
-
-def _choice(scene: Scene, keys: Keys) -> str:
-    try:
-        other = changed(scene, keys)
-        return choice(other, settings_for(other))
-    except (SceneError, SettingsError):  # which the run will tell
-        return ""
 
 
 def _prepared(scene: Scene, planned: Sequence[Variant]) -> tuple[dict[str, Prepared], dict[str, Measured]]:
@@ -265,14 +260,10 @@ def fit_order(h: Sequence[float], errors: Sequence[float], floor: float = 0.0) -
 
 def pareto_front(costs: Sequence[float], errors: Sequence[float]) -> list[int]:
     """Indices of the points that no other beats in both cost and error, the cheapest first; NaN is no point."""
-    points = sorted(
-        (cost, error, i)
-        for i, (cost, error) in enumerate(zip(costs, errors, strict=True))
-        if math.isfinite(cost) and math.isfinite(error)
-    )
+    finite = [i for i, pair in enumerate(zip(costs, errors, strict=True)) if all(map(math.isfinite, pair))]
     front: list[int] = []
-    for _, error, i in points:
-        if not front or error < errors[front[-1]]:
+    for i in sorted(finite, key=lambda i: (costs[i], errors[i])):
+        if not front or errors[i] < errors[front[-1]]:
             front.append(i)
     return front
 

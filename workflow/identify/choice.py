@@ -36,18 +36,27 @@ class Choice:
     """A scene for a contact.
 
     Attributes:
+        contact: what was asked for.
         scene: with every number chosen; of two chains, its interaction is still to be searched for.
-        theories: of an adhesive sphere; None of others.
+        theories: what is said of an adhesive sphere; None of another body.
         target: what the interaction of two chains is to give, in units of the scene; None on the plane.
-        doubts: sentences, by name.
+        doubts: by name, why the scene stands for the contact in part only.
         contact_radius: that the spacing was chosen by [m].
     """
 
+    contact: AskedContact
     scene: Scene
     theories: Theories | None
     target: Target | None
-    doubts: dict[str, str]
+    doubts: Mapping[str, str]
     contact_radius: float
+
+
+@dataclass(frozen=True)
+class MaterialRun(Choice):
+    """A contact with the run that stands for it; `scene` is the one that ran."""
+
+    run: Run
 
 
 def theories_of(contact: AskedContact) -> Theories | None:
@@ -70,7 +79,7 @@ def chosen(contact: AskedContact) -> Choice:
         return _particles(contact, theories, doubts)
     radius = contact_radius(contact)
     require_size(contact, radius)
-    return Choice(fine_enough(partial(_on_plane, contact, radius)), theories, None, doubts, radius)
+    return Choice(contact, fine_enough(partial(_on_plane, contact, radius)), theories, None, doubts, radius)
 
 
 def _on_plane(contact: AskedContact, radius: float, count: int) -> Scene:
@@ -116,28 +125,7 @@ def _particles(contact: AskedContact, theories: Theories | None, doubts: dict[st
         'critical radius and work are those of the one-dimensional image. Without model = "particles" all of them are '
         "JKR's"
     )
-    return Choice(scene.with_(changes), theories, target, doubts | {"image": image}, wanted.zero_load_radius)
-
-
-@dataclass(frozen=True)
-class MaterialRun:
-    """A contact with the run that stands for it.
-
-    Attributes:
-        contact: what was asked for.
-        scene: that was chosen, and ran.
-        run: of it.
-        theories: what is said of an adhesive sphere; None of another body.
-        doubts: by name, why the scene stands for the contact in part only.
-        contact_radius: in which the spacing was chosen [m].
-    """
-
-    contact: AskedContact
-    scene: Scene
-    run: Run
-    theories: Theories | None
-    doubts: Mapping[str, str]
-    contact_radius: float
+    return Choice(contact, scene.with_(changes), theories, target, doubts | {"image": image}, wanted.zero_load_radius)
 
 
 def from_material(source: AnyContact, folder: AnyPath, progress: Progress | None = None) -> MaterialRun:
@@ -155,13 +143,9 @@ def from_material(source: AnyContact, folder: AnyPath, progress: Progress | None
         IdentifyError: no chain can stand for this contact; the message says which theory holds, with its value.
         SettingsError, RunError: see `workflow.runs.campaign.run`.
     """
-    contact = read_contact(source)
-    choice = chosen(contact)
-    if choice.target is not None:
-        found = identify(choice.scene, choice.target, Path(folder), progress)
-        return _with(contact, choice, found.scene, found.run)
-    return _with(contact, choice, choice.scene, advised.run(choice.scene, folder, progress=progress))
-
-
-def _with(contact: AskedContact, choice: Choice, scene: Scene, run: Run) -> MaterialRun:
-    return MaterialRun(contact, scene, run, choice.theories, choice.doubts, choice.contact_radius)
+    choice = chosen(read_contact(source))
+    if choice.target is None:
+        run = advised.run(choice.scene, folder, progress=progress)
+    else:
+        run = identify(choice.scene, choice.target, Path(folder), progress).run
+    return MaterialRun(**vars(choice) | {"scene": run.scene, "run": run})

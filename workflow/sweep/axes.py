@@ -42,7 +42,7 @@ class Axis:
 
     def numbers(self) -> tuple[tuple[float, ...], str]:
         """The values as numbers, and the one unit that they have as texts; no numbers where some are words."""
-        if all(isinstance(value, int | float) for value in self.values):
+        if all(map(_is_number, self.values)):
             return tuple(map(float, self.values)), ""
         try:
             parts = [split(value) for value in self.values]
@@ -190,40 +190,29 @@ def _axis(table: Any, where: str, problems: list[Problem]) -> Axis:
 
 def _span(table: Mapping[str, Any], where: str, problems: list[Problem]) -> tuple[Any, ...]:
     """steps + 1 values, both ends exact; whole numbers where all of a linear span are; texts where the ends are."""
-    start, end, unit = _without_unit(table["from"], table["to"])
-    steps, scale = table["steps"], table.get("scale", "linear")
-    texts = isinstance(start, str) and isinstance(end, str)
+    given, steps, scale = (table["from"], table["to"]), table["steps"], table.get("scale", "linear")
+    ends, unit = Axis("", given).numbers()
+    texts = all(isinstance(end, str) for end in given)
     must = 'must have the same unit at both ends, such as "1 mm" and "5 mm"' if texts else "must be a finite number"
-    numbers = _is_number(start) and _is_number(end)
     whole = isinstance(steps, int) and not isinstance(steps, bool) and 1 <= steps < MOST_POINTS
     problems += _broken(
         [
-            (not _is_number(start), f"{where}.from", must, table["from"], ""),
-            (not _is_number(end), f"{where}.to", must, table["to"], ""),
+            *((not ends and not _is_number(end), f"{where}.{name}", must, end, "")
+              for name, end in zip(("from", "to"), given, strict=True)),
             (not whole, f"{where}.steps", f"must be a whole number from 1 to {MOST_POINTS - 1}", steps, ""),
             (scale not in SCALES, f"{where}.scale", 'must be "linear" or "log"', scale, ""),
-            (scale == "log" and numbers and min(start, end) <= 0.0, f"{where}.scale",
-             "log needs from and to above 0", scale, ""),
+            (scale == "log" and min(ends, default=1.0) <= 0.0, f"{where}.scale", "log needs from and to above 0",
+             scale, ""),
         ]
     )  # fmt: skip
     if problems:
         return ()
+    start, end = ends if unit else given
     if scale == "linear" and isinstance(start, int) and isinstance(end, int) and (end - start) % steps == 0:
         return tuple(start + i * ((end - start) // steps) for i in range(steps + 1))
     inner = (np.linspace if scale == "linear" else np.geomspace)(start, end, steps + 1)[1:-1]
     values = (float(start), *inner.tolist(), float(end))
     return tuple(f"{value!r} {unit}" for value in values) if unit else values
-
-
-def _without_unit(start: Any, end: Any) -> tuple[Any, Any, str]:
-    """The ends of a span as numbers, where both are texts with the same unit, and that unit."""
-    if not (isinstance(start, str) and isinstance(end, str)):
-        return start, end, ""
-    try:
-        (first, unit), (last, other) = split(start), split(end)
-    except UnitTextError:
-        return start, end, ""
-    return (float(first), float(last), unit) if unit == other else (start, end, "")
 
 
 def _is_number(value: object) -> bool:

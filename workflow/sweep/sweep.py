@@ -9,9 +9,9 @@ import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib.util import find_spec
-from itertools import chain, islice
+from itertools import chain, islice, repeat
 from pathlib import Path
 from shutil import which
 from subprocess import CalledProcessError
@@ -56,15 +56,6 @@ class Sweep:
     quantities: Mapping[str, str]
 
 
-@dataclass
-class _Ledger:
-    """What became of the points: their names in order, and answers that no folder holds."""
-
-    names: list[str] = field(default_factory=list)
-    answers: dict[str, Answer] = field(default_factory=dict)
-    refusals: dict[int, str] = field(default_factory=dict)
-
-
 def sweep(
     source: AnySweep,
     folder: AnyPath,
@@ -96,13 +87,20 @@ def sweep(
     workplace = workplace_of(executor, workers, folder, partition)
     record = _record(plan)
     _require_own(folder, record)
-    ledger = _Ledger()
+    progress = progress or Silent()
+    rows: list[str | Answer] = []
+    answers: dict[str, Answer] = {}
     with alone(folder, "a sweep is at work in"):
         write_whole(folder / RECORD, record)
+        progress.phase("sweep", len(plan), "point")
         try:
-            _run_missing(plan, folder, workplace, ledger, progress or Silent())
+            for name, answer in _answered(_missing(plan, folder, rows, progress), workplace):
+                if answer.status != "done":
+                    progress.note(f"{name}: {answer.status}: {answer.reason}")
+                    answers[name] = answer
+                progress.advance(1)
         finally:
-            done = _finish(plan, folder, ledger)
+            done = _finish(plan, folder, rows, answers)
         if figures:
             from contact1d.workflow.sweep.figures import draw
 
@@ -139,27 +137,18 @@ def _require_own(folder: Path, record: str) -> None:
     folder.mkdir(parents=True, exist_ok=True)
 
 
-def _run_missing(plan: SweepPlan, folder: Path, workplace: Workplace, ledger: _Ledger, progress: Progress) -> None:
-    progress.phase("sweep", len(plan), "point")
-    for name, answer in _answered(_missing(plan, folder, ledger, progress), workplace):
-        if answer.status != "done":
-            progress.note(f"{name}: {answer.status}: {answer.reason}")
-            ledger.answers[name] = answer
-        progress.advance(1)
-
-
-def _missing(plan: SweepPlan, folder: Path, ledger: _Ledger, progress: Progress) -> Iterator[Task]:
-    """Scenes and folders of points that have no answer yet, each once; the others are noted on the way."""
+def _missing(plan: SweepPlan, folder: Path, rows: list[str | Answer], progress: Progress) -> Iterator[Task]:
+    """Scenes and folders of points that have no answer yet, each once; into `rows` goes each name, or a refusal."""
     seen = set()
-    for index, point in enumerate(points(plan)):
-        ledger.names.append(point.name)
+    for point in points(plan):
         if point.scene is None:
-            ledger.refusals[index] = point.reason
+            rows.append(Answer("refused", point.reason))
             said = ", ".join(f"{axis.key} = {value}" for axis, value in zip(plan.axes, point.values, strict=True))
             progress.note(f"{said}: refused: {point.reason}")
-        elif point.name not in seen:
-            seen.add(point.name)
-            if answer_in(folder, point.name) is None:
+        else:
+            rows.append(point.name)
+            if point.name not in seen and answer_in(folder, point.name) is None:
+                seen.add(point.name)
                 yield point.scene, folder / RUNS / point.name
                 continue
         progress.advance(1)
@@ -243,23 +232,19 @@ def _attempt(scene: Scene, folder: Path) -> Answer:
     return Answer("done")
 
 
-def _finish(plan: SweepPlan, folder: Path, ledger: _Ledger) -> Sweep:
-    def rows() -> Iterator[tuple[tuple[Any, ...], Answer]]:
-        for index, values in enumerate(plan.values()):
-            yield values, _answer(index, folder, ledger)
+def _finish(plan: SweepPlan, folder: Path, rows: Sequence[str | Answer], answers: Mapping[str, Answer]) -> Sweep:
+    """Write the table: each row's refusal, what its run's folder says, or an answer that no folder holds."""
+    broken_off = Answer("missing", "the sweep was broken off before it")
 
-    units = write_table(folder, [axis.key for axis in plan.axes], rows)
+    def answered() -> Iterator[tuple[tuple[Any, ...], Answer]]:
+        for values, row in zip(plan.values(), chain(rows, repeat(broken_off)), strict=False):
+            known = row if isinstance(row, Answer) else answer_in(folder, row) or answers.get(row, broken_off)
+            yield values, known
+
+    units = write_table(folder, [axis.key for axis in plan.axes], answered)
     if len(plan) >= MANY_ROWS:
         write_parquet(folder)
     return Sweep(folder, counts_in(folder), units)
-
-
-def _answer(index: int, folder: Path, ledger: _Ledger) -> Answer:
-    if index in ledger.refusals:
-        return Answer("refused", ledger.refusals[index])
-    name = ledger.names[index] if index < len(ledger.names) else ""
-    found = answer_in(folder, name) if name else None
-    return found or ledger.answers.get(name) or Answer("missing", "the sweep was broken off before it")
 
 
 NAMES = ("local", "slurm")
