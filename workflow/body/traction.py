@@ -15,9 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.abel import FEWEST, LineLoad, line_load
-from contact1d.analysis.held import whole_cells
 from contact1d.analysis.pressure import Profile
-from contact1d.analysis.radius import ContactRadius
+from contact1d.analysis.radius import ContactRadius, whole_cells
 from contact1d.analysis.shear import kinks_of, shear_load
 from contact1d.workflow.body.reading import stands_for_spheres
 from contact1d.workflow.continuation.state import RadiusRule

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from contact1d.analysis import figures, plots
 from contact1d.analysis.curve import DETACHMENTS, SAMPLE_COLUMNS, SAMPLE_TABLE, Curve, read_columns
 from contact1d.analysis.pressure import Profile
-from contact1d.analysis.slip import stick_margin
+from contact1d.analysis.shear import stick_margin
 from contact1d.analysis.theory.curves import hertz_curve, jkr_curve, jkr_on_plane
 from contact1d.analysis.theory.mindlin import mindlin_path, sliding_displacement
 from contact1d.workflow.body.derived import REPORTED
