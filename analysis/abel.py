@@ -18,11 +18,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from contact1d.analysis.pressure import spacing_of
+from contact1d.analysis.pressure import Array, spacing_of
 
-Array = NDArray[np.float64]
 NEAR = 0.3
 """Of a spacing: a place nearer to the edge than that is left out, since a slope over so short a way is mostly noise."""
 WHOLE = 0.5 - 1e-6

@@ -152,13 +152,12 @@ def crossing(displacement: Sequence[float], force: Sequence[float], level: float
         ValueError: if the curve never crosses the level.
     """
     over = np.asarray(force) - level
-    for i in range(len(over) - 1):
-        if over[i] == 0.0:
-            return i, float(displacement[i])
-        if over[i] * over[i + 1] <= 0.0:
-            part = over[i] / (over[i] - over[i + 1])
-            return i, float(displacement[i] + part * (displacement[i + 1] - displacement[i]))
-    raise ValueError(f"the force never passes {level:.4g} FU")
+    crossed = np.flatnonzero(over[:-1] * over[1:] <= 0.0)
+    if not crossed.size:
+        raise ValueError(f"the force never passes {level:.4g} FU")
+    i = int(crossed[0])
+    part = over[i] / (over[i] - over[i + 1]) if over[i] else 0.0
+    return i, float(displacement[i] + part * (displacement[i + 1] - displacement[i]))
 
 
 def smooth_crossing(displacement: Sequence[float], force: Sequence[float], level: float) -> float:

@@ -20,9 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.extremum import Place, place_of_minimum
-from contact1d.analysis.pressure import Profile, spacing_of
-
-Array = NDArray[np.float64]
+from contact1d.analysis.pressure import Array, Profile, spacing_of
 
 NEGLIGIBLE = 1e-12
 """Tension or pressure below this share of the largest |p| is round-off."""

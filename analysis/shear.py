@@ -16,13 +16,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from contact1d.analysis.abel import FEWEST, LineLoad, of_both_sides
-from contact1d.analysis.pressure import Profile
+from contact1d.analysis.pressure import Array, Profile
 from contact1d.analysis.radius import ContactRadius, compressive_radius
 
-Array = NDArray[np.float64]
 ROUND_OFF = 1e-10
 """What is left of μ f over the largest μ f below which nothing is: a history is a sum over all rows."""
 NEAR = 1e-6

@@ -22,8 +22,8 @@ from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contact1d.analysis.pressure import Array
 from contact1d.potentials import DoubleExponential
 from contact1d.workflow.body.theory import Case
 from contact1d.workflow.body.traction import body_pressures, is_of_a_body
@@ -113,7 +113,7 @@ def _work(law: DoubleExponential, spacing: float) -> tuple[float, float]:
     r = np.linspace(end / POINTS, end, POINTS)
     force = row_force(law, r, spacing, end)
 
-    def work(values: NDArray[np.float64], step: float) -> float:
+    def work(values: Array, step: float) -> float:
         inwards = np.cumsum(0.5 * (values[1:] + values[:-1])[::-1]) * step
         return float(max(-inwards.min(), 0.0))
 
