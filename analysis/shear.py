@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contact1d.analysis.abel import FEWEST, LineLoad, of_both_sides
+from contact1d.analysis.abel import FEWEST, LineLoad, in_powers, of_both_sides
 from contact1d.analysis.pressure import Array, Profile
 from contact1d.analysis.radius import ContactRadius, compressive_radius
 
@@ -172,12 +172,8 @@ def _spline(
         x, y = np.append(-x[mirrored][::-1], x), np.append(y[mirrored][::-1], y)
     spline = CubicSpline(x, y)
     begin = max(int(np.searchsorted(x, low[0], side="right")) - 1, 0)
-    starts, local = x[begin:-1], spline.c[::-1, begin:]
-    shift = -starts
-    pieces = np.zeros((4, starts.size))
-    for power, coefficients in enumerate(local):
-        for k in range(power + 1):  # (x + shift)^power
-            pieces[k] += math.comb(power, k) * coefficients * shift ** (power - k)
+    starts = x[begin:-1]
+    pieces = in_powers(spline.c[::-1, begin:], np.tile(starts, (4, 1)))
     if first and not apex:
         pieces[1, 0] = 0.0
     return starts[1:], pieces
