@@ -18,11 +18,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from contact1d.analysis.pressure import spacing_of
+from contact1d.analysis.pressure import Array, spacing_of
 
-Array = NDArray[np.float64]
 NEAR = 0.3
 """Of a spacing: a place nearer to the edge than that is left out, since a slope over so short a way is mostly noise."""
 WHOLE = 0.5 - 1e-6
@@ -154,9 +153,13 @@ def _cubics(x: Array, q: Array, end: float) -> LineLoad:
     table = q[first[:, None] + np.arange(count)].copy()
     for order in range(1, count):
         table[:, order:] = (table[:, order:] - table[:, order - 1 : -1]) / (at[:, order:] - at[:, : count - order])
-    powers = np.zeros((4, middle.size))
-    powers[0] = table[:, -1]
-    for order in range(count - 2, -1, -1):
-        powers[1:] = powers[:-1] - at[:, order] * powers[1:]
-        powers[0] = table[:, order] - at[:, order] * powers[0]
-    return LineLoad(breaks, powers)
+    return LineLoad(breaks, in_powers(table.T, at.T))
+
+
+def in_powers(newton: Array, places: Array) -> Array:
+    """Coefficients in powers of x, shape (4, n), of Σ_k newton[k] Π_{j<k} (x − places[j]), k < 4 at most."""
+    powers = np.zeros((4, newton.shape[1]))
+    for value, place in zip(newton[::-1], places[::-1], strict=True):
+        powers[1:] = powers[:-1] - place * powers[1:]
+        powers[0] = value - place * powers[0]
+    return powers

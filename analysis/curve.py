@@ -10,10 +10,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.pressure import Profile
+from contact1d.analysis.pressure import Array, Profile
 from contact1d.files import whole
 
-Array = NDArray[np.float64]
 Column = Sequence[float] | Sequence[str] | Array
 CHUNK = 100_000
 """Rows that are turned into text at a time."""

@@ -22,8 +22,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.polynomial import Array, fitting, lowest_minimum
-from contact1d.analysis.pressure import spacing_of
+from contact1d.analysis.polynomial import fitting, lowest_minimum
+from contact1d.analysis.pressure import Array, spacing_of
 
 INTERPOLANT_SIZES = (7, 5)
 """Samples under the interpolating polynomial, and under the lower one that it is compared with."""
@@ -57,19 +57,6 @@ NOISE_ORDER = 12
 """Highest difference of samples that is looked at for noise: of a smooth function it is the least."""
 MEDIAN_TO_SIGMA = 0.6745
 """Median of |n| over the standard deviation of a normal n."""
-
-
-@dataclass(frozen=True)
-class Stencil:
-    """Samples low … low + size - 1 (indices) under a polynomial of this degree."""
-
-    low: int
-    size: int
-    degree: int
-
-    def of(self, values: Array) -> Array:
-        """Those of all samples that are under it, (size,)."""
-        return values[self.low : self.low + self.size]
 
 
 @dataclass(frozen=True)
@@ -127,8 +114,8 @@ def _median(values: Array) -> float:
     return 0.5 * float(ordered[(len(ordered) - 1) // 2] + ordered[len(ordered) // 2])
 
 
-def _smoothest(x: Array, y: Array, index: int, size: int) -> list[Stencil]:
-    """Stencils of `size` samples around `index`, smoothest first: their highest divided difference is least.
+def _smoothest(x: Array, y: Array, index: int, size: int) -> list[slice]:
+    """Slices of `size` samples around `index`, smoothest first: their highest divided difference is least.
 
     Where y jumps, a polynomial across the jump swings (the choice of essentially non-oscillatory schemes).
     """
@@ -141,7 +128,7 @@ def _smoothest(x: Array, y: Array, index: int, size: int) -> list[Stencil]:
         abs(slope) * SIDEWAYS_COST ** abs(low + size // 2 - index)
         for low, slope in zip(lows, difference.tolist(), strict=True)
     ]
-    return [Stencil(lows[i], size, size - 1) for i in np.argsort(costs, kind="stable")]
+    return [slice(lows[i], lows[i] + size) for i in np.argsort(costs, kind="stable")]
 
 
 def _converging(x: Array, y: Array, index: int, noise: float) -> Place | None:
@@ -158,8 +145,7 @@ def _converging(x: Array, y: Array, index: int, noise: float) -> Place | None:
     before: float | None = None
     change = 0.0
     for beside in (b for b in SIDE_COUNTS if b <= room):
-        stencil = Stencil(index - beside, 2 * beside + 1, 2 * beside)
-        position, shift = _minimum(x, y, stencil, low, high, before)
+        position, shift = _minimum(x, y, slice(index - beside, index + beside + 1), low, high, near=before)
         if math.isnan(position):
             break
         if before is not None:
@@ -191,7 +177,7 @@ def _interpolated(x: Array, y: Array, index: int, noise: float) -> Place:
     """Minimum of the polynomial through the samples about `index`, compared with three through other samples."""
     low, high = float(x[index - 1]), float(x[index + 1])
     trials = [_smoothest(x, y, index, min(size, len(x)))[:2] for size in INTERPOLANT_SIZES]
-    best, *others = (_minimum(x, y, stencil, low, high) for stencil in (trials[0][0], trials[1][0], *trials[0][1:]))
+    best, *others = (_minimum(x, y, under, low, high) for under in (trials[0][0], trials[1][0], *trials[0][1:]))
     position, shift = best
     if math.isnan(position):  # y jumps: halfway across the larger of the two steps beside the lowest sample
         side = index + (1 if abs(y[index + 1] - y[index]) > abs(y[index - 1] - y[index]) else -1)
@@ -218,13 +204,12 @@ def _fitted(x: Array, y: Array, first: int, last: int, noise: float) -> Place:
     windows = []
     for before in (0, margin, 2 * margin):
         low = max(0, first - before)
-        windows.append(Stencil(low, min(len(x), last + 1 + 2 * margin - before) - low, FIT_DEGREE))
+        windows.append(slice(low, min(len(x), last + 1 + 2 * margin - before)))
     misfits = [_misfit(x, y, window) for window in windows]
     best = int(np.argmin(misfits))
     window, low_x, high_x = windows[best], float(x[first]), float(x[last])
-    lower = Stencil(window.low, window.size, window.degree - 1)
-    position, shift = _minimum(x, y, window, low_x, high_x)
-    other, _ = _minimum(x, y, lower, low_x, high_x)
+    position, shift = _minimum(x, y, window, low_x, high_x, FIT_DEGREE)
+    other, _ = _minimum(x, y, window, low_x, high_x, FIT_DEGREE - 1)
     extent = high_x - low_x
     if math.isnan(position):
         return Place(0.5 * (low_x + high_x), 0.5 * extent)
@@ -233,26 +218,28 @@ def _fitted(x: Array, y: Array, first: int, last: int, noise: float) -> Place:
     return Place(position, max(difference + 2.0 * noise * shift, jump))
 
 
-def _misfit(x: Array, y: Array, window: Stencil) -> float:
+def _misfit(x: Array, y: Array, window: slice) -> float:
     """Root mean square of what the polynomial leaves, per degree of freedom."""
-    t = (window.of(x) - x[window.low]) / float(np.ptp(window.of(x)))
-    coefficients = fitting(t, window.degree) @ window.of(y)
-    residual = window.of(y) - np.vander(t, len(coefficients), increasing=True) @ coefficients
-    return math.sqrt(float(np.sum(residual**2)) / max(1, window.size - window.degree - 1))
+    points, values = x[window], y[window]
+    t = (points - points[0]) / float(np.ptp(points))
+    coefficients = fitting(t, FIT_DEGREE) @ values
+    residual = values - np.vander(t, len(coefficients), increasing=True) @ coefficients
+    return math.sqrt(float(np.sum(residual**2)) / max(1, len(t) - FIT_DEGREE - 1))
 
 
 def _minimum(
-    x: Array, y: Array, stencil: Stencil, low: float, high: float, near: float | None = None
+    x: Array, y: Array, under: slice, low: float, high: float, degree: int | None = None, near: float | None = None
 ) -> tuple[float, float]:
-    """Position of the polynomial's lowest minimum between low and high, and its shift per unit of noise in y.
+    """Position of the lowest minimum between low and high of the polynomial over samples, its shift per noise in y.
 
-    Without a minimum there (NaN, NaN); where one is known to be `near`, it is found from there.
+    It goes through all of them unless its `degree` is less. Without a minimum there (NaN, NaN); where one is known to
+    be `near`, it is found from there.
     """
-    points, values = stencil.of(x), stencil.of(y)
+    points, values = x[under], y[under]
     origin, width, depth = float(points.sum()) / len(points), float(np.ptp(points)), float(np.abs(values).max())
-    matrix = fitting((points - origin) / width, stencil.degree)
+    matrix = fitting((points - origin) / width, degree or len(points) - 1)
     start = None if near is None else (near - origin) / width
     t, bend = lowest_minimum(matrix @ (values / depth), (low - origin) / width, (high - origin) / width, start)
-    powers = np.arange(1, stencil.degree + 1)
+    powers = np.arange(1, len(matrix))
     slope = float(np.linalg.norm((powers * t ** (powers - 1)) @ matrix[1:]))
     return origin + t * width, slope * width / (bend * depth)

@@ -261,36 +261,26 @@ def body_shear_figure(states: Mapping[str, tuple[Array, Array, float, float]]) -
     return figure
 
 
-def stick_slip_figure(
-    profiles: Mapping[str, Profile],
-    coefficient: float,
-    sticking: Mapping[str, Array],
-    radii: Mapping[str, float],
-    places: Mapping[str, float],
-) -> Figure:
+def stick_slip_figure(states: Mapping[str, tuple[Profile, Array, float, float]], coefficient: float) -> Figure:
     """Shear traction over x of each state between ±μp, the particles that stick and those that slip in two colours.
 
     Args:
-        profiles: by the names of the states.
+        states: by name the profile, what is left of μp of each particle [FU/LU], (n,), 0 where it slips, the half-width
+            of the zone that sticks [LU], and the place of the body along x [LU].
         coefficient: μ.
-        sticking: what is left of μp of each particle [FU/LU], (n,); 0 where it slips.
-        radii: half-width of the zone that sticks [LU].
-        places: of the body along x [LU].
     """
-    figure, axes = panels(len(profiles), 1.0 + 2.3 * len(profiles), sharex=False)
-    for axis, (name, profile) in zip(axes, profiles.items(), strict=True):
+    figure, axes = panels(len(states), 1.0 + 2.3 * len(states), sharex=False)
+    for axis, (name, (profile, sticking, radius, place)) in zip(axes, states.items(), strict=True):
         x, touched = profile.x, profile.pressure > 0.0
         limit = coefficient * np.maximum(profile.pressure, 0.0)
-        for zone, colour, label in ((sticking[name] > 0.0, STICKS, "sticks"), (sticking[name] == 0.0, SLIPS, "slips")):
+        for zone, colour, label in ((sticking > 0.0, STICKS, "sticks"), (sticking == 0.0, SLIPS, "slips")):
             chosen = touched & zone
             axis.vlines(x[chosen], 0.0, -profile.shear[chosen], color=colour, linewidth=2.0, label=label)
         beside(axis, ("±μp", x, limit), width=1.2)
         axis.plot(x, -limit, "--", color=THEORY, linewidth=1.2)
-        radius, marked = radii.get(name, math.nan), ""
-        if radius > 0.0:
-            marked = f", stick radius c = {radius:.4g} LU (shaded)"
-        describe(axis, y="shear (FU/LU)", title=f"{_state(name)}, u = {places[name]:.4g} LU{marked}")
-        if radius > 0.0:
+        marked = f", stick radius c = {radius:.4g} LU (shaded)" if radius > 0.0 else ""
+        describe(axis, y="shear (FU/LU)", title=f"{_state(name)}, u = {place:.4g} LU{marked}")
+        if marked:
             axis.axvspan(-radius, radius, color=STICKS, alpha=0.08, linewidth=0.0)
         half = float(np.abs(x[touched] if touched.any() else x).max())
         half = max(half, float(x[1] - x[0]))

@@ -15,11 +15,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contact1d.analysis.polynomial import lowest_minimum, through, value
-
-Array = NDArray[np.float64]
+from contact1d.analysis.polynomial import Array, lowest_minimum, through, value
 
 STUDENT = (12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26)
 """Half-widths of 95 % of Student's distribution with 1, 2, … degrees of freedom, over the standard error."""
@@ -152,18 +149,9 @@ def slips(time: Array, place: Array, spacing: float, velocity: float) -> list[Sl
         velocity: of the drive [LU/TU].
     """
     quick = np.abs(np.diff(place)) > FASTER * abs(velocity) * np.diff(time)
-    found, at = [], 0
-    while at < quick.size:
-        if not quick[at]:
-            at += 1
-            continue
-        end = at
-        while end < quick.size and quick[end]:
-            end += 1
-        if abs(place[end] - place[at]) > LONG * spacing:
-            found.append(Slip(float(time[end]), float(place[at]), float(place[end] - place[at])))
-        at = end
-    return found
+    borders = np.flatnonzero(np.diff(quick.astype(int), prepend=0, append=0)).reshape(-1, 2)
+    found = (Slip(float(time[end]), float(place[start]), float(place[end] - place[start])) for start, end in borders)
+    return [slip for slip in found if abs(slip.size) > LONG * spacing]
 
 
 def largest_before(friction: Array, place: Array, spacing: float) -> tuple[float, float]:

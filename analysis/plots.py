@@ -100,14 +100,19 @@ def mark(axis: Axes, *places: float, colour: str = "black", label: str | None = 
 
 def in_si(figure: Figure, conversion: Conversion) -> Figure:
     """The figure with units of SI at its axes and in its words; returns it. What is drawn stays as it is."""
+    from matplotlib.text import Text
+
+    def number_in_si(found: re.Match[str]) -> str:
+        number = float(found[1])
+        factor, unit = conversion(number, found[2])
+        return f"{number * factor:.{DIGITS}g} {unit}"
+
     for axes in figure.axes:
         for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
             _axis_in_si(axis, max(map(abs, limits)), conversion)
-        words: list[Any] = [*axes.texts, axes.title, getattr(axes, "_left_title", None)]
-        legend = axes.get_legend()
-        words += list(legend.get_texts()) if legend is not None else []
-        for text in filter(None, words):
-            text.set_text(NUMBER.sub(lambda found: _number_in_si(found, conversion), text.get_text()))
+        for text in axes.findobj(Text):
+            assert isinstance(text, Text)
+            text.set_text(NUMBER.sub(number_in_si, text.get_text()))
     return figure
 
 
@@ -129,9 +134,3 @@ def _axis_in_si(axis: Axis, largest: float, conversion: Conversion) -> None:
     axis.set_major_locator(Scaled(nbins=7, steps=[1, 2, 2.5, 5, 10]))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value * factor:.6g}".replace("-", "\N{MINUS SIGN}")))
     axis.set_label_text(label.replace(found[0], f"({unit})"))
-
-
-def _number_in_si(found: re.Match[str], conversion: Conversion) -> str:
-    number = float(found[1])
-    factor, unit = conversion(number, found[2])
-    return f"{number * factor:.{DIGITS}g} {unit}"

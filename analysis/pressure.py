@@ -7,9 +7,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from contact1d.potentials import DoubleExponential
+    from contact1d.potentials.table import Table
 
 Array = NDArray[np.float64]
 
@@ -64,14 +69,6 @@ def pressure_profile(
     return Profile(x, lower, upper, normal / spacing, tangential / spacing)
 
 
-def normal_force(profile: Profile, spacing: float) -> float:
-    """Return F = spacing * sum p_i, the whole normal force [FU], compression positive.
-
-    spacing of the particles [LU]. Tension outside the contact radius is part of it, as it is of the external force.
-    """
-    return float(spacing * np.sum(profile.pressure))
-
-
 def mean_pressure(profile: Profile, spacing: float, radius: float) -> float:
     """Return F / (pi a^2), the mean pressure of the three-dimensional contact that the model stands for [FU/LU^2].
 
@@ -83,20 +80,18 @@ def mean_pressure(profile: Profile, spacing: float, radius: float) -> float:
     """
     if not radius > 0.0:
         raise ValueError(f"a mean pressure needs a contact radius above 0, got {radius}")
-    return normal_force(profile, spacing) / (math.pi * radius**2)
+    return float(spacing * np.sum(profile.pressure)) / (math.pi * radius**2)
 
 
-def gap_to_lower(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike, z_lower: ArrayLike) -> Array:
-    """Return g_i = z_i - z_low(x_i) [LU], (n,): height of each upper particle above the straight-line lower surface.
+def penetration_depth(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike, z_lower: ArrayLike) -> float:
+    """Return how far the lowest of the upper particles is below the straight-line lower surface [LU]; 0 for none.
 
     x_upper, z_upper: upper particles [LU], (n,); x_lower, z_lower: lower particles in any order [LU], (m,), m >= 1.
-    Particles that hang over an end of the lower body have no surface below them: NaN.
+    Particles beyond the ends of the lower body are above or below nothing and don't count. The paper names
+    interpenetration as the limit of a model of one layer (Section 5).
     """
-    x_low, z_low = np.asarray(x_lower, dtype=np.float64), np.asarray(z_lower, dtype=np.float64)
-    order = np.argsort(x_low, kind="stable")
-    surface = np.interp(np.asarray(x_upper, dtype=np.float64), x_low[order], z_low[order], left=np.nan, right=np.nan)
-    gap: Array = np.asarray(z_upper, dtype=np.float64) - surface
-    return gap
+    surface = np.interp(np.asarray(x_upper), *_sorted_by_x(x_lower, z_lower), left=-np.inf, right=-np.inf)
+    return float(np.max(surface - np.asarray(z_upper), initial=0.0))
 
 
 def smallest_distance(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike, z_lower: ArrayLike) -> float:
@@ -129,28 +124,6 @@ def _sorted_by_x(x: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
     return x[rising], z[rising]
 
 
-@dataclass(frozen=True)
-class Interpenetration:
-    """Whether upper particles lie below the lower surface; depth: largest depth below it [LU]; particles: how many."""
-
-    occurs: bool
-    depth: float
-    particles: int
-
-
-def interpenetration(
-    x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike, z_lower: ArrayLike
-) -> Interpenetration:
-    """Return where upper particles lie below the straight-line lower surface: depth = max(0, -min g_i).
-
-    Arguments as for `gap_to_lower`. Particles beyond the ends of the lower body are above or below nothing and don't
-    count. The paper names interpenetration as the limit of a model of one layer (Section 5).
-    """
-    gap = gap_to_lower(x_upper, z_upper, x_lower, z_lower)
-    below = gap[np.isfinite(gap) & (gap < 0.0)]
-    return Interpenetration(below.size > 0, float(-np.min(below, initial=0.0)), int(below.size))
-
-
 def end_pressure_share(profile: Profile) -> float:
     """Return max(|p_first|, |p_last|) / max |p|, between 0 and 1 [-]; 0 where there is no pressure at all.
 
@@ -166,6 +139,25 @@ def spacing_of(x: Array) -> float:
     return float(np.ptp(x)) / max(x.size - 1, 1)
 
 
-def middle_of(x: Array) -> float:
-    """The middle between both ends [length]."""
-    return float(0.5 * (x.max() + x.min()))
+TAIL_REACH = 5.0
+"""Ranges of the law beyond the cutoff up to which its tail is summed: all but a share exp(-5) of it."""
+
+
+def left_out(law: DoubleExponential, table: Table, profile: Profile) -> float:
+    """Σ |F_table(r) - f(r)| |z|/r [FU]: what a table and its cutoff leave out of a law in a state.
+
+    Summed offset by offset along the chain: memory for one row of pairs.
+    """
+    reach = table.cutoff + TAIL_REACH * law.longest_range
+    x, lower, upper = profile.x, profile.z_lower, profile.z_upper
+    spacing = spacing_of(x)
+    near = np.flatnonzero(upper - lower < reach)
+    total = 0.0
+    farthest = int(reach / spacing)
+    for offset in range(-farthest, farthest + 1):
+        first = near[(near + offset >= 0) & (near + offset < len(x))]
+        across, up = x[first + offset] - x[first], upper[first] - lower[first + offset]
+        r = np.maximum(np.hypot(across, up), table.core)
+        kept = np.where(r <= table.cutoff, table.force(np.minimum(r, table.cutoff)), 0.0)
+        total += float(np.sum(np.where(r < reach, np.abs(kept - law.force(r)) * np.abs(up) / r, 0.0)))
+    return total

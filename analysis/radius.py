@@ -1,22 +1,35 @@
-"""Contact radius from a pressure profile: with tension dp/dx = 0 at a, where p is least; without it p(a) = 0."""
+"""Contact radius from a pressure profile: with tension dp/dx = 0 at a, where p is least; without it p(a) = 0.
+
+A row of springs that are held up to an edge, where the pressure jumps to zero, is JKR's contact, reduced. The last
+particle that carries stands for the share φ of its cell, x ± s/2, that lies within the edge: with p(x) the pressure
+inside, continued to the middle of that share,
+
+    p_last = φ p(x_last − (1 − φ) s/2),    a = x_last − s/2 + φ s
+
+p is the parabola through the three particles before it, whose cells lie within the edge as a whole.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.extremum import Place, place_of_minimum
-from contact1d.analysis.pressure import Profile, middle_of, spacing_of
-
-Array = NDArray[np.float64]
+from contact1d.analysis.pressure import Array, Profile, spacing_of
 
 NEGLIGIBLE = 1e-12
 """Tension or pressure below this share of the largest |p| is round-off."""
 PARABOLA_POINTS = 3
 """Particles that fix a pressure parabolic in x."""
+SHARES = 10
+"""Steps in which the share of a cell has settled: each leaves a small part of the error, (φ − 1) s p′/2p."""
+OUTSIDE = 0.05
+"""By how much a share may seem to lie outside of 0…1."""
 SPOT, TOLD = 1.2, 3.0
 """Error of a radius of 0 under tension, and radius from which on particles tell the contact's two edges from each other
 as well as the interpolation says, both over the spacing.
@@ -89,13 +102,33 @@ def compressive_radius(profile: Profile, residual: float = 0.0) -> ContactRadius
     largest = float(np.max(np.abs(p)))
     if float(np.min(p)) < -NEGLIGIBLE * largest:
         raise ValueError("particles carry tension: the radius is that of maximum tensile stress")
-    loaded = np.flatnonzero(p > NEGLIGIBLE * largest)
-    if loaded.size == 0:
-        middle = middle_of(x)
-        return ContactRadius(0.0, 0.5 * spacing_of(x), middle, middle, False)
-    right = _zero(x, p, int(loaded[0]), int(loaded[-1]), residual)
-    mirrored = _zero(-x[::-1], p[::-1], len(x) - 1 - int(loaded[-1]), len(x) - 1 - int(loaded[0]), residual)
-    return _between(Place(-mirrored.position, mirrored.uncertainty, mirrored.at_end), right)
+    return _of_edges(x, p, p > NEGLIGIBLE * largest, partial(_zero, residual=residual))
+
+
+def held_radius(profile: Profile) -> ContactRadius:
+    """The radius of a contact that is held up to its edges; 0 where nothing carries.
+
+    profile: of a chain of evenly spaced particles, n >= 3. Where fewer than three particles lie before the last one, as
+    in a contact a few spacings wide, the edge is somewhere in its cell. See the module's docstring.
+    Raises ValueError for fewer than 3 particles.
+    """
+    _check(profile)
+    return _of_edges(profile.x, profile.pressure, profile.pressure != 0.0, _held_edge)
+
+
+def whole_cells(profile: Profile, radius: ContactRadius) -> Array:
+    """Pressures [FU/LU], (n,), with that of the inside at the particles at both edges, in place of a cell's share; 0
+    where they stand outside of the edge, `radius`.
+    """
+    x, p = profile.x, profile.pressure.copy()
+    held = np.flatnonzero(p != 0.0)
+    if held.size < 2 * PARABOLA_POINTS + 2:
+        return p
+    for last, inwards in ((int(held[-1]), -1), (int(held[0]), 1)):
+        inner = [float(p[last + k * inwards]) for k in (3, 2, 1)]
+        inside = radius.left <= x[last] <= radius.right
+        p[last] = inner[0] - 3.0 * inner[1] + 3.0 * inner[2] if inside else 0.0
+    return p
 
 
 def moved_centre(profile: Profile) -> float:
@@ -137,6 +170,19 @@ def _between(left: Place, right: Place) -> ContactRadius:
     value = max(0.0, 0.5 * (right.position - left.position))
     uncertainty = 0.5 * (left.uncertainty + right.uncertainty)
     return ContactRadius(value, uncertainty, left.position, right.position, left.at_end or right.at_end)
+
+
+def _of_edges(
+    x: Array, p: Array, carries: NDArray[np.bool_], edge: Callable[[Array, Array, int, int], Place]
+) -> ContactRadius:
+    """Between the right `edge` of the particles that carry, first … last, and that of the mirror image."""
+    carrying, end = np.flatnonzero(carries), len(x) - 1
+    if carrying.size == 0:
+        middle = float(0.5 * (x.max() + x.min()))
+        return ContactRadius(0.0, 0.5 * spacing_of(x), middle, middle, False)
+    first, last = int(carrying[0]), int(carrying[-1])
+    mirrored = edge(-x[::-1], p[::-1], end - last, end - first)
+    return _between(replace(mirrored, position=-mirrored.position), edge(x, p, first, last))
 
 
 def _zero(x: Array, p: Array, first: int, last: int, residual: float) -> Place:
@@ -181,3 +227,32 @@ def _parabola_zero(x: Array, p: Array, inner: float, outer: float, residual: flo
     if not -NEGLIGIBLE - moved <= place <= 1.0 + NEGLIGIBLE + moved:
         return None
     return Place(inner + width * place, NEGLIGIBLE * (abs(inner) + width) + width * moved)
+
+
+def _held_edge(x: Array, p: Array, first: int, last: int) -> Place:
+    """Right edge of a contact that is held from the particle first to last."""
+    spacing = spacing_of(x)
+    somewhere = Place(float(x[last]), 0.5 * spacing, last == len(x) - 1)
+    if last - first <= PARABOLA_POINTS:  # the last one of them is at the other edge
+        return somewhere
+    *inner, carried = p[last - PARABOLA_POINTS : last + 1].tolist()
+    found, straight = _share(carried, inner), _share(carried, [2.0 * inner[1] - inner[2], inner[1], inner[2]])
+    if not -OUTSIDE <= found <= 1.0 + OUTSIDE:
+        return somewhere
+    share = min(max(found, 0.0), 1.0)
+    off = min(0.5, abs(found - straight)) * spacing
+    return replace(somewhere, position=somewhere.position + (share - 0.5) * spacing, uncertainty=off)
+
+
+def _share(carried: float, inner: list[float]) -> float:
+    """φ of the last particle by the parabola through the pressures of three before it, NaN where it has none."""
+    bend = inner[2] - 2.0 * inner[1] + inner[0]
+    slope = inner[2] - inner[1] + 0.5 * bend
+    share = 1.0
+    for _ in range(SHARES):
+        t = 1.0 - 0.5 * (1.0 - share)  # from the particle before, in spacings
+        inside = inner[2] + slope * t + 0.5 * bend * t * t
+        if inside == 0.0:
+            return math.nan
+        share = carried / inside
+    return share

@@ -200,14 +200,14 @@ class PowerLaw(Contact):
             place: r >= 0 [length], any shape.
             contact_radius: a >= 0 [length].
         """
-        r, a, e = place, contact_radius, self.contact_modulus
-        inside = r < a
-        ratio = np.divide(r, a, out=np.ones_like(r), where=inside)
+        pressure, inside = np.zeros_like(place), place < contact_radius
+        ratio, scale = place[inside] / contact_radius, self.contact_modulus * self.coefficient
         root = np.sqrt(1.0 - ratio**2)
         with np.errstate(divide="ignore"):
-            cone = 0.5 * e * self.coefficient * np.arccosh(1.0 / ratio)
-        pressed = cone if self.exponent == 1.0 else 4.0 * e * a * self.coefficient / math.pi * root
-        return pressed - np.divide(self._tension(a), root, out=np.zeros_like(r), where=inside)
+            cone = 0.5 * scale * np.arccosh(1.0 / ratio)
+        pressed = cone if self.exponent == 1.0 else 4.0 * scale * contact_radius / math.pi * root
+        pressure[inside] = pressed - self._tension(contact_radius) / root
+        return pressure
 
 
 @dataclass(frozen=True)

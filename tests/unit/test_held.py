@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact1d.analysis.held import held_radius, whole_cells
 from contact1d.analysis.pressure import Profile
+from contact1d.analysis.radius import held_radius, whole_cells
 
 ROUND_OFF = 1e-9
 X = np.arange(60.0) - 29.5

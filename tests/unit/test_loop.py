@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from contact1d.analysis.loop import loop_of
+from contact1d.analysis.curve_marks import loop_of
 
 ROUND_OFF = 1e-12
 

@@ -10,10 +10,8 @@ import pytest
 from contact1d.analysis.pressure import (
     Profile,
     end_pressure_share,
-    gap_to_lower,
-    interpenetration,
     mean_pressure,
-    normal_force,
+    penetration_depth,
     pressure_profile,
     smallest_distance,
 )
@@ -52,12 +50,6 @@ def test_what_is_not_a_profile_is_refused() -> None:
         profile(np.array([1.0, 0.0]), np.zeros(2))
 
 
-def test_the_normal_force_is_the_sum_of_the_forces() -> None:
-    force = np.array([-0.5, 1.25, 3.0, -0.5])
-    made = pressure_profile(np.arange(4), force, force, force, force, 0.25)
-    assert normal_force(made, 0.25) == pytest.approx(3.25, rel=ROUND_OFF)
-
-
 def test_the_mean_pressure_is_that_of_the_paper() -> None:
     """R = 1000, a = 35, Table 1's first row: about 800 MPa; the units from W and E* as in Eq. (9)."""
     radius, zero_load_radius, adhesion_force, a = 1000.0, 28.53, 1.47, 35.0
@@ -74,19 +66,6 @@ def test_the_mean_pressure_is_that_of_the_paper() -> None:
 def test_a_contact_without_extent_has_no_mean_pressure() -> None:
     with pytest.raises(ValueError, match="above 0"):
         mean_pressure(profile(np.arange(3.0), np.ones(3)), 1.0, 0.0)
-
-
-def test_the_gap_is_exact_over_a_tilted_plane_in_any_order() -> None:
-    rng = np.random.default_rng(2)
-    x_low = rng.permutation(np.linspace(-5.0, 5.0, 11))
-    x, z = rng.uniform(-5.0, 5.0, 30), rng.normal(size=30)
-    gap = gap_to_lower(x, z, x_low, 0.3 * x_low - 1.0)
-    np.testing.assert_allclose(gap, z - (0.3 * x - 1.0), atol=1e-14)
-
-
-def test_a_particle_beyond_the_lower_body_has_no_gap() -> None:
-    gap = gap_to_lower([-1.5, -1.0, 1.0, 1.5], np.ones(4), [-1.0, 1.0], [0.0, 0.0])
-    np.testing.assert_array_equal(gap, [math.nan, 1.0, 1.0, math.nan])
 
 
 def test_the_smallest_distance_is_that_of_all_pairs() -> None:
@@ -115,16 +94,20 @@ def test_no_distance_to_no_body(lower: int) -> None:
         smallest_distance([0.0] * (1 - lower), [0.0] * (1 - lower), [0.0] * lower, [0.0] * lower)
 
 
+def test_the_depth_is_exact_over_a_tilted_plane_in_any_order() -> None:
+    rng = np.random.default_rng(2)
+    x_low = rng.permutation(np.linspace(-5.0, 5.0, 11))
+    x, z = rng.uniform(-5.0, 5.0, 30), rng.normal(size=30)
+    depth = penetration_depth(x, z - 3.0, x_low, 0.3 * x_low - 1.0)
+    assert depth == pytest.approx(float(np.max(0.3 * x - 1.0 - (z - 3.0))), rel=ROUND_OFF)
+
+
 def test_particles_below_the_lower_surface_are_found_with_their_depth() -> None:
     x_low = np.arange(5.0)
-    found = interpenetration([-3.0, 0.5, 2.5, 9.0], [-7.0, -0.25, 1.0, -7.0], x_low, np.zeros(5))
-    assert (found.occurs, found.depth, found.particles) == (True, 0.25, 1)
-    apart = interpenetration(x_low, x_low + 0.1, x_low, x_low)
-    assert (apart.occurs, apart.depth, apart.particles) == (False, 0.0, 0)
-    touching = interpenetration(x_low, x_low, x_low, x_low)
-    assert (touching.occurs, touching.depth, touching.particles) == (False, 0.0, 0)
-    beside = interpenetration([7.0], [-1.0], x_low, np.zeros(5))
-    assert (beside.occurs, beside.depth, beside.particles) == (False, 0.0, 0)
+    assert penetration_depth([-3.0, 0.5, 2.5, 9.0], [-7.0, -0.25, 1.0, -7.0], x_low, np.zeros(5)) == 0.25
+    assert penetration_depth(x_low, x_low + 0.1, x_low, x_low) == 0.0
+    assert penetration_depth(x_low, x_low, x_low, x_low) == 0.0
+    assert penetration_depth([7.0], [-1.0], x_low, np.zeros(5)) == 0.0
 
 
 def test_the_share_at_the_ends_counts_tension_and_compression() -> None:

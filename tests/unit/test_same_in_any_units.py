@@ -12,13 +12,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from contact1d.analysis.curve_marks import largest_tension, promised, rivals, smooth_crossing
+from contact1d.analysis.curve_marks import largest_tension, loop_of, promised, rivals, smooth_crossing
 from contact1d.analysis.extremum import Place, place_of_minimum
 from contact1d.analysis.friction import block_means, largest_before, mean_of, slips
-from contact1d.analysis.held import held_radius
-from contact1d.analysis.loop import loop_of
 from contact1d.analysis.pressure import Profile
-from contact1d.analysis.radius import ContactRadius, compressive_radius, tensile_radius
+from contact1d.analysis.radius import ContactRadius, compressive_radius, held_radius, tensile_radius
 
 Array = NDArray[np.float64]
 LENGTH, FORCE = 2.0**-7, 2.0**9

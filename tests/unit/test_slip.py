@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contact1d.analysis.pressure import Profile
-from contact1d.analysis.slip import slip, stick_margin, stick_radius
+from contact1d.analysis.shear import slip, stick_margin, stick_radius
 
 ROUND_OFF = 1e-12
 """Relative; sums of a few products."""

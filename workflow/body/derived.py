@@ -22,9 +22,10 @@ from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contact1d.analysis.pressure import Array
 from contact1d.potentials import DoubleExponential
+from contact1d.workflow.body.reading import product
 from contact1d.workflow.body.theory import Case
 from contact1d.workflow.body.traction import body_pressures, is_of_a_body
 from contact1d.workflow.continuation.outcome import Outcome
@@ -77,22 +78,17 @@ def implied(scene: Scene, settings: Settings, found: Mapping[str, Quantity]) -> 
     """
     if settings.law is None or settings.law.attraction is None:
         return {}
-    work, error = _work(settings.law, scene.bodies.spacing)
-    line = work / scene.bodies.spacing
-    quantities = {"separation_energy": Quantity(line, error / scene.bodies.spacing, FORCE)}
+    work, spacing, reduction = _work(settings.law, scene.bodies.spacing), scene.bodies.spacing, scene.bodies.reduction
+    line = product(1.0 / spacing, FORCE, (work, 1.0))
+    quantities = {"separation_energy": line}
     radius, curvature = first_of(found, "zero_load_radius", "contact_radius"), scene.bodies.profile.curvature_radius
     if radius is None or curvature is None or not radius.value > 0.0:
         return quantities
-    reduction = scene.bodies.reduction
-    energy = WIDER[reduction] * line / (math.pi * radius.value)
-    tension, missed = settings.estimate.pull_off_force(), 0.0
-    if "adhesion_force" in found:
-        tension, missed = found["adhesion_force"].value, found["adhesion_force"].uncertainty
-    sphere = 1.5 * math.pi * EFFECTIVE[reduction] * curvature
-    spread = (
-        abs(energy - tension / sphere) + missed / sphere + energy * (radius.uncertainty / radius.value + error / work)
-    )
-    return quantities | {"work_of_adhesion": Quantity(energy, spread, LINE_PRESSURE)}
+    energy = product(WIDER[reduction] / math.pi, LINE_PRESSURE, (line, 1.0), (radius, -1.0))
+    tension = found.get("adhesion_force", Quantity(settings.estimate.pull_off_force(), 0.0, FORCE))
+    jkr = product(1.0 / (1.5 * math.pi * EFFECTIVE[reduction] * curvature), LINE_PRESSURE, (tension, 1.0))
+    spread = energy.uncertainty + abs(energy.value - jkr.value) + jkr.uncertainty
+    return quantities | {"work_of_adhesion": Quantity(energy.value, spread, LINE_PRESSURE)}
 
 
 def formulas(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, dict[str, str]]:
@@ -107,18 +103,18 @@ def formulas(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, dict
 
 
 @lru_cache(maxsize=16)  # scenes run one after the other mostly share their law
-def _work(law: DoubleExponential, spacing: float) -> tuple[float, float]:
+def _work(law: DoubleExponential, spacing: float) -> Quantity:
     """w [FU·LU] by the trapezoid, and its error: the difference from twice the step."""
     end = law.cutoff_for(TAIL)
     r = np.linspace(end / POINTS, end, POINTS)
     force = row_force(law, r, spacing, end)
 
-    def work(values: NDArray[np.float64], step: float) -> float:
+    def work(values: Array, step: float) -> float:
         inwards = np.cumsum(0.5 * (values[1:] + values[:-1])[::-1]) * step
         return float(max(-inwards.min(), 0.0))
 
     fine = work(force, end / POINTS)
-    return fine, abs(fine - work(force[1::2], 2.0 * end / POINTS))
+    return Quantity(fine, abs(fine - work(force[1::2], 2.0 * end / POINTS)), ENERGY)
 
 
 def with_body(scene: Scene, outcome: Outcome) -> Outcome:
@@ -157,24 +153,16 @@ def _of_the_contact(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Qu
     if radius is None or force is None or not radius.value > 0.0:
         return made
     if "mean_pressure" not in found:
-        area = math.pi * radius.value**2
-        spread = (2.0 * abs(force.value) * radius.uncertainty / radius.value + force.uncertainty) / area
-        made["mean_pressure"] = Quantity(force.value / area, spread, MEAN_PRESSURE)
+        made["mean_pressure"] = product(1.0 / math.pi, MEAN_PRESSURE, (force, 1.0), (radius, -2.0))
     if scene.interaction is None and Case(scene, found).is_elastic:
-        twice = 2.0 * scene.bulk_stiffness / (scene.chains * scene.bodies.spacing)
-        made["contact_stiffness"] = Quantity(twice * radius.value, twice * radius.uncertainty, LINE_PRESSURE)
+        stiffness = 2.0 * scene.bulk_stiffness / (scene.chains * scene.bodies.spacing)
+        made["contact_stiffness"] = product(stiffness, LINE_PRESSURE, (radius, 1.0))
     return made
 
 
 def _adhesion_energy(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:
     """πa²W on a plane with adhesion; 2a w/s where an interaction holds the bodies."""
     a, line = first_of(found, "zero_load_radius", "contact_radius"), found.get("separation_energy")
-    if a is None:
-        return {}
-    if scene.adhesion is not None:
-        ring = math.pi * scene.adhesion.work * a.value
-        return {"adhesion_energy": Quantity(ring * a.value, 2.0 * ring * a.uncertainty, ENERGY)}
-    if line is None:
-        return {}
-    spread = 2.0 * (a.value * line.uncertainty + a.uncertainty * line.value)
-    return {"adhesion_energy": Quantity(2.0 * a.value * line.value, spread, ENERGY)}
+    if a is not None and scene.adhesion is not None:
+        return {"adhesion_energy": product(math.pi * scene.adhesion.work, ENERGY, (a, 2.0))}
+    return {} if a is None or line is None else {"adhesion_energy": product(2.0, ENERGY, (a, 1.0), (line, 1.0))}

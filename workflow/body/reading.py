@@ -41,10 +41,10 @@ def of_the_body(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Q
         if name.endswith("radius"):
             named[IMAGE + name] = quantity
             if spheres:
-                named[name] = _times(quantity, 1.0 / WIDER_THAN_SPHERES)
+                named[name] = product(1.0 / WIDER_THAN_SPHERES, quantity.unit, (quantity, 1.0))
         elif name == "mean_pressure":
             if spheres:
-                named[name] = _times(quantity, WIDER_THAN_SPHERES**2)
+                named[name] = product(WIDER_THAN_SPHERES**2, quantity.unit, (quantity, 1.0))
         else:
             named[name] = quantity
     return named
@@ -71,5 +71,11 @@ def doubt_of_the_image(scene: Scene) -> dict[str, str]:
     return {"reduction": f"geike_popov was chosen: {whose}For one body on a plane use mdr{one_body}"}
 
 
-def _times(quantity: Quantity, factor: float) -> Quantity:
-    return Quantity(factor * quantity.value, factor * quantity.uncertainty, quantity.unit)
+def product(factor: float, unit: str, *powers: tuple[Quantity, float]) -> Quantity:
+    """`factor` times the product of quantities, each to its power; their uncertainties add up."""
+    value, spread = factor, 0.0
+    for quantity, power in powers:
+        part = quantity.value**power
+        change = power * quantity.value ** (power - 1.0) * quantity.uncertainty
+        value, spread = value * part, spread * abs(part) + abs(value * change)
+    return Quantity(value, spread, unit)

@@ -16,9 +16,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from contact1d.analysis.pressure import Array
 from contact1d.analysis.theory.adhesion import Dmt, MaugisDugdale, Theory, of_tabor, tabor_number, valid_theory
 from contact1d.analysis.theory.indenters import Contact, Ellipsoid, FlatPunch, PowerLaw
 from contact1d.analysis.theory.mindlin import mindlin_path, mindlin_stick_path, sliding_displacement
@@ -27,7 +25,6 @@ from contact1d.workflow.scene import Scene
 from contact1d.workflow.scene.material import SPHERES
 from contact1d.workflow.units import Quantity, Scales, scale_of
 
-Array = NDArray[np.float64]
 Values = dict[str, float]
 
 SHOWN = 6

@@ -12,12 +12,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact1d.analysis.abel import FEWEST, LineLoad, line_load
-from contact1d.analysis.held import whole_cells
-from contact1d.analysis.pressure import Profile
-from contact1d.analysis.radius import ContactRadius
+from contact1d.analysis.pressure import Array, Profile
+from contact1d.analysis.radius import ContactRadius, whole_cells
 from contact1d.analysis.shear import kinks_of, shear_load
 from contact1d.workflow.body.reading import stands_for_spheres
 from contact1d.workflow.continuation.state import RadiusRule
@@ -25,7 +23,6 @@ from contact1d.workflow.scene import Scene
 from contact1d.workflow.scene.material import WIDER_THAN_SPHERES
 from contact1d.workflow.units import MEAN_PRESSURE, Quantity
 
-Array = NDArray[np.float64]
 MOST = 1000
 """Particles on a side that are used, and radii that p is given at; of more, every second, third …"""
 RADII = 100
@@ -93,10 +90,11 @@ def body_pressures(scene: Scene, profiles: Mapping[str, Profile]) -> dict[str, B
     if not is_of_a_body(scene):
         return {}
     rule = RadiusRule(scene, scene.accuracy.tolerance)
-    radii = {name: rule.of(profile) for name, profile in profiles.items()}
-    touching = {name: radius for name, radius in radii.items() if radius is not None and radius.value > 0.0}
-    made = {name: _pressure(scene, profiles[name], radius) for name, radius in touching.items()}
-    return {name: one for name, one in made.items() if one is not None}
+    return {
+        name: one
+        for name, profile in profiles.items()
+        if (radius := rule.of(profile)) and radius.value > 0.0 and (one := _pressure(scene, profile, radius))
+    }
 
 
 def _pressure(scene: Scene, profile: Profile, radius: ContactRadius) -> BodyPressure | None:
@@ -184,13 +182,12 @@ def body_shears(
         return {}
     sticks, edges = columns["stick_radius"], np.nan_to_num(contact_radii)
     kinks = kinks_of(sticks.tolist(), edges.tolist())
-    rows = {name: row_of(name, columns) for name in profiles}
-    made = {
-        name: _shear(scene, profiles[name], float(edges[row]), kinks[row], float(sticks[row]))
-        for name, row in rows.items()
-        if edges[row] > 0.0
+    return {
+        name: one
+        for name, profile in profiles.items()
+        if edges[row := row_of(name, columns)] > 0.0
+        and (one := _shear(scene, profile, float(edges[row]), kinks[row], float(sticks[row])))
     }
-    return {name: one for name, one in made.items() if one is not None}
 
 
 def row_of(state: str, columns: Mapping[str, Array]) -> int:

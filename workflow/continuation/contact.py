@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.pressure import Profile, interpenetration, pressure_profile, smallest_distance
+from contact1d.analysis.pressure import Profile, penetration_depth, pressure_profile, smallest_distance
 from contact1d.workflow.continuation.state import RadiusRule, State
 from contact1d.workflow.continuation.trust import is_converged, require_trust
 from contact1d.workflow.deck.datafile import PARTICLES
@@ -234,7 +234,7 @@ class Contact:
         if lower.any():
             x_low, z_low = self._surface(position[lower, 0], position[lower, 2])
             closest = smallest_distance(x, z, x_low, z_low)
-            depth = interpenetration(x, z, x_low, z_low).depth
+            depth = penetration_depth(x, z, x_low, z_low)
             z_below = np.interp(x, x_low, z_low)
         else:
             # The plane's own softness lets a particle dip into it: the surface is where the particle is.

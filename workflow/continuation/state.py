@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from contact1d.analysis.held import held_radius
 from contact1d.analysis.pressure import Profile
-from contact1d.analysis.radius import ContactRadius, compressive_radius, tensile_radius
+from contact1d.analysis.radius import ContactRadius, compressive_radius, held_radius, tensile_radius
 from contact1d.workflow.model.settings import CALIBRATION
 from contact1d.workflow.scene import Scene
 

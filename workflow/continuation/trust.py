@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from contact1d.analysis.law_error import left_out
-from contact1d.analysis.pressure import Profile, end_pressure_share
+from contact1d.analysis.pressure import Profile, end_pressure_share, left_out
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.errors import ChainEndError as ChainEndError
 from contact1d.workflow.errors import DigitsError as DigitsError

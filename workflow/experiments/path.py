@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from contact1d.analysis.loop import loop_of
+from contact1d.analysis.curve_marks import loop_of
 from contact1d.workflow.continuation.budget import (
     budgeted,
     force_errors,

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.radius import ContactRadius
-from contact1d.analysis.slip import slip, stick_margin, stick_radius
+from contact1d.analysis.shear import slip, stick_margin, stick_radius
 from contact1d.workflow.continuation.budget import (
     budgeted,
     force_errors,

@@ -20,7 +20,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.slip import slip
+from contact1d.analysis.shear import slip
 from contact1d.workflow.model.adhesion import AdhesiveEstimate, Cells
 from contact1d.workflow.model.friction import Sliders
 from contact1d.workflow.model.pairs import ContactEstimate, places_within

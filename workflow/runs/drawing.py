@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from contact1d.analysis import figures, plots
 from contact1d.analysis.curve import DETACHMENTS, SAMPLE_COLUMNS, SAMPLE_TABLE, Curve, read_columns
 from contact1d.analysis.pressure import Profile
-from contact1d.analysis.slip import stick_margin
+from contact1d.analysis.shear import stick_margin
 from contact1d.analysis.theory.curves import hertz_curve, jkr_curve, jkr_on_plane
 from contact1d.analysis.theory.mindlin import mindlin_path, sliding_displacement
 from contact1d.workflow.body.derived import REPORTED
@@ -130,14 +130,14 @@ def _stick_slip(scene: Scene, profiles: Mapping[str, Profile], columns: Mapping[
     """The stick zone of each state, as the row at its place has it."""
     assert scene.friction is not None
     places, coefficient = columns["tangential_displacement"], scene.friction.coefficient
-    margins, radii, moved = {}, {}, {}
+    states = {}
     for name, profile in profiles.items():
         row = row_of(name, columns)
         moves = np.diff(places[: row + 1], prepend=0.0)
         direction = int(np.sign(moves[moves != 0.0][-1])) if moves.any() else 0
-        margins[name] = stick_margin(profile, coefficient, direction)
-        radii[name], moved[name] = float(columns["stick_radius"][row]), float(places[row])
-    return partial(figures.stick_slip_figure, profiles, coefficient, margins, radii, moved)
+        margin = stick_margin(profile, coefficient, direction)
+        states[name] = profile, margin, float(columns["stick_radius"][row]), float(places[row])
+    return partial(figures.stick_slip_figure, states, coefficient)
 
 
 def _mindlin(scene: Scene, curve: Curve, columns: Mapping[str, Array]) -> Array | None:
