@@ -182,11 +182,8 @@ def _positive(value: Any) -> Fraction | None:
 
 
 def _size(name: str, scales: Mapping[str, Fraction]) -> Fraction:
-    """One unit of the model in SI: LU^l FU^f MU^m TU^t, TU = √(MU·LU/FU)."""
-    unit, size = SI[name], Fraction(1)
-    for base, power in {"LU": unit.lu, "FU": unit.fu, "MU": unit.mu}.items():
-        size *= scales[base] ** power if power else 1
-    if unit.tu:
-        square = scales["MU"] * scales["LU"] / scales["FU"]
-        size *= square ** (unit.tu // 2) * (Fraction(math.sqrt(square)) if unit.tu % 2 else 1)
-    return size
+    """One unit of the model in SI; exact but for the root in a unit of time."""
+    powers = SI[name].powers
+    if all(power.is_integer() for power in powers.values()):
+        return math.prod((scales[base] ** int(power) for base, power in powers.items()), start=Fraction(1))
+    return Fraction(math.sqrt(math.prod(scales[base] ** int(2 * power) for base, power in powers.items())))

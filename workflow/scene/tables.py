@@ -25,15 +25,15 @@ from contact1d.workflow.scene.material import PARABOLA_SHARE, Material, Reductio
 from contact1d.workflow.scene.problems import tables_as_toml
 from contact1d.workflow.scene.profiles import Flat, Parabola, Profile
 from contact1d.workflow.scene.quantities import (
-    AllOrSome,
+    AllOr,
     AnyParticleCount,
-    AutoLength,
-    AutoParticleCount,
-    AutoStiffness,
+    Auto,
     Displacement,
     Length,
     Mass,
+    ParticleCount,
     RelativeTolerance,
+    StateCount,
     Stiffness,
     Table,
     allowed_by,
@@ -48,9 +48,9 @@ if TYPE_CHECKING:
 class Bodies(Table):
     """The two bodies: chains of particles, each particle held to its own bulk by a spring."""
 
-    particles: AutoParticleCount
+    particles: Auto[ParticleCount]
     """particles per body, or of the lower one, or "auto": as many as the contact needs"""
-    given_spacing: AutoLength = Field(alias="spacing")
+    given_spacing: Auto[Length] = Field(alias="spacing")
     """distance of neighbouring particles, or on a rigid plane "auto": so near that all results keep
     `accuracy.tolerance`
     """
@@ -60,7 +60,7 @@ class Bodies(Table):
     """how the plane model stands for a 3D one: "geike_popov" (profile as drawn) or "mdr" (transformed); absent: "mdr"
     with a material, on a rigid plane and for every profile but a parabola, else "geike_popov"
     """
-    bulk_stiffness: AutoStiffness = "auto"
+    bulk_stiffness: Auto[Stiffness] = "auto"
     """stiffness of each particle to its bulk, normal direction, or "auto": from the material"""
     bulk_stiffness_tangential: Stiffness | None = None
     """stiffness of each particle to its bulk, along x; absent: as in normal direction, or with E and ν of both
@@ -120,7 +120,7 @@ class Accuracy(Table):
 class Output(Table):
     """What is kept besides the results."""
 
-    states: AllOrSome
+    states: AllOr[StateCount]
     """how many states of the whole way states.lammpstrj holds, each with all atoms' places and the force of the
     opposite body on them: so many, evenly among the rows of curve.csv, or "all" of these; without this table it has
     the reported states only
