@@ -8,7 +8,7 @@ A prescribed path from d₀ to d₁ in n steps holds d_i = (d₀ (n − i) + d�
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
@@ -231,12 +231,6 @@ class Leg(Table):
     """velocity of the driven end; negative: back, 0: it rests"""
     distance: Length
     """way of the driven end; where it rests, it does so as long as cantilever.velocity takes for that"""
-
-    @classmethod
-    def __get_pydantic_json_schema__(cls, core: Any, handler: Any) -> dict[str, Any]:
-        """A list of two numbers, or a table."""
-        pair = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
-        return {"anyOf": [pair, handler.resolve_ref_schema(handler(core))]}
 
 
 class Slide(Kind):

@@ -15,14 +15,12 @@ from functools import cache
 from typing import Annotated, Any, ClassVar, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from annotated_types import Ge, Gt, Le, MinLen
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, GetJsonSchemaHandler, Tag
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from contact1d.workflow.units import SI
 
 Keys = tuple[str | int, ...]
 """Keys from the top of a scene down to a value; an item of a list by its index."""
-TEXT_PATTERN = r"^[ \t]*[+\-−]?[0-9]*\.?[0-9]+.*[A-Za-zµμÅ°%]"
-"""What a JSON schema asks of a text that is a number with a unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,13 +42,6 @@ class Unit:
     def bases(self) -> frozenset[str]:
         """Which of LU, FU and MU must be known for its size in SI; none of a unit of SI."""
         return frozenset(SI[self.name].powers) if self.name in SI else frozenset()
-
-    def __get_pydantic_json_schema__(self, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        """Return the schema of a number, or of such a text."""
-        number = handler(core_schema)
-        if self.name == "1":
-            return number
-        return {"anyOf": [number, {"type": "string", "pattern": TEXT_PATTERN}]}
 
 
 @dataclass(frozen=True, slots=True)
