@@ -22,7 +22,7 @@ from contact1d.analysis.theory import mindlin, sneddon
 from contact1d.analysis.theory.adhesive_power import AdhesivePower
 from contact1d.analysis.theory.dmt import Dmt
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.scene.material import SPHERES
+from contact1d.workflow.scene.tables import SPHERES
 from contact1d.workflow.units import Quantity, Scales, scale_of
 
 Array = NDArray[np.float64]

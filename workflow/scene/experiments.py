@@ -173,7 +173,7 @@ class Path(Kind):
     }
     needs_in_time = ("damping",)
     finds_pull_off = True
-    way_is_given: ClassVar[bool] = True
+    way_is_given = True
 
     kind: Literal["path"]
     """prescribed displacement, there and back"""
@@ -225,7 +225,7 @@ class PullOff(Kind):
 class Leg(Table):
     """A part of a slide's path, written [velocity, distance]."""
 
-    as_list: ClassVar[bool] = True
+    as_list = True
 
     velocity: DriveVelocity
     """velocity of the driven end; negative: back, 0: it rests"""
@@ -244,8 +244,8 @@ class Slide(Kind):
     }
     needs = ("horizontal", "damping", "plate", "cantilever")
     load_key = "normal_force"
-    way_is_given: ClassVar[bool] = True
-    motion_is_result: ClassVar[bool] = True
+    way_is_given = True
+    motion_is_result = True
 
     kind: Literal["slide"]
     """normal force and cantilever; always dynamic"""
@@ -295,8 +295,8 @@ class Tangential(Kind):
         "cantilever": UNPULLED,
     }
     needs = ("friction",)
-    way_is_given: ClassVar[bool] = True
-    goes_along: ClassVar[bool] = True
+    way_is_given = True
+    goes_along = True
 
     kind: Literal["tangential"]
     """normal load, then displacement along x with friction"""

@@ -147,11 +147,6 @@ class Choice:
         return None if field is None else str(get_args(field.annotation)[0])
 
     @property
-    def tag(self) -> str | None:
-        """The name that pydantic puts into a location for this member of a union."""
-        return next((mark.tag for mark in self.marks if isinstance(mark, Tag)), self.kind)
-
-    @property
     def unit(self) -> Unit | None:
         """The unit of a number."""
         return next((mark for mark in self.marks if isinstance(mark, Unit)), None)

@@ -12,12 +12,11 @@ from typing import Any
 
 from pydantic import ConfigDict
 
-from contact1d.workflow.scene.check import check_tables, mend_words
+from contact1d.workflow.scene.check import UNIT_KEYS, Column, Conversion, check_tables, mend_words
 from contact1d.workflow.scene.problems import Problem, SceneError, nearest, path_of, shown
 from contact1d.workflow.scene.profile_file import ProfileFileError, ScaleError, read_profile
 from contact1d.workflow.scene.quantities import Keys, Table, keys_of
 from contact1d.workflow.scene.rules import check_fit
-from contact1d.workflow.scene.si_scene import UNIT_KEYS, Column, Conversion
 from contact1d.workflow.scene.si_text import split
 from contact1d.workflow.scene.tables import EFFECTS, Tables
 from contact1d.workflow.units import SI
