@@ -22,48 +22,31 @@ NUMBER = "1"
 
 
 class ModelUnit(NamedTuple):
-    """A unit of the model, LU^lu FU^fu MU^mu TU^tu, and the unit of SI for the same dimension."""
+    """A unit of SI, and that of the model for the same dimension: LU^length FU^force MU^mass, with TU = √(MU·LU/FU)."""
 
-    lu: int
-    fu: int
     si: str
-    mu: int = 0
-    tu: int = 0
+    length: float = 0.0
+    force: float = 0.0
+    mass: float = 0.0
 
     @property
-    def bases(self) -> frozenset[str]:
-        """Which of LU, FU and MU must be known for its size in SI."""
-        powers = {"LU": self.lu or self.tu, "FU": self.fu or self.tu, "MU": self.mu or self.tu}
-        return frozenset(base for base, power in powers.items() if power)
-
-    @property
-    def lengths(self) -> float:
-        """Power of LU, that in TU included."""
-        return self.lu + 0.5 * self.tu
-
-    @property
-    def forces(self) -> float:
-        """Power of FU, that in TU included."""
-        return self.fu - 0.5 * self.tu
-
-    @property
-    def masses(self) -> float:
-        """Power of MU, that in TU included."""
-        return self.mu + 0.5 * self.tu
+    def powers(self) -> dict[str, float]:
+        """The powers that are not 0, by LU, FU and MU, which must be known for its size in SI."""
+        return {base: power for base, power in zip(("LU", "FU", "MU"), self[1:], strict=True) if power}
 
 
 SI = {
-    LENGTH: ModelUnit(1, 0, "m"),
-    FORCE: ModelUnit(0, 1, "N"),
-    MEAN_PRESSURE: ModelUnit(-2, 1, "Pa"),
-    LINE_PRESSURE: ModelUnit(-1, 1, "N/m"),
-    ENERGY: ModelUnit(1, 1, "J"),
-    MASS: ModelUnit(0, 0, "kg", mu=1),
-    TIME: ModelUnit(0, 0, "s", tu=1),
-    "LU/TU": ModelUnit(1, 0, "m/s", tu=-1),
-    "FU/TU": ModelUnit(0, 1, "N/s", tu=-1),
-    "FU·TU/LU": ModelUnit(-1, 1, "N·s/m", tu=1),
-    NUMBER: ModelUnit(0, 0, "1"),
+    LENGTH: ModelUnit("m", 1.0),
+    FORCE: ModelUnit("N", 0.0, 1.0),
+    MEAN_PRESSURE: ModelUnit("Pa", -2.0, 1.0),
+    LINE_PRESSURE: ModelUnit("N/m", -1.0, 1.0),
+    ENERGY: ModelUnit("J", 1.0, 1.0),
+    MASS: ModelUnit("kg", 0.0, 0.0, 1.0),
+    TIME: ModelUnit("s", 0.5, -0.5, 0.5),
+    "LU/TU": ModelUnit("m/s", 0.5, 0.5, -0.5),
+    "FU/TU": ModelUnit("N/s", -0.5, 1.5, -0.5),
+    "FU·TU/LU": ModelUnit("N·s/m", -0.5, 0.5, 0.5),
+    NUMBER: ModelUnit("1"),
 }
 """The units of the model by their names."""
 EXACT = 1e-12
@@ -145,14 +128,14 @@ class Scales:
 
     def know(self, unit: str) -> bool:
         """Whether one `unit` is known in SI."""
-        return unit in SI and (self.mass is not None or "MU" not in SI[unit].bases)
+        return unit in SI and (self.mass is not None or not SI[unit].mass)
 
     def factor(self, unit: str) -> float:
         """SI value of one `unit`. Raises KeyError for a unit that is not known."""
         if not self.know(unit):
             raise KeyError(unit)
         own = SI[unit]
-        return float(self.length**own.lengths * self.force**own.forces * (self.mass or 1.0) ** own.masses)
+        return float(self.length**own.length * self.force**own.force * (self.mass or 1.0) ** own.mass)
 
     def written(self, value: float, unit: str) -> tuple[float, str]:
         """The factor from a model `unit` to the SI unit with which a number of this size is written, and that unit."""
@@ -162,7 +145,7 @@ class Scales:
     def in_si(self, value: float, uncertainty: float, unit: str) -> dict[str, float | str]:
         """The quantity in SI: value, uncertainty, unit. Relative uncertainties of the scales are added to its own."""
         factor, own = self.factor(unit), SI[unit]
-        scales = abs(own.lengths) * self.length_uncertainty / self.length
-        scales += abs(own.forces) * self.force_uncertainty / self.force
+        scales = abs(own.length) * self.length_uncertainty / self.length
+        scales += abs(own.force) * self.force_uncertainty / self.force
         spread = uncertainty * factor + abs(value * factor) * scales
         return {"value": value * factor, "uncertainty": spread, "unit": own.si}

@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 from contact1d.analysis.theory.indenters import PowerLaw
 from contact1d.workflow.body.reading import doubt_of_the_image, of_the_body
 from contact1d.workflow.scene import Scene, SceneError, scene_from_dict, scene_to_toml
-from contact1d.workflow.scene.material import wider_than_body
+from contact1d.workflow.scene.tables import wider_than_body
 from contact1d.workflow.units import Quantity
 from tests.scenes import chains
 

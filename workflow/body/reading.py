@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.scene.material import ALIKE, SPHERES, WIDER_THAN_SPHERES, default_reduction, wider_than_body
+from contact1d.workflow.scene.tables import ALIKE, SPHERES, WIDER_THAN_SPHERES, default_reduction, wider_than_body
 from contact1d.workflow.units import Quantity
 
 IMAGE = "image_"

@@ -22,7 +22,7 @@ from contact1d.analysis.theory.indenters import Contact, Ellipsoid, FlatPunch, P
 from contact1d.analysis.theory.mindlin import mindlin_path, mindlin_stick_path, sliding_displacement
 from contact1d.workflow.model.settings import interaction_law
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.scene.material import SPHERES
+from contact1d.workflow.scene.tables import SPHERES
 from contact1d.workflow.units import Quantity, Scales, scale_of
 
 Values = dict[str, float]

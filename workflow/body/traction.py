@@ -20,7 +20,7 @@ from contact1d.analysis.shear import kinks_of, shear_load
 from contact1d.workflow.body.reading import stands_for_spheres
 from contact1d.workflow.continuation.state import RadiusRule
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.scene.material import WIDER_THAN_SPHERES
+from contact1d.workflow.scene.tables import WIDER_THAN_SPHERES
 from contact1d.workflow.units import MEAN_PRESSURE, Quantity
 
 MOST = 1000

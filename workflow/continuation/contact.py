@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from contact1d.analysis.pressure import Profile, penetration_depth, pressure_profile, smallest_distance
 from contact1d.workflow.continuation.state import RadiusRule, State
 from contact1d.workflow.continuation.trust import is_converged, require_trust
-from contact1d.workflow.deck.datafile import PARTICLES
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import bodies, period
 from contact1d.workflow.deck.parts import PLANE_DEPTH
 from contact1d.workflow.deck.steps import Displace, Draw, Phase, Row
+from contact1d.workflow.deck.system import PARTICLES
 from contact1d.workflow.engine.failure import NOT_FINITE
 from contact1d.workflow.engine.frames import last_frames
 from contact1d.workflow.engine.session import EngineError, Session
@@ -150,7 +150,7 @@ class Contact:
         for row in rows:
             texts.append(self._unfinished + self.deck.values(row, not self._written) + self.deck.row(type(row)))
             self._written = self._written or self.deck.keeps
-            self._unfinished = self.deck.row_end + self.deck.forget(type(row))
+            self._unfinished = self.deck.row_end(type(row))
         names = self._values()
         readings = self.session.measure_rows(texts, tuple(names), tuple(ATOM_UNITS), meanwhile=self._look_back)
         units, phase, states = self.deck.units, self._phases[-1].name, []

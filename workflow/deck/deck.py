@@ -13,10 +13,9 @@ from functools import cached_property
 from typing import TypeVar
 
 from contact1d.workflow.deck.effects import Contribution, contributions
-from contact1d.workflow.deck.fragments import DeckError, Fragment, block, commands, fragment, listed
-from contact1d.workflow.deck.keeping import APPENDED, NEW, appended, skipped
+from contact1d.workflow.deck.fragments import DeckError, Fragment, block, commands, deleted, fragment, indexed, listed
 from contact1d.workflow.deck.parts import bins, moving, own_units, standing
-from contact1d.workflow.deck.steps import STEPS, UNITS, Displace, Hold, Phase, Row
+from contact1d.workflow.deck.steps import APPENDED, NEW, STEPS, UNITS, Displace, Hold, Phase, Row, appended, skipped
 from contact1d.workflow.deck.units import DeckUnits, units_for
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
@@ -64,7 +63,8 @@ class Deck:
         Raises:
             DeckError: if fragments and variables do not fit together.
         """
-        atom_style = next((part.atom_style for part in self.parts if part.atom_style), self._plain_style)
+        plain = "atomic" if self.scene.stands else "bond"
+        atom_style = next((part.atom_style for part in self.parts if part.atom_style), plain)
         styles = [f"pair_style      {part.pair_style}\n" for part in self.parts if part.pair_style]
         bonds = "" if self.scene.stands else "bond_style      harmonic\n"
         styles = [f"atom_style      {atom_style}\n", *styles, bonds]
@@ -82,11 +82,11 @@ class Deck:
 
     def begin(self, phase: str, fragments: Sequence[str] = ()) -> str:
         """What comes before a phase's rows."""
-        return f"variable        row_phase index {phase}\n" + commands(fragments)
+        return indexed({"row_phase": phase}) + commands(fragments)
 
     def row(self, kind: type[Row]) -> str:
         """One row up to its measurement: move or load, then measure."""
-        return commands((*self._before(kind), self._step(kind), *self._measuring, self._line, *self._row_state))
+        return commands(self._row(kind))
 
     def as_listed(self, row: AnyRow) -> AnyRow:
         """A row that is a step, with its numbers as LAMMPS has those of a list: to 15 digits."""
@@ -105,33 +105,24 @@ class Deck:
         given["row_count"] = str(len(rows))
         if self.keeps:
             given["row_skip"] = f"[{','.join(map(str, skips or [0] * len(rows)))}]"
-        before = "".join(f"variable        {name} index {value}\n" for name, value in given.items())
-        after = "".join(f"variable        {name} delete\n" for name in given)
-        return before + commands((*self._before(type(rows[0])), self._step(type(rows[0])))) + after
-
-    @property
-    def row_end(self) -> str:
-        """The end of every measurement."""
-        return commands(self._measured)
+        return indexed(given) + self.row(type(rows[0])) + deleted(given)
 
     def values(self, row: Row, first: bool) -> str:
         """The variables of one row; `first`: no state has been written before it."""
         texts = (*row.texts(self.units.to_deck), NEW if first else APPENDED)
-        return "".join(
-            f"variable        {c} index {v}\n" for c, v in zip(self._columns(type(row)), texts, strict=False)
-        )
+        return indexed(dict(zip(self._columns(type(row)), texts, strict=False)))
 
-    def forget(self, kind: type[Row]) -> str:
-        """Delete the variables of a row, as `next` does after the last one."""
-        return "".join(f"variable        {c} delete\n" for c in self._columns(kind))
+    def row_end(self, kind: type[Row]) -> str:
+        """The end of its measurement; its variables are deleted, as `next` does after the last row."""
+        return commands(self._measured) + deleted(self._columns(kind))
 
     def state(self, first: bool) -> str:
         """Write the state that the last row left; where rows of one run are kept, they have written it."""
         if self.stepped and self.keeps:
             return ""
-        append = f"variable        {self._append} index {NEW if first else APPENDED}\n"
+        append = "row_append" if self.keeps else "state_append"
         written = commands((*self._measuring, self._state, *self._measured))
-        return append + written + f"variable        {self._append} delete\n"
+        return indexed({append: NEW if first else APPENDED}) + written + deleted([append])
 
     def text(self, phases: Sequence[Phase]) -> str:
         """in.lammps: the head and a loop for each phase.
@@ -151,10 +142,6 @@ class Deck:
         return "\n".join(blocks)
 
     @property
-    def _plain_style(self) -> str:
-        return "atomic" if self.scene.stands else "bond"
-
-    @property
     def keeps(self) -> bool:
         """Whether states of the whole way are kept."""
         return self.scene.output is not None
@@ -163,41 +150,27 @@ class Deck:
     def _output(self) -> tuple[str, ...]:
         if not self.stepped:
             return ("output",)
-        return (self._named("output_swept"), *([self._named("output_states")] if self.keeps else []), "set_up")
+        return (self._named("output_swept"), *[self._named("output_states")] * self.keeps, "set_up")
 
     def _named(self, fragment: str) -> str:
         return f"{fragment}_in_units" if self.units.are_own else fragment
 
-    @property
-    def _row_state(self) -> tuple[str, ...]:
-        return (self._state,) if self.keeps and not self.stepped else ()
-
     def _columns(self, kind: type[Row]) -> tuple[str, ...]:
-        return (*kind.columns(), *(("row_append",) if self._row_state else ()))
+        return (*kind.columns(), *["row_append"] * (self.keeps and not self.stepped))
 
-    def _before(self, kind: type[Row]) -> tuple[str, ...]:
+    def _row(self, kind: type[Row]) -> tuple[str, ...]:
+        """The fragments of a row up to its measurement."""
+        step, kept = kind.step, [self._state] * self.keeps
+        if kind is Displace and not self.stepped:
+            step += "_gently" * self.settings.gentle or "_snapping" * self.settings.snaps
         if self.stepped:
-            return ("steps/keep",) if self.keeps else ()
-        return ("steps/again",) if kind is Hold and self.scene.adhesion is not None else ()
-
-    def _step(self, kind: type[Row]) -> str:
-        if self.stepped and kind is Displace:
-            return "steps/sweep"
-        if kind is Displace and self.settings.gentle:
-            return "steps/displace_gently"
-        return "steps/displace_snapping" if kind is Displace and self.settings.snaps else f"steps/{kind.step}"
-
-    @property
-    def _line(self) -> str:
-        return self._named("steps/line")
+            return (*["steps/keep"] * self.keeps, "steps/sweep" if kind is Displace else f"steps/{step}")
+        again = ["steps/again"] * (kind is Hold and self.scene.adhesion is not None)
+        return (*again, f"steps/{step}", *self._measuring, self._named("steps/line"), *kept)
 
     @property
     def _state(self) -> str:
         return self._named("steps/kept" if self.keeps else "steps/state")
-
-    @property
-    def _append(self) -> str:
-        return "row_append" if self.keeps else "state_append"
 
     @property
     def _measuring(self) -> tuple[str, ...]:
@@ -224,7 +197,7 @@ class Deck:
         lists = "".join(listed(name, texts) for name, texts in zip(names, values, strict=False))
         return (
             f"{title}{lists}"
-            f"label           {phase.name}\n{self.row(kind)}{self.row_end}"
+            f"label           {phase.name}\n{self.row(kind)}{commands(self._measured)}"
             f"next            {' '.join(names)}\njump            SELF {phase.name}\n"
             "variable        row_phase delete\n"
         )
@@ -244,8 +217,8 @@ class Deck:
         if doubly:
             raise DeckError(f"integrated twice: {', '.join(doubly)}")
         owners: dict[str, str] = {}
-        needed = {name for kind in STEPS for name in fragment(self._step(kind)).needs}
-        needed |= {name for step in (self._line, self._state) for name in fragment(step).needs}
+        steps = [self._named("steps/line"), self._state, *(name for kind in STEPS for name in self._row(kind))]
+        needed = {name for step in steps for name in fragment(step).needs}
         for part in self.parts:
             for name in part.variables:
                 _own(owners, name, f"[{part.name}]")
@@ -269,9 +242,7 @@ class Deck:
             written = phase.state and not (self.stepped and self.keeps)
             last = (self._state,) if written else ()
             kept = {"state_append": "the state"} if written and not self.keeps else {}
-            row = (*self._before(kind), self._step(kind)) if self.stepped else (
-                *self._before(kind), self._step(kind), *self._measuring, self._line, *self._row_state, *self._measured,
-            )  # fmt: skip
+            row = (*self._row(kind), *self._measured)
             here = owners | given | kept
             for name in (*phase.begin, *row, *row, *last):
                 _pass(here, fragment(name))

@@ -6,7 +6,7 @@ Two ways of use are recognised as a variable's name: ${name} and v_name. A fragm
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib.resources import files
@@ -82,13 +82,22 @@ def _names(found: re.Match[str] | None) -> tuple[str, ...]:
 NUMBERS_PER_LINE = 6
 
 
+def indexed(variables: Mapping[str, str]) -> str:
+    """Lines that define LAMMPS variables."""
+    return "".join(f"variable        {name} index {value}\n" for name, value in variables.items())
+
+
+def deleted(names: Iterable[str]) -> str:
+    """Lines that delete LAMMPS variables."""
+    return "".join(f"variable        {name} delete\n" for name in names)
+
+
 def block(name: str, variables: Mapping[str, str]) -> str:
     """A fragment with its header, below the variables that it needs."""
-    lines = "".join(f"variable        {key} index {value}\n" for key, value in variables.items())
     piece = fragment(name)
     header = 5 if piece.redefines else 4
     comments = piece.text[: len(piece.text) - len(piece.text.split("\n", header)[header])]
-    return comments + lines + piece.text[len(comments) :]
+    return comments + indexed(variables) + piece.text[len(comments) :]
 
 
 def commands(names: Sequence[str]) -> str:

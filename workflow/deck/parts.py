@@ -11,8 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from contact1d.workflow.deck.effects import Contribution, Stage
-from contact1d.workflow.deck.effects.base import LEAST_SLENDERNESS, number
+from contact1d.workflow.deck.effects import LEAST_SLENDERNESS, Contribution, Stage, number
 from contact1d.workflow.deck.effects.interaction import SKIN
 from contact1d.workflow.deck.lattice import Body, bodies
 from contact1d.workflow.deck.units import DeckUnits

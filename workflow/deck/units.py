@@ -108,7 +108,7 @@ class DeckUnits:
 @cache
 def _factor(length: float, force: float, unit: str) -> float:
     """One unit made of these, kept: every number of every load step asks for it."""
-    return float(length ** SI[unit].lengths * force ** SI[unit].forces)
+    return float(length ** SI[unit].length * force ** SI[unit].force)
 
 
 def units_for(scene: Scene) -> DeckUnits:

@@ -7,8 +7,7 @@ from dataclasses import replace
 
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.outcome import Outcome
-from contact1d.workflow.deck.keeping import chosen, keeping, leave_out, marked_rows
-from contact1d.workflow.deck.steps import Phase
+from contact1d.workflow.deck.steps import Phase, chosen, keeping, leave_out, marked_rows
 from contact1d.workflow.scene import Scene
 
 

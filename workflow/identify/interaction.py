@@ -29,7 +29,7 @@ from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.finished import Run, load_run
 from contact1d.workflow.runs.scales import UNIT_FIXING_RESULTS, jkr_scales
 from contact1d.workflow.scene import PullOff, Scene, scene_from_dict
-from contact1d.workflow.scene.material import PARABOLA_SHARE, SPHERES
+from contact1d.workflow.scene.tables import PARABOLA_SHARE, SPHERES
 from contact1d.workflow.units import SI, Scales
 
 BRITTLE_RATIO = 4.0 / (9.0 * math.sqrt(3.0))

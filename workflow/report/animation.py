@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from contact1d.analysis.curve import States, read_states
 from contact1d.analysis.plots import COMPRESSION, DPI, TENSION, THEORY, plain_axes
 from contact1d.files import whole, write_whole
-from contact1d.workflow.deck.keeping import STATES
+from contact1d.workflow.deck.steps import STATES
 from contact1d.workflow.errors import Contact1dError, FolderError
 from contact1d.workflow.report.charts import main_curve, rows_of_branches, window
 from contact1d.workflow.runs.campaign import AnyPath

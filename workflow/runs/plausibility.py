@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene.check import BOLTZMANN
 from contact1d.workflow.scene.quantities import places
-from contact1d.workflow.scene.si_scene import BOLTZMANN
 from contact1d.workflow.units import LENGTH, Quantity, Scales
 
 SOFTEST, STIFFEST = 1e3, 2e12

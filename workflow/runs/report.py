@@ -207,7 +207,7 @@ def _shear_columns(shears: Mapping[str, BodyShear]) -> dict[str, Column]:
 def _in_si(columns: Mapping[str, Column], scales: Scales, units: Mapping[str, str]) -> dict[str, Column]:
     """The columns that have a unit, in SI: `force_N` beside `force`."""
     return {
-        f"{name}_{SI[units[name]][2].replace('/', '_per_')}": (
+        f"{name}_{SI[units[name]].si.replace('/', '_per_')}": (
             np.asarray(values, dtype=np.float64) * scales.factor(units[name])
         )
         for name, values in columns.items()

@@ -13,7 +13,6 @@ from contact1d.workflow.scene.effects import (
     Plate,
 )
 from contact1d.workflow.scene.experiments import Experiment, Hold, Load, Method, Path, PullOff, Slide, Span, Tangential
-from contact1d.workflow.scene.material import Elastic, Material, Reduction
 from contact1d.workflow.scene.problems import Problem, SceneError
 from contact1d.workflow.scene.profiles import (
     Circle,
@@ -28,7 +27,7 @@ from contact1d.workflow.scene.profiles import (
 )
 from contact1d.workflow.scene.quantities import Table, Unit
 from contact1d.workflow.scene.read import AnyScene, Scene, read_scene, read_tables, scene_from_dict, scene_to_toml
-from contact1d.workflow.scene.tables import EFFECTS, Accuracy, Bodies, Output
+from contact1d.workflow.scene.tables import EFFECTS, Accuracy, Bodies, Elastic, Material, Output, Reduction
 
 __all__ = [
     "EFFECTS",

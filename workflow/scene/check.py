@@ -2,11 +2,20 @@
 
 A misspelt word that can only mean one thing is reported and then read as what was meant, so that the rest of its table
 and the rules across tables are checked in the same go.
+
+Numbers with units in a scene, "10 mm", as numbers in the scene's own units LU, FU, MU, TU = √(MU·LU/FU).
+
+What a field may be is read off its type, whose `Unit` is the one place that says it. What LU, FU and MU are stands in
+[material]; where it gives none and no plain number of the scene needs it, it is 1 m, 1 N or 1 kg, so that the results'
+model units are those of SI. It is then written into [material], and the scene that is kept says what it means.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+import math
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from typing import Any, TypeVar
 
 from pydantic import ValidationError
@@ -16,21 +25,37 @@ from contact1d.workflow.scene.experiments import Kind
 from contact1d.workflow.scene.problems import Problem, as_toml, nearest, path_of, shown
 from contact1d.workflow.scene.quantities import (
     Keys,
+    Length,
     OutOfRange,
     Place,
+    Stiffness,
     Table,
+    allowed_by,
     keys_of,
+    places,
     tables_in,
     walk,
 )
 from contact1d.workflow.scene.schema import statement, text_of
+from contact1d.workflow.scene.si_text import UnitTextError, example, si_value
 from contact1d.workflow.scene.tables import WHOLE, Tables
+from contact1d.workflow.units import SI
 
 MISSING = "missing"
 """Pydantic's name of this fault."""
 KINDS = "a table with kind = "
 """How `statement` begins of a table that has several; its `kind` must be what follows."""
 AnyTables = TypeVar("AnyTables", bound=Tables)
+BOLTZMANN = Fraction(1380649, 10**29)
+"""k_B [J/K], exact since 2019."""
+UNIT_KEYS = {"LU": "length_unit", "FU": "force_unit", "MU": "mass_unit"}
+"""Keys of [material] that say what a unit of the model is in SI."""
+ELASTIC = frozenset({"upper", "lower", "contact_modulus"})
+"""Keys of [material] that say how stiff the bodies are."""
+LISTED = 3
+"""Places that a message names before it counts the rest."""
+LENGTH = allowed_by(Length)
+FILE = ("bodies", "profile", "file")
 
 
 def mend_words(data: dict[str, Any], model: type[Tables]) -> list[Problem]:
@@ -166,3 +191,161 @@ def _hint(place: Place) -> str:
         brackets = " in single brackets" if isinstance(given, list) else ""
         return f"write it as [{place.keys[0]}]{brackets}, its keys below"
     return ""
+
+
+@dataclass(frozen=True)
+class Column:
+    """A list of lengths that was read from a `file`: its unit, "1 µm", or None where they are in LU.
+
+    `stands_in`: the numbers are none of the file's, which could not be read, and say nothing.
+    """
+
+    file: str
+    unit: str | None = None
+    stands_in: bool = False
+
+
+@dataclass
+class Conversion:
+    """The texts with units of one scene, as its numbers.
+
+    Attributes:
+        data: the scene, a plain dict, in which numbers take the place of texts.
+        columns: the lists of `data` that were read from a file, by their keys.
+        problems: what is wrong with the texts.
+        reported: the keys where these problems are, or where a number is unknown because of another one.
+        texts: the texts that were read, by path.
+    """
+
+    data: dict[str, Any]
+    columns: Mapping[Keys, Column]
+    problems: list[Problem] = field(default_factory=list)
+    reported: set[Keys] = field(default_factory=set)
+    texts: dict[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Convert them: those in SI first, since they say what LU, FU and MU are."""
+        found = [place for place in places(Tables, self.data) if place.is_text]
+        found += [Place(keys, column.unit, LENGTH) for keys, column in self.columns.items() if column.unit]
+        read = [(place, value) for place in found if (value := self._si(place)) is not None]
+        for place, value in read:
+            if not place.unit.bases:
+                self._put(place, value)
+        in_model_units = [place for place in found if place.unit.bases]
+        scales = self._scales(in_model_units) if in_model_units else {}
+        for place, value in read:
+            if place.unit.bases and scales is None:
+                self.reported.add(place.keys)
+            elif place.unit.bases and scales is not None:
+                self._put(place, value / _size(place.unit.name, scales))
+
+    def _si(self, place: Place) -> Fraction | None:
+        """The quantity that the text says, in SI, a temperature as k_B T; None, and reported, where it is none."""
+        try:
+            value, dimension = si_value(place.value, *place.unit.texts)
+        except UnitTextError as error:
+            self._report(place, str(error))
+            return None
+        return value * BOLTZMANN if dimension == "K" and place.unit.name != "K" else value
+
+    def _report(self, place: Place, message: str, hint: str = "") -> None:
+        self.problems.append(Problem(path_of(place.keys), message, shown(place.value), hint))
+        self.reported.add(place.keys)
+
+    def _put(self, place: Place, value: Fraction) -> None:
+        """Put the number in the text's place, or the numbers of a column in theirs."""
+        try:
+            number = float(value)
+        except OverflowError:
+            self._report(place, "is larger than any number that a computer holds")
+            return
+        if place.keys in self.columns:
+            place.put(self.data, [number * item for item in self.data["bodies"]["profile"][place.keys[-1]]])
+        else:
+            place.put(self.data, number)
+            self.texts[path_of(place.keys)] = place.value
+
+    def _scales(self, texts: list[Place]) -> dict[str, Fraction] | None:
+        """What LU, FU and MU are in SI, those that `texts` need; chosen and put into the scene where they are open.
+
+        None, and reported, where they cannot be known.
+        """
+        material, bodies = self.data.get("material", {}), self.data.get("bodies", {})
+        if not isinstance(material, dict) or not isinstance(bodies, dict):
+            return None  # reported where tables are checked
+        first, stiffness = texts[0], bodies.get("bulk_stiffness", "auto")
+        if "surface_energy" in material:
+            message = "LU and FU follow from the run (material.surface_energy), so that units have no size before it"
+            self._report(first, message, f"write a number in {first.unit.name}")
+            return None
+        needed = frozenset[str]().union(*(place.unit.bases for place in texts))
+        elastic = bool(ELASTIC & material.keys())
+        if stiffness == "auto" or not elastic or "MU" in needed:
+            needed |= {"LU", "FU"}
+        given = {base: _positive(material[key]) for base, key in UNIT_KEYS.items() if key in material}
+        known = {base: value for base, value in given.items() if value is not None}
+        chosen = needed - given.keys()
+        own = ("bodies", "bulk_stiffness")
+        fixed = "FU" in chosen and elastic and stiffness != "auto"
+        plain = [place for place in self._plain() if place.unit.bases & chosen]
+        if fixed and own not in self.reported:
+            self._report(Place(own, stiffness, allowed_by(Stiffness)), "follows from the material here", 'write "auto"')
+        elif plain and not fixed:
+            self.problems.append(self._mixed(plain, first, chosen))
+        # also where a problem was reported, so that the rules across tables don't report its consequences
+        self.data["material"] = material | {
+            UNIT_KEYS[base]: 1.0 for base in sorted(chosen) if not (fixed and base == "FU")
+        }
+        return None if plain or fixed or len(known) < len(given) else known | dict.fromkeys(chosen, Fraction(1))
+
+    def _plain(self) -> Iterator[Place]:
+        """The places of numbers without a unit; those from one file are one."""
+        files = set()
+        for place in places(Tables, self.data):
+            column = self.columns.get(place.keys[:-1])
+            if not place.is_number or (column is not None and (column.unit or column.stands_in)):
+                continue
+            if column is None:
+                yield place
+            elif column.file not in files:
+                files.add(column.file)
+                yield Place(FILE, column.file, LENGTH)
+
+    def _mixed(self, plain: list[Place], text: Place, chosen: frozenset[str]) -> Problem:
+        """Plain numbers beside numbers with a unit, and nothing says what the units of the model are."""
+        first = plain[0]
+        if text.keys in self.columns:
+            text = replace(text, keys=FILE, value=self.columns[text.keys].file)
+        open_ = {base for place in plain for base in place.unit.bases} & chosen
+        if not ELASTIC & self.data.get("material", {}).keys():
+            open_ |= {"LU", "FU"} & chosen
+        bases = [base for base in UNIT_KEYS if base in open_]
+        what = f"what {' and '.join(bases)} stand{'s' * (len(bases) == 1)} for"
+        others = ", ".join(path_of(place.keys) for place in plain[1:LISTED])
+        more = f" and {len(plain) - LISTED} more" if len(plain) > LISTED else ""
+        unit = f'give it a unit as well, such as "{example(first.unit.texts[0])}"'
+        if first.keys == FILE:
+            unit = 'name its columns with their units, r [µm], z [µm], or write scale = "1 µm"'
+        return Problem(
+            path_of(first.keys),
+            f"is {'by default ' if first.absent else ''}in {first.unit.name}, while {path_of(text.keys)} = "
+            f"{shown(text.value)} has a unit, and nothing says {what}",
+            shown(first.value),
+            f"{unit}{f'; so too {others}{more}' if others else ''}; "
+            f"or give {' and '.join(f'material.{UNIT_KEYS[base]}' for base in bases)}",
+        )
+
+
+def _positive(value: Any) -> Fraction | None:
+    """A number of [material] as the exact decimal that stands there; None for what is none, which is told elsewhere."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < math.inf:
+        return None
+    return Fraction(repr(value))
+
+
+def _size(name: str, scales: Mapping[str, Fraction]) -> Fraction:
+    """One unit of the model in SI; exact but for the root in a unit of time."""
+    powers = SI[name].powers
+    if all(power.is_integer() for power in powers.values()):
+        return math.prod((scales[base] ** int(power) for base, power in powers.items()), start=Fraction(1))
+    return Fraction(math.sqrt(math.prod(scales[base] ** int(2 * power) for base, power in powers.items())))

@@ -9,18 +9,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal
 
-from annotated_types import MinLen
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator
 from pydantic_core import PydanticCustomError
 
 from contact1d.workflow.scene.quantities import (
-    AutoDamping,
-    AutoDampingOrZero,
-    AutoLength,
-    AutoMass,
+    Auto,
+    DampingCoefficient,
+    DampingCoefficientOrZero,
     Energy,
     Length,
     LineEnergy,
+    Listed,
+    Mass,
     OutOfRange,
     RatioOrZero,
     Seed,
@@ -69,7 +69,7 @@ class Interaction(Effect):
     """repulsive term, A and a"""
     attraction: Exponential | None = None
     """attractive term, B and b; absent: no adhesion"""
-    cutoff: AutoLength = "auto"
+    cutoff: Auto[Length] = "auto"
     """distance beyond which no force acts, or "auto": by the tolerance"""
 
 
@@ -130,7 +130,7 @@ class Damping(Effect):
     timed = True
     how = '[damping] with coefficient = "auto"'
 
-    coefficient: AutoDamping
+    coefficient: Auto[DampingCoefficient]
     """drag force over velocity, or "auto": near critical"""
 
 
@@ -154,7 +154,7 @@ def _free_directions(free: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(sorted(free))
 
 
-Free = Annotated[tuple[Literal["x", "z"], ...], Field(strict=False), MinLen(1), AfterValidator(_free_directions)]
+Free = Annotated[Listed[Literal["x", "z"]], AfterValidator(_free_directions)]
 
 
 class Plate(Effect):
@@ -163,11 +163,11 @@ class Plate(Effect):
     timed = True
     how = '[plate] with mass = "auto"'
 
-    mass: AutoMass = "auto"
+    mass: Auto[Mass] = "auto"
     """mass of the plate, or "auto" """
     free: Free = ("z",)
     """directions in which the plate may move: ["z"] or ["x", "z"]"""
-    damping: AutoDampingOrZero = "auto"
+    damping: Auto[DampingCoefficientOrZero] = "auto"
     """drag force over velocity of the plate, or "auto" """
 
 

@@ -8,9 +8,8 @@ A prescribed path from d₀ to d₁ in n steps holds d_i = (d₀ (n − i) + d�
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
-from annotated_types import MinLen
 from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
@@ -22,13 +21,16 @@ from contact1d.workflow.scene.quantities import (
     Duration,
     Force,
     Length,
+    Listed,
     LoadingRate,
+    OneOrMore,
     RepeatCount,
     StepCount,
     Stiffness,
     Table,
     Velocity,
     allowed_by,
+    either,
 )
 
 Method = Literal["quasistatic", "dynamic"]
@@ -65,13 +67,10 @@ class Span(Table):
         return there + there[-2::-1] if self.return_ else there
 
 
-def _list_or_table(value: object) -> str:
-    return "table" if isinstance(value, Mapping | Span) else "list"
-
-
-# strict=False on the tuple alone: TOML has lists, a frozen table holds a tuple. Its numbers stay strict.
-_Listed = Annotated[tuple[Displacement, ...], Field(strict=False), MinLen(1), Tag("list")]
-Displacements = Annotated[_Listed | Annotated[Span, Tag("table")], Discriminator(_list_or_table)]
+Displacements = Annotated[
+    Annotated[Listed[Displacement], Tag("list")] | Annotated[Span, Tag("table")],
+    either("table", Mapping | Span, "list"),
+]
 
 
 def _values(listed: tuple[float, ...] | Span) -> list[float]:
@@ -82,15 +81,6 @@ def _values(listed: tuple[float, ...] | Span) -> list[float]:
 def _for_each(given: tuple[float, ...] | float | None, count: int) -> list[float]:
     """What is given for each of `count` points, by a list or by one number for all; none where nothing is."""
     return [] if given is None else list(given) if isinstance(given, tuple) else [given] * count
-
-
-def _list_or_number(value: object) -> str:
-    return "list" if isinstance(value, list | tuple) else "number"
-
-
-_Loads = Annotated[tuple[CompressionOrNone, ...], Field(strict=False), MinLen(1), Tag("list")]
-NormalForces = Annotated[Annotated[Compression, Tag("number")] | _Loads, Discriminator(_list_or_number)]
-NormalDisplacements = Annotated[Annotated[Displacement, Tag("number")] | _Listed, Discriminator(_list_or_number)]
 
 
 UNPULLED = "only a slide is pulled through a spring"
@@ -183,7 +173,7 @@ class Path(Kind):
     }
     needs_in_time = ("damping",)
     finds_pull_off = True
-    way_is_given: ClassVar[bool] = True
+    way_is_given = True
 
     kind: Literal["path"]
     """prescribed displacement, there and back"""
@@ -235,18 +225,12 @@ class PullOff(Kind):
 class Leg(Table):
     """A part of a slide's path, written [velocity, distance]."""
 
-    as_list: ClassVar[bool] = True
+    as_list = True
 
     velocity: DriveVelocity
     """velocity of the driven end; negative: back, 0: it rests"""
     distance: Length
     """way of the driven end; where it rests, it does so as long as cantilever.velocity takes for that"""
-
-    @classmethod
-    def __get_pydantic_json_schema__(cls, core: Any, handler: Any) -> dict[str, Any]:
-        """A list of two numbers, or a table."""
-        pair = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
-        return {"anyOf": [pair, handler.resolve_ref_schema(handler(core))]}
 
 
 class Slide(Kind):
@@ -260,8 +244,8 @@ class Slide(Kind):
     }
     needs = ("horizontal", "damping", "plate", "cantilever")
     load_key = "normal_force"
-    way_is_given: ClassVar[bool] = True
-    motion_is_result: ClassVar[bool] = True
+    way_is_given = True
+    motion_is_result = True
 
     kind: Literal["slide"]
     """normal force and cantilever; always dynamic"""
@@ -269,7 +253,7 @@ class Slide(Kind):
     """force held while sliding, compression positive; 0 or a pull where bodies attract each other"""
     distance: Length | None = None
     """way of the driven end of the cantilever at cantilever.velocity; absent with a path"""
-    path: Annotated[tuple[Leg, ...], Field(strict=False), MinLen(1)] | None = None
+    path: Listed[Leg] | None = None
     """legs [velocity, distance] of the driven end in place of one distance"""
 
     def legs(self, velocity: float) -> tuple[Leg, ...]:
@@ -311,14 +295,14 @@ class Tangential(Kind):
         "cantilever": UNPULLED,
     }
     needs = ("friction",)
-    way_is_given: ClassVar[bool] = True
-    goes_along: ClassVar[bool] = True
+    way_is_given = True
+    goes_along = True
 
     kind: Literal["tangential"]
     """normal load, then displacement along x with friction"""
-    normal_force: NormalForces | None = None
+    normal_force: OneOrMore[Compression, CompressionOrNone] | None = None
     """compressive force: one, or one for each of the displacements"""
-    normal_displacement: NormalDisplacements | None = None
+    normal_displacement: OneOrMore[Displacement, Displacement] | None = None
     """in place of the force: displacement in normal direction, compression positive; one, or one for each of the
     displacements
     """

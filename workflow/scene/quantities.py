@@ -12,17 +12,15 @@ import types
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Annotated, Any, ClassVar, Literal, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, ClassVar, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
-from annotated_types import Ge, Gt, Le
-from pydantic import BaseModel, ConfigDict, Discriminator, GetJsonSchemaHandler, Tag
+from annotated_types import Ge, Gt, Le, MinLen
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from contact1d.workflow.units import SI
 
 Keys = tuple[str | int, ...]
 """Keys from the top of a scene down to a value; an item of a list by its index."""
-TEXT_PATTERN = r"^[ \t]*[+\-−]?[0-9]*\.?[0-9]+.*[A-Za-zµμÅ°%]"
-"""What a JSON schema asks of a text that is a number with a unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,14 +41,7 @@ class Unit:
     @property
     def bases(self) -> frozenset[str]:
         """Which of LU, FU and MU must be known for its size in SI; none of a unit of SI."""
-        return SI[self.name].bases if self.name in SI else frozenset()
-
-    def __get_pydantic_json_schema__(self, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        """Return the schema of a number, or of such a text."""
-        number = handler(core_schema)
-        if self.name == "1":
-            return number
-        return {"anyOf": [number, {"type": "string", "pattern": TEXT_PATTERN}]}
+        return frozenset(SI[self.name].powers) if self.name in SI else frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,20 +103,23 @@ Kilogram = Annotated[float, Gt(0), Unit("kg")]
 Poisson = Annotated[float, Gt(-1), Le(0.5), Unit("1")]
 
 
-def _number_or_word(value: object) -> str:
-    return "word" if isinstance(value, str) else "number"
+T = TypeVar("T")
+Other = TypeVar("Other")
 
 
-# The discriminator makes one mistake one error: a string can only have meant the word, all else only a number.
-_Either = Discriminator(_number_or_word)
-_Auto = Annotated[Literal["auto"], Tag("word")]
-AutoLength = Annotated[Annotated[Length, Tag("number")] | _Auto, _Either]
-AutoStiffness = Annotated[Annotated[Stiffness, Tag("number")] | _Auto, _Either]
-AutoMass = Annotated[Annotated[Mass, Tag("number")] | _Auto, _Either]
-AutoDamping = Annotated[Annotated[DampingCoefficient, Tag("number")] | _Auto, _Either]
-AutoDampingOrZero = Annotated[Annotated[DampingCoefficientOrZero, Tag("number")] | _Auto, _Either]
-AutoParticleCount = Annotated[Annotated[ParticleCount, Tag("number")] | _Auto, _Either]
-AllOrSome = Annotated[Annotated[StateCount, Tag("number")] | Annotated[Literal["all"], Tag("word")], _Either]
+def either(special: str, types: Any, otherwise: str) -> Discriminator:
+    """Which of two tagged types a value is meant to be, so that one mistake is one error."""
+    return Discriminator(lambda value: special if isinstance(value, types) else otherwise)
+
+
+_NumberOr = Annotated[Annotated[T, Tag("number")] | Annotated[Other, Tag("word")], either("word", str, "number")]
+Auto = _NumberOr[T, Literal["auto"]]
+AllOr = _NumberOr[T, Literal["all"]]
+# strict=False on the tuple alone: TOML has lists, a frozen table holds a tuple. Its items stay strict.
+Listed = Annotated[tuple[T, ...], Field(strict=False), MinLen(1)]
+OneOrMore = Annotated[
+    Annotated[T, Tag("number")] | Annotated[Listed[Other], Tag("list")], either("list", (list, tuple), "number")
+]
 
 
 @dataclass(frozen=True)
@@ -151,11 +145,6 @@ class Choice:
         """The word for `kind` of a table that has one."""
         field = self.table.model_fields.get("kind") if self.table else None
         return None if field is None else str(get_args(field.annotation)[0])
-
-    @property
-    def tag(self) -> str | None:
-        """The name that pydantic puts into a location for this member of a union."""
-        return next((mark.tag for mark in self.marks if isinstance(mark, Tag)), self.kind)
 
     @property
     def unit(self) -> Unit | None:

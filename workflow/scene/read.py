@@ -12,14 +12,13 @@ from typing import Any
 
 from pydantic import ConfigDict
 
-from contact1d.workflow.scene.check import check_tables, mend_words
+from contact1d.workflow.scene.check import UNIT_KEYS, Column, Conversion, check_tables, mend_words
 from contact1d.workflow.scene.problems import Problem, SceneError, nearest, path_of, shown
 from contact1d.workflow.scene.profile_file import ProfileFileError, ScaleError, read_profile
 from contact1d.workflow.scene.quantities import Keys, Table, keys_of
 from contact1d.workflow.scene.rules import check_fit
-from contact1d.workflow.scene.si_scene import UNIT_KEYS, Column, Conversion
 from contact1d.workflow.scene.si_text import split
-from contact1d.workflow.scene.tables import EFFECTS, Bodies, Tables
+from contact1d.workflow.scene.tables import EFFECTS, Tables
 from contact1d.workflow.units import SI
 
 PROFILE = ("bodies", "profile")
@@ -98,8 +97,8 @@ def read_scene(source: AnyScene, overrides: Iterable[str] = (), without: Iterabl
     """
     if isinstance(source, Mapping | Scene):
         return scene_from_dict(source, overrides, without)
-    is_text = isinstance(source, str) and _is_text(source)
-    return scene_from_dict(read_tables(source), overrides, without, "." if is_text else FilePath(source).parent)
+    tables = read_tables(source)
+    return scene_from_dict(tables, overrides, without, "." if _is_text(source) else FilePath(source).parent)
 
 
 def scene_to_toml(scene: Scene) -> str:
@@ -112,13 +111,26 @@ def read_tables(source: str | PathLike[str]) -> dict[str, Any]:
     if not isinstance(source, str | PathLike):
         given = type(source).__name__
         raise SceneError([Problem("scene", f"must be a path, TOML text, tables or a Scene, not {given}")])
-    if isinstance(source, str) and _is_text(source):
-        return _tables(source, "scene")
-    return _parsed(fspath(source))
+    if _is_text(source):
+        return _tables(str(source), "scene")
+    path = fspath(source)
+    try:
+        text = FilePath(path).read_bytes().decode("utf-8-sig")
+    except FileNotFoundError as error:
+        raise SceneError([Problem(path, "no such file")]) from error
+    except IsADirectoryError as error:
+        raise SceneError([Problem(path, "is a directory", hint="name the scene file in it")]) from error
+    except UnicodeDecodeError as error:
+        line = error.object[: error.start].count(b"\n") + 1
+        raise SceneError([Problem(f"{path}, line {line}", "not UTF-8 text", hint="save it as UTF-8")]) from error
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise SceneError([Problem(path, f"cannot be read: {reason}")]) from error
+    return _tables(text, path)
 
 
-def _is_text(source: str) -> bool:
-    return "\n" in source or "=" in source
+def _is_text(source: object) -> bool:
+    return isinstance(source, str) and ("\n" in source or "=" in source)
 
 
 def scene_from_dict(
@@ -293,16 +305,9 @@ def _listed(words: Iterable[str]) -> list[str]:
 
 def plain_data(value: Any) -> Any:
     """A copy of `value` in dicts and lists, without keys that hold None."""
-    if isinstance(value, Bodies) and "reduction" not in value.model_fields_set:
-        return plain_data(
-            value.model_dump(by_alias=True, exclude={"reduction"})
-        )  # chosen anew: what changes may change it
     if isinstance(value, Table):
-        return {
-            name: plain_data(item)
-            for name, key in keys_of(type(value)).items()
-            if (item := getattr(value, key.field)) is not None
-        }
+        chosen = {"reduction"} - value.model_fields_set  # anew: what changes may change it
+        value = {name: getattr(value, key.field) for name, key in keys_of(type(value)).items() if name not in chosen}
     if isinstance(value, Mapping):
         return {str(key): plain_data(item) for key, item in value.items() if item is not None}
     if isinstance(value, list | tuple):
@@ -319,23 +324,6 @@ def _rank(problem: Problem) -> int:
     if problem.path.startswith(("set ", "without ")):
         return -1
     return order.index(table) if table in order else len(order)
-
-
-def _parsed(path: str) -> dict[str, Any]:
-    """The TOML file `path` as a dict; raises SceneError with one problem where there is none."""
-    try:
-        text = FilePath(path).read_bytes().decode("utf-8-sig")
-    except FileNotFoundError as error:
-        raise SceneError([Problem(path, "no such file")]) from error
-    except IsADirectoryError as error:
-        raise SceneError([Problem(path, "is a directory", hint="name the scene file in it")]) from error
-    except UnicodeDecodeError as error:
-        line = error.object[: error.start].count(b"\n") + 1
-        raise SceneError([Problem(f"{path}, line {line}", "not UTF-8 text", hint="save it as UTF-8")]) from error
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise SceneError([Problem(path, f"cannot be read: {reason}")]) from error
-    return _tables(text, path)
 
 
 def _tables(text: str, path: str) -> dict[str, Any]:

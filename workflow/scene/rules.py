@@ -17,10 +17,9 @@ from fractions import Fraction
 from typing import Any
 
 from contact1d.workflow.scene.experiments import KINDS, Kind, Span
-from contact1d.workflow.scene.material import ALIKE, SPHERES, wider_than_body
 from contact1d.workflow.scene.problems import Problem, shown
 from contact1d.workflow.scene.quantities import Keys, keys_of
-from contact1d.workflow.scene.tables import EFFECT_TABLES, TIMED, WHOLE, default_method
+from contact1d.workflow.scene.tables import ALIKE, EFFECT_TABLES, SPHERES, TIMED, WHOLE, default_method, wider_than_body
 
 WHOLE_NUMBER_ERROR = 1e-9
 """Relative error of a quotient of two decimals up to which it counts as whole, or two lengths as equal."""

@@ -7,17 +7,23 @@ references and in the words of draft 7, which editors of TOML read (taplo, and w
 from __future__ import annotations
 
 import json
+from dataclasses import astuple
 from typing import Any
 
-from annotated_types import Ge, Gt, Le
+from annotated_types import Ge, Gt, Le, MinLen
+from pydantic_core import PydanticUndefined
 
 from contact1d.workflow.scene.problems import as_toml
-from contact1d.workflow.scene.quantities import Allowed, Table, keys_of
+from contact1d.workflow.scene.quantities import Allowed, Choice, Table, keys_of
 from contact1d.workflow.scene.si_text import example
 from contact1d.workflow.scene.tables import Tables
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
 SIMPLE = {bool: "true or false", str: "text in quotes", int: "a whole number", float: "a number"}
+TYPES = {bool: "boolean", str: "string", int: "integer", float: "number"}
+BOUNDS = {Gt: "exclusiveMinimum", Ge: "minimum", Le: "maximum", MinLen: "minItems"}
+TEXT_PATTERN = r"^[ \t]*[+\-−]?[0-9]*\.?[0-9]+.*[A-Za-zµμÅ°%]"
+"""Of a text that is a number with a unit."""
 Node = dict[str, Any]
 
 
@@ -59,10 +65,8 @@ def meaning(table: type[Table], name: str) -> str:
 
 def scene_schema() -> Node:
     """The JSON schema of a scene file."""
-    whole = Tables.model_json_schema(by_alias=True)
-    node: Node = _plain(whole, whole.pop("$defs"))
-    _describe(Tables, node)
-    return {"$schema": DIALECT} | node | {"title": "contact1d scene", "description": "A scene of contact1d."}
+    named = {"title": "contact1d scene", "description": "A scene of contact1d."}
+    return {"$schema": DIALECT} | _node(Choice(Tables)) | named
 
 
 def schema_text() -> str:
@@ -70,33 +74,39 @@ def schema_text() -> str:
     return json.dumps(scene_schema(), indent=1, ensure_ascii=False) + "\n"
 
 
-def _plain(node: Any, definitions: Node) -> Any:
-    """`node` with definitions in place of references, without null (which TOML has not) and names that say nothing."""
-    if isinstance(node, list):
-        return [_plain(item, definitions) for item in node]
-    if not isinstance(node, dict):
+def _nodes(allowed: Allowed) -> Node:
+    """The schema of what a key allows."""
+    nodes = [_node(choice) for choice in allowed.choices]
+    return nodes[0] if len(nodes) == 1 else {"oneOf": nodes}
+
+
+def _node(choice: Choice) -> Node:
+    if choice.table:
+        return _table(choice.table)
+    if choice.words:
+        return {"type": "string", "enum": list(choice.words)}
+    bounds = {BOUNDS[type(mark)]: next(iter(astuple(mark))) for mark in choice.marks if type(mark) in BOUNDS}
+    if choice.items:
+        return {"type": "array", "items": _nodes(choice.items)} | bounds
+    node = {"type": TYPES[choice.type]} | bounds
+    return {"anyOf": [node, {"type": "string", "pattern": TEXT_PATTERN}]} if text_of(Allowed((choice,))) else node
+
+
+def _table(table: type[Table]) -> Node:
+    keys, properties = keys_of(table), {}
+    for name, key in keys.items():
+        properties[name] = _nodes(key.allowed) | {"description": meaning(table, name)}
+        if isinstance(key.default, str | float | bool | tuple):
+            properties[name]["default"] = [*key.default] if isinstance(key.default, tuple) else key.default
+    required = [name for name, key in keys.items() if key.default is PydanticUndefined]
+    node = {
+        "description": table.__doc__, "type": "object",
+        "properties": properties, "required": required, "additionalProperties": False,
+    }  # fmt: skip
+    if not table.as_list:
         return node
-    if "$ref" in node:
-        return _plain(definitions[node["$ref"].rpartition("/")[2]] | _without(node, "$ref"), definitions)
-    choices = [one for one in node.get("anyOf", ()) if one != {"type": "null"}]
-    if len(choices) == 1:
-        return _plain(choices[0] | _without(node, "anyOf", "default"), definitions)
-    kept = _without(node, "discriminator", *(["title"] if isinstance(node.get("title"), str) else []))
-    return {key: _plain(item, definitions) for key, item in kept.items()}
-
-
-def _without(node: Node, *keys: str) -> Node:
-    return {key: item for key, item in node.items() if key not in keys}
-
-
-def _describe(table: type[Table], node: Node) -> None:
-    """Give every key in `node`, the schema of `table`, its meaning, and so on in the tables inside."""
-    for name, inner in node["properties"].items():
-        inner["description"] = meaning(table, name)
-        choices = keys_of(table)[name].allowed.choices
-        for choice, place in zip(choices, inner.get("oneOf", [inner]), strict=True):
-            if choice.table:
-                _describe(choice.table, place)
+    items = {"anyOf": [_nodes(key.allowed) for key in keys.values()]}
+    return {"anyOf": [{"type": "array", "items": items, "minItems": len(keys), "maxItems": len(keys)}, node]}
 
 
 def _either(words: tuple[str, ...]) -> str:

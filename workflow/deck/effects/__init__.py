@@ -1,19 +1,88 @@
 """Effects: each is a scene table, a fragment of LAMMPS text, a row of the cost table; an absent one adds nothing."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import IntEnum
 from importlib import import_module
 
-from contact1d.workflow.deck.effects.base import Contribution, Stage
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import EFFECTS as NAMES
 from contact1d.workflow.scene import Scene
 
+LEAST_SLENDERNESS = 0.02
+"""Least edge of the box over that of a bin: LAMMPS wants no bin above 100 times the box."""
+BINS = 100
+"""Most bins of LAMMPS's neighbour search across a box made wide by atoms that feel no pair force: they take memory."""
+
+
+DEEP = 4.0
+"""Radius of particles that are spheres over the deepest expected displacement: a wall loses what lies deeper."""
+
+
+class Stage(IntEnum):
+    """Order of the fragments in a deck: a force that acts comes before what takes parts of it away or integrates it."""
+
+    BODIES = 0
+    SPRINGS = 1
+    DRAG = 2
+    GUIDE = 3
+    PULL = 4
+    PLATE = 5
+    MOTION = 6
+
+
+@dataclass(frozen=True)
+class Contribution:
+    """One effect's part of a deck.
+
+    Attributes:
+        name: the effect, the scene's table.
+        stage: where its fragment stands.
+        fragments: names in `lammps_inputs/fragments`, in order.
+        variables: LAMMPS variables that the fragments need, name to value.
+        pair_style: its part of the shared slot `pair_style`, or "".
+        atom_style: the same of `atom_style`, where atoms have more than the bonds that they always have; or "".
+        step_begin, step_end: fragments around every measurement.
+        integrates: the atom group whose motion its fragment integrates, or "": a group has one integrator at most.
+        pushes: the LAMMPS variable of the force [FU] with which it presses the upper body onto the lower one, beside
+            contact and load, or "".
+    """
+
+    name: str
+    stage: Stage
+    fragments: tuple[str, ...]
+    variables: dict[str, str] = field(default_factory=dict)
+    pair_style: str = ""
+    atom_style: str = ""
+    step_begin: tuple[str, ...] = ()
+    step_end: tuple[str, ...] = ()
+    integrates: str = ""
+    pushes: str = ""
+
+
+def number(value: float) -> str:
+    """A number as LAMMPS text that reads back to the same double."""
+    return repr(float(value))
+
+
+def sphere_radius(scene: Scene, settings: Settings) -> float:
+    """Radius [LU] of particles that are spheres; 0 where they are points."""
+    deepest = max(settings.largest_displacement, scene.bodies.spacing)
+    return DEEP * deepest if scene.friction is not None else 0.0
+
+
+def first_upper_anchor(scene: Scene, settings: Settings) -> int:
+    """Its number among the atoms: first come the particles of both bodies, then the lower anchors."""
+    below = {"particles": 2, "rigid_chain": 1, "rigid_plane": 0}[scene.bodies.lower]
+    return settings.particles + below * settings.lower_particles + 1
+
+
 EFFECTS: dict[str, Callable[[Scene, Settings], Contribution]] = {
     name: getattr(import_module(f"{__name__}.{name}"), name) for name in NAMES
 }
-"""The function of each effect: that of its name, in the module of its name."""
-
-__all__ = ["EFFECTS", "Contribution", "Stage", "contributions"]
+"""The function of each effect: that of its name, in the module of its name, which knows what stands above."""
 
 
 def contributions(scene: Scene, settings: Settings) -> tuple[Contribution, ...]:

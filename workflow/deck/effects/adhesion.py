@@ -1,6 +1,6 @@
 """Effect [adhesion]: d = g(a) − √(2π a W/E*) at the edge a of the contact, the rule of Heß, which makes it JKR's."""
 
-from contact1d.workflow.deck.effects.base import Contribution, Stage, number
+from contact1d.workflow.deck.effects import Contribution, Stage, number
 from contact1d.workflow.model.adhesion import AdhesiveEstimate
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene

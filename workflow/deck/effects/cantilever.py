@@ -7,7 +7,7 @@ What is drawn along moves at v on the mean, and so does the bath that drags at i
 since the bulk goes with its body. Otherwise the cantilever would pull at a drag that is no friction of the contact.
 """
 
-from contact1d.workflow.deck.effects.base import Contribution, Stage, first_upper_anchor, number
+from contact1d.workflow.deck.effects import Contribution, Stage, first_upper_anchor, number
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 

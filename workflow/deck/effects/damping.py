@@ -1,6 +1,6 @@
 """Effect [damping]: F = −γ v on every particle."""
 
-from contact1d.workflow.deck.effects.base import Contribution, Stage, number
+from contact1d.workflow.deck.effects import Contribution, Stage, number
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 

@@ -1,6 +1,6 @@
 """Effect [friction]: |s| ≤ μ f of each particle on a rigid plane, s its tangential force k_t u up to there."""
 
-from contact1d.workflow.deck.effects.base import Contribution, Stage, number, sphere_radius
+from contact1d.workflow.deck.effects import Contribution, Stage, number, sphere_radius
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 

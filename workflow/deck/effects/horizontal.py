@@ -2,7 +2,7 @@
 
 import math
 
-from contact1d.workflow.deck.effects.base import BINS, LEAST_SLENDERNESS, Contribution, Stage, number
+from contact1d.workflow.deck.effects import BINS, LEAST_SLENDERNESS, Contribution, Stage, number
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 

@@ -1,6 +1,6 @@
 """Effect [neighbours]: F = k_n (u_{i+1} − u_i) along x and z between neighbours, u from the undeformed profile."""
 
-from contact1d.workflow.deck.effects.base import Contribution, Stage, number
+from contact1d.workflow.deck.effects import Contribution, Stage, number
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 

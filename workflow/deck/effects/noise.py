@@ -1,6 +1,6 @@
 """Effect [noise]: thermal forces of variance 2 γ k_BT/Δt on every particle, with the damping γ (Langevin)."""
 
-from contact1d.workflow.deck.effects.base import Contribution, Stage, first_upper_anchor, number
+from contact1d.workflow.deck.effects import Contribution, Stage, first_upper_anchor, number
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 

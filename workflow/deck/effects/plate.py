@@ -1,6 +1,6 @@
 """Effect [plate]: the upper plate is a rigid body, M Z″ = F_contact − F_load − c Z′ (Eq. 5 of the paper)."""
 
-from contact1d.workflow.deck.effects.base import BINS, Contribution, Stage, number
+from contact1d.workflow.deck.effects import BINS, Contribution, Stage, number
 from contact1d.workflow.model.settings import STAGGER_SHARE, Settings
 from contact1d.workflow.scene import Scene
 
