@@ -15,7 +15,7 @@ from contact1d.workflow.scene.problems import nearest, shown
 from contact1d.workflow.scene.profile_file import ProfileFileError, ScaleError, read_profile
 from contact1d.workflow.scene.profiles import Profile as Shape
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
-from contact1d.workflow.scene.tables import SPHERES, Elastic
+from contact1d.workflow.scene.tables import SPHERES
 
 AnyContact = str | PathLike[str] | Mapping[str, Any]
 """What `read_contact` makes a contact of: a TOML file, by its path, or its tables."""
