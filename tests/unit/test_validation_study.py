@@ -9,52 +9,29 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from tests.punch import PUNCH
 from validation import doors
 from validation.__main__ import RESULTS, ROOT, app
-from validation.figures import Panel, Series, figure
 from validation.hard import STUDIES as HARD
 from validation.page import readme_table, summary, tables_page
 from validation.paper import STUDIES as PAPER
 from validation.row import Row, at_most
 from validation.speed import STUDIES as SPEED
-from validation.study import Bench, Findings, Refused, Study, answered, claim_row, conduct, read_record
-
-PLANE = {
-    "bodies": {
-        "particles": 21, "spacing": 1.0, "profile": {"kind": "flat_punch", "radius": 10.5}, "bulk_stiffness": 0.5,
-        "lower": "rigid_plane",
-    },
-    "experiment": {"kind": "path", "displacements": [0.1]},
-}  # fmt: skip
-
-
-def measure(bench: Bench) -> Findings:
-    """A punch on a plane: N k d; and a scene that is refused."""
-    found, wrong = bench.run("punch", PLANE), bench.run("wrong", PLANE | {"noise": {}})
-    assert not isinstance(found, Refused)
-    force = found.results["largest_force"]
-    rows = [claim_row("force", found, "largest_force", 21 * 0.5 * 0.1, "N k d"),
-            claim_row("refused", wrong, "largest_force", 1.0, "nothing")]  # fmt: skip
-    series = Series("run", found.curve.displacement, found.curve.force)
-    assert force.unit == "FU"
-    return Findings(rows, figure("Force", Panel("d", "F", [series])))
+from validation.study import Bench, Findings, Study, answered, conduct, read_record
 
 
 def broken(bench: Bench) -> Findings:
     raise RuntimeError("a study that does not end")
 
 
-SMALL = Study("small", "A punch", "Is it N k d?", measure)
-
-
 def test_a_study_runs_its_scenes_once_and_a_refusal_is_a_row_that_fails(tmp_path: Path) -> None:
-    record = conduct([SMALL], tmp_path, workers=1)
+    record = conduct([PUNCH], tmp_path, workers=1)
     assert [(row.name, row.verdict) for row in record.rows] == [("force", "PASS"), ("refused", "FAIL")]
     assert record.rows[1].bound.source.startswith("refused before anything ran: ")
     assert (tmp_path / "small.png").stat().st_size > 1000
     results = tmp_path / "runs" / "small" / "punch" / "results.json"
     made = results.stat().st_mtime_ns
-    again = conduct([SMALL], tmp_path, workers=1)
+    again = conduct([PUNCH], tmp_path, workers=1)
     assert results.stat().st_mtime_ns == made
     assert [row.as_data() for row in read_record(tmp_path / "record.json").rows] == [
         row.as_data() for row in again.rows
@@ -70,7 +47,7 @@ def test_a_study_that_breaks_has_a_row_that_fails(tmp_path: Path) -> None:
 def test_a_folder_of_other_things_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "letter.txt").write_text("dear")
     with pytest.raises(doors.FolderError, match="not of a validation"):
-        conduct([SMALL], tmp_path)
+        conduct([PUNCH], tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]
 
 

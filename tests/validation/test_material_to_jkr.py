@@ -11,16 +11,16 @@ from __future__ import annotations
 
 import json
 import math
-import subprocess
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 from contact1d import from_material
+from contact1d.workflow.cli.app import app
 from contact1d.workflow.identify import MaterialRun
 
 ONE_PERCENT = 1e-2
@@ -139,16 +139,16 @@ def test_two_chains_have_the_force_and_radius_that_were_searched_for_and_nearly_
     assert abs(work.value - material.work) <= work.uncertainty
 
 
-def test_one_command_prints_the_run_beside_the_theories(tmp_path: Path) -> None:
+def test_one_command_prints_the_run_beside_the_theories(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "silica.toml").write_text(
         'radius = "5 um"\nsurface_energy = "0.05 J/m²"\nrange = "0.3 nm"\n'
         'upper = { youngs_modulus = "72 GPa", poisson_ratio = 0.17 }\n'
         'lower = { youngs_modulus = "72 GPa", poisson_ratio = 0.17 }\n',
         encoding="utf-8",
     )
-    command = [sys.executable, "-m", "contact1d.workflow.cli.app", "identify", "silica.toml"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
-    assert done.returncode == 0, done.stderr
+    done = CliRunner().invoke(app, ["identify", "silica.toml"])
+    assert done.exit_code == 0, done.stderr
     assert "Tabor's μ = 1.1, Maugis-Dugdale" in done.stdout
     (force,) = (line for line in done.stdout.splitlines() if "2.356 µN" in line and "3.142 µN" in line)
     assert "2.468 µN" in force
