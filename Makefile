@@ -27,8 +27,10 @@ run: $(READY) ## run a scene: SCENE=file.toml (default steel_on_glass), OUT=fold
 	@$(BIN)/contact1d run "$(SCENE)" $(if $(OUT),--out "$(OUT)")
 
 test: $(READY) ## run the tests: ARGS='-m slow' the long ones, ARGS=tests/unit one room
-	@# One process for each core, and small matrices: threads would only get in each other's way.
-	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --maxprocesses 8 --dist loadfile $(ARGS)
+	@# One process for each core, and small matrices: threads would only get in each other's way. Files come in the order of
+	@# testpaths, so that no core waits for a long one at the end. Assertions are rewritten once, not by each process.
+	@OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --maxprocesses 8 \
+		--dist loadfile --no-loadscope-reorder $(ARGS)
 
 lint: $(READY) ## check style, types and the direction of imports
 	$(BIN)/ruff check .
