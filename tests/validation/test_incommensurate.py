@@ -17,7 +17,7 @@ from contact1d.workflow.scene import scene_from_dict
 from validation.references.incommensurate import threshold
 
 LAW, LOAD = (1.0, 0.5, 0.5, 1.0), 0.2
-UPPER, LOWER = 34, 55
+UPPER, LOWER = 21, 34
 FAST, SLOW = 2e-3, 5e-4
 PINNED, FREE = 1.7, 3.5
 """⟨F⟩(v)/⟨F⟩(v/4): 1 for a friction that is finite at v = 0, 4 for one that is proportional to v."""
