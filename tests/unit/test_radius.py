@@ -108,7 +108,7 @@ def test_the_uncertainty_covers_as_much_as_is_said_where_nothing_snaps() -> None
     assert np.mean(np.concatenate([error <= uncertainty for error, uncertainty in cases])) >= COVERED_SMOOTH
 
 
-@pytest.mark.parametrize("noise", [1e-6, 1e-4, 1e-3, 1e-2])
+@pytest.mark.parametrize("noise", [1e-6, 1e-2])
 def test_the_uncertainty_covers_the_error_of_a_noisy_profile(noise: float) -> None:
     error, uncertainty = errors(False, noise, 12)
     assert np.mean(error <= uncertainty) >= COVERED

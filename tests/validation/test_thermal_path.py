@@ -77,7 +77,7 @@ def test_the_same_places_there_and_back_are_the_same(tmp_path: Path) -> None:
         "damping": {"coefficient": 0.3},
         "noise": {"temperature": HOT, "seed": 4},
         "accuracy": {"tolerance": 1e-2},
-        "experiment": {"kind": "path", "displacements": {"from": 0.05, "to": -0.2, "steps": 3}},
+        "experiment": {"kind": "path", "displacements": {"from": 0.05, "to": -0.2, "steps": 2}},
     })  # fmt: skip
     lost = run(scene, tmp_path / "run", figures=False).results["dissipated_energy"]
     assert abs(lost.value) <= 2.0 * lost.uncertainty
