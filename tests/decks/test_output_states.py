@@ -27,7 +27,7 @@ FRICTION: dict[str, Any] = {
     "friction": {"coefficient": 0.3},
     "experiment": {"kind": "tangential", "normal_force": [4.0, 2.0, 3.0], "displacements": [0.1, 0.2, 0.0]},
 }
-NAMES = ("load_thermal", "path", "pull_off_dynamic", "plane_adhesion", "slide")
+NAMES = ("load_thermal", "pull_off_dynamic", "plane_adhesion", "slide")
 SCENES = {name: OTHERS[name] for name in NAMES} | {
     "snapping": chains(
         20.0,
@@ -81,9 +81,9 @@ def test_the_deck_alone_writes_the_same_file(whole: Run, tmp_path: Path) -> None
     for name in READ:
         if (whole.folder / name).exists():
             shutil.copy(whole.folder / name, tmp_path / name)
-    for _ in range(2):  # the second time over what the first has left
-        done = lmp(tmp_path)
-        assert done.returncode == 0, done.stdout[-2000:]
+    (tmp_path / "states.lammpstrj").write_text("what another run has left\n")
+    done = lmp(tmp_path)
+    assert done.returncode == 0, done.stdout[-2000:]
     assert (tmp_path / "states.lammpstrj").read_bytes() == (whole.folder / "states.lammpstrj").read_bytes()
 
 
