@@ -45,8 +45,8 @@ PINNED = {
 }
 
 
-SHORTER = {"friction_over_temperature": 15.0}
-"""A way [LU] that is enough for a mean under heat, and its uncertainty."""
+SHORTER = {"friction_over_temperature": 15.0, "friction_over_load": 3.0, "friction_of_lattices": 3.0}
+"""A way [LU] that is enough for a mean under heat and its uncertainty, or for the friction before the plate slides."""
 INTEGRATED = ("friction_over_load", "friction_over_radius")
 """By the integrator, which takes longer than the runs; `validation paper` holds all their points against it."""
 
