@@ -134,8 +134,6 @@ def test_parabola_is_found_exactly_and_shape_errors_are_refused() -> None:
 def test_what_cannot_be_pulled_off_is_refused() -> None:
     with pytest.raises(ValueError, match="attraction"):
         pull_off(ChainModel(9, 1.0, radius=10.0, rigid_plane=True), 1.0)
-    with pytest.raises(ValueError, match="attraction"):
-        pull_off(ChainModel(9, 1.0, PairInteraction(Exponential(1.0, 0.1), cutoff=1.0), radius=10.0), 1.0)
     with pytest.raises(ValueError, match="preload"):
         pull_off(ChainModel(9, 1.0, PAPERLIKE, radius=10.0), -1.0)
     with pytest.raises(RuntimeError, match="preload"):

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh
 
 from validation.doors import EngineError, Session, contact_of, scene_from_dict, settings_for
-from validation.hard.cases import BODIES, PAPER_LAW
+from validation.hard.cases import BODIES, PAPER_LAW, PAPER_NUMBERS
 from validation.references.energy import EnergySurface
-from validation.references.interaction import Exponential, PairInteraction
+from validation.references.interaction import PairInteraction
 from validation.references.model import ChainModel
 from validation.references.solver import ChainSolver
 from validation.row import Reference, Row, absolute, at_most
@@ -168,7 +168,7 @@ def _time_step(more: dict[str, Any], words: str) -> Row:
     """ωΔt/2 of the time step that the program chooses, ω from the solver's Hessian under the load."""
     tables = TIMED | LOADED | more
     step = settings_for(scene_from_dict({"title": "time step"} | tables)).time_step
-    law = PairInteraction(Exponential(**PAPER_LAW["repulsion"]), Exponential(**PAPER_LAW["attraction"]))
+    law = PairInteraction.of(*PAPER_NUMBERS)
     neighbours = more.get("neighbours", {"stiffness": 0.0})["stiffness"]
     model = ChainModel(12, 0.83, law, radius=40.0, neighbour_stiffness=neighbours)
     solver = ChainSolver(model)

@@ -25,6 +25,7 @@ from validation.doors import (
     Target,
     estimated,
     identify,
+    law_of,
     load_run,
     read_scene,
     scene_from_dict,
@@ -33,7 +34,7 @@ from validation.doors import (
 )
 from validation.figures import Array
 from validation.references.independent_pairs import IndependentPairs
-from validation.references.interaction import Exponential, PairInteraction
+from validation.references.interaction import PairInteraction
 from validation.references.model import ChainModel
 from validation.references.solver import ChainSolver, State
 from validation.study import Scenes
@@ -104,9 +105,7 @@ def curve_scene(scene: Scene, deepest: float, steps: int) -> Scene:
 
 def separation(scene: Scene) -> float:
     """Displacement [LU] of some two ranges, at which the contact has let go."""
-    assert scene.interaction is not None
-    assert scene.interaction.attraction is not None
-    return scene.interaction.attraction.range
+    return law_of(scene)[3]
 
 
 def local(scene: Scene, spacing: float = LOCAL_SPACING) -> Scene:
@@ -246,13 +245,7 @@ HIGHEST = 1.5
 
 def interaction(scene: Scene) -> PairInteraction:
     """The scene's law."""
-    terms = scene.interaction
-    assert terms is not None
-    assert terms.attraction is not None
-    return PairInteraction(
-        Exponential(terms.repulsion.amplitude, terms.repulsion.range),
-        Exponential(terms.attraction.amplitude, terms.attraction.range),
-    )
+    return PairInteraction.of(*law_of(scene))
 
 
 def radius(scene: Scene) -> float:

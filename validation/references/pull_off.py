@@ -73,7 +73,7 @@ def pull_off(model: ChainModel, preload: float, step: float | None = None, stenc
         ValueError: without attraction, for a negative preload or step, or if the chain is too short for its contact.
         RuntimeError: if the preload is beyond what the chains carry, or a minimisation does not converge.
     """
-    if model.interaction is None or model.interaction.attraction is None:
+    if model.interaction is None:
         raise ValueError("a pull-off needs attraction")
     if not (math.isfinite(preload) and preload >= 0.0):
         raise ValueError(f"preload must not be negative, got {preload}")
