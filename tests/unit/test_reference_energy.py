@@ -99,26 +99,8 @@ def test_neighbour_springs_rest_on_the_undeformed_profile() -> None:
     np.testing.assert_allclose(far[1], 0.0, atol=ROUND_OFF)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ({"radius": 10.0, "heights": np.zeros(5)}, "either"),
-        ({}, "either"),
-        ({"heights": np.zeros(4)}, "heights"),
-        ({"radius": -1.0}, "radius"),
-        ({"radius": 1.0, "rigid_plane": True}, "rigid_plane"),
-        ({"radius": 1.0, "neighbour_stiffness": -1.0}, "neighbour"),
-    ],
-)
-def test_wrong_models_are_refused(arguments: dict[str, object], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        ChainModel(5, 0.83, ADHESIVE, **arguments)
-
-
 def test_wrong_laws_are_refused() -> None:
     with pytest.raises(ValueError, match="further"):
         PairInteraction(Exponential(1.0, 0.2), Exponential(0.1, 0.1))
     with pytest.raises(ValueError, match="stronger"):
         PairInteraction(Exponential(0.1, 0.1), Exponential(1.0, 0.2))
-    with pytest.raises(ValueError, match="amplitude"):
-        Exponential(0.0, 1.0)

@@ -56,19 +56,11 @@ class FoldedPairs:
         interaction: of an opposite pair.
         bulk_stiffness: k of a particle on either body [FU/LU].
         heights: of the upper particles over the apex, shape (N,) [LU].
-
-    Raises:
-        ValueError: for a stiffness that is not positive, or without particles.
     """
 
     interaction: PairInteraction
     bulk_stiffness: float
     heights: Floats
-
-    def __post_init__(self) -> None:
-        """Check what is given."""
-        if not self.bulk_stiffness > 0.0 or self.heights.size == 0:
-            raise ValueError("bulk_stiffness must be positive, and there must be particles")
 
     @cached_property
     def ratio(self) -> float:

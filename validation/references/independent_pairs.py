@@ -55,8 +55,6 @@ class IndependentPairs:
 
     def __post_init__(self) -> None:
         """Check that the pair law is one to one."""
-        if not min(self.bulk_stiffness, self.radius, self.spacing) > 0.0:
-            raise ValueError("bulk_stiffness, radius and spacing must be positive")
         steepest = self.interaction.force_slope(np.array(max(self.interaction.extremum_distance(2), 0.0)))
         if steepest >= 0.5 * self.bulk_stiffness:
             raise ValueError(f"pairs snap: steepest tension {float(steepest):.4g} FU/LU >= k/2")

@@ -21,19 +21,10 @@ class Exponential:
     Args:
         amplitude: energy at r = 0 [FU LU], positive.
         range: decay length [LU], positive.
-
-    Raises:
-        ValueError: if either is not a positive finite number.
     """
 
     amplitude: float
     range: float
-
-    def __post_init__(self) -> None:
-        """Check both numbers."""
-        for name, value in (("amplitude", self.amplitude), ("range", self.range)):
-            if not (math.isfinite(value) and value > 0.0):
-                raise ValueError(f"{name} must be positive and finite, got {value}")
 
 
 @dataclass(frozen=True)
