@@ -50,6 +50,8 @@ from contact1d.workflow.scene import (
 from contact1d.workflow.sweep.axes import points, read_sweep
 from contact1d.workflow.units import Quantity, rounded
 
+IN_TIME: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
+"""Tables of a contact that comes to rest in time."""
 BEFORE = (SceneError, SettingsError, FolderError)
 """What a scene is refused with before anything runs."""
 TIME_LIMIT = 7200.0
@@ -93,6 +95,19 @@ def contact_of(tables: dict[str, Any], folder: Path, **settings: Any) -> Iterato
     write_system(deck, folder)
     with RunContext(deck, folder, Silent(), TIME_LIMIT).contact() as contact:
         yield contact
+
+
+def law_table(A: float, a: float, B: float, b: float) -> dict[str, dict[str, float]]:
+    """[interaction] of A [FU·LU], a [LU], B [FU·LU], b [LU]."""
+    return {"repulsion": {"amplitude": A, "range": a}, "attraction": {"amplitude": B, "range": b}}
+
+
+def law_of(scene: Scene) -> tuple[float, float, float, float]:
+    """A [FU·LU], a [LU], B [FU·LU], b [LU] of the scene's law."""
+    terms = scene.interaction
+    assert terms is not None
+    assert terms.attraction is not None
+    return terms.repulsion.amplitude, terms.repulsion.range, terms.attraction.amplitude, terms.attraction.range
 
 
 def still_step() -> float:

@@ -8,17 +8,9 @@ from dataclasses import fields, replace
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from validation.doors import Scene, Settings, Slide, start_offset
+from validation.doors import Scene, Settings, Slide, law_of, start_offset
 from validation.figures import Array
 from validation.references.slide import Integrator, SlideModel, Trace
-
-
-def law_of(scene: Scene) -> tuple[float, float, float, float]:
-    """A [FU·LU], a [LU], B [FU·LU], b [LU] of the scene's law."""
-    terms = scene.interaction
-    assert terms is not None
-    assert terms.attraction is not None
-    return terms.repulsion.amplitude, terms.repulsion.range, terms.attraction.amplitude, terms.attraction.range
 
 
 def slide_model(scene: Scene, settings: Settings, beyond: int = 0) -> SlideModel:
@@ -59,11 +51,9 @@ RESIDUAL = 1e-6
 
 def integrated(scene: Scene, settings: Settings) -> Trace:
     """All legs by the independent integrator, in the program's timesteps, measured where the program measures."""
-    assert scene.interaction is not None
-    assert scene.interaction.attraction is not None
-    law = scene.interaction.attraction
+    _, _, amplitude, reach = law_of(scene)
     body = Integrator(slide_model(scene, settings))
-    body.settle(settings.time_step, RESIDUAL * law.amplitude / law.range, drag=settings.calm_damping)
+    body.settle(settings.time_step, RESIDUAL * amplitude / reach, drag=settings.calm_damping)
     legs, drive, time, impulse = [], 0.0, 0.0, 0.0
     for leg in settings.drive:
         trace = body.run(leg.rows * leg.steps, leg.time_step, leg.velocity, start=drive, every=leg.steps)

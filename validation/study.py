@@ -328,7 +328,7 @@ def margins(rows: Sequence[Row]) -> dict[str, Drawing]:
     """The figure of a study that draws none of its own: what each of its rows is off, over what it allows."""
     with np.errstate(divide="ignore"):
         off = np.asarray(np.clip(1.0 / np.array([row.margin for row in rows]), DRAWN, 1.0 / DRAWN), dtype=np.float64)
-    shown = Series("", np.arange(1.0, 1.0 + off.size), off)
+    shown = Series("rows", np.arange(1.0, off.size + 1.0), off)
     caption = "What each row is off over what it allows, in the order of the table; dashed: the bound"
     return figure(caption, Panel("row", "error over the allowed one", [shown], log="y", bound=1.0))
 

@@ -14,8 +14,6 @@ from validation.references.solver import State, trace
 
 SOLVER = 1e-9
 """Forces: the descent stops at 1e-10 k a per particle, then polishes; brentq stops at 1e-14 LU."""
-RAMP = 0.006
-"""The force at a cutoff falls over a hundredth of its own size over a spring k; the pair has k/2."""
 OTHER_PAIRS = 1e-10
 """exp(-25): what particles feel from others than their opposite at a range of 0.04 LU."""
 
@@ -37,27 +35,6 @@ def test_independent_pairs_by_root_finding(displacement: float) -> None:
     np.testing.assert_allclose(state.pair_force[:, 1], NARROW.force(distance), atol=OTHER_PAIRS)
     assert state.force == pytest.approx(float(np.sum(NARROW.force(distance))), abs=60 * OTHER_PAIRS)
     assert state.smallest_distance == pytest.approx(distance.min(), abs=OTHER_PAIRS)
-
-
-def test_independent_repulsive_pairs_by_root_finding() -> None:
-    law = PairInteraction(Exponential(0.18 / 42.25, 0.02), cutoff=0.6)
-    model = ChainModel(60, 0.83, law, radius=4000.0)
-    state = trace(model, [0.55])[0]
-    gap = model.undeformed_gap(0.55)
-    distance = np.where(gap < 0.6, _by_roots(law, 0.83, np.minimum(gap, 0.599)), gap)
-    np.testing.assert_allclose(state.pair_force[:, 1], law.force(distance), atol=OTHER_PAIRS)
-    assert state.force > 0.0
-
-
-def test_coarse_cutoff_has_an_equilibrium_where_the_force_jumps() -> None:
-    law = PairInteraction(Exponential(0.2, 0.2), cutoff=0.6)
-    jump = float(law.force(np.array(0.6 * (1 - 1e-12))))
-    model = ChainModel(1, 0.5, law, heights=np.zeros(1))
-    states = trace(model, np.linspace(0.0, 2.0 * jump / 0.5, 9))
-    for state in states:
-        held = min(0.5 * state.displacement / 2.0, jump)
-        assert state.force == pytest.approx(held, rel=RAMP, abs=SOLVER)
-        assert state.smallest_distance <= 0.6 + SOLVER
 
 
 @pytest.mark.parametrize("law", [PAPERLIKE, WIDE, WIDEST])

@@ -90,10 +90,8 @@ def test_independent_pairs_find_the_lowest_force() -> None:
     assert pairs.force(pairs.zero_load_displacement()) == pytest.approx(0.0, abs=ROUND_OFF)
 
 
-def test_independent_pairs_refuse_snapping_and_repulsion() -> None:
+def test_independent_pairs_refuse_snapping() -> None:
     with pytest.raises(ValueError, match="snap"):
         IndependentPairs(LAW, 0.05, 1000.0)
-    with pytest.raises(ValueError, match="attraction"):
-        IndependentPairs(PairInteraction(Exponential(0.18, 0.13), cutoff=1.0), 0.83, 1000.0)
     with pytest.raises(ValueError, match="through each other"):
         IndependentPairs(LAW, 0.83, 1000.0).pair_distance(-100.0)

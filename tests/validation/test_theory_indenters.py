@@ -219,9 +219,3 @@ def test_what_is_refused() -> None:
         ReducedContact(lambda r: 0.0, MODULUS).contact_radius(0.1)
     with pytest.raises(ValueError, match="two contact radii"):
         PARABOLA.contact_radius(0.1)
-    with pytest.raises(ValueError, match="outside 0 < r < a"):
-        ReducedContact(lambda r: r, MODULUS).pressure(0.5, 0.5)
-    with pytest.raises(ValueError, match="contact_modulus"):
-        ReducedContact(lambda r: r, 0.0)
-    with pytest.raises(ValueError, match="negative"):
-        ReducedContact(lambda r: r, MODULUS, -1.0)

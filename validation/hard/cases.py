@@ -13,22 +13,21 @@ from typing import Any
 import numpy as np
 from scipy.stats import chi2
 
+from validation.doors import IN_TIME, law_table
 from validation.references.folded_pairs import FoldedPairs
-from validation.references.interaction import Exponential, Floats, PairInteraction
+from validation.references.interaction import Floats, PairInteraction
 
 REPULSION, ATTRACTION = (0.011, 0.015), (0.01, 0.03)
 """Amplitude [FU LU] and range [LU]."""
-LAW = PairInteraction(Exponential(*REPULSION), Exponential(*ATTRACTION))
+LAW = PairInteraction.of(*REPULSION, *ATTRACTION)
 STEEPEST = float(LAW.force_slope(np.array(max(LAW.extremum_distance(2), 0.0))))
 """[FU/LU]"""
 TENSION = float(-LAW.force(np.array(LAW.extremum_distance(1))))
 """Largest tension of a pair [FU]."""
 CORE = float(LAW.force(np.array(0.0)))
 """Force of a pair at no distance [FU]."""
-PAPER_LAW = {
-    "repulsion": {"amplitude": 0.18, "range": 0.13},
-    "attraction": {"amplitude": 0.09, "range": 0.26},
-}
+PAPER_NUMBERS = (0.18, 0.13, 0.09, 0.26)
+PAPER_LAW = law_table(*PAPER_NUMBERS)
 """The paper's kind of contact: ranges near the spacing, so that particles feel several opposite ones."""
 BODIES = {"particles": 12, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 40.0}, "bulk_stiffness": 0.83}
 """A few particles, for decks under the hand."""
@@ -67,25 +66,23 @@ class PairCase:
 
     def scene(self) -> dict[str, Any]:
         """What is run: a pull-off, unless `more` has another experiment."""
-        timed = {"damping": {"coefficient": "auto"}, "plate": {}} if self.dynamic else {}
         method = "dynamic" if self.dynamic else "quasistatic"
-        return {
-            "bodies": {
-                "particles": self.particles,
-                "spacing": 1.0,
-                "profile": self.profile,
-                "reduction": "geike_popov",  # as drawn: `heights`
-                "bulk_stiffness": self.stiffness,
-            },
-            "interaction": {
-                "repulsion": dict(zip(("amplitude", "range"), REPULSION, strict=True)),
-                "attraction": dict(zip(("amplitude", "range"), ATTRACTION, strict=True)),
-            },
-            "accuracy": {"tolerance": self.tolerance},
-            "experiment": {"kind": "pull_off", "method": method, "preload": self.preload},
-            **timed,
-            **self.more,
-        }
+        return (
+            {
+                "bodies": {
+                    "particles": self.particles,
+                    "spacing": 1.0,
+                    "profile": self.profile,
+                    "reduction": "geike_popov",  # as drawn: `heights`
+                    "bulk_stiffness": self.stiffness,
+                },
+                "interaction": law_table(*REPULSION, *ATTRACTION),
+                "accuracy": {"tolerance": self.tolerance},
+                "experiment": {"kind": "pull_off", "method": method, "preload": self.preload},
+            }
+            | (IN_TIME if self.dynamic else {})
+            | self.more
+        )
 
     def exact(self) -> FoldedPairs:
         """The same pairs in closed form."""

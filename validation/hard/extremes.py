@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from validation.hard.cases import TENSION, PairCase, shaped
-from validation.row import Row, at_most
+from validation.row import Row, at_most, so
 from validation.study import Bench, Findings, Refused, Study, claim_row, found
 
 RADII = (1.0, 1e3, 1e6, 1e9)
@@ -60,13 +60,13 @@ def _off(bench: Bench, name: str, profile: dict[str, Any], count: int, d: float,
 
 def _too_few(bench: Bench) -> Row:
     """A body of one particle or two has no width that could be measured: a sentence before anything runs."""
-    wrong = 0
+    wrong = False
     for count in REFUSED_COUNTS:
         case = PairCase("few", RATIO, {"kind": "flat_punch", "radius": 0.5 * count}, count, TENSION)
         found = bench.run(f"few_{count}", case.scene())
-        wrong += not (isinstance(found, Refused) and found.before and "bodies.particles" in found.words)
+        wrong |= not (isinstance(found, Refused) and found.before and "bodies.particles" in found.words)
     name = f"scenes of N in {REFUSED_COUNTS} that run, or end without naming bodies.particles"
-    return at_most(name, wrong, 0.0, "three particles make the least width", evidence="set bound")
+    return so(name, wrong, "three particles make the least width")
 
 
 def _masses(bench: Bench) -> Iterator[Row]:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from validation.doors import scene_from_dict, scene_to_toml
 from validation.hard.cases import PAPER_LAW
-from validation.row import at_most
+from validation.row import so
 from validation.study import Bench, Findings, Study
 
 NAME = "faults"
@@ -46,9 +46,9 @@ def measure(bench: Bench) -> Findings:
     moments = [(phases.index(line) + 1, "", f'at "{line.split(":")[0]}"') for line in dict.fromkeys(phases)]
     moments += [(0, name, f"when {name} appears") for name in (sizes if bench.full else [RESULTS])]
     checks = [
-        at_most(f"killed {words}: a torn results.json, or another F_A when it is run again in that folder",
-            _killed(scene, bench.folder / f"killed_{index}_{name}", index, name, undisturbed), 0.0,
-            "the same scene undisturbed, to the last digit", evidence="set bound")
+        so(f"killed {words}: a torn results.json, or another F_A when it is run again in that folder",
+            _killed(scene, bench.folder / f"killed_{index}_{name}", index, name, undisturbed),
+            "the same scene undisturbed, to the last digit")
         for index, name, words in moments
     ]  # fmt: skip
     for name, size in sizes.items():
@@ -57,23 +57,21 @@ def measure(bench: Bench) -> Findings:
         code, words = _end(_start(scene, run, most))
         bad = code not in CODES or "Traceback" in words or (code == 0 and _force(run) != undisturbed)
         checks.append(
-            at_most(f"disk full at the last byte of {name}: a traceback, another exit code than 0, 2, 3, another F_A",
-                float(bad), 0.0, f"exit 0, 2 or 3 and no traceback; it is {code}", evidence="set bound")
+            so(f"disk full at the last byte of {name}: a traceback, another exit code than 0, 2, 3, another F_A",
+                bad, f"exit 0, 2 or 3 and no traceback; it is {code}")
         )  # fmt: skip
     checks.append(
-        at_most(
+        so(
             "second run in a folder at work that is not refused with exit 2",
             _second(scene, bench),
-            0.0,
             "one run for each folder",
-            evidence="set bound",
         )
     )
     return Findings(checks)
 
 
-def _killed(scene: Path, run: Path, lines: int, file: str, undisturbed: float | None) -> float:
-    """1 where a run that is killed at a line of its progress, or when a file appears, leaves what spoils the next."""
+def _killed(scene: Path, run: Path, lines: int, file: str, undisturbed: float | None) -> bool:
+    """Whether a run that is killed at a line of its progress, or when a file appears, leaves what spoils the next."""
     process = _start(scene, run)
     assert process.stderr is not None
     for _ in range(lines):
@@ -85,7 +83,7 @@ def _killed(scene: Path, run: Path, lines: int, file: str, undisturbed: float | 
     process.communicate()
     torn = _torn(run)
     code, _ = _end(_start(scene, run))
-    return float(torn or code != 0 or _force(run) != undisturbed)
+    return torn or code != 0 or _force(run) != undisturbed
 
 
 def _lines(process: subprocess.Popen[str]) -> list[str]:
@@ -136,7 +134,7 @@ def _torn(run: Path) -> bool:
     return False
 
 
-def _second(scene: Path, bench: Bench) -> float:
+def _second(scene: Path, bench: Bench) -> bool:
     run = bench.folder / "two"
     first = _start(scene, run)
     end = time.monotonic() + MOST
@@ -146,7 +144,7 @@ def _second(scene: Path, bench: Bench) -> float:
     code, words = _end(_start(scene, run))
     first.send_signal(signal.SIGCONT)
     _end(first)
-    return float(code != 2 or "Traceback" in words or _force(run) is None)
+    return code != 2 or "Traceback" in words or _force(run) is None
 
 
 FAULTS = Study(

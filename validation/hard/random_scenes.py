@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.doors import Run, scene_from_dict, settings_for
+from validation.doors import IN_TIME, Run, law_table, scene_from_dict, settings_for
 from validation.hard.claims import Tally
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
@@ -27,7 +27,7 @@ COARSE = 0.125
 """First steps of the solver's search over the shortest range: enough where no particle snaps."""
 FARTHEST = 5.0
 """Distance of a displacement from the estimate's over that, from which on chains that buckled are what it leads to."""
-PATHS, IN_TIME = 0.2, 0.25
+PATHS, TIMED = 0.2, 0.25
 """Shares of the scenes that are made paths, and that are run in time."""
 APART = 12.0
 """Where a path begins and ends, over the range of the attraction."""
@@ -53,7 +53,7 @@ def measure(bench: Bench) -> Findings:
 def varied(scene: dict[str, Any], random: Random) -> dict[str, Any]:
     """The scene, some of them a path in place of a pull-off, and more of them in time."""
     experiment = scene["experiment"]
-    path, timed = random.random() < PATHS, random.random() < IN_TIME
+    path, timed = random.random() < PATHS, random.random() < TIMED
     if experiment["kind"] == "pull_off" and "horizontal" not in scene and "plate" not in scene and path:
         far, deepest = (
             scene["interaction"]["attraction"]["range"],
@@ -62,11 +62,7 @@ def varied(scene: dict[str, Any], random: Random) -> dict[str, Any]:
         way = {"from": -APART * far, "to": deepest, "steps": random.randrange(40, 200)}
         return scene | {"experiment": {"kind": "path", "displacements": way}}
     if timed and "interaction" in scene and "plate" not in scene:
-        return scene | {
-            "damping": {"coefficient": "auto"},
-            "plate": {},
-            "experiment": experiment | {"method": "dynamic"},
-        }
+        return scene | IN_TIME | {"experiment": experiment | {"method": "dynamic"}}
     return scene
 
 
@@ -100,7 +96,7 @@ def random_scene(random: Random) -> dict[str, Any]:
     else:
         scene["experiment"] = {"kind": "load", "force": force}
     if random.random() < 0.15:
-        scene |= {"damping": {"coefficient": "auto"}, "plate": {}}
+        scene |= IN_TIME
         scene["experiment"]["method"] = "dynamic"
     return scene
 
@@ -113,15 +109,12 @@ def random_law(random: Random, spacing: float, stiffness: float, radius: float) 
     """
     reach = random.uniform(0.2, 1.0) * spacing
     strength, shorter = random.uniform(1.8, 3.0), random.uniform(1.7, 2.5)
-    unit = PairInteraction(Exponential(strength, reach / shorter), Exponential(1.0, reach))
+    unit = PairInteraction.of(strength, reach / shorter, 1.0, reach)
     steepest = float(unit.force_slope(np.array(unit.extremum_distance(2))))
     rows = 1.0 + 2.0 * reach / spacing
     amplitude = random.uniform(0.02, 0.1) * 0.5 * stiffness / steepest / rows**2
     largest = -amplitude * float(unit.force(np.array(unit.extremum_distance(1))))
-    law = {
-        "repulsion": {"amplitude": strength * amplitude, "range": reach / shorter},
-        "attraction": {"amplitude": amplitude, "range": reach},
-    }
+    law = law_table(strength * amplitude, reach / shorter, amplitude, reach)
     return law, random.uniform(3.0, 20.0) * largest * math.sqrt(radius * reach) / spacing
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.doors import Run, scene_from_dict, settings_for
+from validation.doors import Run, law_table, scene_from_dict, settings_for
 from validation.references.prandtl_tomlinson import corrugation
 from validation.references.slide import Trace
 from validation.row import Row, at_most, so
@@ -26,10 +26,8 @@ CLOSED = 5e-3
 """Work that is neither dissipated nor stored, over the largest of the three."""
 STATIC = 5e-3
 """Of the largest force of the corrugation: the plate moves on while it slips."""
-LAW: dict[str, Any] = {
-    "repulsion": {"amplitude": 1.0, "range": 0.5},
-    "attraction": {"amplitude": 0.5, "range": 1.0},
-}
+LAW = (1.0, 0.5, 0.5, 1.0)
+"""A [FU·LU], a [LU], B [FU·LU], b [LU]."""
 LOAD = 0.2
 """Of a particle on a row [FU]."""
 SOURCE = "an integrator in numpy"
@@ -73,7 +71,7 @@ def flat(below: int, above: int, **tables: Any) -> dict[str, Any]:
 
 
 def _with(base: dict[str, dict[str, Any]], tables: dict[str, Any]) -> dict[str, Any]:
-    own = base | {"interaction": LAW, "horizontal": {}, "accuracy": {"tolerance": 1e-3}}
+    own = base | {"interaction": law_table(*LAW), "horizontal": {}, "accuracy": {"tolerance": 1e-3}}
     return {name: own.get(name, {}) | tables.get(name, {}) for name in {**own, **tables}}
 
 
@@ -160,7 +158,7 @@ def _special(name: str, found: Run, trace: Trace) -> Iterator[Row]:
     if name in STICKY:
         yield so(f"no friction where adhesion holds, {name}", not result(found, "mean_friction").value > 0.0)
     if name == ONE:
-        exact = corrugation((1.0, 0.5, 0.5, 1.0), 1.0, LOAD).largest_force
+        exact = corrugation(LAW, 1.0, LOAD).largest_force
         off = abs(result(found, "static_friction").value / exact - 1.0)
         yield at_most("static friction of one particle off", off, STATIC, "max of U′ of its corrugation", "slip")
     if name == ALONE:

@@ -9,11 +9,11 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2
 
-from validation.doors import Run
-from validation.hard.cases import CHANCE, PAPER_LAW, SIGMAS, block_mean, chi_square_bound
+from validation.doors import IN_TIME, Run
+from validation.hard.cases import CHANCE, PAPER_LAW, PAPER_NUMBERS, SIGMAS, block_mean, chi_square_bound
 from validation.references.boltzmann_pairs import BoltzmannPairs
 from validation.references.folded_pairs import FoldedPairs
-from validation.references.interaction import Exponential, Floats, PairInteraction
+from validation.references.interaction import Floats, PairInteraction
 from validation.references.model import ChainModel
 from validation.references.solver import ChainSolver
 from validation.references.thermal_chain import displacement_under
@@ -31,7 +31,7 @@ WIDE_BODIES: dict[str, Any] = BODIES | {"particles": 200, "spacing": 1.0}
 WIDE_LOAD, WIDE_NEAR, WIDE_WIDTH = 1.0, 0.255, 0.1
 """The load [FU], and the interval of displacements of its average [LU]: ten standard deviations."""
 WIDE_TEMPERATURES, FULL_WIDE_TEMPERATURES, WIDE_TOLERANCE = (0.0, 1e-3), (0.0, 1e-4, 1e-3), 1e-3
-LAW_HERE = PairInteraction(Exponential(**PAPER_LAW["repulsion"]), Exponential(**PAPER_LAW["attraction"]))
+LAW_HERE = PairInteraction.of(*PAPER_NUMBERS)
 HEIGHTS: Floats = np.asarray((4.0 * np.arange(-20.0, 21.0)) ** 2 / 2000.0)
 NEAR, WIDTH = 0.24, {1e-4: 0.05, 1e-3: 0.13, 3e-3: 0.22}
 """Interval of displacements of the integral [LU]: eight standard deviations."""
@@ -46,7 +46,7 @@ def thermal_scene(temperature: float, seed: int, tolerance: float = 2e-3) -> dic
         "experiment": {"kind": "load", "force": LOAD},
     }
     if temperature > 0.0:
-        scene |= {"damping": {"coefficient": "auto"}, "noise": {"temperature": temperature, "seed": seed}, "plate": {}}
+        scene |= IN_TIME | {"noise": {"temperature": temperature, "seed": seed}}
     return scene
 
 

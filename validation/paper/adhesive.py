@@ -14,7 +14,7 @@ from functools import cache
 import numpy as np
 from scipy.integrate import quad
 
-from validation.doors import Quantity, Run, Scene, estimated, jkr_target, material_scene
+from validation.doors import Quantity, Run, Scene, estimated, jkr_target, law_of, material_scene
 from validation.figures import Panel, Series, figure
 from validation.page import number, share
 from validation.paper.scenes import CONTACT_MODULUS, READ, SURFACE_ENERGY, TABLE_1, changed, jkr_reduced
@@ -77,11 +77,9 @@ def parting(scene: Scene) -> Scene:
 
 def _lengths(scene: Scene) -> tuple[float, float]:
     """R of the sphere and the range of the attraction [LU]."""
-    assert scene.interaction is not None
-    assert scene.interaction.attraction is not None
     radius = scene.bodies.profile.curvature_radius
     assert radius is not None
-    return radius, scene.interaction.attraction.range
+    return radius, law_of(scene)[3]
 
 
 def scenes(paper: Scene) -> Scenes:

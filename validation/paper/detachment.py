@@ -8,21 +8,17 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from validation.doors import Scene, scene_from_dict
+from validation.doors import Scene, law_table, scene_from_dict
 from validation.figures import Array, Panel, Series, figure
 from validation.page import agreement, number
 from validation.references.boltzmann_pairs import BoltzmannPairs
 from validation.references.detachment import detachment_in_time, drag_of_pairs, garg
-from validation.references.interaction import Exponential, PairInteraction
+from validation.references.interaction import PairInteraction
 from validation.row import Reference, Row, absolute, relative, solver
 from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
-
-if TYPE_CHECKING:
-    pass
 
 NAME = "detachment"
 PAIRS, APART, STIFFNESS, DRAG, TEMPERATURE = 9, 3.0, 2.0, 0.5, 5e-3
@@ -46,14 +42,13 @@ LAGGING = {"lagging": "the reference has the same drag"}
 
 def scene(rate: float, repeats: int) -> Scene:
     """The pairs, pulled at a rate [FU/TU]."""
-    A, a, B, b = LAW
     return scene_from_dict({
         "title": "nine pairs under heat",
         "bodies": {
             "particles": "auto", "spacing": APART, "profile": {"kind": "flat_punch", "radius": 0.5 * PAIRS * APART},
             "bulk_stiffness": STIFFNESS, "reduction": "geike_popov", "mass": 0.02,
         },
-        "interaction": {"repulsion": {"amplitude": A, "range": a}, "attraction": {"amplitude": B, "range": b}},
+        "interaction": law_table(*LAW),
         "damping": {"coefficient": DRAG},
         "noise": {"temperature": TEMPERATURE, "seed": 1},
         "plate": {"mass": 0.1},
@@ -75,8 +70,7 @@ def scenes(_: Scene) -> Scenes:
 @cache
 def free_energy(temperature: float = TEMPERATURE) -> tuple[Array, Array]:
     """Displacements d [LU] and A(d) [FU·LU] of all pairs."""
-    A, a, B, b = LAW
-    law = PairInteraction(Exponential(A, a), Exponential(B, b))
+    law = PairInteraction.of(*LAW)
     d = np.linspace(FARTHEST, DEEPEST, PLACES)
     pairs = BoltzmannPairs(law, STIFFNESS, np.zeros(1), temperature)
     return d, -temperature * PAIRS * pairs.log_partition(law.force_free_distance() - d)

@@ -6,38 +6,25 @@ The closed form holds in the local limit (`paper.local`), whose curves have N an
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 
 import numpy as np
 
-from validation.doors import Run, Scene
-from validation.figures import Drawing, Panel, Series, figure
+from validation.doors import Run, Scene, Target, estimated
+from validation.figures import Array, Drawing, Panel, Series, figure
 from validation.page import agreement, share, worst_deviation
 from validation.paper.fig4 import AGAINST, CAREFUL, STENCIL
 from validation.paper.scenes import (
-    DYNAMIC_FORCES,
-    LENGTHENED,
-    LOCAL_COUNTS,
-    LOCAL_RADII,
-    RADII,
     READ,
-    REFINED,
     TABLE_1,
     barquins_reduced,
-    branch,
     chain_model,
-    distances,
-    dynamic_run,
+    changed,
+    curve_scene,
     equilibrium_under,
     independent_pairs,
     jkr_reduced,
-    lengthened_run,
     local,
-    local_counted,
-    radius_run,
-    reduced,
-    refined_run,
-    scenes_8a,
-    scenes_8b,
     with_radius,
 )
 from validation.references.tension_radius import state_radius
@@ -51,22 +38,131 @@ OUTSIDE = 0.05
 NARROW = "the claim also covers F_A, read between rows"
 
 
+# N has two meanings: a longer chain of the same spacing, and a finer spacing of the same length. "The same physics" of
+# the latter is the same stiffness and line tension per length, and a law with the same F_A and a₀ (`estimated`).
+DEEPEST, STEPS = 0.46, 56
+"""Largest displacement [LU] of a curve, F/F_A some 2 in every scene, and its rows on the way back."""
+SAME = 200
+"""N of the paper's chain; its curve is also that of R = 1000."""
+LENGTHENED = {n: f"curve_lengthened_N{n}" for n in (SAME, 400, 800, 1600)}
+"""The contact of R = 1000 needs some 174 particles; what a shorter chain cuts off the run warns of."""
+REFINED = {n: f"curve_refined_N{n}" for n in (1600, 800, 400, 100)}
+"""N on the length of 200 LU; the longest run first. N = 200 is the lengthened one."""
+REFINED_TOLERANCE = 1e-2
+"""Of runs whose particles feel tens of others."""
+REFINED_DEEPEST = 0.5
+"""Their contacts are softer; from 0.55 LU on particles of the finest go through the opposite chain."""
+RADII = {R: f"curve_R{R:g}" for R in (500.0, 2000.0, 3000.0, 4000.0)} | {TABLE_1[0].radius: LENGTHENED[SAME]}
+LOCAL_RADII = {R: f"curve_local_R{R:g}" for R in (4000.0, 8000.0, 16000.0, 32000.0)}
+LOCAL_COUNTS = {n: f"curve_local_N{n}" for n in (100, 200, 300, 400)}
+LOCAL_LENGTH, LOCAL_RADIUS = 1600.0, 64000.0
+"""Length and R of the local chains of given N [LU]."""
+DYNAMIC = {force: f"dynamic_load{force:g}" for force in (1.0, 0.0, -1.0)}
+"""Loads [FU] of the dynamic points; the paper's own method."""
+OF_N = {f"N = {n}, chain lengthened": name for n, name in LENGTHENED.items()} | {
+    f"N = {n}, spacing refined": name for n, name in sorted(REFINED.items())
+}
+OF_R = {f"R = {R:g} LU": name for R, name in sorted(RADII.items())}
+"""Runs by what rows say of them."""
+HIGHEST = 1.5
+"""F/F_A up to which curves are compared with theory."""
+
+
+def scenes_8a(paper: Scene) -> Scenes:
+    """Curves of both meanings of N, and of the local limit."""
+    fine = {name: curve_scene(refined(paper, n), REFINED_DEEPEST, STEPS) for n, name in REFINED.items()}
+    long = {name: changed(paper, f"bodies.particles={n}") for n, name in LENGTHENED.items()}
+    pairs = {name: local_counted(paper, n) for n, name in LOCAL_COUNTS.items()}
+    return fine | {name: curve_scene(scene, DEEPEST, STEPS) for name, scene in (long | pairs).items()}
+
+
+def scenes_8b(paper: Scene) -> Scenes:
+    """Curves over R, of the local limit too, and dynamic loads of the paper's scene."""
+    moving = {
+        name: changed(
+            paper,
+            f"experiment={{ kind = 'load', force = {force}, method = 'dynamic' }}",
+            "damping.coefficient=auto",
+            "plate.mass=auto",
+        )
+        for force, name in DYNAMIC.items()
+    }
+    own = {name: changed(with_radius(paper, R), "bodies.particles=auto") for R, name in sorted(RADII.items())}
+    own[LENGTHENED[SAME]] = paper
+    pairs = {name: with_radius(local(paper), R) for R, name in LOCAL_RADII.items()}
+    return moving | {name: curve_scene(scene, DEEPEST, STEPS) for name, scene in (own | pairs).items()}
+
+
+def neighbour_curves(paper: Scene) -> Scenes:
+    """The curves of bodies whose particles have neighbours."""
+    every = scenes_8a(paper) | scenes_8b(paper)
+    return {name: every[name] for name in (OF_N | OF_R).values()}
+
+
+@cache  # three studies ask for the same four scenes, of a second each
+def refined(paper: Scene, count: int) -> Scene:
+    """The paper's scene with `count` particles on the same length."""
+    spacing = 200.0 / count
+    assert paper.neighbours is not None
+    scene = changed(
+        paper,
+        f"bodies.particles={count}",
+        f"bodies.spacing={spacing}",
+        f"bodies.bulk_stiffness={paper.bulk_stiffness * spacing}",
+        f"neighbours.stiffness={paper.neighbours.stiffness / spacing}",
+        f"accuracy.tolerance={REFINED_TOLERANCE}",
+    )
+    first = TABLE_1[0]
+    return estimated(scene, Target(first.adhesion_force, first.zero_load_radius))
+
+
+def local_counted(paper: Scene, count: int) -> Scene:
+    """The local limit with `count` particles on a given length."""
+    scene = with_radius(local(paper, LOCAL_LENGTH / count), LOCAL_RADIUS)
+    return changed(scene, f"bodies.particles={count}")
+
+
+def branch(run: Run) -> tuple[Array, Array, Array, Array]:
+    """Displacement, force, contact radius and its uncertainty on the way back, where the bodies touch."""
+    curve = run.curve
+    chosen = (curve.branch == "unloading") & np.isfinite(curve.contact_radius) & (curve.contact_radius > 0.0)
+    columns = (curve.displacement, curve.force, curve.contact_radius, curve.contact_radius_uncertainty)
+    d, force, a, spread = (column[chosen] for column in columns)
+    return d, force, a, spread
+
+
+def reduced(force: Array, contact_radius: Array) -> tuple[Array, Array]:
+    """F/F_A and a/a₀ of a branch, with its own F_A, the largest tension, and its own a₀, where F = 0."""
+    largest = int(np.argmin(force))
+    stable = slice(0, largest + 1)
+    order = np.argsort(force[stable])
+    a_0 = float(np.interp(0.0, force[stable][order], contact_radius[stable][order]))
+    return force / -force[largest], contact_radius / a_0
+
+
+def distances(run: Run) -> tuple[float, float]:
+    """Rms distance of F/F_A to JKR's and to Barquins' at the same a/a₀, from a_cr up to F/F_A = 1.5."""
+    tension, a = reduced(*branch(run)[1:3])
+    compared = (np.arange(len(a)) <= int(np.argmin(tension))) & (tension <= HIGHEST)
+    theories = (jkr_reduced, barquins_reduced)
+    jkr, barquins = (float(np.sqrt(np.mean((tension - law(a))[compared] ** 2))) for law in theories)
+    return jkr, barquins
+
+
 def judge_8a(bench: Bench) -> Findings:
     """Distances of every curve over N."""
     paper, runs = bench.paper, bench.runs
-    names = {f"N = {n}, chain lengthened": lengthened_run(n) for n in LENGTHENED}
-    names |= {f"N = {n}, spacing refined": refined_run(n) for n in sorted(REFINED)}
-    checks = _jkr_checks("fig8a", names, runs)
-    law = {f"N = {n}": (f"curve_local_N{n}", local_counted(paper, n)) for n in LOCAL_COUNTS}
-    closed = _closed_form_checks("fig8a", law, runs)
-    farthest = max(zip(checks, names, strict=True), key=lambda one: one[0].value)[1]
-    a_0 = [found(runs[lengthened_run(n)], "zero_load_radius").value for n in LENGTHENED]
+    checks = _jkr_checks(OF_N, runs)
+    law = {f"N = {n}": (name, local_counted(paper, n)) for n, name in LOCAL_COUNTS.items()}
+    closed = _closed_form_checks(law, runs)
+    farthest = max(zip(checks, OF_N, strict=True), key=lambda one: one[0].value)[1]
+    a_0 = [found(runs[name], "zero_load_radius").value for name in LENGTHENED.values()]
     finding = (
         f"A chain longer than the contact needs changes a_0 by {share(float(np.ptp(a_0)) / a_0[0])} at most. "
         f"{_summary(checks)} Farthest is {farthest}; for every spacing the interaction is found anew, with a range of "
         f"its own.\n\nIn the local limit, beside the model's closed form, {agreement(closed)}."
     )
-    shown = [_series(name, runs[run]) for name, run in names.items()]
+    shown = [_series(name, runs[run]) for name, run in OF_N.items()]
     figures = figure("Reduced force over reduced radius for different numbers of particles", reduced_panel(shown))
     return Findings(checks + closed, figures, text=finding)
 
@@ -74,10 +170,9 @@ def judge_8a(bench: Bench) -> Findings:
 def judge_8b(bench: Bench) -> Findings:
     """Distances of every curve over R, and the dynamic points."""
     paper, runs = bench.paper, bench.runs
-    names = {f"R = {R:g} LU": radius_run(R) for R in RADII}
-    checks = _jkr_checks("fig8b", names, runs)
-    law = {f"R = {R:g} LU": (f"curve_local_R{R:g}", with_radius(local(paper), R)) for R in LOCAL_RADII}
-    closed, moved = _closed_form_checks("fig8b", law, runs), _dynamic_checks(paper, runs)
+    checks = _jkr_checks(OF_R, runs)
+    law = {f"R = {R:g} LU": (name, with_radius(local(paper), R)) for R, name in LOCAL_RADII.items()}
+    closed, moved = _closed_form_checks(law, runs), _dynamic_checks(paper, runs)
     points, lines = [], []
     for name, (run, scene) in law.items():
         d, force, a, _ = branch(runs[run])
@@ -93,7 +188,7 @@ def judge_8b(bench: Bench) -> Findings:
         "solver: "
         f"{agreement(moved)}, worst deviation {share(worst_deviation(moved))}."
     )
-    shown = [_series(name, runs[run]) for name, run in names.items()]
+    shown = [_series(name, runs[run]) for name, run in OF_R.items()]
     compared = Panel("contact radius $a$ (LU)", "force $F$ (FU); lines: closed form", points, lines, coloured=True)
     figures = figure("Reduced force over reduced radius for different radii of curvature", reduced_panel(shown)) | {
         "closed_form": Drawing("Force over radius in the local limit: runs and the closed form of pairs", [compared])
@@ -105,11 +200,8 @@ def judge_both(bench: Bench) -> Findings:
     """Is every curve nearer to JKR than to Barquins?"""
     runs = bench.runs
     row, checks = Rows(runs), []
-    names = {f"N = {n}, chain lengthened": lengthened_run(n) for n in LENGTHENED}
-    names |= {f"N = {n}, spacing refined": refined_run(n) for n in sorted(REFINED)}
-    names |= {f"R = {R:g} LU": radius_run(R) for R in RADII}
-    for name, run in names.items():
-        jkr, barquins = _distances(runs[run])
+    for name, run in (OF_N | OF_R).items():
+        jkr, barquins = distances(runs[run])
         checks.append(
             row.at_most(f"rms distance to JKR over that to Barquins, {name}", jkr / barquins,
                 Reference(1.0, "JKR suits much better for arbitrary N and R", "paper's words"),
@@ -127,13 +219,8 @@ def judge_both(bench: Bench) -> Findings:
 
 def _standing(name: str) -> Standing:
     """Longer chains add particles that touch nothing, and R = 1000 is the chain of 200."""
-    same = name == f"R = {TABLE_1[0].radius:g} LU" or ("lengthened" in name and f"N = {LENGTHENED[0]}," not in name)
+    same = name == f"R = {TABLE_1[0].radius:g} LU" or ("lengthened" in name and f"N = {SAME}," not in name)
     return "repeats" if same else "judged"
-
-
-def _distances(run: Run) -> tuple[float, float]:
-    _, force, a, _ = branch(run)
-    return distances(force, a)
 
 
 def _series(name: str, run: Run) -> Series:
@@ -143,10 +230,10 @@ def _series(name: str, run: Run) -> Series:
     return Series(name, ratio[stable], tension[stable])
 
 
-def _jkr_checks(study: str, names: Mapping[str, str], runs: Runs) -> list[Row]:
+def _jkr_checks(names: Mapping[str, str], runs: Runs) -> list[Row]:
     row, checks = Rows(runs), []
     for name, run in names.items():
-        jkr, barquins = _distances(runs[run])
+        jkr, barquins = distances(runs[run])
         checks.append(
             row.at_most(f"rms distance of F/F_A to JKR up to 1.5, {name} (to Barquins: {barquins:.3f})", jkr,
                 Reference(ASKED, "bound asked for; Fig. 8: curves lie on JKR's", "set bound"),
@@ -155,7 +242,7 @@ def _jkr_checks(study: str, names: Mapping[str, str], runs: Runs) -> list[Row]:
     return checks
 
 
-def _closed_form_checks(study: str, laws: Mapping[str, tuple[str, Scene]], runs: Runs) -> list[Row]:
+def _closed_form_checks(laws: Mapping[str, tuple[str, Scene]], runs: Runs) -> list[Row]:
     """For each curve in the local limit: how far F and a are from the closed form, beside what the run claims."""
     row, checks = Rows(runs), []
     for name, (run, scene) in laws.items():
@@ -194,13 +281,13 @@ def _dynamic_checks(paper: Scene, runs: Runs) -> list[Row]:
     """Radii of settled loads beside the solver's at the same force."""
     row, model = Rows(runs), chain_model(paper)
     checks = []
-    for load in DYNAMIC_FORCES:
-        ours = found(runs[dynamic_run(load)], "contact_radius")
+    for load, name in DYNAMIC.items():
+        ours = found(runs[name], "contact_radius")
         state = equilibrium_under(model, load)
         checks.append(
             row(f"contact radius of the dynamic method at F = {load:g} FU", ours,
                 solver(state_radius(model, state, STENCIL), AGAINST),
-                claim("what the run claims", paper.accuracy.tolerance), on=[dynamic_run(load)], wide=CAREFUL)
+                claim("what the run claims", paper.accuracy.tolerance), on=[name], wide=CAREFUL)
         )  # fmt: skip
     return checks
 
@@ -220,12 +307,6 @@ def _summary(checks: list[Row]) -> str:
         f"The rms distance to JKR is {min(distances):.3f} to {max(distances):.3f} up to F/F_A = 1.5: "
         f"{agreement(checks)}."
     )
-
-
-def neighbour_curves(paper: Scene) -> Scenes:
-    """The curves of bodies whose particles have neighbours."""
-    every = scenes_8a(paper) | scenes_8b(paper)
-    return {name: scene for name, scene in every.items() if name.startswith("curve") and "local" not in name}
 
 
 FIG8A = Study(

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from validation.doors import Scene, scene_from_dict
+from validation.doors import Scene, law_table, scene_from_dict
 from validation.figures import Panel, Series, figure
 from validation.page import agreement, number
 from validation.references.langevin_ensemble import PulledParticle, ensemble_friction
@@ -20,9 +20,6 @@ from validation.references.prandtl_tomlinson import corrugation, slow_friction
 from validation.references.thermal_friction import free_corrugation, textbook_friction, thermal_friction
 from validation.row import Reference, Row, absolute, solver
 from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
-
-if TYPE_CHECKING:
-    pass
 
 NAME = "heat"
 LAW, LOAD, SPACING = (2.0, 0.5, 1.0, 1.0), 0.5, 1.0
@@ -55,7 +52,7 @@ FLAT_PAIR: dict[str, Any] = {
         "particles": 8, "upper_particles": 8, "spacing": 1.0, "lower": "rigid_chain", "periodic": True,
         "profile": {"kind": "flat"}, "bulk_stiffness": 1.0,
     },
-    "interaction": {"repulsion": {"amplitude": 1.0, "range": 0.5}, "attraction": {"amplitude": 0.5, "range": 1.0}},
+    "interaction": law_table(1.0, 0.5, 0.5, 1.0),
     "horizontal": {},
     "damping": {"coefficient": 0.4},
     "noise": {"temperature": TEMPERATURE, "seed": 3},
@@ -90,9 +87,7 @@ def scene(share: float, velocity: float, distance: float, seed: int = 1) -> Scen
             "particles": 32, "upper_particles": 1, "upper_offset": 0.5, "spacing": SPACING, "lower": "rigid_chain",
             "periodic": True, "profile": {"kind": "flat"}, "bulk_stiffness": OWN, "mass": MASS,
         },
-        "interaction": {
-            "repulsion": {"amplitude": LAW[0], "range": LAW[1]}, "attraction": {"amplitude": LAW[2], "range": LAW[3]},
-        },
+        "interaction": law_table(*LAW),
         "horizontal": {},
         "damping": {"coefficient": DRAG},
         "noise": {"temperature": particle.temperature, "seed": seed},

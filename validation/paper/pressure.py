@@ -15,19 +15,8 @@ from numpy.typing import NDArray
 from validation.doors import Scene, Target, estimated
 from validation.figures import Panel, Series, figure
 from validation.page import share
-from validation.paper.fig8 import ASKED
-from validation.paper.scenes import (
-    DEEPEST,
-    READ,
-    STEPS,
-    TABLE_1,
-    branch,
-    changed,
-    curve_scene,
-    jkr_reduced,
-    lengthened_run,
-    scenes_8a,
-)
+from validation.paper.fig8 import ASKED, DEEPEST, LENGTHENED, SAME, STEPS, branch
+from validation.paper.scenes import READ, TABLE_1, changed, curve_scene, jkr_reduced
 from validation.paper.table1 import pull_off_run, scales
 from validation.row import Reference, absolute, printed, relative
 from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
@@ -37,6 +26,10 @@ PLACE, PRINTED, DIGIT = 35.0, 800.0, 50.0
 """Contact radius [LU]; "about 800 MPa"; half of its last digit [MPa]."""
 STIFFNESSES = (0.83, 0.9, 1.1)
 """Other bulk stiffnesses [FU/LU]."""
+
+
+CURVE = LENGTHENED[SAME]
+"""The curve of the paper's chain."""
 
 
 def stiffness_run(stiffness: float) -> str:
@@ -54,9 +47,8 @@ def softened(paper: Scene, stiffness: float) -> Scene:
 
 def pressure_scenes(paper: Scene) -> Scenes:
     """The first row's pull-off, its curve, and those of other stiffnesses."""
-    name = lengthened_run(200)
     others = {stiffness_run(k): curve_scene(softened(paper, k), DEEPEST, STEPS) for k in STIFFNESSES}
-    return {pull_off_run(TABLE_1[0].radius): paper, name: scenes_8a(paper)[name]} | others
+    return {pull_off_run(TABLE_1[0].radius): paper, CURVE: curve_scene(paper, DEEPEST, STEPS)} | others
 
 
 def _stable(runs: Runs, name: str) -> tuple[Array, Array]:
@@ -71,7 +63,7 @@ def judge_pressure(bench: Bench) -> Findings:
     """Mean pressure over the contact radius, by the run and by Eq. (8)."""
     runs = bench.runs
     row, first = Rows(runs), TABLE_1[0]
-    pull_off, curve = pull_off_run(first.radius), lengthened_run(200)
+    pull_off = pull_off_run(first.radius)
     units = scales(runs, first.radius)
     mega = 1e-6 * units.force / units.length**2
     force_scale, radius_scale = (found(runs[pull_off], q).value for q in ("adhesion_force", "zero_load_radius"))
@@ -79,7 +71,7 @@ def judge_pressure(bench: Bench) -> Findings:
     def at_place(a: Array, force: Array) -> float:
         return float(np.interp(PLACE, a, force) / (math.pi * PLACE**2) * mega)
 
-    a, force = _stable(runs, curve)
+    a, force = _stable(runs, CURVE)
     ours = at_place(a, force)
     bend = abs(ours - at_place(a[::2], force[::2]))
     jkr = force_scale * jkr_reduced(a / radius_scale) / (math.pi * a**2) * mega
@@ -95,7 +87,7 @@ def judge_pressure(bench: Bench) -> Findings:
             absolute(DIGIT, "print: one digit"),
             uncertainty=spread,
             unit="MPa",
-            on=[curve, pull_off],
+            on=[CURVE, pull_off],
             despite=READ,
         ),
         row(
@@ -107,7 +99,7 @@ def judge_pressure(bench: Bench) -> Findings:
                 "range of the interaction: the curve is near JKR's and not on it; chosen by the stiffness",
             ),
             uncertainty=spread / by_law,
-            on=[curve, pull_off],
+            on=[CURVE, pull_off],
             despite=READ,
         ),
         row(

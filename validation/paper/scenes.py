@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -19,12 +18,11 @@ from scipy.optimize import brentq
 from validation.doors import (
     FolderError,
     Parabola,
-    Run,
     RunError,
     Scene,
     Target,
-    estimated,
     identify,
+    law_of,
     load_run,
     read_scene,
     scene_from_dict,
@@ -33,10 +31,9 @@ from validation.doors import (
 )
 from validation.figures import Array
 from validation.references.independent_pairs import IndependentPairs
-from validation.references.interaction import Exponential, PairInteraction
+from validation.references.interaction import PairInteraction
 from validation.references.model import ChainModel
 from validation.references.solver import ChainSolver, State
-from validation.study import Scenes
 
 CONTACT_MODULUS = 200e9
 """E* of the paper's example [Pa]."""
@@ -104,9 +101,7 @@ def curve_scene(scene: Scene, deepest: float, steps: int) -> Scene:
 
 def separation(scene: Scene) -> float:
     """Displacement [LU] of some two ranges, at which the contact has let go."""
-    assert scene.interaction is not None
-    assert scene.interaction.attraction is not None
-    return scene.interaction.attraction.range
+    return law_of(scene)[3]
 
 
 def local(scene: Scene, spacing: float = LOCAL_SPACING) -> Scene:
@@ -131,128 +126,17 @@ def with_radius(scene: Scene, radius: float) -> Scene:
     return changed(scene, f"bodies.profile.radius={radius}")
 
 
-# Curves F(a) of many N and R (Fig. 8). N has two meanings: a longer chain of the same spacing, and a finer spacing of
-# the same length. "The same physics" of the latter is the same stiffness and line tension per length, and a law
-# with the same F_A and a₀ (by `identify.estimated`).
-DEEPEST, STEPS = 0.46, 56
-"""Largest displacement [LU] of a curve, F/F_A some 2 in every scene, and its rows on the way back."""
-LENGTHENED = (200, 400, 800, 1600)
-"""The contact of R = 1000 needs some 174; what a shorter chain cuts off the run warns of."""
-REFINED = (1600, 800, 400, 100)
-"""N on the length of 200 LU; the longest run first. N = 200 is the lengthened one."""
-REFINED_TOLERANCE = 1e-2
-"""Of runs whose particles feel tens of others."""
-REFINED_DEEPEST = 0.5
-"""Their contacts are softer; from 0.55 LU on particles of the finest go through the opposite chain."""
-RADII = (500.0, 1000.0, 2000.0, 3000.0, 4000.0)
-LOCAL_RADII = (4000.0, 8000.0, 16000.0, 32000.0)
-LOCAL_COUNTS = (100, 200, 300, 400)
-LOCAL_LENGTH = 1600.0
-"""Length of the local chains of given N [LU], at R = LOCAL_RADIUS."""
-LOCAL_RADIUS = 64000.0
 READ = {"tolerance": "of a_cr and a_0, which a path reads between its rows; used here are the rows"}
 """Answer to the warning of every curve."""
-DYNAMIC_FORCES = (1.0, 0.0, -1.0)
-"""Loads [FU] of the dynamic points; the paper's own method."""
-
-
-def lengthened_run(count: int) -> str:
-    """Name of the curve of a chain of `count` particles, 1 LU apart."""
-    return f"curve_lengthened_N{count}"
-
-
-def refined_run(count: int) -> str:
-    """Name of the curve of `count` particles on 200 LU."""
-    return f"curve_refined_N{count}"
-
-
-def radius_run(R: float) -> str:
-    """Name of the curve of the paper's chain with that R."""
-    return lengthened_run(200) if TABLE_1[0].radius == R else f"curve_R{R:g}"
-
-
-@cache  # three studies ask for the same four scenes, of a second each
-def refined(paper: Scene, count: int) -> Scene:
-    """The paper's scene with `count` particles on the same length."""
-    spacing = 200.0 / count
-    assert paper.neighbours is not None
-    scene = changed(
-        paper,
-        f"bodies.particles={count}",
-        f"bodies.spacing={spacing}",
-        f"bodies.bulk_stiffness={paper.bulk_stiffness * spacing}",
-        f"neighbours.stiffness={paper.neighbours.stiffness / spacing}",
-        f"accuracy.tolerance={REFINED_TOLERANCE}",
-    )
-    first = TABLE_1[0]
-    return estimated(scene, Target(first.adhesion_force, first.zero_load_radius))
-
-
-def local_counted(paper: Scene, count: int) -> Scene:
-    """The local limit with `count` particles on a given length."""
-    scene = with_radius(local(paper, LOCAL_LENGTH / count), LOCAL_RADIUS)
-    return changed(scene, f"bodies.particles={count}")
-
-
-def scenes_8a(paper: Scene) -> Scenes:
-    """Curves of both meanings of N, and of the local limit."""
-    fine = {refined_run(n): curve_scene(refined(paper, n), REFINED_DEEPEST, STEPS) for n in REFINED}
-    long = {lengthened_run(n): curve_scene(changed(paper, f"bodies.particles={n}"), DEEPEST, STEPS) for n in LENGTHENED}
-    pairs = {f"curve_local_N{n}": curve_scene(local_counted(paper, n), DEEPEST, STEPS) for n in LOCAL_COUNTS}
-    return fine | long | pairs
-
-
-def dynamic_run(force: float) -> str:
-    """Name of the dynamic load."""
-    return f"dynamic_load{force:g}"
-
-
-def _curve(paper: Scene, R: float) -> Scene:
-    long = paper if TABLE_1[0].radius == R else changed(with_radius(paper, R), "bodies.particles=auto")
-    return curve_scene(long, DEEPEST, STEPS)
-
-
-def scenes_8b(paper: Scene) -> Scenes:
-    """Curves over R, of the local limit too, and dynamic loads of the paper's scene."""
-    moving = {
-        dynamic_run(force): changed(
-            paper,
-            f"experiment={{ kind = 'load', force = {force}, method = 'dynamic' }}",
-            "damping.coefficient=auto",
-            "plate.mass=auto",
-        )
-        for force in DYNAMIC_FORCES
-    }
-    pairs = {f"curve_local_R{R:g}": curve_scene(with_radius(local(paper), R), DEEPEST, STEPS) for R in LOCAL_RADII}
-    return moving | {radius_run(R): _curve(paper, R) for R in RADII} | pairs
-
-
-def branch(run: Run) -> tuple[Array, Array, Array, Array]:
-    """Displacement, force, contact radius and its uncertainty on the way back, where the bodies touch."""
-    curve = run.curve
-    chosen = (curve.branch == "unloading") & np.isfinite(curve.contact_radius) & (curve.contact_radius > 0.0)
-    columns = (curve.displacement, curve.force, curve.contact_radius, curve.contact_radius_uncertainty)
-    d, force, a, spread = (column[chosen] for column in columns)
-    return d, force, a, spread
-
-
 ROW_REACH, ROW_POINTS, ROW_HALF = 5.0, 4001, 20
 """Distances [longest ranges] and particles to each side that the largest tension of a row is looked for with."""
 STEP, BEYOND = 0.02, 0.1
 """Of the displacement [LU] in which an equilibrium under a force is looked for, and what is added at both ends."""
-HIGHEST = 1.5
-"""F/F_A up to which curves are compared with theory."""
 
 
 def interaction(scene: Scene) -> PairInteraction:
     """The scene's law."""
-    terms = scene.interaction
-    assert terms is not None
-    assert terms.attraction is not None
-    return PairInteraction(
-        Exponential(terms.repulsion.amplitude, terms.repulsion.range),
-        Exponential(terms.attraction.amplitude, terms.attraction.range),
-    )
+    return PairInteraction.of(*law_of(scene))
 
 
 def radius(scene: Scene) -> float:
@@ -316,21 +200,3 @@ def barquins_reduced(a: Array | float) -> Array:
     """F/F_A of a cylinder, ∝ ã² − √ã with the minimum −1 (Barquins 1988)."""
     lowest = 4.0 ** (-2.0 / 3.0)  # where 2ã = 1/(2√ã)
     return np.asarray((np.asarray(a) ** 2 - np.sqrt(a)) / (lowest**0.5 - lowest**2))
-
-
-def reduced(force: Array, contact_radius: Array) -> tuple[Array, Array]:
-    """F/F_A and a/a₀ of a branch, with its own F_A, the largest tension, and its own a₀, where F = 0."""
-    largest = int(np.argmin(force))
-    stable = slice(0, largest + 1)
-    order = np.argsort(force[stable])
-    a_0 = float(np.interp(0.0, force[stable][order], contact_radius[stable][order]))
-    return force / -force[largest], contact_radius / a_0
-
-
-def distances(force: Array, contact_radius: Array) -> tuple[float, float]:
-    """Rms distance of F/F_A to JKR's and to Barquins' at the same a/a₀, from a_cr up to F/F_A = 1.5."""
-    tension, a = reduced(force, contact_radius)
-    compared = (np.arange(len(a)) <= int(np.argmin(tension))) & (tension <= HIGHEST)
-    theories = (jkr_reduced, barquins_reduced)
-    jkr, barquins = (float(np.sqrt(np.mean((tension - law(a))[compared] ** 2))) for law in theories)
-    return jkr, barquins

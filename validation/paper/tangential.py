@@ -14,13 +14,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.integrate import quad
 
 from validation.doors import Reduction, Run, Scene, scene_from_dict
 from validation.figures import Array, Panel, Series, figure
 from validation.page import agreement, number, share
 from validation.paper.section2 import FORCE_UNIT, LENGTH_UNIT, MODULUS
 from validation.references.hertz import hertz_force
+from validation.references.mindlin import mindlin_force, mindlin_loop_area, raised_load_force
 from validation.row import Reference, Row, absolute, relative
 from validation.study import Bench, Findings, Rows, Runs, Scenes, Study
 
@@ -103,7 +103,7 @@ def stiffness_ratio(moduli: tuple[float, float], poisson_ratios: tuple[float, fl
 
 def way_out(u: float) -> float:
     """F_x/μN at u/u* ≤ 1."""
-    return math.copysign(1.0 - (1.0 - abs(u)) ** 1.5, u)
+    return float(mindlin_force(u, 1.0, 1.0, 1.0))
 
 
 def loop_force(u: float) -> float:
@@ -187,7 +187,7 @@ def _loop_checks(row: Rows) -> list[Row]:
         radius = run.friction["stick_radius"][HALF] / run.curve.contact_radius[HALF]
         stuck.append((float(radius), math.sqrt(1.0 - half), ROUND_OFF))
         energy = run.friction["dissipated_energy"]
-        loop = -2.0 * float(quad(loop_force, -TURN, TURN)[0]) * sliding * unit
+        loop = mindlin_loop_area(TURN, 1.0, 1.0, 1.0) * sliding * unit
         way = 4.0 * TURN * sliding * unit
         area.append((float(energy[-1] - energy[len(OUT) - 1]) / loop, 1.0, 1.5 * lattice * way / loop))
     (a, ref_a, tol_a), (b, ref_b, tol_b), (c, ref_c, tol_c), (d, ref_d, tol_d) = map(
@@ -212,10 +212,11 @@ def _loop_checks(row: Rows) -> list[Row]:
 def _raised_checks(row: Rows) -> list[Row]:
     run, unit = row.runs["tangential_raised"], FRICTION * BASE.load()
     places, _ = _raised()
+    loads, slidings = (FIRST**1.5, 1.0), (BASE.sliding(FIRST * DEPTH), BASE.sliding())
     force = run.friction["tangential_force"]
     checks = []
     for i, words in ((2, "half of the way"), (4, "one and a half times the way")):
-        expected = _raised_force(float(places[i]), float(places[0]))
+        expected = raised_load_force(float(places[i]), float(places[0]), loads, slidings, 1.0)
         checks.append(
             row(
                 f"F_x over μN, load raised by {1.0 / FIRST**1.5 - 1.0:.0%} at {RAISED:g} u*, {words} to the old edge "
@@ -228,21 +229,6 @@ def _raised_checks(row: Rows) -> list[Row]:
             )
         )
     return checks
-
-
-def _raised_force(place: float, turn: float) -> float:
-    """F_x/μN of springs without end beside each other: those that slip at `turn` stick anew under the raised load.
-
-    A spring at x carries min(u k_t, μ k_n (d − x²/R)) at the turn; what it may carry rises with d.
-    """
-
-    def spring(x: float) -> float:
-        low, high = (max(0.0, FRICTION * (d - x**2 / RADIUS)) for d in (FIRST * DEPTH, DEPTH))
-        return min(min(BASE.ratio * turn, low) + BASE.ratio * (place - turn), high)
-
-    edge, kinks = math.sqrt(RADIUS * DEPTH), [math.sqrt(RADIUS * FIRST * DEPTH)]
-    carried = float(quad(spring, 0.0, edge, points=kinks, limit=400, epsabs=1e-11)[0])
-    return carried / (FRICTION * 2.0 / 3.0 * DEPTH * edge)
 
 
 def _order_check(row: Rows) -> Row:

@@ -27,7 +27,7 @@ class BoltzmannPairs:
     """Pairs with given heights at a temperature.
 
     Args:
-        interaction: of an opposite pair; must have an attraction.
+        interaction: of an opposite pair.
         bulk_stiffness: k of a particle on either body [FU/LU].
         heights: of the upper particles over the apex, shape (N,) [LU].
         temperature: kT [FU LU], > 0; the colder, the more distances.

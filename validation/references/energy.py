@@ -39,11 +39,11 @@ class EnergySurface:
         self.directions = 2 if model.horizontal else 1
         self.dofs = 2 * self.directions * model.particles
         k_z, k_x = model.bulk_stiffness, model.tangential_stiffness or model.bulk_stiffness
-        self.law = model.interaction.with_ramp(min(k_z, k_x) if model.horizontal else k_z)
+        self.law = model.interaction
         self._tether = np.array([k_x, k_z])[2 - self.directions :]
         self._gap_at_touch = model.undeformed_gap(0.0)
-        reach = model.interaction.cutoff or REACH * model.interaction.longest_range
-        self._offset = min(max(2, math.ceil(reach / model.spacing) + 1), model.particles - 1)
+        reach = math.ceil(REACH * self.law.longest_range / model.spacing) + 1
+        self._offset = min(max(2, reach), model.particles - 1)
         pairs = np.arange(model.particles)[:, None] + np.arange(-self._offset, self._offset + 1)[None, :]
         inside = (pairs >= 0) & (pairs < model.particles)
         self.lower: NDArray[np.intp] = np.nonzero(inside)[0]

@@ -13,9 +13,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+
+from validation.references.interaction import PairInteraction
 
 Array = NDArray[np.float64]
 State = tuple[Array, Array, float]
@@ -51,6 +54,11 @@ class FlatChain:
     load: float
     normal_stiffness: float
     tangential_stiffness: float
+
+    @cached_property
+    def pair(self) -> PairInteraction:
+        """The same law."""
+        return PairInteraction.of(*self.law)
 
     @property
     def places(self) -> Array:
@@ -93,11 +101,9 @@ class FlatChain:
         return self.tangential_stiffness * float(np.sum(self.places + plate - state[0]))
 
     def _energy(self, plate: float, state: State) -> float:
-        A, a, B, b = self.law
         x, z, height = state
-        r = self._distances(x, z)[1]
         springs = self.tangential_stiffness * (x - self.places - plate) ** 2 + self.normal_stiffness * (z - height) ** 2
-        pairs = A * np.exp(-r / a) - B * np.exp(-r / b)
+        pairs = self.pair.energy(self._distances(x, z)[1])
         return float(pairs.sum() + 0.5 * springs.sum()) + self.count * self.load * height
 
     def _at_rest(self, plate: float, x: Array, z: Array, height: float) -> State:
@@ -127,18 +133,15 @@ class FlatChain:
 
     def _row(self, x: Array, z: Array) -> tuple[Array, Array, Array, Array, Array]:
         """∂U/∂x, ∂U/∂z, and the second derivatives xx, zz, xz of each particle's energy over the row."""
-        A, a, B, b = self.law
         aside, r = self._distances(x, z)
-        slope = B / b * np.exp(-r / b) - A / a * np.exp(-r / a)
-        bend = A / a**2 * np.exp(-r / a) - B / b**2 * np.exp(-r / b)
-        cos, sin = aside / r, z[:, None] / r
-        turn = slope / r
+        _, force, rise = self.pair.evaluate(r)
+        cos, sin, turn = aside / r, z[:, None] / r, force / r
         return (
-            (slope * cos).sum(axis=1),
-            (slope * sin).sum(axis=1),
-            (bend * cos**2 + turn * sin**2).sum(axis=1),
-            (bend * sin**2 + turn * cos**2).sum(axis=1),
-            ((bend - turn) * cos * sin).sum(axis=1),
+            -(force * cos).sum(axis=1),
+            -(force * sin).sum(axis=1),
+            -(rise * cos**2 + turn * sin**2).sum(axis=1),
+            -(rise * sin**2 + turn * cos**2).sum(axis=1),
+            ((turn - rise) * cos * sin).sum(axis=1),
         )
 
     def _distances(self, x: Array, z: Array) -> tuple[Array, Array]:

@@ -53,24 +53,14 @@ class FoldedPairs:
     """Pairs with given heights.
 
     Args:
-        interaction: of an opposite pair; must have an attraction.
+        interaction: of an opposite pair.
         bulk_stiffness: k of a particle on either body [FU/LU].
         heights: of the upper particles over the apex, shape (N,) [LU].
-
-    Raises:
-        ValueError: without attraction, for a stiffness that is not positive, or without particles.
     """
 
     interaction: PairInteraction
     bulk_stiffness: float
     heights: Floats
-
-    def __post_init__(self) -> None:
-        """Check what is given."""
-        if self.interaction.attraction is None:
-            raise ValueError("the closed form needs an attraction")
-        if not self.bulk_stiffness > 0.0 or self.heights.size == 0:
-            raise ValueError("bulk_stiffness must be positive, and there must be particles")
 
     @cached_property
     def ratio(self) -> float:

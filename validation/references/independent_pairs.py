@@ -38,13 +38,13 @@ class IndependentPairs:
     """Two chains of independent pairs with attraction, parabola against flat, in the limit of many particles.
 
     Args:
-        interaction: of an opposite pair; must have an attraction.
+        interaction: of an opposite pair.
         bulk_stiffness: k of a particle on either body [FU/LU].
         radius: R of the parabola x^2/2R [LU].
         spacing: s [LU].
 
     Raises:
-        ValueError: without attraction, or where a pair snaps: its force falls more steeply than k/2, the springs in
+        ValueError: where a pair snaps: its force falls more steeply than k/2, the springs in
             series, so r(G) folds back and loading and unloading differ.
     """
 
@@ -55,10 +55,6 @@ class IndependentPairs:
 
     def __post_init__(self) -> None:
         """Check that the pair law is one to one."""
-        if self.interaction.attraction is None:
-            raise ValueError("the closed form needs an attraction")
-        if not min(self.bulk_stiffness, self.radius, self.spacing) > 0.0:
-            raise ValueError("bulk_stiffness, radius and spacing must be positive")
         steepest = self.interaction.force_slope(np.array(max(self.interaction.extremum_distance(2), 0.0)))
         if steepest >= 0.5 * self.bulk_stiffness:
             raise ValueError(f"pairs snap: steepest tension {float(steepest):.4g} FU/LU >= k/2")

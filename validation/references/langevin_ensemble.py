@@ -18,6 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from validation.references.interaction import PairInteraction
+
 Array = NDArray[np.float64]
 WAVES, PLACES, HEIGHTS = 6, 64, 4000
 """Harmonics of V along x, places that they are found from, and heights of the table."""
@@ -94,15 +96,15 @@ def ensemble_friction(
 
 def _forces(body: PulledParticle) -> Callable[[Array, Array], tuple[Array, Array]]:
     """Forces on x, z, X, Z and that of the row against +x, by V(x, z) = V_0(z) + Σ V_n(z) cos(2πn x/s)."""
-    A, a, B, b = body.law
-    s, count = body.spacing, math.ceil(REACH * max(a, b) / body.spacing)
-    x, z = s * np.arange(PLACES) / PLACES, np.linspace(0.2 * a, 12.0 * b, HEIGHTS)
+    pair, s = PairInteraction.of(*body.law), body.spacing
+    count = math.ceil(REACH * pair.longest_range / s)
+    x, z = s * np.arange(PLACES) / PLACES, np.linspace(0.2 * pair.shortest_range, 12.0 * pair.longest_range, HEIGHTS)
     energy, slope = np.zeros((PLACES, HEIGHTS)), np.zeros((PLACES, HEIGHTS))
     for row in range(-count, count + 1):
         r = np.hypot((x - s * row)[:, None], z)
-        repelled, attracted = A * np.exp(-r / a), B * np.exp(-r / b)
-        energy += repelled - attracted
-        slope += (attracted / b - repelled / a) * z / r
+        potential, force, _ = pair.evaluate(r)
+        energy += potential
+        slope -= force * z / r
     waves = np.real(np.fft.rfft(energy, axis=0))[: WAVES + 1] * 2.0 / PLACES
     steep = np.real(np.fft.rfft(slope, axis=0))[: WAVES + 1] * 2.0 / PLACES
     steep[0] *= 0.5

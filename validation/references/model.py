@@ -6,7 +6,6 @@ positive in compression and r0 the distance at which one opposite pair is force-
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,9 +29,6 @@ class ChainModel:
         tangential_stiffness: k_t of the bulk springs along x [FU/LU]; None: the same as `bulk_stiffness`.
         rigid_plane: one chain on a frictionless rigid plane at z = 0; then r0 = 0. The plane acts along z only, so
             with or without `horizontal` nothing moves along x.
-
-    Raises:
-        ValueError: if a number is out of its range or the profile or interaction is given twice or not at all.
     """
 
     particles: int
@@ -45,25 +41,6 @@ class ChainModel:
     horizontal: bool = False
     tangential_stiffness: float | None = None
     rigid_plane: bool = False
-
-    def __post_init__(self) -> None:
-        """Check every field."""
-        if self.particles < 1:
-            raise ValueError(f"particles must be at least 1, got {self.particles}")
-        for name in ("bulk_stiffness", "spacing", "radius", "tangential_stiffness"):
-            value = getattr(self, name)
-            if value is not None and not (math.isfinite(value) and value > 0.0):
-                raise ValueError(f"{name} must be positive and finite, got {value}")
-        if not (math.isfinite(self.neighbour_stiffness) and self.neighbour_stiffness >= 0.0):
-            raise ValueError(f"neighbour_stiffness must not be negative, got {self.neighbour_stiffness}")
-        if (self.radius is None) == (self.heights is None):
-            raise ValueError("give either radius or heights")
-        if self.heights is not None and (
-            np.shape(self.heights) != (self.particles,) or not np.all(np.isfinite(self.heights))
-        ):
-            raise ValueError(f"heights must be {self.particles} finite numbers")
-        if self.rigid_plane != (self.interaction is None):
-            raise ValueError("give an interaction, or rigid_plane = True, and not both")
 
     def places(self) -> Floats:
         """Return the undeformed x of both chains, (i - (N-1)/2) s, shape (N,) [LU]."""

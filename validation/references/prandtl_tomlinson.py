@@ -18,6 +18,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from validation.references.interaction import PairInteraction
+
 Array = NDArray[np.float64]
 POINTS = 128
 """Places in a period at which the corrugation is computed; its harmonics fall by a factor of ten each, or faster."""
@@ -88,8 +90,8 @@ def corrugation(
     Raises:
         ArithmeticError: the row does not hold the force.
     """
-    A, a, B, b = law
-    reach = math.ceil(60.0 * max(a, b) / spacing)
+    pair = PairInteraction.of(*law)
+    reach = math.ceil(60.0 * pair.longest_range / spacing)
     row = spacing * np.arange(-reach, reach + 1)
     half = POINTS // 2 + 1  # from the top to the hollow; the other half of the period mirrors it
     x = spacing * np.arange(half) / POINTS
@@ -97,18 +99,16 @@ def corrugation(
     def sums(z: Array) -> tuple[Array, Array]:
         """dU/dz and d²U/dz² at each x."""
         r = np.hypot(x[:, None] - row, z[:, None])
-        first = -A / a * np.exp(-r / a) + B / b * np.exp(-r / b)
-        second = A / a**2 * np.exp(-r / a) - B / b**2 * np.exp(-r / b)
+        _, force, rise = pair.evaluate(r)
         cosine = z[:, None] / r
-        slope = (first * cosine).sum(axis=1) + normal_force + stiffness * (z - place)
-        return slope, (second * cosine**2 + first * (1.0 - cosine**2) / r).sum(axis=1) + stiffness
+        slope = normal_force + stiffness * (z - place) - (force * cosine).sum(axis=1)
+        return slope, stiffness - (rise * cosine**2 + force * (1.0 - cosine**2) / r).sum(axis=1)
 
     low, high = np.empty(half), np.empty(half)
-    grid = np.geomspace(1e-2 * a, 20.0 * max(a, b), HEIGHTS)
+    grid = np.geomspace(1e-2 * pair.shortest_range, 20.0 * pair.longest_range, HEIGHTS)
     for i in range(half):  # the innermost minimum: slope rises through 0
         r = np.hypot(x[i] - row[:, None], grid[None, :])
-        slope = ((-A / a * np.exp(-r / a) + B / b * np.exp(-r / b)) * grid / r).sum(axis=0)
-        slope += normal_force + stiffness * (grid - place)
+        slope = normal_force + stiffness * (grid - place) - (pair.force(r) * grid / r).sum(axis=0)
         above = np.flatnonzero((slope[:-1] < 0.0) & (slope[1:] >= 0.0))
         if above.size == 0:
             raise ArithmeticError(f"the row does not hold {normal_force:g} FU")
@@ -120,8 +120,7 @@ def corrugation(
         newton = z - slope / stiff
         z = np.where((newton > low) & (newton < high), newton, 0.5 * (low + high))
     r = np.hypot(x[:, None] - row, z[:, None])
-    energy = (A * np.exp(-r / a) - B * np.exp(-r / b)).sum(axis=1)
-    energy += normal_force * z + 0.5 * stiffness * (z - place) ** 2
+    energy = pair.energy(r).sum(axis=1) + normal_force * z + 0.5 * stiffness * (z - place) ** 2
     waves, heights = (np.real(np.fft.hfft(values, POINTS)[:half]) / POINTS * 2.0 for values in (energy, z))
     heights[0] *= 0.5
     return Corrugation(spacing, waves[1 : HARMONICS + 1], float(z[-1]), heights[: HARMONICS + 1])

@@ -6,7 +6,6 @@ there, a_0 the same where F(d) = 0.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,16 +69,12 @@ def pull_off(model: ChainModel, preload: float, step: float | None = None, stenc
         stencil: points of the polynomial behind every radius, see `tension_radius`.
 
     Raises:
-        ValueError: without attraction, for a negative preload or step, or if the chain is too short for its contact.
+        ValueError: on a rigid plane, or if the chain is too short for its contact.
         RuntimeError: if the preload is beyond what the chains carry, or a minimisation does not converge.
     """
-    if model.interaction is None or model.interaction.attraction is None:
+    if model.interaction is None:
         raise ValueError("a pull-off needs attraction")
-    if not (math.isfinite(preload) and preload >= 0.0):
-        raise ValueError(f"preload must not be negative, got {preload}")
     step = STEP_IN_RANGES * model.interaction.shortest_range if step is None else step
-    if not step > 0.0:
-        raise ValueError(f"step must be positive, got {step}")
     solver = ChainSolver(model)
     loaded = _load(solver, preload, step)
     unloaded = _unload(solver, loaded[-1], step)

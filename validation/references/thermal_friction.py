@@ -25,6 +25,7 @@ from scipy.linalg import solve_banded
 from scipy.optimize import brentq
 
 from validation.references.detachment import garg
+from validation.references.interaction import PairInteraction
 from validation.references.prandtl_tomlinson import HARMONICS, POINTS, Corrugation, slow_friction
 
 Array = NDArray[np.float64]
@@ -51,15 +52,16 @@ def free_corrugation(
         normal_force: compression positive [FU].
         temperature: kT [FU·LU].
     """
-    A, a, B, b = law
-    reach = math.ceil(REACH * max(a, b) / spacing)
+    pair = PairInteraction.of(*law)
+    reach = math.ceil(REACH * pair.longest_range / spacing)
     row = spacing * np.arange(-reach, reach + 1)
     x = spacing * np.arange(POINTS // 2 + 1) / POINTS
-    z = np.linspace(0.05 * a, 8.0 * max(a, b) + 40.0 * temperature / normal_force, HEIGHTS)
+    highest = 8.0 * pair.longest_range + 40.0 * temperature / normal_force
+    z = np.linspace(0.05 * pair.shortest_range, highest, HEIGHTS)
     energy = np.empty((x.size, z.size))
     for i, place in enumerate(x):
         r = np.hypot(place - row[:, None], z[None, :])
-        energy[i] = (A * np.exp(-r / a) - B * np.exp(-r / b)).sum(axis=0) + normal_force * z
+        energy[i] = pair.energy(r).sum(axis=0) + normal_force * z
     lowest = energy.min(axis=1, keepdims=True)
     weights = np.exp(-(energy - lowest) / temperature)
     free = lowest[:, 0] - temperature * np.log(weights.sum(axis=1))

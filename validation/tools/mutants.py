@@ -234,6 +234,8 @@ def tests_of(mutant: Mutant, called: Called) -> list[str]:
 
 def killed_by(mutant: Mutant, tests: dict[str, float]) -> str:
     """The first of these tests (and their times [s]) that fails with the mutant; empty where none does."""
+    if not tests:
+        return ""
     with copy_of_this() as folder:
         (folder / mutant.file).write_text(mutant.source, encoding="utf-8")
         longest, whole = (STARTING + SLOWNESS * seconds for seconds in (max(tests.values()), sum(tests.values())))
@@ -249,6 +251,8 @@ def main() -> int:
     parser.add_argument("--tests", nargs="+", default=TESTS, help="folders or files")
     parser.add_argument("--out", type=Path, default=RESULTS)
     options = parser.parse_args()
+    if missing := [name for name in (*options.folders, *options.tests) if not (ROOT / name).exists()]:
+        parser.error(f"there is no {', '.join(missing)}")
     files = [str(path.relative_to(ROOT)) for name in options.folders for path in sorted((ROOT / name).rglob("*.py"))]
     every = [mutant for file in files for mutant in mutants(file)]
     chosen = random.Random(options.seed).sample(every, min(options.number, len(every)))
@@ -262,10 +266,10 @@ def main() -> int:
             called |= one
         print(f"{len(called)} tests are traced: {time.monotonic() - began:.0f} s", flush=True)
         tests = [{name: called[name][0] for name in tests_of(mutant, called)} for mutant in chosen]
-        for mutant, by in zip(chosen, pool.map(killed_by, chosen, tests), strict=True):
+        for mutant, those, by in zip(chosen, tests, pool.map(killed_by, chosen, tests), strict=True):
             if not by:
                 alive.append(mutant)
-            word = "killed  " if by else "SURVIVES"
+            word = "killed  " if by else "SURVIVES" if those else "NO TEST "
             print(f"{word} {mutant.file}:{mutant.line}: {mutant.change}   {by or mutant.text}", flush=True)
     rows = [
         {"file": m.file, "line": m.line, "text": m.text, "change": m.change,

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from validation.doors import Scene, Slide, settings_for
+from validation.doors import Scene, Slide, law_of, settings_for
 from validation.figures import Array, Panel, Series
 from validation.paper.fig9.reading import (
     CRITICAL,
@@ -28,7 +28,6 @@ from validation.paper.fig9.reading import (
 from validation.references.prandtl_tomlinson import Corrugation, corrugation, moving_friction, slow_friction
 from validation.references.thermal_friction import free_corrugation, thermal_friction
 from validation.row import Reference, Row, absolute, claim, relative, solver
-from validation.slides import law_of
 from validation.study import Rows, found
 
 SINUSOID = {1.0: 0.0, 2.0: 0.2015, 5.0: 0.5710}

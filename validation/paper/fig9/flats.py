@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.doors import Scene, Slide
+from validation.doors import Scene, Slide, law_of
 from validation.figures import Panel, Series
 from validation.paper.fig9.asperity import BETWEEN, MIDDLE, OF_LARGEST, wells_of
 from validation.paper.fig9.reading import FLATS, LATTICES, exponent, mean, slides, slow_limit, static, threshold
@@ -19,7 +19,6 @@ from validation.references.incommensurate import shared_corrugation
 from validation.references.incommensurate import threshold as law_threshold
 from validation.references.prandtl_tomlinson import slow_friction
 from validation.row import Reference, Row, claim, relative, solver
-from validation.slides import law_of
 from validation.study import Rows
 
 SLOW = 0.05

@@ -16,7 +16,7 @@ import numpy as np
 
 from validation.figures import Drawing, Panel, Series
 from validation.row import Row, at_most
-from validation.speed.peers.contacts import Curve, errors, reduced_distance
+from validation.speed.peers.contacts import errors
 from validation.study import Bench, Findings, Study
 
 MODULES = ("contact1d_peer", "tamaas_peer", "contact_mechanics_peer")
@@ -32,7 +32,7 @@ ASKED = {"Hertz": 10.0, "adhesive": 100.0, "JKR": 1000.0}
 WHOLE = 0.025
 """Asked of the whole run of the quickest Hertz curve, through Python, by the clock [s]."""
 Result = Mapping[str, Any]
-"""Solver, contact, setting, median time [s], its parts, and errors of one setting."""
+"""Solver, contact, setting, median times [s] and errors of one setting."""
 
 
 def measure(bench: Bench) -> Findings:
@@ -55,19 +55,14 @@ def measure(bench: Bench) -> Findings:
                 continue
             began = time.perf_counter()
             curve = module.curve(result["contact"], setting)
-            result["clock"].append(curve.parts.get("wall", time.perf_counter() - began))
+            result["clock"].append(curve.wall or time.perf_counter() - began)
             result["times"].append(curve.seconds)
             if turn == 0:
-                result["errors"] = errors_of(result["contact"], curve)
+                result["errors"] = errors(result["contact"], curve)
     results = [result | {key: statistics.median(result[of]) for key, of in (("seconds", "times"), ("wall", "clock"))}
                for _, _, result in jobs]  # fmt: skip
     panels = [_panel(results, contact) for contact in ("hertz", "jkr")]
     return Findings(rows_of(results), {"": Drawing("Error of F over the time of a curve of 50 points", panels)})
-
-
-def errors_of(contact: str, curve: Curve) -> dict[str, float]:
-    """The errors of a curve, for JKR also that of the reduced one."""
-    return errors(contact, curve) | ({"reduced": reduced_distance(curve)} if contact == "jkr" else {})
 
 
 def error_of(result: Result) -> float:

@@ -9,12 +9,24 @@ just about to part, q_c + sigma(0) = 0, and beyond it q_i + sigma(g_i) = 0. It k
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
 from scipy.special import ellipe, ellipk
 
-from validation.speed.peers.contacts import A_0, CONTACT_MODULUS, RADIUS, WORK_OF_ADHESION, Array, law_range
+from validation.speed.clock import spent
+from validation.speed.peers.contacts import (
+    A_0,
+    CONTACT_MODULUS,
+    RADIUS,
+    WORK_OF_ADHESION,
+    Array,
+    Curve,
+    Setting,
+    closed_form,
+    law_range,
+)  # fmt: skip
 
 RINGS = 1000
 """Rings out to REACH. With 700, F_A is 0.2 % larger at Tabor 5 and within 1e-4 at Tabor 1 to 3: it falls as the square
@@ -40,8 +52,8 @@ def _disc(places: Array, radii: Array) -> Array:
 
 
 @lru_cache(maxsize=8)
-def curve(tabor: float, rings: int = RINGS) -> tuple[Array, Array, Array]:
-    """Return d [nm], F [µN] and a [nm] of one Tabor number, a falling."""
+def curve(tabor: float, rings: int = RINGS) -> tuple[Array, Array]:
+    """Return d [nm] and F [µN] of one Tabor number, the contact radius falling."""
     z, stress = law_range(tabor), WORK_OF_ADHESION / law_range(tabor)
     edges = np.linspace(0.0, REACH * A_0, rings + 1)
     places, area = 0.5 * (edges[1:] + edges[:-1]), np.pi * np.diff(edges**2)
@@ -72,16 +84,27 @@ def curve(tabor: float, rings: int = RINGS) -> tuple[Array, Array, Array]:
                 break
         else:
             raise RuntimeError(f"no equilibrium with {count} of {rings} rings in contact, Tabor {tabor}")
-        found.append((d, float(force @ area), edges[count]))
-    table = np.asarray(found)
-    return table[:, 0], table[:, 1], table[:, 2]
+        found.append((d, float(force @ area)))
+    places, forces = np.asarray(found).T
+    return places, forces
 
 
-def limit(tabor: float, displacement: Array) -> tuple[Array, Array]:
-    """Return F [µN] and a [nm] at `displacement` [nm] on the branch that unloading follows."""
-    d, force, radius = curve(tabor)
+def limit(tabor: float, displacement: Array) -> Array:
+    """Return F [µN] at `displacement` [nm] on the branch that unloading follows."""
+    d, force = curve(tabor)
     last = int(np.argmin(d)) + 1
-    return (
-        np.interp(displacement, d[:last][::-1], force[:last][::-1]),
-        np.interp(displacement, d[:last][::-1], radius[:last][::-1]),
-    )
+    return np.interp(displacement, d[:last][::-1], force[:last][::-1])
+
+
+def timed(contact: str, setting: Setting, solve: Callable[[], tuple[Array, Array]]) -> Curve:
+    """Return the curve of a boundary-element code, beside its own limit; `solve` returns d [nm] and F [µN]."""
+    began = spent()
+    d, force = solve()
+    seconds = spent() - began
+    return Curve(d, force, seconds, closed_form(contact, d) if contact == "hertz" else limit(setting.tabor, d))
+
+
+def heights(side: float, grid: int) -> Array:
+    """Return -r²/2R of the pixels of a square, no pixel at the apex, shape (grid, grid) [nm]."""
+    x = (np.arange(grid) + 0.5) * side / grid - 0.5 * side
+    return np.asarray(-(x[:, None] ** 2 + x[None, :] ** 2) / (2.0 * RADIUS))

@@ -48,9 +48,7 @@ def curve(contact: str, setting: Setting) -> Curve:
         finished = run(scene_from_dict(data), folder, figures=False)
         table = np.genfromtxt(finished.folder / "curve.csv", delimiter=",", names=True, dtype=None, encoding="utf-8")
     seconds, wall = spent() - began, time.perf_counter() - clock
-    parts = {"wall": wall} | {name: finished.document["timing"][f"{name}_s"] for name in ("lammps", "rows")}
-    columns = (table["displacement"], table["force"], table["contact_radius"])
-    return Curve(*columns, seconds, 0.0, closed_form(contact, d), parts)
+    return Curve(table["displacement"], table["force"], seconds, closed_form(contact, d), wall)
 
 
 def plane_tables(contact: str, setting: Setting) -> dict[str, object]:

@@ -12,13 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from validation.speed.clock import spent
-from validation.speed.peers.axisymmetric import limit
+from validation.speed.peers.axisymmetric import heights, timed
 from validation.speed.peers.contacts import (
     A_0,
     CONTACT_MODULUS,
     DEPTH,
-    RADIUS,
     WORK_OF_ADHESION,
     Array,
     Curve,
@@ -47,39 +45,28 @@ def load() -> None:
     import SurfaceTopography  # noqa: F401 (loading it is the point)
 
 
-def heights(side: float, grid: int) -> Array:
-    """Return -r²/2R of the pixels of a square, no pixel at the apex, shape (grid, grid) [nm]."""
-    x = (np.arange(grid) + 0.5) * side / grid - 0.5 * side
-    return np.asarray(-(x[:, None] ** 2 + x[None, :] ** 2) / (2.0 * RADIUS))
-
-
 def curve(contact: str, setting: Setting) -> Curve:
     """Return the curve of one grid."""
     from ContactMechanics import FreeFFTElasticHalfSpace
     from SurfaceTopography import Topography
 
-    side, n, d = SIDE[contact] * A_0, setting.grid, displacements(contact)
-    began = spent()
+    side, n = SIDE[contact] * A_0, setting.grid
     space = FreeFFTElasticHalfSpace((n, n), CONTACT_MODULUS, (side, side))
     surface = Topography(heights(side, n), physical_sizes=(side, side))
-    start_up = spent() - began
     solve = _hertz if contact == "hertz" else _jkr
-    began = spent()
-    force, area = solve(space, surface, setting, d, (side / n) ** 2)
-    seconds = spent() - began
-    reference = closed_form(contact, d) if contact == "hertz" else limit(setting.tabor, d)
-    return Curve(d, force, np.sqrt(area / np.pi), seconds, start_up, reference)
+    d = displacements(contact)
+    return timed(contact, setting, lambda: (d, np.array(solve(space, surface, setting, d, (side / n) ** 2))))
 
 
-def _hertz(space: Any, surface: Any, setting: Setting, places: Array, pixel: float) -> tuple[Array, Array]:
-    """Return F [µN] and the area of the pixels in contact [nm²]; the tolerance is of the gap in contact, over d_max."""
+def _hertz(space: Any, surface: Any, setting: Setting, places: Array, pixel: float) -> list[float]:
+    """Return F [µN]; the tolerance is of the gap in contact, over d_max."""
     from ContactMechanics.Systems import NonSmoothContactSystem
 
     system = NonSmoothContactSystem(space, surface)
     middle = setting.grid // 2
     pressure = np.zeros((setting.grid, setting.grid))
-    pressure[middle - 1 : middle + 1, middle - 1 : middle + 1] = closed_form("hertz", places)[0][0] / 4.0
-    force, area = [], []
+    pressure[middle - 1 : middle + 1, middle - 1 : middle + 1] = closed_form("hertz", places)[0] / 4.0
+    force = []
     for d in places:
         found = system.dual_minimize_proxy(
             offset=d, init_force=pressure, solver="ccg-with-restart", gtol=setting.tolerance * DEPTH
@@ -87,13 +74,12 @@ def _hertz(space: Any, surface: Any, setting: Setting, places: Array, pixel: flo
         if not found.success:
             raise RuntimeError(f"{setting.name}: not converged at d = {d:.4g} nm")
         pressure = found.x.reshape(pressure.shape)
-        force.append(pressure.sum())
-        area.append(pixel * np.count_nonzero(pressure > 0.0))
-    return np.array(force), np.array(area)
+        force.append(float(pressure.sum()))
+    return force
 
 
-def _jkr(space: Any, surface: Any, setting: Setting, places: Array, pixel: float) -> tuple[Array, Array]:
-    """Return F [µN] and the area of the closed pixels [nm²]; the tolerance is of the pressure, over W/z_0."""
+def _jkr(space: Any, surface: Any, setting: Setting, places: Array, pixel: float) -> list[float]:
+    """Return F [µN]; the tolerance is of the pressure, over W/z_0."""
     from Adhesion.Interactions import Exponential
     from Adhesion.System import BoundedSmoothContactSystem
 
@@ -101,10 +87,9 @@ def _jkr(space: Any, surface: Any, setting: Setting, places: Array, pixel: float
     system = BoundedSmoothContactSystem(space, Exponential(WORK_OF_ADHESION, z), surface)
     moved = np.zeros(space.nb_subdomain_grid_pts)
     options = {"gtol": setting.tolerance * WORK_OF_ADHESION / z * pixel, "ftol": 0.0, "maxiter": 5000, "maxfun": 10**6}
-    force, area = [], []
+    force = []
     for d in places:
         found = system.minimize_proxy(offset=d, initial_displacements=moved, options=options)
         moved = found.x
-        force.append(system.compute_normal_force())
-        area.append(pixel * np.count_nonzero(system.gap <= 1e-9 * z))
-    return np.array(force), np.array(area)
+        force.append(float(system.compute_normal_force()))
+    return force

@@ -7,13 +7,12 @@ One µN/nm² is 10^12 Pa, one µN/nm is 10^3 J/m². Displacements are prescribed
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
-from validation.references.hertz import hertz_contact_radius, hertz_force
+from validation.references.hertz import hertz_force
 from validation.references.indenters import jkr
 
 Array = NDArray[np.float64]
@@ -59,43 +58,29 @@ class Curve:
     Args:
         displacement: d of every point, zero at first touch of the undeformed bodies [nm].
         force: F [µN].
-        radius: a, NaN where the solver has none [nm].
-        seconds: processor time of the whole curve, one thread, without start_up [s].
-        start_up: of what is done once for any number of curves, without imports [s].
-        limit: the same curve in the solver's own continuum limit: F [µN] and a [nm].
-        parts: other times of the same curve, by name [s].
+        seconds: processor time of the whole curve, one thread, without imports and what is done once for all [s].
+        limit: F of the same curve in the solver's own continuum limit [µN].
+        wall: time by the clock, where it is not that of the call [s].
     """
 
     displacement: Array
     force: Array
-    radius: Array
     seconds: float
-    start_up: float
-    limit: tuple[Array, Array]
-    parts: dict[str, float] = field(default_factory=dict)
+    limit: Array
+    wall: float | None = None
 
 
-def displacements(contact: str, way: tuple[float, float] = ADHESIVE_WAY) -> Array:
-    """Return the prescribed d of `contact`, "hertz" (loading) or "jkr" (unloading on `way`), shape (POINTS,) [nm]."""
-    return np.linspace(DEPTH / POINTS, DEPTH, POINTS) if contact == "hertz" else np.linspace(*way, POINTS)
+def displacements(contact: str) -> Array:
+    """Return the prescribed d of `contact`, "hertz" (loading) or "jkr" (unloading), shape (POINTS,) [nm]."""
+    return np.linspace(DEPTH / POINTS, DEPTH, POINTS) if contact == "hertz" else np.linspace(*ADHESIVE_WAY, POINTS)
 
 
-def closed_form(contact: str, displacement: Array) -> tuple[Array, Array]:
-    """Return F [µN] and a [nm] of Hertz or JKR, shape of `displacement` [nm].
-
-    Raises:
-        ValueError: for a contact of another name, or a d at which JKR's bodies have parted.
-    """
+def closed_form(contact: str, displacement: Array) -> Array:
+    """Return F [µN] of Hertz or JKR, shape of `displacement` [nm], at which JKR's bodies must hold each other."""
     if contact == "hertz":
-        return hertz_force(displacement, RADIUS, CONTACT_MODULUS), hertz_contact_radius(displacement, RADIUS)
-    if contact != "jkr":
-        raise ValueError(f"the contacts are hertz and jkr, not {contact!r}")
+        return hertz_force(displacement, RADIUS, CONTACT_MODULUS)
     a = np.linspace(JKR.fixed_grips_radius(), 2.0 * A_0, 50_000)  # between these, linear interpolation costs 1e-8 F_A
-    d = JKR.displacement(a)
-    if np.min(displacement) < d[0] or np.max(displacement) > d[-1]:
-        raise ValueError(f"JKR's stable branch is taken from {d[0]:.4g} to {d[-1]:.4g} nm")
-    radius = np.interp(displacement, d, a)
-    return JKR.force(radius), radius
+    return JKR.force(np.interp(displacement, JKR.displacement(a), a))
 
 
 def law_range(tabor: float) -> float:
@@ -104,59 +89,20 @@ def law_range(tabor: float) -> float:
 
 
 def errors(contact: str, curve: Curve) -> dict[str, float]:
-    """Return the errors of a curve, each relative, against its own limit ("limit") and the closed form ("theory").
+    """Return the errors of a curve, each relative, against its own limit ("limit") and JKR itself ("theory").
 
-    For both: "force", rms of F - F_ref over the largest |F_ref| of Hertz, or over F_A; "worst", the largest of it;
-    "radius", rms of a - a_ref over a_0, NaN where there is none; "displacement", rms of d - d_ref at the same F where
-    that is compressive, over a_0²/R. Hertz also has "relative" and "worst_relative", where
-    every point counts by its own F; JKR "pull_off", the largest tension over that of the reference, less 1 (a peak
-    between two points makes up to 1e-3 of it against the closed form), and, over a_0²/R, where F_A and F = 0 are:
-    "pull_off_place" and "zero_load_place".
+    "force": rms of F - F_ref over the largest F_ref of Hertz, or over F_A. Hertz also has "relative", where every point
+    counts by its own F; JKR "pull_off", the largest tension over that of the limit, less 1.
     """
-    found: dict[str, float] = {}
-    held = curve.displacement >= (1.0 + 1e-9) * ADHESIVE_WAY[1]  # where JKR has a force
-    theory = closed_form(contact, curve.displacement[held])
-    for name, kept, (force, radius) in (("limit", slice(None), curve.limit), ("theory", held, theory)):
-        off = (curve.force[kept] - force) / (np.abs(force).max() if contact == "hertz" else F_A)
-        found[f"{name}_force"] = _rms(off)
-        found[f"{name}_worst"] = float(np.abs(off).max())
-        found[f"{name}_radius"] = _rms((curve.radius[kept] - radius) / A_0)
-        found[f"{name}_displacement"] = _displacement_error(contact, curve.displacement[kept], curve.force[kept], force)
-        if contact == "hertz":
-            found[f"{name}_relative"] = _rms(curve.force / force - 1.0)
-            found[f"{name}_worst_relative"] = float(np.abs(curve.force / force - 1.0).max())
-        else:
-            wanted = -F_A if name == "theory" else float(force.min())
-            found[f"{name}_pull_off"] = float(curve.force.min() / wanted - 1.0)
-    if contact == "jkr":
-        lowest = int(np.argmin(curve.force))
-        found["pull_off_place"] = float(curve.displacement[lowest] / DEPTH)
-        ends = slice(lowest, None, -1)
-        found["zero_load_place"] = float(np.interp(0.0, curve.force[ends], curve.displacement[ends]) / DEPTH)
-    return found
-
-
-def _displacement_error(contact: str, displacement: Array, force: Array, wanted: Array) -> float:
-    """Rms of d - d_ref(F) over a_0²/R; d_ref between the points by a spline over F, over F^(2/3) for Hertz."""
-    kept = wanted > 0.0
-    place, force, wanted = displacement[kept], force[kept], wanted[kept]
+    off = curve.force - curve.limit
     if contact == "hertz":
-        force, wanted = np.maximum(force, 0.0) ** (2.0 / 3.0), wanted ** (2.0 / 3.0)
-    rising = np.argsort(wanted)
-    return _rms((place - CubicSpline(wanted[rising], place[rising])(force)) / DEPTH)
-
-
-def reduced_distance(curve: Curve) -> float:
-    """Return the rms of F/F_A - (4x³ - 4x^(3/2)), x = a/a_0, F_A and a_0 the curve's own, over a_cr < a < a(1.5 F_A).
-
-    It is the error of the one-dimensional reduction where F_A and a_0 were identified.
-    """
-    pull_off, lowest = -float(curve.force.min()), int(np.argmin(curve.force))
-    force, radius = curve.force[: lowest + 1] / pull_off, curve.radius[: lowest + 1]
-    zero = float(np.interp(0.0, force[::-1], radius[::-1]))
-    x = radius / zero
-    kept = force < 1.5
-    return _rms((force - (4.0 * x**3 - 4.0 * x**1.5))[kept])
+        return {"limit_force": _rms(off / curve.limit.max()), "limit_relative": _rms(curve.force / curve.limit - 1.0)}
+    held = curve.displacement >= (1.0 + 1e-9) * ADHESIVE_WAY[1]  # where JKR has a force
+    return {
+        "limit_force": _rms(off / F_A),
+        "limit_pull_off": float(curve.force.min() / curve.limit.min() - 1.0),
+        "theory_force": _rms((curve.force - closed_form(contact, curve.displacement))[held] / F_A),
+    }
 
 
 def _rms(values: Array) -> float:

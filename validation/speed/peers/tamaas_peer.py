@@ -13,9 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.speed.clock import spent
-from validation.speed.peers.axisymmetric import limit
-from validation.speed.peers.contact_mechanics_peer import heights
+from validation.speed.peers.axisymmetric import heights, timed
 from validation.speed.peers.contacts import (
     A_0,
     CONTACT_MODULUS,
@@ -56,18 +54,12 @@ def curve(contact: str, setting: Setting) -> Curve:
     import tamaas
 
     side, n = SIDE[contact] * A_0, setting.grid
-    began = spent()
     model = tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, [side, side], [n, n])
     model.E, model.nu = CONTACT_MODULUS, 0.0
     surface = heights(side, n)
     solve = _hertz if contact == "hertz" else _jkr
     solver, _adhesion = _solver(model, surface, contact, setting)  # the solver does not keep its functional alive
-    start_up = spent() - began
-    began = spent()
-    d, force, area = solve(model, solver, surface, side)
-    seconds = spent() - began
-    reference = closed_form(contact, d) if contact == "hertz" else limit(setting.tabor, d)
-    return Curve(d, force, np.sqrt(area / np.pi), seconds, start_up, reference)
+    return timed(contact, setting, lambda: solve(model, solver, surface, side))
 
 
 def _solver(model: Any, surface: Array, contact: str, setting: Setting) -> tuple[Any, Any]:
@@ -88,28 +80,27 @@ def _solver(model: Any, surface: Array, contact: str, setting: Setting) -> tuple
     return solver, adhesion
 
 
-def _hertz(model: Any, solver: Any, surface: Array, side: float) -> tuple[Array, Array, Array]:
-    """Return d [nm], F [µN] and the area of the loaded pixels [nm²]; the loads are Hertz's of the prescribed d."""
+def _hertz(model: Any, solver: Any, surface: Array, side: float) -> tuple[Array, Array]:
+    """Return d [nm] and F [µN]; the loads are Hertz's of the prescribed d."""
     pixel = side**2 / surface.size
     points = []
-    for load in closed_form("hertz", displacements("hertz"))[0]:
+    for load in closed_form("hertz", displacements("hertz")):
         solver.solve(load / side**2)
         touching = model.traction > 0.0
         model.operators["dcfft"](model.traction, model.displacement)
         depth = float((model.displacement - surface)[touching].mean())
-        points.append((depth, float(model.traction.sum()) * pixel, pixel * np.count_nonzero(touching)))
+        points.append((depth, float(model.traction.sum()) * pixel))
     return tuple(np.array(points).T)
 
 
-def _jkr(model: Any, solver: Any, surface: Array, side: float) -> tuple[Array, Array, Array]:
-    """Return d [nm], F [µN] and the area of the closed pixels [nm²]."""
+def _jkr(model: Any, solver: Any, surface: Array, side: float) -> tuple[Array, Array]:
+    """Return d [nm] and F [µN]."""
     pixel, images = side**2 / surface.size, MADELUNG / (np.pi * CONTACT_MODULUS * side)
     wanted = displacements("jkr")
-    force = closed_form("jkr", wanted)[0]
+    force = closed_form("jkr", wanted)
     points = []
     for depth in np.linspace(wanted[0] - images * force[0], wanted[-1] - images * force[-1], len(wanted)):
         solver.solve(float(-surface.mean() - depth))
         load = float(model.traction.sum()) * pixel
-        closed = pixel * np.count_nonzero(model["gap"] <= 0.0)
-        points.append((depth + images * load, load, closed))
+        points.append((depth + images * load, load))
     return tuple(np.array(points).T)
