@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import TypeAdapter, computed_field
 
 from contact1d.analysis.curve import write_columns
-from contact1d.analysis.plots import THEORY, new_figure, save_figure
+from contact1d.analysis.plots import THEORY, describe, new_figure, save_figure
 from contact1d.files import write_whole
 from contact1d.workflow.cost.knobs import Keys, Knob
 from contact1d.workflow.cost.measure import EffectCost, Measured
@@ -247,17 +247,16 @@ def cost_figure(record: CostRecord) -> Figure:
     for axis, columns in ((left, 3), (right, 2)):
         axis.axhline(record.tolerance, color=THEORY, linewidth=0.8, linestyle=":")
         axis.legend(frameon=False, fontsize=7, ncols=columns, loc="upper center", bbox_to_anchor=(0.5, -0.13))
-    left.set(xscale="log", yscale="log", xlabel="CPU time in LAMMPS (s)")
+    left.set(xscale="log", yscale="log")
     left.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     left.xaxis.set_major_formatter("{x:g}")
     left.xaxis.set_minor_formatter("")
-    left.set_ylabel("largest relative error of the main results")
     right.axvline(1.0, color=THEORY, linewidth=0.8)
-    right.set_xlabel("how much coarser than in the scene as it is")
     place = {"xycoords": ("axes fraction", "data"), "ha": "left", "va": "bottom"}
     right.annotate("accuracy.tolerance", (0.01, record.tolerance), fontsize=8, color=THEORY, **place)
-    left.set_title(record.title, loc="left", fontsize=10)
-    right.set_title("one knob at a time; at 1 stands what the scene has", loc="left", fontsize=10)
+    largest, turned = "largest relative error of the main results", "one knob at a time; at 1 stands what the scene has"
+    describe(left, "CPU time in LAMMPS (s)", largest, record.title, zero=False)
+    describe(right, "how much coarser than in the scene as it is", "", turned, zero=False)
     return figure
 
 

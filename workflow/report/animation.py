@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve import States, read_states
-from contact1d.analysis.plots import COMPRESSION, DPI, TENSION, THEORY, plain_axes
+from contact1d.analysis.plots import COMPRESSION, DPI, TENSION, describe, panels, plain_axes
 from contact1d.files import whole, write_whole
 from contact1d.workflow.deck.steps import STATES
 from contact1d.workflow.errors import Contact1dError, FolderError
@@ -22,7 +23,8 @@ from contact1d.workflow.runs.finished import Run, load_run
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-SIZE = (6.4, 6.0)
+HEIGHT = 6.0
+"""Of the picture [inch]."""
 FORMATS = (".gif", ".mp4")
 OVITO = "view_in_ovito.py"
 SPRINGS_SHOWN = 160
@@ -76,16 +78,13 @@ def ovito_script(folder: AnyPath) -> Path:
 
 def _draw(run: Run, states: States, path: Path, frames_per_second: int) -> None:
     from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
-    from matplotlib.figure import Figure
 
-    figure = Figure(figsize=SIZE, dpi=DPI, layout="constrained")
-    bodies, trace = figure.subplots(2, 1, height_ratios=(2.0, 1.0))
-    bodies.set_title(run.scene.title, loc="left", fontsize=10)
-    move_bodies, move_mark = _bodies(bodies, run, states), _trace(trace, run, states)
+    figure, (bodies, trace) = panels(2, HEIGHT, sharex=False, height_ratios=(2.0, 1.0))
+    moves = _bodies(bodies, run, states), _trace(trace, run, states)
     plain_axes(figure)
 
     def show(frame: int) -> list[Any]:
-        return [*move_bodies(frame), *move_mark(frame)]
+        return [artist for move in moves for artist in move(frame)]
 
     moving = FuncAnimation(figure, show, frames=len(states.rows), blit=False)
     writer = (PillowWriter if path.suffix == ".gif" else FFMpegWriter)(fps=frames_per_second)
@@ -95,40 +94,33 @@ def _draw(run: Run, states: States, path: Path, frames_per_second: int) -> None:
         named.replace(part)
 
 
-def _bodies(axis: Axes, run: Run, states: States) -> Any:
+def _bodies(axis: Axes, run: Run, states: States) -> Callable[[int], list[Any]]:
     """Particles, coloured by pressure, with their bulk springs; returns what moves them. A plane has no particles."""
     from matplotlib.collections import LineCollection
 
     half, view = window(states)
-    x, low, high = states.x[:, view], states.z_lower[:, view], states.z_upper[:, view]
-    pressure = states.pressure[:, view]
+    x, low, high, pressure = (a[:, view] for a in (states.x, states.z_lower, states.z_upper, states.pressure))
     bottom, top = float(low.min()), float(high.max())
-    height = (top - bottom) or 1.0
-    length = SPRING_LENGTH * height
+    length = SPRING_LENGTH * ((top - bottom) or 1.0)
     scale = float(np.abs(pressure).max()) or 1.0
     springs = LineCollection([], colors="#bbbbbb", linewidths=0.6)
     axis.add_collection(springs)
     look: dict[str, Any] = {"cmap": "coolwarm_r", "vmin": -scale, "vmax": scale, "s": 12, "zorder": 3}
-    upper = axis.scatter(x[0], high[0], c=pressure[0], **look)
-    lower = axis.scatter(x[0], low[0], c=pressure[0], **look)
-    chains = run.scene.bodies.lower != "rigid_plane"
-    lower.set_visible(chains)
-    if not chains:
-        axis.axhline(0.0, color=THEORY, linewidth=0.8)
-    axis.figure.colorbar(upper, ax=axis, label="pressure (FU/LU), compression positive", shrink=0.9)
-    axis.set_xlim(-half, half)
-    axis.set_ylim(bottom - 1.1 * length, top + 1.1 * length)
-    axis.set_xlabel("x (LU)")
-    axis.set_ylabel("z (LU), drawn larger than x")
+    chains = [(axis.scatter(x[0], high[0], c=pressure[0], **look), high, length)]
+    has_plane = run.scene.bodies.lower == "rigid_plane"
+    if not has_plane:
+        chains.append((axis.scatter(x[0], low[0], c=pressure[0], **look), low, -length))
+    axis.figure.colorbar(chains[0][0], ax=axis, label="pressure (FU/LU), compression positive", shrink=0.9)
+    axis.set(xlim=(-half, half), ylim=(bottom - 1.1 * length, top + 1.1 * length))
+    describe(axis, "x (LU)", "z (LU), drawn larger than x", run.scene.title, zero=has_plane)
 
     def move(frame: int) -> list[Any]:
-        for dots, z in ((upper, high), (lower, low)):
+        for dots, z, _ in chains:
             dots.set_offsets(np.column_stack([x[frame], z[frame]]))
             dots.set_array(pressure[frame])
         if x.shape[1] <= SPRINGS_SHOWN:
-            below = _segments(x[frame], low[frame], -length) if chains else []
-            springs.set_segments(_segments(x[frame], high[frame], length) + below)
-        return [upper, lower, springs]
+            springs.set_segments([line for _, z, end in chains for line in _segments(x[frame], z[frame], end)])
+        return [*(dots for dots, _, _ in chains), springs]
 
     return move
 
@@ -137,20 +129,17 @@ def _segments(x: NDArray[np.float32], z: NDArray[np.float32], length: float) -> 
     return [((a, b), (a, b + length)) for a, b in zip(x.tolist(), z.tolist(), strict=True)]
 
 
-def _trace(axis: Axes, run: Run, states: States) -> Any:
+def _trace(axis: Axes, run: Run, states: States) -> Callable[[int], list[Any]]:
     """The main curve with a mark; returns what moves it."""
     main = main_curve(run)
-    x, y = main.x, main.y
-    for rows in rows_of_branches(run.curve.branch, x).values():
-        axis.plot(x[rows], y[rows], color=COMPRESSION, linewidth=1.2)
-    axis.axhline(0.0, color=THEORY, linewidth=0.6)
+    for rows in rows_of_branches(run.curve.branch, main.x).values():
+        axis.plot(main.x[rows], main.y[rows], color=COMPRESSION, linewidth=1.2)
+    describe(axis, main.x_name, main.y_name)
     (mark,) = axis.plot([], [], "o", color=TENSION, markersize=8)
-    axis.set_xlabel(main.x_name)
-    axis.set_ylabel(main.y_name)
 
     def move(frame: int) -> list[Any]:
         row = states.rows[frame]
-        mark.set_data([x[row]], [y[row]])
+        mark.set_data([main.x[row]], [main.y[row]])
         return [mark]
 
     return move

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.plots import SIZE, THEORY, new_figure, save_figure
+from contact1d.analysis.plots import THEORY, describe, legend, panels, save_figure
 from contact1d.workflow.runs.report import FORMATS
 from contact1d.workflow.sweep.axes import Axis, SweepPlan
 from contact1d.workflow.sweep.table import cell, document_in, read_table
@@ -116,8 +116,7 @@ def sweep_figure(plan: SweepPlan, name: str, unit: str, lines: Sequence[Line]) -
     from matplotlib import colormaps
 
     along, others = roles_of(plan)
-    figure = new_figure(SIZE)
-    axis = figure.subplots()
+    figure, (axis,) = panels()
     styles = dict(zip(forms_of(lines), cycle(STYLES), strict=False))
     for line, colour in zip(lines, colormaps["viridis"](np.linspace(0.0, 0.85, len(lines))), strict=True):
         axis.errorbar(
@@ -129,11 +128,10 @@ def sweep_figure(plan: SweepPlan, name: str, unit: str, lines: Sequence[Line]) -
             axis.plot(x, values, styles[form], marker=mark, color=colour, linewidth=1.6, zorder=1)
     named = [axis.plot([], [], style, color=THEORY, linewidth=1.6, label=form)[0] for form, style in styles.items()]
     _scale(axis, along)
-    axis.set_xlabel(along.title)
-    axis.set_ylabel(f"{name.replace('_', ' ')} ({unit})" if unit != "1" else name.replace("_", " "))
-    axis.set_title(plan.title, loc="left", fontsize=10)
+    words = name.replace("_", " ")
+    describe(axis, along.title, words if unit == "1" else f"{words} ({unit})", plan.title, zero=False)
     if (others or styles) and len(lines) <= MOST_LINES:
-        axis.legend(frameon=False, fontsize=8)
+        legend(axis, size=8)
     elif others:
         if named:
             axis.legend(handles=named, frameon=False, fontsize=8)
