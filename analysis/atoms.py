@@ -17,8 +17,6 @@ ROLE = ("", "particle", "particle", "anchor", "anchor", "far anchor", "far ancho
 """What a LAMMPS atom type, from 1 on, is part of."""
 COLUMNS = ("id", "type", "x", "y", "z", "opposite_fx", "opposite_fz")
 """What is read of the dump."""
-OF_A_WAY = {"opposite_fx": "fx", "opposite_fz": "fz"}
-"""How columns are called where the whole way is kept: as programs that show atoms know them."""
 
 
 def atoms(folder: str | Path, state: int = -1) -> Atoms:
@@ -69,11 +67,10 @@ def _frame(text: str, where: str) -> tuple[int, dict[str, NDArray[np.float64]]]:
     promised = int(words[words.index("ATOMS") + 1]) if "BOUNDS" in words else None
     if len(lines) != promised or not rows.endswith("\n"):
         raise ValueError(f"{where}: the dump is cut short, the run did not finish writing it")
+    if "fy" in names.split():  # where the whole way is kept, forces are called as programs that show atoms know them
+        names = names.replace("fx", "opposite_fx").replace("fz", "opposite_fz")
     there = names.split()
-    renamed = OF_A_WAY if "fy" in there else {}  # which states alone do not have
-    missing = [name for name in COLUMNS if renamed.get(name, name) not in there]
-    if missing:
+    if missing := [name for name in COLUMNS if name not in there]:
         raise ValueError(f"{where}: no column {', '.join(missing)}")
-    wanted = [there.index(renamed.get(name, name)) for name in COLUMNS]
-    values = np.loadtxt(lines, usecols=wanted, ndmin=2)
+    values = np.loadtxt(lines, usecols=[there.index(name) for name in COLUMNS], ndmin=2)
     return int(words[0]), dict(zip(COLUMNS, values[np.argsort(values[:, 0])].T, strict=True))

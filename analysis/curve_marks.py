@@ -78,20 +78,31 @@ def _apart_from(d: Array, tension: Array, i: int) -> tuple[Array, Array, int]:
     return d[kept], tension[kept], int(kept[:i].sum())
 
 
+def _about(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, Array] | None:
+    """Width [LU] of samples, so many on either side of one, and the polynomial through them less it, of d over width.
+
+    None where they lie too near to each other.
+    """
+    near = slice(max(middle - beside, 0), middle + beside + 1)
+    if not are_apart(d[near]):
+        return None
+    width = float(np.ptp(d[near]))
+    return width, through((d[near] - d[middle]) / width, tension[near] - tension[middle])
+
+
 def _vertex(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, float]:
     """Place and value of the maximum of the polynomial through the highest point and so many on either side of it.
 
     It lies between the highest point's neighbours.
     """
-    near = slice(middle - beside, middle + beside + 1)
-    top, scale = float(tension[middle]), float(np.ptp(d[near]))
-    if not are_apart(d[near]):
-        return float(d[middle]), top
-    x = (d[near] - d[middle]) / scale
-    missing = through(x, top - tension[near])
-    best, _ = lowest_minimum(missing, float(x[beside + 1]), float(x[beside - 1]))
-    above = -value(missing, best)
-    return (float(d[middle]) + scale * best, top + above) if above > 0.0 else (float(d[middle]), top)
+    place, top = float(d[middle]), float(tension[middle])
+    if (found := _about(d, tension, middle, beside)) is None:
+        return place, top
+    width, rise = found
+    after, before = ((d[middle + side] - d[middle]) / width for side in (1, -1))
+    best, _ = lowest_minimum(-rise, float(after), float(before))
+    above = value(rise, best)
+    return (place + width * best, top + above) if above > 0.0 else (place, top)
 
 
 def promised(displacement: Sequence[float], force: Sequence[float], places: Sequence[float]) -> Array:
@@ -101,15 +112,12 @@ def promised(displacement: Sequence[float], force: Sequence[float], places: Sequ
     """
     d, tension = np.asarray(displacement), -np.asarray(force)
     i = int(np.argmax(tension))
-    if not 0 < i < len(d) - 1:
-        return np.full(len(places), np.nan)
-    d, tension, at = _apart_from(d, tension, i)
-    near = slice(max(at - 2, 0), at + 3)
-    if not are_apart(d[near]):
-        return np.full(len(places), np.nan)
-    scale = float(np.ptp(d[near]))
-    rise = through((d[near] - d[at]) / scale, tension[near] - tension[at])
-    return np.asarray([tension[at] + value(rise, (place - d[at]) / scale) for place in places])
+    if 0 < i < len(d) - 1:
+        d, tension, at = _apart_from(d, tension, i)
+        if (found := _about(d, tension, at, 2)) is not None:
+            width, rise = found
+            return np.asarray([tension[at] + value(rise, (place - d[at]) / width) for place in places])
+    return np.full(len(places), np.nan)
 
 
 def rivals(displacement: Sequence[float], force: Sequence[float], peak: Peak) -> dict[int, float]:

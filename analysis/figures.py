@@ -30,12 +30,14 @@ from contact1d.analysis.plots import (
 )
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import moved_centre
-from contact1d.analysis.theory.curves import barquins_reduced_force, jkr_reduced_force
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+BARQUINS = 4.0 ** (4.0 / 3.0) / 3.0
+"""2.1165: makes the minimum of BARQUINS (ã² − √ã), at ã = 4^(−2/3) = 0.397, equal to −1: the 2D
+cylinder of M. Barquins, J. Adhesion 26 (1988) 1."""
 Theory = tuple[str, Array, Array]
 STICKS, SLIPS = COMPRESSION, TENSION
 BEFORE = "#bbbbbb"
@@ -113,8 +115,8 @@ def force_radius_figure(curve: Curve, adhesion_force: float, zero_load_radius: f
     chosen = (curve.branch == "unloading") & np.isfinite(radius) & (radius > 0.0)
     top = max(1.3, 1.05 * float(radius[chosen].max(initial=0.0)))
     a = np.linspace(0.0, top, 400)
-    beside(axis, ("JKR", a, jkr_reduced_force(a)), "-", 1.6)
-    beside(axis, ("Barquins (2D)", a, barquins_reduced_force(a)), width=1.2)
+    beside(axis, ("JKR", a, 4.0 * a**3 - 4.0 * a**1.5), "-", 1.6)
+    beside(axis, ("Barquins (2D)", a, BARQUINS * (a**2 - np.sqrt(a))), width=1.2)
     axis.plot(radius[chosen], force[chosen], "o", color=UNLOADING, markersize=3.5, label="this run, unloading")
     describe(axis, r"contact radius $a/a_0$", r"force $F/F_A$, compression positive")
     axis.set_xlim(0.0, top)

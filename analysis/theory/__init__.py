@@ -1,5 +1,4 @@
 """Closed forms that users see beside the results: contact with adhesion, other shapes, friction, and Tabor's map.
 
-`indenters` (Hertz, JKR and other shapes), `adhesion` (DMT, Maugis and Dugdale, which theory is valid), `mindlin`;
-`curves` has those that figures show.
+`indenters` (Hertz, JKR and other shapes), `adhesion` (DMT, Maugis and Dugdale, which theory is valid), `mindlin`.
 """

@@ -15,7 +15,6 @@ compression; a << R. Any consistent units.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import lru_cache
@@ -44,28 +43,6 @@ RIGID_COMPRESSION = 0.05
 HERTZ_ADHESION_SHARE = 0.05
 """Hertz below: the load that attraction adds, (4 E* a^3/3R - F)/F. The 5 % is a convention. For DMT it means
 F/(pi W R) > 40, for JKR F/(pi W R) > 2520: its attraction grows with the contact. A radius is then 1.6 % off."""
-
-
-def tabor_number(radius: float, contact_modulus: float, work_of_adhesion: float, range_of_attraction: float) -> float:
-    """Return mu = (R W^2/(E*^2 z_0^3))^(1/3) [1].
-
-    Args:
-        radius: effective R [length].
-        contact_modulus: E* [stress].
-        work_of_adhesion: W = 2 gamma [force/length].
-        range_of_attraction: z_0, the force-free distance of two surfaces [length]; for another law than that of
-            Lennard-Jones a distance of the order of W over the largest tension, which moves mu by a factor near 1.
-
-    Raises:
-        ValueError: if one of them is not positive.
-    """
-    require_positive(
-        radius=radius,
-        contact_modulus=contact_modulus,
-        work_of_adhesion=work_of_adhesion,
-        range_of_attraction=range_of_attraction,
-    )
-    return math.cbrt(radius * work_of_adhesion**2 / (contact_modulus**2 * range_of_attraction**3))
 
 
 @dataclass(frozen=True)
@@ -128,7 +105,9 @@ class MaugisDugdale(Dmt):
 
     Args:
         radius, contact_modulus, work_of_adhesion: as of `Dmt`.
-        range_of_attraction: z_0 [length], as of `tabor_number`; lambda was tried from 1e-6 to 1e4.
+        range_of_attraction: z_0, the force-free distance of two surfaces [length]; for another law than that of
+            Lennard-Jones a distance of the order of W over the largest tension, which moves mu by a factor near 1.
+            lambda was tried from 1e-6 to 1e4.
 
     Raises:
         ValueError: if one of them is not positive.
@@ -142,11 +121,21 @@ class MaugisDugdale(Dmt):
         return cls(1.0, 0.75, 1.0 / math.pi, math.cbrt((0.75 * math.pi) ** -2) / tabor)
 
     @property
+    def tabor(self) -> float:
+        """mu = (R W^2/(E*^2 z_0^3))^(1/3)."""
+        ratio = self.work_of_adhesion / self.contact_modulus
+        return math.cbrt(self.radius * ratio**2 / self.range_of_attraction**3)
+
+    @property
     def transition(self) -> float:
         """lambda = 1.157 mu."""
-        return LAMBDA_OVER_TABOR * tabor_number(
-            self.radius, self.contact_modulus, self.work_of_adhesion, self.range_of_attraction
-        )
+        return LAMBDA_OVER_TABOR * self.tabor
+
+    @property
+    def theories(self) -> dict[Theory, Contact]:
+        """The contact by JKR and DMT, which know no range, and by this one."""
+        pair = self.radius, self.contact_modulus, self.work_of_adhesion
+        return {Theory.JKR: PowerLaw.sphere(*pair), Theory.DMT: Dmt(*pair), Theory.MAUGIS: self}
 
     def ring_width(self, contact_radius: float) -> float:
         """Return c - a, the root of the adhesion equation [length]; a >= 0 [length]."""
@@ -260,11 +249,9 @@ def valid_theory(tabor: float, reduced_load: float) -> Verdict:
     """
     if not (math.isfinite(tabor) and tabor > 0.0 and math.isfinite(reduced_load)):
         raise ValueError(f"tabor must be positive and both numbers finite, got {tabor} and {reduced_load}")
-    ranged = MaugisDugdale.reduced(tabor)
-    unit = ranged.radius, ranged.contact_modulus, ranged.work_of_adhesion
-    jkr, dmt = PowerLaw.sphere(*unit), Dmt(*unit)
-    usual = of_tabor(tabor)
-    largest = dmt.pull_off_force() if usual is Theory.DMT else max(jkr.pull_off_force(), ranged.pull_off_force())
+    contacts, usual = MaugisDugdale.reduced(tabor).theories, of_tabor(tabor)
+    jkr = contacts[Theory.JKR].pull_off_force()
+    largest = max(jkr, contacts[Theory.DMT if usual is Theory.DMT else Theory.MAUGIS].pull_off_force())
     if reduced_load < -largest:
         return Verdict(
             Theory.APART, f"a tension of {-reduced_load:.3g} πWR exceeds the pull-off force {largest:.3g} πWR"
@@ -275,15 +262,12 @@ def valid_theory(tabor: float, reduced_load: float) -> Verdict:
             Theory.RIGID, f"the compression is {compression:.2g} z₀, less than {RIGID_COMPRESSION}: F_A = 2πWR"
         )
     if reduced_load > 0.0:
-        holding: dict[Theory, Callable[[float], float]] = {
-            Theory.DMT: dmt.contact_radius, Theory.JKR: jkr.contact_radius, Theory.MAUGIS: ranged.contact_radius,
-        }  # fmt: skip
-        share = (holding[usual](reduced_load) ** 3 - reduced_load) / reduced_load
+        share = (contacts[usual].contact_radius(reduced_load) ** 3 - reduced_load) / reduced_load
         if share < HERTZ_ADHESION_SHARE:
             return Verdict(
                 Theory.HERTZ, f"attraction adds {share:.1%} to the load, less than {HERTZ_ADHESION_SHARE:.0%}"
             )
-    if usual is Theory.JKR and reduced_load >= -jkr.pull_off_force():
+    if usual is Theory.JKR and reduced_load >= -jkr:
         return Verdict(usual, f"Tabor's number {tabor:.3g} is above {JKR_TABOR:g}: the range is negligible")
     if usual is Theory.DMT:
         return Verdict(usual, f"Tabor's number {tabor:.3g} is below {DMT_TABOR:g}: attraction deforms little")

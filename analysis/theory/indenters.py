@@ -26,6 +26,8 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 RIM = 1.0 - 1e-12
 """Of the radius of a whole sphere, up to which its contact is looked for: at the rim there is no bound."""
+CURVE = 400
+"""Points of a curve."""
 POINTS = 200
 """Of Gauss's quadrature of a smooth function: its error is below round-off."""
 
@@ -99,6 +101,10 @@ class Contact:
         if displacement < self.displacement(low):
             raise ValueError(f"the bodies part at the displacement {self.displacement(low)}")
         return self._where(self.displacement, displacement, low)
+
+    def curve(self, least: float, largest: float) -> Floats:
+        """Return a [length], d(a) [length] and F(a) [force] at even radii from one to another, shape (3, CURVE)."""
+        return np.asarray([(a, self.displacement(a), self.force(a)) for a in np.linspace(least, largest, CURVE)]).T
 
     def _where(self, curve: Callable[[float], float], wanted: float, low: float) -> float:
         """The radius from `low` on at which a rising curve is `wanted`, to the last digit; `low` where it begins so."""

@@ -11,7 +11,9 @@ import pytest
 from contact1d.analysis import figures, plots
 from contact1d.analysis.curve import Curve
 from contact1d.analysis.pressure import Profile
-from contact1d.analysis.theory.curves import hertz_curve, jkr_curve
+from contact1d.workflow.runs.campaign import run
+from contact1d.workflow.scene import scene_from_dict
+from tests.scenes import chains
 
 ROUND_OFF = 1e-12  # relative; closed forms of a few operations
 GRID = 2e-3  # of F_A; the theory is drawn with 400 points
@@ -86,32 +88,39 @@ def test_the_branches_are_drawn_as_measured(curve: Curve) -> None:
     assert "(FU)" in axis.get_ylabel()
 
 
-def test_jkr_over_displacement_obeys_its_own_equations() -> None:
+def test_jkr_over_displacement_obeys_its_own_equations(tmp_path: Path) -> None:
     """Two spheres of R: effective radius R/2, radii a/2, E* and W from F_A and a₀ (Johnson, Kendall, Roberts 1971)."""
-    displacement, force = jkr_curve(ADHESION, ZERO_LOAD, BODY_RADIUS)
-    effective, radius = BODY_RADIUS / 2.0, ZERO_LOAD / 2.0
-    work = ADHESION / (1.5 * math.pi * effective)
+    pull = {"kind": "pull_off", "preload": 0.2}
+    tables = chains(50.0, bodies={"particles": 40}, accuracy={"tolerance": 1e-2}, experiment=pull)
+    done = run(scene_from_dict(tables), tmp_path / "run", figures=False)
+    tension, effective = done.results.adhesion_force.value, 25.0
+    radius = done.results.zero_load_radius.value / 2.0
+    work = tension / (1.5 * math.pi * effective)
     modulus = 4.5 * math.pi * work * effective**2 / radius**3
     a = np.linspace(0.05, 1.3, 400) * radius
-    np.testing.assert_allclose(displacement, a**2 / effective - np.sqrt(2.0 * math.pi * a * work / modulus), atol=1e-15)
-    expected = 4.0 * modulus * a**3 / (3.0 * effective) - np.sqrt(8.0 * math.pi * modulus * work * a**3)
-    np.testing.assert_allclose(force, expected, atol=ROUND_OFF)
-    assert force.min() == pytest.approx(-ADHESION, abs=GRID * ADHESION)
+    displacement = a**2 / effective - np.sqrt(2.0 * math.pi * a * work / modulus)
+    force = 4.0 * modulus * a**3 / (3.0 * effective) - np.sqrt(8.0 * math.pi * modulus * work * a**3)
+    drawn = lines(done.plot("force_displacement").axes[0])["JKR, same $F_A$ and $a_0$"]
+    shown = (displacement >= done.curve.displacement.min()) & (drawn[:, 1].max() >= force)
+    np.testing.assert_allclose(drawn, np.column_stack([displacement, force])[shown], atol=ROUND_OFF)
+    assert force.min() == pytest.approx(-tension, abs=GRID * tension)
 
 
-def test_hertz_is_that_of_two_spheres() -> None:
-    """c_n = G/2(1−ν), Eq. (3); two equal spheres: effective radius R/2, E* = G/(1−ν) = 2 c_n."""
-    displacement, force = hertz_curve(2.0, BODY_RADIUS, 0.83)
-    assert displacement[-1] == 2.0
-    expected = 4.0 / 3.0 * (2.0 * 0.83) * np.sqrt(BODY_RADIUS / 2.0) * displacement**1.5
-    np.testing.assert_allclose(force, expected, rtol=ROUND_OFF)
-
-
-def test_a_theory_is_shown_beside_the_curve_and_within_its_range(curve: Curve) -> None:
-    theory = ("JKR", *jkr_curve(ADHESION, ZERO_LOAD, BODY_RADIUS))
-    drawn = lines(figures.force_displacement_figure(curve, MARKS, theory).axes[0])
-    assert drawn["JKR"][:, 1].max() <= max(curve.force) + 0.05 * np.ptp(curve.force)
-    assert drawn["JKR"][:, 0].min() >= min(curve.displacement)
+@pytest.mark.parametrize("reduction", ["mdr", "geike_popov"])
+def test_hertz_is_the_integral_of_the_springs_under_the_parabola(reduction: str, tmp_path: Path) -> None:
+    """∫ c (d − x²/2R₁) dx over |x| < √(2R₁d), with c = k/s; x²/R by the MDR and x²/2R as drawn."""
+    bodies = {"lower": "rigid_plane", "spacing": 0.5, "reduction": reduction}
+    path = {"kind": "path", "displacements": [0.0, 0.5, 1.0, 2.0]}
+    done = run(scene_from_dict(chains(100.0, 0.8, interaction=None, bodies=bodies, experiment=path)), tmp_path / "run",
+               figures=False)  # fmt: skip
+    half = 50.0 if reduction == "mdr" else 100.0
+    d, force = lines(done.plot("force_displacement").axes[0])["Hertz"].T
+    expected = 0.8 / 0.5 * 4.0 / 3.0 * np.sqrt(2.0 * half) * d**1.5
+    assert d[-1] == pytest.approx(2.0, rel=ROUND_OFF)
+    np.testing.assert_allclose(force, expected, rtol=10.0 * ROUND_OFF, atol=ROUND_OFF)
+    a, again = lines(done.plot("force_radius").axes[0])["Hertz"].T
+    np.testing.assert_allclose(a, np.sqrt(2.0 * half * d), rtol=10.0 * ROUND_OFF)
+    np.testing.assert_array_equal(again, force)
 
 
 def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(curve: Curve) -> None:

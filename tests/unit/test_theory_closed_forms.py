@@ -9,8 +9,6 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq, minimize_scalar
 
-from contact1d.analysis.theory import curves
-from contact1d.analysis.theory.indenters import PowerLaw
 from validation.references import hertz
 from validation.references.independent_pairs import IndependentPairs
 from validation.references.interaction import Exponential, PairInteraction
@@ -30,27 +28,6 @@ def test_hertz_force_is_the_integral_of_its_pressure() -> None:
     total = quad(lambda s: p0 * math.sqrt(1.0 - (s / a) ** 2) * 2.0 * math.pi * s, 0.0, a, epsrel=QUADRATURE)[0]
     assert float(hertz.hertz_force(d, r, e)) == pytest.approx(total, rel=QUADRATURE)
     assert float(hertz.hertz_force(-0.1, r, e)) == 0.0
-
-
-def test_reduced_curves() -> None:
-    for curve, place in ((curves.jkr_reduced_force, 0.630), (curves.barquins_reduced_force, 0.397)):
-        lowest = minimize_scalar(lambda s, f=curve: float(f(s)), bounds=(0.1, 0.9), method="bounded")
-        assert lowest.fun == pytest.approx(-1.0, abs=1e-9)
-        assert lowest.x == pytest.approx(place, abs=5e-4)  # printed with three digits
-        assert float(curve(np.array(1.0))) == pytest.approx(0.0, abs=ROUND_OFF)
-    sphere, x = PowerLaw.sphere(3.0, 7.0, 0.2), np.linspace(0.3, 1.4, 12)
-    exact = [sphere.force(part * sphere.zero_load_radius()) / sphere.pull_off_force() for part in x.tolist()]
-    np.testing.assert_allclose(curves.jkr_reduced_force(x), exact, atol=ROUND_OFF)
-
-
-def test_springs_under_a_parabola_are_their_integral_and_hertz_with_twice_the_radius() -> None:
-    r, c_n = 1000.0, 0.4
-    displacements, forces = curves.hertz_curve(0.3, r, c_n)
-    d, width = float(displacements[-1]), math.sqrt(2.0 * r * 0.3)
-    total = quad(lambda x: c_n * (d - x**2 / (2.0 * r)), -width, width)[0]
-    assert d == 0.3
-    assert float(forces[-1]) == pytest.approx(total, rel=QUADRATURE)
-    np.testing.assert_allclose(forces, hertz.hertz_force(displacements, 0.5 * r, 2.0 * c_n), rtol=ROUND_OFF)
 
 
 def test_independent_pairs_by_adaptive_quadrature() -> None:

@@ -16,7 +16,6 @@ from contact1d.analysis.theory.adhesion import (
     Dmt,
     MaugisDugdale,
     Theory,
-    tabor_number,
     valid_theory,
 )
 from contact1d.analysis.theory.indenters import PowerLaw
@@ -69,13 +68,13 @@ def test_more_load_ends_in_hertz_and_more_softness_in_jkr() -> None:
 
 
 def test_tabor_number_is_a_stretch_over_the_range() -> None:
-    mu = tabor_number(RADIUS, MODULUS, ADHESION, RANGE)
+    mu = MaugisDugdale(RADIUS, MODULUS, ADHESION, RANGE).tabor
     assert mu == pytest.approx((RADIUS * ADHESION**2 / (MODULUS**2 * RANGE**3)) ** (1.0 / 3.0), rel=ROUND_OFF)
     for sphere, factor in ((PowerLaw.sphere, 3.898), (Dmt, 3.246)):
         stretch = edge_elongation(sphere(RADIUS, MODULUS, ADHESION).zero_load_radius(), MODULUS, ADHESION)
         assert stretch / RANGE == pytest.approx(factor * mu, rel=2e-4)  # printed with four digits
     with pytest.raises(ValueError, match="positive"):
-        tabor_number(RADIUS, MODULUS, ADHESION, 0.0)
+        MaugisDugdale(RADIUS, MODULUS, ADHESION, 0.0)
 
 
 @pytest.mark.parametrize(("tabor", "load"), [(0.01, 40.0), (100.0, 2520.0)])
@@ -91,7 +90,7 @@ def test_rigid_boundary_is_hertz_under_the_whole_load() -> None:
     sphere, load = Dmt(RADIUS, MODULUS, ADHESION), 1.7
     compression = sphere.displacement(sphere.contact_radius(load * math.pi * ADHESION * RADIUS))
     for share, rigid in ((0.04999, True), (0.05001, False)):
-        mu = tabor_number(RADIUS, MODULUS, ADHESION, compression / share)
+        mu = MaugisDugdale(RADIUS, MODULUS, ADHESION, compression / share).tabor
         assert (valid_theory(mu, load).theory is Theory.RIGID) == rigid
 
 

@@ -18,7 +18,6 @@ from contact1d.analysis.theory.adhesion import (
     LENNARD_JONES_STRESS,
     Dmt,
     MaugisDugdale,
-    tabor_number,
 )
 from contact1d.analysis.theory.indenters import PowerLaw
 
@@ -146,8 +145,8 @@ def test_lambda_of_tabor() -> None:
     heights = np.linspace(1.0, 2.0, 100001)
     law = 8.0 / 3.0 * (heights**-3 - heights**-9)
     assert float(np.max(law)) == pytest.approx(LENNARD_JONES_STRESS, rel=1e-9)
-    mu = tabor_number(RADIUS, MODULUS, ADHESION, 0.01)
-    assert MaugisDugdale(RADIUS, MODULUS, ADHESION, 0.01).transition / mu == pytest.approx(1.157, abs=5e-4)
+    contact = MaugisDugdale(RADIUS, MODULUS, ADHESION, 0.01)
+    assert contact.transition / contact.tabor == pytest.approx(1.157, abs=5e-4)
 
 
 def test_dmt_pull_off_is_derjaguins_integral_of_the_attraction() -> None:

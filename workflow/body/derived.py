@@ -134,15 +134,12 @@ def _pressures(scene: Scene, outcome: Outcome) -> dict[str, Quantity]:
     unknown = sum(
         found[name].uncertainty / abs(found[name].value) for name in ERRORS if name in found and found[name].value
     )
-    state = next((name for name in REPORTED if name in outcome.profiles), None)
-    if state is None:
-        return {}
-    pressure = body_pressures(scene, {state: outcome.profiles[state]}).get(state)
-    named = {} if pressure is None else {"central_pressure": pressure.central, "peak_pressure": pressure.peak}
+    reported = [name for name in REPORTED if name in outcome.profiles][:1]
+    pressures = body_pressures(scene, {name: outcome.profiles[name] for name in reported})
     return {
         name: Quantity(p.value, p.uncertainty + unknown * abs(p.value), p.unit)
-        for name, p in named.items()
-        if p is not None
+        for pressure in pressures.values()
+        for name, p in pressure.results.items()
     }
 
 

@@ -17,7 +17,7 @@ from functools import cached_property
 from typing import Any
 
 from contact1d.analysis.pressure import Array
-from contact1d.analysis.theory.adhesion import Dmt, MaugisDugdale, Theory, of_tabor, tabor_number, valid_theory
+from contact1d.analysis.theory.adhesion import Dmt, MaugisDugdale, Theory, of_tabor, valid_theory
 from contact1d.analysis.theory.indenters import Contact, Ellipsoid, FlatPunch, PowerLaw
 from contact1d.analysis.theory.mindlin import mindlin_path, mindlin_stick_path, sliding_displacement
 from contact1d.workflow.model.settings import interaction_law
@@ -290,7 +290,7 @@ def tabor(case: Case) -> float | None:
     """µ = (R W²/E*² z₀³)^{1/3} of a sphere with a range; None for anything else."""
     if case.radius is None or not (case.work > 0.0 and case.range > 0.0):
         return None
-    return tabor_number(*case.sphere, case.range)
+    return MaugisDugdale(*case.sphere, case.range).tabor
 
 
 def _with_a_range(case: Case) -> str:

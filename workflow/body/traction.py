@@ -46,16 +46,15 @@ class BodyPressure:
         pressure: compression positive [FU/LU²].
         uncertainty: of it [FU/LU²].
         contact_radius: of the body [LU]; where bodies attract, tension reaches beyond it.
-        central: p(0) [FU/LU²]; None where it has no bound.
-        peak: the largest p [FU/LU²]; None where it has no bound, as at a cone's tip, a punch's edge or a rim.
+        results: `central_pressure`, p(0), and `peak_pressure`, the largest one [FU/LU²]; without one that has no bound,
+            as at a cone's tip, a punch's edge or a rim.
     """
 
     r: Array
     pressure: Array
     uncertainty: Array
     contact_radius: float
-    central: Quantity | None = None
-    peak: Quantity | None = None
+    results: Mapping[str, Quantity]
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,15 +120,17 @@ def _pressure(scene: Scene, profile: Profile, radius: ContactRadius) -> BodyPres
     within = np.count_nonzero(side < radius.value / wider)
     told = [level for i, level in enumerate(levels) if level is not None and within >= FEWEST * 2**i]
     noise, top = NOISE * scene.accuracy.tolerance, int(p.argmax())
-    central = peak = None
-    if not fine.has_apex and _converges([float(level.pressure([0.0])[0]) for level in told], noise):
-        central = Quantity(float(p[0]), float(spread[0]), MEAN_PRESSURE)
-    if top == 0:
-        peak = central
-    elif len(told) == 3 and not (fine.has_apex or fine.at_edge > noise * p[top] * fine.edge):  # a jump is a pole
-        tops = [float(level.pressure(r).max()) for level in told]
-        peak = Quantity(float(p[top]), float(spread[top]), MEAN_PRESSURE) if _converges(tops, noise) else None
-    return BodyPressure(r, p, spread, radius.value / wider, central, peak)
+    bounded = {}
+    if not fine.has_apex:
+        if _converges([float(level.pressure([0.0])[0]) for level in told], noise):
+            bounded["central_pressure"] = 0
+        off_axis = top > 0 and len(told) == 3 and fine.at_edge <= noise * p[top] * fine.edge  # a jump is a pole
+        if off_axis:
+            off_axis = _converges([float(level.pressure(r).max()) for level in told], noise)
+        if off_axis or top in bounded.values():
+            bounded["peak_pressure"] = top
+    results = {name: Quantity(float(p[at]), float(spread[at]), MEAN_PRESSURE) for name, at in bounded.items()}
+    return BodyPressure(r, p, spread, radius.value / wider, results)
 
 
 def _converges(levels: Sequence[float], noise: float) -> bool:

@@ -18,8 +18,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.theory.adhesion import Dmt, MaugisDugdale, Verdict, of_tabor, tabor_number, valid_theory
-from contact1d.analysis.theory.indenters import Contact, PowerLaw
+from contact1d.analysis.theory.adhesion import MaugisDugdale, Verdict, of_tabor, valid_theory
+from contact1d.analysis.theory.indenters import PowerLaw
 from contact1d.workflow.identify.contact import AskedContact
 from contact1d.workflow.identify.interaction import LARGEST_RADIUS_SHARE, IdentifyError
 from contact1d.workflow.units import prefixed
@@ -46,7 +46,12 @@ class Theories:
     @cached_property
     def tabor(self) -> float:
         """μ = (R W²/(E*² z₀³))^(1/3)."""
-        return tabor_number(self.radius, self.contact_modulus, self.work_of_adhesion, self.range_of_attraction)
+        return self.sphere.tabor
+
+    @property
+    def sphere(self) -> MaugisDugdale:
+        """The contact with its range, which knows its limits."""
+        return MaugisDugdale(self.radius, self.contact_modulus, self.work_of_adhesion, self.range_of_attraction)
 
     @cached_property
     def verdict(self) -> Verdict:
@@ -56,13 +61,9 @@ class Theories:
     @cached_property
     def values(self) -> Mapping[str, Mapping[str, float]]:
         """By theory, F_A [N], a₀ [m], a where a fixed load pulls off [m], a under the load [m] where one is given."""
-        pair = self.radius, self.contact_modulus, self.work_of_adhesion
-        contacts: dict[str, Contact] = {
-            "JKR": PowerLaw.sphere(*pair), "DMT": Dmt(*pair),
-            "Maugis-Dugdale": MaugisDugdale(*pair, self.range_of_attraction),
-        }  # fmt: skip
+        contacts = self.sphere.theories
         marks = {
-            name: {
+            str(name): {
                 "adhesion_force": contact.pull_off_force(), "zero_load_radius": contact.zero_load_radius(),
                 "critical_radius": contact.critical_radius(),
             }

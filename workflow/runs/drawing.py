@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from math import nan
+from math import nan, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +14,7 @@ from contact1d.analysis import figures, plots
 from contact1d.analysis.curve import DETACHMENTS, SAMPLE_COLUMNS, SAMPLE_TABLE, Curve, read_columns
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.shear import stick_margin
-from contact1d.analysis.theory.curves import hertz_curve, jkr_curve, jkr_on_plane
+from contact1d.analysis.theory.indenters import PowerLaw
 from contact1d.analysis.theory.mindlin import mindlin_path, sliding_displacement
 from contact1d.workflow.body.derived import REPORTED
 from contact1d.workflow.body.reading import IMAGE
@@ -35,6 +35,8 @@ MEASURED = ("sampling", "unloading", "pulling")
 Drawings = dict[str, Callable[[], "Figure"]]
 FINE = 300
 """Radii at which a closed form is drawn."""
+LEAST, LARGEST = 0.05, 1.3
+"""Radii over a₀ from and to which JKR is drawn; on a plane from where fixed grips part."""
 SAME_LOAD = 1e-9
 """Change of a load over the load up to which it is one: round-off."""
 
@@ -85,14 +87,15 @@ def _drawings(run: Run) -> Drawings:
     if scene.noise is not None and not scene.experiment.way_is_given:
         return pressure
     values = _values(run)
-    found: Drawings = {
-        "force_displacement": partial(figures.force_displacement_figure, curve, values, _theory(scene, values, curve))
-    }
+    beside = _theory(scene, values, curve)
+    over_d = None if beside is None else (beside[0], *beside[1][1:])
+    found: Drawings = {"force_displacement": partial(figures.force_displacement_figure, curve, values, over_d)}
     if _adheres_over_a_width(values):
         marks = values["adhesion_force"], values["zero_load_radius"]
         found["force_radius"] = partial(figures.force_radius_figure, curve, *marks)
     elif np.unique(curve.contact_radius[curve.contact_radius > 0.0]).size > 1:
-        found["force_radius"] = partial(figures.load_radius_figure, curve, _hertz_over_radius(scene, curve))
+        over_a = (beside[0], *beside[1][::2]) if beside is not None and beside[0] == "Hertz" else None
+        found["force_radius"] = partial(figures.load_radius_figure, curve, over_a)
     return found | pressure | _body_pressure(run)
 
 
@@ -152,15 +155,6 @@ def _mindlin(scene: Scene, curve: Curve, columns: Mapping[str, Array]) -> Array 
     return np.asarray(mindlin_path(places.tolist(), float(loads[0]), coefficient, sliding))
 
 
-def _hertz_over_radius(scene: Scene, curve: Curve) -> tuple[str, Array, Array] | None:
-    """Hertz's radius √(2 R₁ d) of the plane parabola x²/2R₁ and force, without adhesion on a plane; else none."""
-    bodies, radius = scene.bodies, scene.bodies.plane_radius
-    if radius is None or scene.interaction is not None or scene.adheres:
-        return None
-    d, force = hertz_curve(float(curve.displacement.max()), radius, scene.bulk_stiffness / bodies.spacing)
-    return "Hertz", np.sqrt(2.0 * radius * d), force
-
-
 def _radius(scene: Scene, profile: Profile) -> float:
     found = RadiusRule(scene, scene.accuracy.tolerance).of(profile)
     return nan if found is None else found.value
@@ -171,16 +165,23 @@ def _adheres_over_a_width(values: Mapping[str, float]) -> bool:
     return "adhesion_force" in values and values.get("zero_load_radius", 0.0) > 0.0
 
 
-def _theory(scene: Scene, values: Mapping[str, float], curve: Curve) -> tuple[str, Array, Array] | None:
-    """JKR, with the run's own F_A and a₀ or on a rigid plane with nothing fitted; Hertz there; else none."""
-    bodies, radius = scene.bodies, scene.bodies.plane_radius
-    if radius is None:
+def _theory(scene: Scene, values: Mapping[str, float], curve: Curve) -> tuple[str, Array] | None:
+    """Name, and a, d, F of JKR: with the run's own F_A and a₀, on a plane with nothing fitted; or of Hertz; or none.
+
+    The image x²/2R₁ on springs E* per length is the contact of R = 2R₁; its a₀ is twice that of the two spheres.
+    """
+    bodies, half = scene.bodies, scene.bodies.plane_radius
+    if half is None:
         return None
+    radius, modulus = 2.0 * half, scene.bulk_stiffness / bodies.spacing
     if scene.adhesion is not None and scene.adheres:
-        return "JKR", *jkr_on_plane(2.0 * radius, scene.bulk_stiffness / bodies.spacing, scene.adhesion.work)
+        jkr = PowerLaw.sphere(radius, modulus, scene.adhesion.work)
+        return "JKR", jkr.curve(jkr.fixed_grips_radius(), LARGEST * jkr.zero_load_radius())
     if _adheres_over_a_width(values):
-        jkr = jkr_curve(values["adhesion_force"], values["zero_load_radius"], radius)
-        return "JKR, same $F_A$ and $a_0$", *jkr
+        force, a_0 = values["adhesion_force"], values["zero_load_radius"]
+        fitted = PowerLaw.sphere(radius, 3.0 * force * radius / a_0**3, force / (1.5 * pi * radius))
+        return "JKR, same $F_A$ and $a_0$", fitted.curve(LEAST * a_0, LARGEST * a_0)
     if scene.interaction is None:
-        return "Hertz", *hertz_curve(float(curve.displacement.max()), radius, scene.bulk_stiffness / bodies.spacing)
+        hertz = PowerLaw.sphere(radius, modulus)
+        return "Hertz", hertz.curve(0.0, hertz.radius_at(max(float(curve.displacement.max()), 0.0)))
     return None
