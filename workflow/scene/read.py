@@ -214,7 +214,7 @@ def _with_points(data: dict[str, Any], folder: FilePath) -> tuple[dict[Keys, Col
         problem = Problem("bodies.profile.file", both, shown(file), "give the one or the other")
     else:
         try:
-            points, units = read_profile(folder / file).scaled(scale)
+            points, units = read_profile(folder / file, scale)
             profile |= points
             return {(*PROFILE, key): Column(file, unit) for key, unit in units.items()}, []
         except ProfileFileError as error:
