@@ -201,26 +201,23 @@ def _with_points(data: dict[str, Any], folder: FilePath) -> tuple[dict[Keys, Col
     profile = bodies.get("profile") if isinstance(bodies, dict) else None
     if not isinstance(profile, dict) or profile.get("kind") != "table":
         return {}, []
-    lists = "r" in profile or "z" in profile
+    lists, key = "r" in profile or "z" in profile, "file"
     if "file" not in profile and lists and "scale" in profile:
         beside = "not together with the lists r and z, which have units of their own"
-        hint = "it belongs to a file: remove it"
-        return {}, [Problem("bodies.profile.scale", beside, shown(profile.pop("scale")), hint)]
+        given, hint = shown(profile.pop("scale")), "it belongs to a file: remove it"
+        return {}, [Problem("bodies.profile.scale", beside, given, hint)]
     if not isinstance(profile.get("file"), str):
         return {}, []
     file, scale = profile.pop("file"), profile.pop("scale", None)
-    if lists:
-        both = "not together with the lists r and z"
-        problem = Problem("bodies.profile.file", both, shown(file), "give the one or the other")
-    else:
+    message, hint = "not together with the lists r and z", "give the one or the other"
+    if not lists:
         try:
             points, units = read_profile(folder / file, scale)
             profile |= points
             return {(*PROFILE, key): Column(file, unit) for key, unit in units.items()}, []
-        except ProfileFileError as error:
-            problem = Problem("bodies.profile.file", str(error), shown(file))
-        except ScaleError as error:
-            problem = Problem("bodies.profile.scale", str(error), shown(scale))
+        except (ProfileFileError, ScaleError) as error:
+            message, hint, key = str(error), "", "scale" if isinstance(error, ScaleError) else "file"
+    problem = Problem(f"bodies.profile.{key}", message, shown(scale if key == "scale" else file), hint)
     profile |= {"r": [0.0, 1.0, 2.0, 3.0], "z": [0.0, 1.0, 4.0, 9.0]}  # so that the rest of the scene is still checked
     return {(*PROFILE, key): Column(file, stands_in=True) for key in ("r", "z")}, [problem]
 
@@ -242,52 +239,52 @@ def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Prob
 
     A value is read as TOML, or as bare text where it is not TOML; tables on the way that are absent are made.
     """
-    return [problem for override in overrides if (problem := _apply(data, override))]
+    form = "write table.key=value, for example experiment.method=dynamic"
+    problems = []
+    for override in overrides:
+        path, _, text = override.partition("=")
+        where = f"set {shown(override)}"
+        if text.strip():
+            problems += _set(data, path, _toml_value(text.strip()), where, form)
+        else:
+            problems.append(Problem(where, "no value", hint=form))
+    return problems
 
 
 def set_values(data: dict[str, Any], values: Mapping[str, Any]) -> list[Problem]:
     """Set in `data` the value of each dotted key; None takes the key away. Returns the problems."""
     form = "write table.key, for example experiment.method"
-    return [problem for path, value in values.items() if (problem := _set(data, path, value, f"set {path}", form))]
+    return [problem for path, value in values.items() for problem in _set(data, path, value, f"set {path}", form)]
 
 
 def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
     """Remove from `data` the table of each effect in `names`; returns the problems of those that cannot be removed."""
     problems = []
     for name in dict.fromkeys(names):
-        if name in EFFECTS and name in data:
-            del data[name]
-            continue
-        if name in EFFECTS:
-            there = ", ".join(effect for effect in EFFECTS if effect in data) or "none"
-            problems.append(Problem(f"without {name}", "the scene has no such table", hint=f"effects there: {there}"))
-            continue
+        there = [effect for effect in EFFECTS if effect in data]
         meant = nearest(name, EFFECTS)
+        message = "not an effect that can be removed"
         hint = (f'did you mean "{meant}"? ' if meant else "") + f"effects: {', '.join(EFFECTS)}"
-        problems.append(Problem(f"without {name}", "not an effect that can be removed", hint=hint))
+        if name in EFFECTS:
+            message, hint = "the scene has no such table", f"effects there: {', '.join(there) or 'none'}"
+        if name in there:
+            del data[name]
+        else:
+            problems.append(Problem(f"without {name}", message, hint=hint))
     return problems
 
 
-def _apply(data: dict[str, Any], override: str) -> Problem | None:
-    path, equals, text = override.partition("=")
-    where = f"set {shown(override)}"
-    form = "write table.key=value, for example experiment.method=dynamic"
-    if not equals or not text.strip():
-        return Problem(where, "no value", hint=form)
-    return _set(data, path, _toml_value(text.strip()), where, form)
-
-
-def _set(data: dict[str, Any], path: str, value: Any, where: str, form: str) -> Problem | None:
+def _set(data: dict[str, Any], path: str, value: Any, where: str, form: str) -> list[Problem]:
     keys = [key.strip() for key in path.split(".")]
     if not all(re.fullmatch(r"[A-Za-z0-9_-]+", key) for key in keys):
-        return Problem(where, "not a path of keys", hint=form)
+        return [Problem(where, "not a path of keys", hint=form)]
     table = data
     for depth, key in enumerate(keys[:-1], start=1):
         table = table.setdefault(key, {})
         if not isinstance(table, dict):
-            return Problem(where, f"{'.'.join(keys[:depth])} is not a table", hint="set it as a whole")
+            return [Problem(where, f"{'.'.join(keys[:depth])} is not a table", hint="set it as a whole")]
     table[keys[-1]] = value
-    return None
+    return []
 
 
 def _toml_value(text: str) -> Any:
