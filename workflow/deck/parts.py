@@ -31,20 +31,12 @@ CHOSEN_BINS = ("far_bin", "wide_bin")
 
 def standing(scene: Scene, settings: Settings) -> list[Contribution]:
     """A body whose particles stand still, over a rigid plane that has their springs: by steps, or moved in time."""
-    plane = _plane("standing_plane", scene, settings)
-    if not scene.is_stepped:
-        clock = {"time_step": number(settings.time_step)}
-        return [
-            Contribution("bodies", Stage.BODIES, ("standing_plate",)),
-            plane,
-            Contribution("dynamic", Stage.MOTION, ("clock",), clock),
-        ]
-    steps = ("sweep", "along") if scene.experiment.goes_along else ("sweep",)
-    return [
-        Contribution("bodies", Stage.BODIES, ("standing",)),
-        plane,
-        Contribution("quasistatic", Stage.MOTION, steps),
-    ]
+    motion = Contribution("dynamic", Stage.MOTION, ("clock",), {"time_step": number(settings.time_step)})
+    if scene.is_stepped:
+        steps = ("sweep", "along") if scene.experiment.goes_along else ("sweep",)
+        motion = Contribution("quasistatic", Stage.MOTION, steps)
+    body = Contribution("bodies", Stage.BODIES, ("standing" if scene.is_stepped else "standing_plate",))
+    return [body, _plane("standing_plane", scene, settings), motion]
 
 
 def moving(scene: Scene, settings: Settings) -> list[Contribution]:
