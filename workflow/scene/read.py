@@ -12,16 +12,15 @@ from typing import Any
 
 from pydantic import ConfigDict
 
-from contact1d.workflow.scene.check import UNIT_KEYS, Column, Conversion, check_tables, mend_words
+from contact1d.workflow.scene.check import FILE, PROFILE, UNIT_KEYS, Conversion, PointsFile, check_tables, mend_words
 from contact1d.workflow.scene.problems import Problem, SceneError, nearest, path_of, shown
 from contact1d.workflow.scene.profile_file import ProfileFileError, ScaleError, read_profile
-from contact1d.workflow.scene.quantities import Keys, Table, keys_of
+from contact1d.workflow.scene.quantities import Table, keys_of
 from contact1d.workflow.scene.rules import check_fit
 from contact1d.workflow.scene.si_text import split
 from contact1d.workflow.scene.tables import EFFECTS, Tables
 from contact1d.workflow.units import SI
 
-PROFILE = ("bodies", "profile")
 IN_MODEL_UNITS = re.compile(r"[1-9][-+.\de]* \((LU|FU)")
 """A number in them, in a message."""
 MEANING = {
@@ -155,19 +154,19 @@ def scene_from_dict(
 def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -> Scene:
     """The scene of `plain`, which is mended on the way; `problems` are those found so far."""
     problems += mend_words(plain, Scene)
-    columns, unread = _with_points(plain, folder)
+    source, unread = _with_points(plain, folder)
     _with_legs(plain)
-    converted = Conversion(plain, columns)
+    converted = Conversion(plain, source)
     scene, wrong, unsound = check_tables(plain, Scene, converted.reported)
     found = (*unread, *converted.problems, *wrong, *check_fit(plain, unsound))
-    problems += [_as_written(problem, converted.texts, columns, plain) for problem in found]
+    problems += [_as_written(problem, converted.texts, source, plain) for problem in found]
     if problems or scene is None:
         raise SceneError(sorted(problems, key=_rank))
     return scene
 
 
 def _as_written(
-    problem: Problem, texts: Mapping[str, str], columns: Mapping[Keys, Column], data: Mapping[str, Any]
+    problem: Problem, texts: Mapping[str, str], source: PointsFile | None, data: Mapping[str, Any]
 ) -> Problem:
     """The problem with what stands in the scene: the text with its unit, the file in place of its points."""
     if problem.path in texts:
@@ -179,8 +178,8 @@ def _as_written(
             hint = "; ".join(filter(None, (hint, ", ".join(sizes))))
         ways = tuple({key: _with_unit(key, value, texts, data) for key, value in way.items()} for way in problem.ways)
         return replace(problem, given=shown(texts[problem.path]), ways=ways, hint=hint)
-    if columns and problem.path == path_of(PROFILE):
-        return replace(problem, path=f"{problem.path}.file", given=shown(next(iter(columns.values())).file))
+    if source and problem.path == path_of(PROFILE):
+        return replace(problem, path=path_of(FILE), given=shown(source.name))
     return problem
 
 
@@ -195,31 +194,31 @@ def _with_unit(key: str, value: object, texts: Mapping[str, str], data: Mapping[
     return f"{value / now * float(number):.6g}{unit}" if now else value
 
 
-def _with_points(data: dict[str, Any], folder: FilePath) -> tuple[dict[Keys, Column], list[Problem]]:
+def _with_points(data: dict[str, Any], folder: FilePath) -> tuple[PointsFile | None, list[Problem]]:
     """Put the points of a profile's file, if it names one, in its place in `data`; says what their numbers are."""
     bodies = data.get("bodies")
     profile = bodies.get("profile") if isinstance(bodies, dict) else None
     if not isinstance(profile, dict) or profile.get("kind") != "table":
-        return {}, []
+        return None, []
     lists, key = "r" in profile or "z" in profile, "file"
     if "file" not in profile and lists and "scale" in profile:
         beside = "not together with the lists r and z, which have units of their own"
         given, hint = shown(profile.pop("scale")), "it belongs to a file: remove it"
-        return {}, [Problem("bodies.profile.scale", beside, given, hint)]
+        return None, [Problem("bodies.profile.scale", beside, given, hint)]
     if not isinstance(profile.get("file"), str):
-        return {}, []
+        return None, []
     file, scale = profile.pop("file"), profile.pop("scale", None)
     message, hint = "not together with the lists r and z", "give the one or the other"
     if not lists:
         try:
             points, units = read_profile(folder / file, scale)
             profile |= points
-            return {(*PROFILE, key): Column(file, unit) for key, unit in units.items()}, []
+            return PointsFile(file, units), []
         except (ProfileFileError, ScaleError) as error:
             message, hint, key = str(error), "", "scale" if isinstance(error, ScaleError) else "file"
     problem = Problem(f"bodies.profile.{key}", message, shown(scale if key == "scale" else file), hint)
     profile |= {"r": [0.0, 1.0, 2.0, 3.0], "z": [0.0, 1.0, 4.0, 9.0]}  # so that the rest of the scene is still checked
-    return {(*PROFILE, key): Column(file, stands_in=True) for key in ("r", "z")}, [problem]
+    return PointsFile(file, {}), [problem]
 
 
 def _with_legs(data: dict[str, Any]) -> None:
