@@ -9,6 +9,7 @@ import os
 from pathlib import Path
 
 from contact1d.workflow import scene as scenes
+from contact1d.workflow.scene import effects, tables
 from contact1d.workflow.scene.quantities import Table, keys_of
 from contact1d.workflow.scene.schema import described
 from contact1d.workflow.scene.si_text import example, in_words
@@ -58,20 +59,20 @@ TABLES = {
     "bodies.profile, kind flat_punch": scenes.FlatPunch,
     "bodies.profile, kind power": scenes.Power,
     "bodies.profile, kind table": scenes.Measured,
-    "interaction": scenes.Interaction,
-    "interaction.repulsion, interaction.attraction": scenes.Exponential,
-    "neighbours": scenes.Neighbours,
-    "horizontal": scenes.Horizontal,
-    "adhesion": scenes.Adhesion,
-    "friction": scenes.Friction,
+    "interaction": effects.Interaction,
+    "interaction.repulsion, interaction.attraction": effects.Exponential,
+    "neighbours": effects.Neighbours,
+    "horizontal": effects.Horizontal,
+    "adhesion": effects.Adhesion,
+    "friction": effects.Friction,
     "damping": scenes.Damping,
-    "noise": scenes.Noise,
+    "noise": effects.Noise,
     "plate": scenes.Plate,
-    "cantilever": scenes.Cantilever,
+    "cantilever": effects.Cantilever,
     "material": scenes.Material,
     "material.upper, material.lower": scenes.Elastic,
-    "accuracy": scenes.Accuracy,
-    "output": scenes.Output,
+    "accuracy": tables.Accuracy,
+    "output": tables.Output,
     "experiment, kind load": scenes.Load,
     "experiment, kind path": scenes.Path,
     "experiment.displacements, as a table": scenes.Span,

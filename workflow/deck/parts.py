@@ -13,7 +13,7 @@ import numpy as np
 
 from contact1d.workflow.deck.effects import LEAST_SLENDERNESS, Contribution, Stage, number
 from contact1d.workflow.deck.effects.interaction import SKIN
-from contact1d.workflow.deck.lattice import Body, bodies
+from contact1d.workflow.deck.lattice import bodies
 from contact1d.workflow.deck.units import DeckUnits
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
@@ -31,20 +31,12 @@ CHOSEN_BINS = ("far_bin", "wide_bin")
 
 def standing(scene: Scene, settings: Settings) -> list[Contribution]:
     """A body whose particles stand still, over a rigid plane that has their springs: by steps, or moved in time."""
-    plane = _plane("standing_plane", scene, settings)
-    if not scene.is_stepped:
-        clock = {"time_step": number(settings.time_step)}
-        return [
-            Contribution("bodies", Stage.BODIES, ("standing_plate",)),
-            plane,
-            Contribution("dynamic", Stage.MOTION, ("clock",), clock),
-        ]
-    steps = ("sweep", "along") if scene.experiment.goes_along else ("sweep",)
-    return [
-        Contribution("bodies", Stage.BODIES, ("standing",)),
-        plane,
-        Contribution("quasistatic", Stage.MOTION, steps),
-    ]
+    motion = Contribution("dynamic", Stage.MOTION, ("clock",), {"time_step": number(settings.time_step)})
+    if scene.is_stepped:
+        steps = ("sweep", "along") if scene.experiment.goes_along else ("sweep",)
+        motion = Contribution("quasistatic", Stage.MOTION, steps)
+    body = Contribution("bodies", Stage.BODIES, ("standing" if scene.is_stepped else "standing_plate",))
+    return [body, _plane("standing_plane", scene, settings), motion]
 
 
 def moving(scene: Scene, settings: Settings) -> list[Contribution]:
@@ -66,10 +58,19 @@ def moving(scene: Scene, settings: Settings) -> list[Contribution]:
 
 
 def bins(scene: Scene, settings: Settings, brought: Sequence[Contribution]) -> list[Contribution]:
-    """The edge of a bin, where LAMMPS's own or that chosen by what is `brought` makes too many."""
+    """The edge of a bin with which the box has MOST_BINS at most; none where it has no more as LAMMPS chooses it.
+
+    LAMMPS's own choice is half the reach of the forces, where nothing that is `brought` has chosen another one.
+    """
     chosen = [float(part.variables[name]) for part in brought for name in CHOSEN_BINS if name in part.variables]
-    edge = bin_size(bodies(scene, settings), scene, settings, max(chosen, default=0.0))
-    return [Contribution("bins", Stage.MOTION, ("bins",), {"bin_edge": number(edge)})] if edge else []
+    atoms = [group for body in bodies(scene, settings) for group in (body.particles, body.anchors, body.far_anchors)]
+    everywhere = np.concatenate(atoms)
+    edges = np.ptp(everywhere, axis=0) + 2.0 * np.asarray(margins(scene, settings), dtype=np.float64)
+    own = edge = max([*chosen, 0.5 * reach(scene, settings)])
+    while np.log(np.maximum(edges / edge, 1.0)).sum() > math.log(MOST_BINS):  # the number itself may overflow
+        edge *= 2.0
+    least = min(edge, float(edges.min()) / LEAST_SLENDERNESS)
+    return [] if edge == own else [Contribution("bins", Stage.MOTION, ("bins",), {"bin_edge": number(least)})]
 
 
 def own_units(units: DeckUnits) -> Contribution:
@@ -134,20 +135,3 @@ def margins(scene: Scene, settings: Settings) -> Lengths:
 def reach(scene: Scene, settings: Settings) -> float:
     """Distance [LU] up to which LAMMPS lists neighbours."""
     return settings.cutoff + SKIN * scene.bodies.spacing
-
-
-def bin_size(bodies: Sequence[Body], scene: Scene, settings: Settings, chosen: float = 0.0) -> float:
-    """Edge of a bin [LU] with which the box has MOST_BINS at most; 0 where it has no more with LAMMPS's own choice.
-
-    Args:
-        bodies: of the deck.
-        scene, settings: of the deck.
-        chosen: edge [LU] that an effect has chosen, 0 where none has.
-    """
-    groups = [group for body in bodies for group in (body.particles, body.anchors, body.far_anchors) if len(group)]
-    low, high = (np.asarray([end(group, axis=0) for group in groups]) for end in (np.min, np.max))
-    edges = high.max(axis=0) - low.min(axis=0) + 2.0 * np.asarray(margins(scene, settings), dtype=np.float64)
-    own = edge = max(chosen, 0.5 * reach(scene, settings))
-    while np.log(np.maximum(edges / edge, 1.0)).sum() > math.log(MOST_BINS):  # the number itself may overflow
-        edge *= 2.0
-    return 0.0 if edge == own else min(edge, float(edges.min()) / LEAST_SLENDERNESS)

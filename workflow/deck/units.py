@@ -116,13 +116,10 @@ def units_for(scene: Scene) -> DeckUnits:
     terms = scene.interaction
     lengths = scene.bodies.spacing if terms is None else terms.repulsion.range
     # The ranges of ordinary scenes are tenths of a LU, so a repulsion's is made one; a spacing is made a few LU.
-    length = (
-        1.0 if _within(lengths, ORDINARY_LENGTHS) else 10.0 ** (math.floor(math.log10(lengths)) + (terms is not None))
-    )
+    length = force = 1.0
+    if not ORDINARY_LENGTHS[0] <= lengths <= ORDINARY_LENGTHS[1]:
+        length = 10.0 ** (math.floor(math.log10(lengths)) + (terms is not None))
     stiffness = scene.bulk_stiffness * length
-    force = 1.0 if _within(stiffness, ORDINARY_FORCES) else 10.0 ** round(math.log10(stiffness))
+    if not ORDINARY_FORCES[0] <= stiffness <= ORDINARY_FORCES[1]:
+        force = 10.0 ** round(math.log10(stiffness))
     return DeckUnits(length, force)
-
-
-def _within(value: float, ends: tuple[float, float]) -> bool:
-    return ends[0] <= value <= ends[1]

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, TypeVar
 
@@ -55,7 +55,9 @@ ELASTIC = frozenset({"upper", "lower", "contact_modulus"})
 LISTED = 3
 """Places that a message names before it counts the rest."""
 LENGTH = allowed_by(Length)
-FILE = ("bodies", "profile", "file")
+PROFILE = ("bodies", "profile")
+FILE = (*PROFILE, "file")
+LISTS = ((*PROFILE, "r"), (*PROFILE, "z"))
 
 
 def mend_words(data: dict[str, Any], model: type[Tables]) -> list[Problem]:
@@ -194,15 +196,19 @@ def _hint(place: Place) -> str:
 
 
 @dataclass(frozen=True)
-class Column:
-    """A list of lengths that was read from a `file`: its unit, "1 µm", or None where they are in LU.
+class PointsFile:
+    """The file that a profile's lists are from: its name, and the unit of each list, "1 µm", or None where it is LU.
 
-    `stands_in`: the numbers are none of the file's, which could not be read, and say nothing.
+    It has no lists where it could not be read: the numbers in their place say nothing.
     """
 
-    file: str
-    unit: str | None = None
-    stands_in: bool = False
+    name: str
+    units: Mapping[str, str | None]
+
+    @property
+    def place(self) -> Place:
+        """Where a scene names it."""
+        return Place(FILE, self.name, LENGTH)
 
 
 @dataclass
@@ -211,14 +217,14 @@ class Conversion:
 
     Attributes:
         data: the scene, a plain dict, in which numbers take the place of texts.
-        columns: the lists of `data` that were read from a file, by their keys.
+        source: the file that the lists of the profile were read from, if one was.
         problems: what is wrong with the texts.
         reported: the keys where these problems are, or where a number is unknown because of another one.
         texts: the texts that were read, by path.
     """
 
     data: dict[str, Any]
-    columns: Mapping[Keys, Column]
+    source: PointsFile | None
     problems: list[Problem] = field(default_factory=list)
     reported: set[Keys] = field(default_factory=set)
     texts: dict[str, str] = field(default_factory=dict)
@@ -226,7 +232,8 @@ class Conversion:
     def __post_init__(self) -> None:
         """Convert them: those in SI first, since they say what LU, FU and MU are."""
         found = [place for place in places(Tables, self.data) if place.is_text]
-        found += [Place(keys, column.unit, LENGTH) for keys, column in self.columns.items() if column.unit]
+        units = self.source.units if self.source else {}
+        found += [Place((*PROFILE, key), unit, LENGTH) for key, unit in units.items() if unit]
         read = [(place, value) for place in found if (value := self._si(place)) is not None]
         for place, value in read:
             if not place.unit.bases:
@@ -253,13 +260,13 @@ class Conversion:
         self.reported.add(place.keys)
 
     def _put(self, place: Place, value: Fraction) -> None:
-        """Put the number in the text's place, or the numbers of a column in theirs."""
+        """Put the number in the text's place, or the numbers of a file's list in theirs."""
         try:
             number = float(value)
         except OverflowError:
             self._report(place, "is larger than any number that a computer holds")
             return
-        if place.keys in self.columns:
+        if place.keys in LISTS:
             place.put(self.data, [number * item for item in self.data["bodies"]["profile"][place.keys[-1]]])
         else:
             place.put(self.data, number)
@@ -298,24 +305,21 @@ class Conversion:
         }
         return None if plain or fixed or len(known) < len(given) else known | dict.fromkeys(chosen, Fraction(1))
 
-    def _plain(self) -> Iterator[Place]:
-        """The places of numbers without a unit; those from one file are one."""
-        files = set()
+    def _plain(self) -> list[Place]:
+        """The places of numbers without a unit; those from a file are one."""
+        found: dict[Keys, Place] = {}
         for place in places(Tables, self.data):
-            column = self.columns.get(place.keys[:-1])
-            if not place.is_number or (column is not None and (column.unit or column.stands_in)):
-                continue
-            if column is None:
-                yield place
-            elif column.file not in files:
-                files.add(column.file)
-                yield Place(FILE, column.file, LENGTH)
+            source = self.source if place.keys[:-1] in LISTS else None
+            if place.is_number and (source is None or None in source.units.values()):
+                plain = source.place if source else place
+                found.setdefault(plain.keys, plain)
+        return list(found.values())
 
     def _mixed(self, plain: list[Place], text: Place, chosen: frozenset[str]) -> Problem:
         """Plain numbers beside numbers with a unit, and nothing says what the units of the model are."""
         first = plain[0]
-        if text.keys in self.columns:
-            text = replace(text, keys=FILE, value=self.columns[text.keys].file)
+        if self.source and text.keys in LISTS:
+            text = self.source.place
         open_ = {base for place in plain for base in place.unit.bases} & chosen
         if not ELASTIC & self.data.get("material", {}).keys():
             open_ |= {"LU", "FU"} & chosen

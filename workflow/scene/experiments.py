@@ -98,7 +98,7 @@ class Kind(Table):
         needs: effects that it cannot do without by any method.
         needs_in_time: effects that a dynamic one cannot do without.
         only_with_noise: keys that say how a thermal one is repeated.
-        load_key: the key of a normal force that may pull, where the bodies attract each other.
+        load_key: the key of its one normal force, which but for a preload may pull where the bodies attract each other.
         finds_pull_off: whether its results have F_A and a₀.
         way_is_given: the scene prescribes the whole way, so that nothing is searched for and no state is ambiguous.
         motion_is_result: the motion itself is looked at, so that the scene exists in time only and its drag is its own.
@@ -135,7 +135,8 @@ class Kind(Table):
     @property
     def compression(self) -> float | None:
         """Largest force [FU] that presses the bodies together; None where displacements are prescribed."""
-        return None
+        force = getattr(self, self.load_key or "", None)
+        return None if force is None else max(force, 0.0)
 
     def places(self) -> list[float]:
         """Prescribed displacements [LU] in order, none where a force is prescribed."""
@@ -157,11 +158,6 @@ class Load(Kind):
     force: Force
     """normal force on the upper body, compression positive"""
     method: AnyMethod = None
-
-    @property
-    def compression(self) -> float:
-        """The force, if it compresses."""
-        return max(self.force, 0.0)
 
 
 class Path(Kind):
@@ -190,6 +186,7 @@ class PullOff(Kind):
     """Compression by a preload, then the largest tension that the contact holds."""
 
     only_with_noise = ("loading_rate", "velocity", "stiffness", "repeats")
+    load_key = "preload"
     finds_pull_off = True
 
     kind: Literal["pull_off"]
@@ -205,11 +202,6 @@ class PullOff(Kind):
     repeats: RepeatCount | None = None
     """with [noise]: how often, each time with the next seed; absent: once"""
     method: AnyMethod = None
-
-    @property
-    def compression(self) -> float:
-        """F_D."""
-        return self.preload
 
     @property
     def draws_off(self) -> bool:
@@ -259,11 +251,6 @@ class Slide(Kind):
     def legs(self, velocity: float) -> tuple[Leg, ...]:
         """The legs; `velocity` [LU/TU] is the cantilever's."""
         return self.path or (Leg(velocity=velocity, distance=self.distance or 0.0),)
-
-    @property
-    def compression(self) -> float:
-        """The normal force, if it compresses."""
-        return max(self.normal_force, 0.0)
 
     @property
     def way(self) -> float:
@@ -348,11 +335,6 @@ class Hold(Kind):
     """in place of the displacement: normal force held, compression positive; with [plate]"""
     duration: Duration
     """how long it is held"""
-
-    @property
-    def compression(self) -> float | None:
-        """The force, if it compresses; None where the displacement is given."""
-        return None if self.force is None else max(self.force, 0.0)
 
     def places(self) -> list[float]:
         """The displacement, if it is given."""

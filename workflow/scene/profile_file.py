@@ -37,51 +37,22 @@ class ScaleError(ValueError):
     """A scale that is none for this file; the message says why."""
 
 
-@dataclass(frozen=True)
-class Points:
-    """Radii and heights, and the unit of each as the file has it ("1 µm"; None: none is given)."""
-
-    r: list[float]
-    z: list[float]
-    r_unit: str | None = None
-    z_unit: str | None = None
-
-    def scaled(self, scale: object) -> tuple[dict[str, list[float]], dict[str, str | None]]:
-        """The lists r and z, and the unit of each (None: LU), by the scene's `scale`: None, a number, or "1 µm".
-
-        Raises:
-            ScaleError: a scale that is no size, too large, or beside units of the file's own.
-        """
-        lists, units = {"r": self.r, "z": self.z}, {"r": self.r_unit, "z": self.z_unit}
-        if scale is None:
-            return lists, units
-        if any(units.values()):
-            raise ScaleError("not together with units in the file's names; remove it")
-        if isinstance(scale, str):
-            try:
-                si_value(scale, "LU")
-            except UnitTextError as error:
-                raise ScaleError(str(error)) from None
-            return lists, dict.fromkeys(units, scale)
-        if isinstance(scale, bool) or not isinstance(scale, int | float) or not 0.0 < scale <= sys.float_info.max:
-            raise ScaleError("must be a number greater than 0 (LU), or text with a unit")
-        scaled = {key: [scale * value for value in values] for key, values in lists.items()}
-        if not all(map(math.isfinite, scaled["r"] + scaled["z"])):
-            raise ScaleError("is too large for the numbers of the file")
-        return scaled, units
-
-
-def read_profile(path: Path) -> Points:
-    """The points of a measured profile, from the axis out.
+def read_profile(path: Path, scale: object = None) -> tuple[dict[str, list[float]], dict[str, str | None]]:
+    """The lists r and z of a measured profile, from the axis out, and the unit of each, "1 µm"; None: in LU.
 
     Messages name lines and never quote them: a path in a scene may point at any file.
 
     Lines that begin with # and empty ones are skipped; the first other line may be names. Columns of other names are
     ignored. Points may come from the edge in; those from −x to x are folded into the mean of both sides.
 
+    Args:
+        path: the file.
+        scale: size of one unit of its numbers by the scene: None, a number [LU], or "1 µm".
+
     Raises:
         ProfileFileError: if there is no such file, a cell is empty or no number, a line has one column, there are
             fewer than FEWEST_POINTS points, names are not known, or the two sides of a profile are not the same.
+        ScaleError: a scale that is no size, too large, or beside units of the file's own.
     """
     header, rows = _header(path.name, _rows(path))
     if not rows:
@@ -89,7 +60,7 @@ def read_profile(path: Path) -> Points:
     points = [_point(f"{path.name}, line {line}", cells, header.columns) for line, cells in rows]
     if all(after[0] < before[0] for before, after in pairwise(points)):
         points.reverse()
-    r, z = [r for r, _ in points], [z for _, z in points]
+    r, z = ([*column] for column in zip(*points, strict=True))
     if len(r) > 1 and not _rising(r) and (_rising(z) or _rising(z[::-1])):
         raise ProfileFileError(
             f"{path.name}: its radii do not rise and its heights do, as if the columns were swapped; name them r and z"
@@ -98,7 +69,29 @@ def read_profile(path: Path) -> Points:
         r, z = _folded(path, r, z)
     if len(r) < FEWEST_POINTS:
         raise ProfileFileError(f"{path} must have at least {FEWEST_POINTS} points from the axis out, not {len(r)}")
-    return Points(r, z, *header.units)
+    return _scaled({"r": r, "z": z}, dict(zip("rz", header.units, strict=True)), scale)
+
+
+def _scaled(
+    lists: dict[str, list[float]], units: dict[str, str | None], scale: object
+) -> tuple[dict[str, list[float]], dict[str, str | None]]:
+    """Lists and units by the scene's scale."""
+    if scale is None:
+        return lists, units
+    if any(units.values()):
+        raise ScaleError("not together with units in the file's names; remove it")
+    if isinstance(scale, str):
+        try:
+            si_value(scale, MODEL)
+        except UnitTextError as error:
+            raise ScaleError(str(error)) from None
+        return lists, dict.fromkeys(units, scale)
+    if isinstance(scale, bool) or not isinstance(scale, int | float) or not 0.0 < scale <= sys.float_info.max:
+        raise ScaleError("must be a number greater than 0 (LU), or text with a unit")
+    scaled = {key: [scale * value for value in values] for key, values in lists.items()}
+    if not all(map(math.isfinite, scaled["r"] + scaled["z"])):
+        raise ScaleError("is too large for the numbers of the file")
+    return scaled, units
 
 
 def _rows(path: Path) -> list[Row]:
@@ -200,24 +193,22 @@ def _folded(path: Path, x: list[float], z: list[float]) -> tuple[list[float], li
     return [0.5 * (x[i] - x[n - 1 - i]) for i in kept], [0.5 * (z[i] + z[n - 1 - i]) for i in kept]
 
 
-def _point(at: str, cells: list[str], columns: tuple[int, int]) -> tuple[float, float]:
+def _point(at: str, cells: list[str], columns: tuple[int, int]) -> list[float]:
     """Radius and height of one line."""
     if len(cells) <= max(columns):
         many = "has one column" if len(cells) == 1 else f"has {len(cells)} columns"
         raise ProfileFileError(f"{at}: {many}; r and z are needed")
-    return _finite(at, "r", cells[columns[0]]), _finite(at, "z", cells[columns[1]])
-
-
-def _finite(at: str, name: str, cell: str) -> float:
-    value = _number(cell)
-    if value is None:
-        what = "is no number" if cell.strip() else "is empty"
-        decimal = _number(cell.replace(",", ".")) is not None
-        hint = "write it with a decimal point" if decimal else "leave out a line that has no value, or interpolate it"
-        raise ProfileFileError(f"{at}: {name} {what}; {hint}")
-    if not math.isfinite(value):
-        raise ProfileFileError(f"{at}: {name} is {value}; leave out a line that has no value")
-    return value
+    values = []
+    for name, cell in zip("rz", (cells[column] for column in columns), strict=True):
+        value, what, hint = _number(cell), "is empty", "leave out a line that has no value, or interpolate it"
+        if cell.strip():
+            what = "is no number" if value is None else f"is {value}"
+        if _number(cell.replace(",", ".")) is not None:
+            hint = "leave out a line that has no value" if value is not None else "write it with a decimal point"
+        if value is None or not math.isfinite(value):
+            raise ProfileFileError(f"{at}: {name} {what}; {hint}")
+        values.append(value)
+    return values
 
 
 def _number(cell: str) -> float | None:

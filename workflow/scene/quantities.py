@@ -124,32 +124,23 @@ OneOrMore = Annotated[
 
 @dataclass(frozen=True)
 class Choice:
-    """One of the types that a value may have: `type` with the marks of its `Annotated`; of a list, its `items`."""
+    """One of the types that a value may have.
+
+    Attributes:
+        type, marks: the type, and what its `Annotated` says of it.
+        items: what may stand in it, if it is a list.
+        table, kind: the table that it is, if it is one, and its word for `kind`, if it has one.
+        words: those that it allows.
+        unit: of a number.
+    """
 
     type: Any
-    marks: tuple[Any, ...] = ()
-    items: Allowed | None = None
-
-    @property
-    def table(self) -> type[Table] | None:
-        """The table that it is, if it is one."""
-        return self.type if isinstance(self.type, type) and issubclass(self.type, Table) else None
-
-    @property
-    def words(self) -> tuple[Any, ...]:
-        """The words that it allows."""
-        return get_args(self.type) if get_origin(self.type) is Literal else ()
-
-    @property
-    def kind(self) -> str | None:
-        """The word for `kind` of a table that has one."""
-        field = self.table.model_fields.get("kind") if self.table else None
-        return None if field is None else str(get_args(field.annotation)[0])
-
-    @property
-    def unit(self) -> Unit | None:
-        """The unit of a number."""
-        return next((mark for mark in self.marks if isinstance(mark, Unit)), None)
+    marks: tuple[Any, ...]
+    items: Allowed | None
+    table: type[Table] | None
+    kind: str | None
+    words: tuple[Any, ...]
+    unit: Unit | None
 
 
 @dataclass(frozen=True)
@@ -186,9 +177,8 @@ class Allowed:
 
     def table_for(self, value: Mapping[str, Any]) -> type[Table] | None:
         """The table that `value` is meant to be, by its kind where there are several."""
-        tables = [choice for choice in self.choices if choice.table]
-        found = tables if len(tables) == 1 else [choice for choice in tables if choice.kind == value.get("kind")]
-        return found[0].table if found else None
+        tables = {choice.kind: choice.table for choice in self.choices if choice.table}
+        return next((table for kind, table in tables.items() if len(tables) == 1 or kind == value.get("kind")), None)
 
 
 @dataclass(frozen=True)
@@ -221,7 +211,11 @@ def allowed_by(annotation: Any, marks: tuple[Any, ...] = ()) -> Allowed:
     if origin in (Union, types.UnionType):
         members = [allowed_by(member, marks) for member in arguments if member is not type(None)]
         return Allowed(tuple(choice for member in members for choice in member.choices))
-    return Allowed((Choice(annotation, marks, allowed_by(arguments[0]) if origin is tuple else None),))
+    items = allowed_by(arguments[0]) if origin is tuple else None
+    table = annotation if isinstance(annotation, type) and issubclass(annotation, Table) else None
+    kind = str(get_args(table.model_fields["kind"].annotation)[0]) if table and "kind" in table.model_fields else None
+    unit = next((mark for mark in marks if isinstance(mark, Unit)), None)
+    return Allowed((Choice(annotation, marks, items, table, kind, arguments if origin is Literal else (), unit),))
 
 
 @dataclass(frozen=True)
@@ -285,7 +279,7 @@ def places(table: type[Table], data: Mapping[str, Any]) -> Iterator[Place]:
 
 def tables_in(table: type[Table], path: str = "") -> Iterator[tuple[str, Choice]]:
     """Every table inside `table`, with its dotted path, that itself first and each kind of a union."""
-    yield path, Choice(table)
+    yield path, allowed_by(table).choices[0]
     for name, key in keys_of(table).items():
         for choice in key.allowed.choices:
             if choice.table:

@@ -12,16 +12,15 @@ from typing import Any
 
 from pydantic import ConfigDict
 
-from contact1d.workflow.scene.check import UNIT_KEYS, Column, Conversion, check_tables, mend_words
+from contact1d.workflow.scene.check import FILE, PROFILE, UNIT_KEYS, Conversion, PointsFile, check_tables, mend_words
 from contact1d.workflow.scene.problems import Problem, SceneError, nearest, path_of, shown
 from contact1d.workflow.scene.profile_file import ProfileFileError, ScaleError, read_profile
-from contact1d.workflow.scene.quantities import Keys, Table, keys_of
+from contact1d.workflow.scene.quantities import Table, keys_of
 from contact1d.workflow.scene.rules import check_fit
 from contact1d.workflow.scene.si_text import split
 from contact1d.workflow.scene.tables import EFFECTS, Tables
 from contact1d.workflow.units import SI
 
-PROFILE = ("bodies", "profile")
 IN_MODEL_UNITS = re.compile(r"[1-9][-+.\de]* \((LU|FU)")
 """A number in them, in a message."""
 MEANING = {
@@ -155,19 +154,19 @@ def scene_from_dict(
 def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -> Scene:
     """The scene of `plain`, which is mended on the way; `problems` are those found so far."""
     problems += mend_words(plain, Scene)
-    columns, unread = _with_points(plain, folder)
+    source, unread = _with_points(plain, folder)
     _with_legs(plain)
-    converted = Conversion(plain, columns)
+    converted = Conversion(plain, source)
     scene, wrong, unsound = check_tables(plain, Scene, converted.reported)
     found = (*unread, *converted.problems, *wrong, *check_fit(plain, unsound))
-    problems += [_as_written(problem, converted.texts, columns, plain) for problem in found]
+    problems += [_as_written(problem, converted.texts, source, plain) for problem in found]
     if problems or scene is None:
         raise SceneError(sorted(problems, key=_rank))
     return scene
 
 
 def _as_written(
-    problem: Problem, texts: Mapping[str, str], columns: Mapping[Keys, Column], data: Mapping[str, Any]
+    problem: Problem, texts: Mapping[str, str], source: PointsFile | None, data: Mapping[str, Any]
 ) -> Problem:
     """The problem with what stands in the scene: the text with its unit, the file in place of its points."""
     if problem.path in texts:
@@ -179,8 +178,8 @@ def _as_written(
             hint = "; ".join(filter(None, (hint, ", ".join(sizes))))
         ways = tuple({key: _with_unit(key, value, texts, data) for key, value in way.items()} for way in problem.ways)
         return replace(problem, given=shown(texts[problem.path]), ways=ways, hint=hint)
-    if columns and problem.path == path_of(PROFILE):
-        return replace(problem, path=f"{problem.path}.file", given=shown(next(iter(columns.values())).file))
+    if source and problem.path == path_of(PROFILE):
+        return replace(problem, path=path_of(FILE), given=shown(source.name))
     return problem
 
 
@@ -195,34 +194,31 @@ def _with_unit(key: str, value: object, texts: Mapping[str, str], data: Mapping[
     return f"{value / now * float(number):.6g}{unit}" if now else value
 
 
-def _with_points(data: dict[str, Any], folder: FilePath) -> tuple[dict[Keys, Column], list[Problem]]:
+def _with_points(data: dict[str, Any], folder: FilePath) -> tuple[PointsFile | None, list[Problem]]:
     """Put the points of a profile's file, if it names one, in its place in `data`; says what their numbers are."""
     bodies = data.get("bodies")
     profile = bodies.get("profile") if isinstance(bodies, dict) else None
     if not isinstance(profile, dict) or profile.get("kind") != "table":
-        return {}, []
-    lists = "r" in profile or "z" in profile
+        return None, []
+    lists, key = "r" in profile or "z" in profile, "file"
     if "file" not in profile and lists and "scale" in profile:
         beside = "not together with the lists r and z, which have units of their own"
-        hint = "it belongs to a file: remove it"
-        return {}, [Problem("bodies.profile.scale", beside, shown(profile.pop("scale")), hint)]
+        given, hint = shown(profile.pop("scale")), "it belongs to a file: remove it"
+        return None, [Problem("bodies.profile.scale", beside, given, hint)]
     if not isinstance(profile.get("file"), str):
-        return {}, []
+        return None, []
     file, scale = profile.pop("file"), profile.pop("scale", None)
-    if lists:
-        both = "not together with the lists r and z"
-        problem = Problem("bodies.profile.file", both, shown(file), "give the one or the other")
-    else:
+    message, hint = "not together with the lists r and z", "give the one or the other"
+    if not lists:
         try:
-            points, units = read_profile(folder / file).scaled(scale)
+            points, units = read_profile(folder / file, scale)
             profile |= points
-            return {(*PROFILE, key): Column(file, unit) for key, unit in units.items()}, []
-        except ProfileFileError as error:
-            problem = Problem("bodies.profile.file", str(error), shown(file))
-        except ScaleError as error:
-            problem = Problem("bodies.profile.scale", str(error), shown(scale))
+            return PointsFile(file, units), []
+        except (ProfileFileError, ScaleError) as error:
+            message, hint, key = str(error), "", "scale" if isinstance(error, ScaleError) else "file"
+    problem = Problem(f"bodies.profile.{key}", message, shown(scale if key == "scale" else file), hint)
     profile |= {"r": [0.0, 1.0, 2.0, 3.0], "z": [0.0, 1.0, 4.0, 9.0]}  # so that the rest of the scene is still checked
-    return {(*PROFILE, key): Column(file, stands_in=True) for key in ("r", "z")}, [problem]
+    return PointsFile(file, {}), [problem]
 
 
 def _with_legs(data: dict[str, Any]) -> None:
@@ -242,52 +238,52 @@ def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Prob
 
     A value is read as TOML, or as bare text where it is not TOML; tables on the way that are absent are made.
     """
-    return [problem for override in overrides if (problem := _apply(data, override))]
+    form = "write table.key=value, for example experiment.method=dynamic"
+    problems = []
+    for override in overrides:
+        path, _, text = override.partition("=")
+        where = f"set {shown(override)}"
+        if text.strip():
+            problems += _set(data, path, _toml_value(text.strip()), where, form)
+        else:
+            problems.append(Problem(where, "no value", hint=form))
+    return problems
 
 
 def set_values(data: dict[str, Any], values: Mapping[str, Any]) -> list[Problem]:
     """Set in `data` the value of each dotted key; None takes the key away. Returns the problems."""
     form = "write table.key, for example experiment.method"
-    return [problem for path, value in values.items() if (problem := _set(data, path, value, f"set {path}", form))]
+    return [problem for path, value in values.items() for problem in _set(data, path, value, f"set {path}", form)]
 
 
 def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
     """Remove from `data` the table of each effect in `names`; returns the problems of those that cannot be removed."""
     problems = []
     for name in dict.fromkeys(names):
-        if name in EFFECTS and name in data:
-            del data[name]
-            continue
-        if name in EFFECTS:
-            there = ", ".join(effect for effect in EFFECTS if effect in data) or "none"
-            problems.append(Problem(f"without {name}", "the scene has no such table", hint=f"effects there: {there}"))
-            continue
+        there = [effect for effect in EFFECTS if effect in data]
         meant = nearest(name, EFFECTS)
+        message = "not an effect that can be removed"
         hint = (f'did you mean "{meant}"? ' if meant else "") + f"effects: {', '.join(EFFECTS)}"
-        problems.append(Problem(f"without {name}", "not an effect that can be removed", hint=hint))
+        if name in EFFECTS:
+            message, hint = "the scene has no such table", f"effects there: {', '.join(there) or 'none'}"
+        if name in there:
+            del data[name]
+        else:
+            problems.append(Problem(f"without {name}", message, hint=hint))
     return problems
 
 
-def _apply(data: dict[str, Any], override: str) -> Problem | None:
-    path, equals, text = override.partition("=")
-    where = f"set {shown(override)}"
-    form = "write table.key=value, for example experiment.method=dynamic"
-    if not equals or not text.strip():
-        return Problem(where, "no value", hint=form)
-    return _set(data, path, _toml_value(text.strip()), where, form)
-
-
-def _set(data: dict[str, Any], path: str, value: Any, where: str, form: str) -> Problem | None:
+def _set(data: dict[str, Any], path: str, value: Any, where: str, form: str) -> list[Problem]:
     keys = [key.strip() for key in path.split(".")]
     if not all(re.fullmatch(r"[A-Za-z0-9_-]+", key) for key in keys):
-        return Problem(where, "not a path of keys", hint=form)
+        return [Problem(where, "not a path of keys", hint=form)]
     table = data
     for depth, key in enumerate(keys[:-1], start=1):
         table = table.setdefault(key, {})
         if not isinstance(table, dict):
-            return Problem(where, f"{'.'.join(keys[:depth])} is not a table", hint="set it as a whole")
+            return [Problem(where, f"{'.'.join(keys[:depth])} is not a table", hint="set it as a whole")]
     table[keys[-1]] = value
-    return None
+    return []
 
 
 def _toml_value(text: str) -> Any:

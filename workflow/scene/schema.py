@@ -66,7 +66,7 @@ def meaning(table: type[Table], name: str) -> str:
 def scene_schema() -> Node:
     """The JSON schema of a scene file."""
     named = {"title": "contact1d scene", "description": "A scene of contact1d."}
-    return {"$schema": DIALECT} | _node(Choice(Tables)) | named
+    return {"$schema": DIALECT} | _table(Tables) | named
 
 
 def schema_text() -> str:
