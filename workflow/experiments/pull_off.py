@@ -100,8 +100,12 @@ class PullOffExperiment(Experiment):
 
 def _held(falling: Trace, settings: Settings) -> dict[str, Reading]:
     """The marks of an unloading under displacement control, which begins at F = 0 where there was no preload."""
-    least = int(np.argmin(np.abs(falling.force)))
-    return {"zero_load_radius": Reading(falling.radius_or_spot(least), LENGTH)} | unloading(falling, settings)
+    found, least = unloading(falling, settings), int(np.argmin(np.abs(falling.force)))
+    return (
+        found
+        if "zero_load_radius" in found
+        else found | {"zero_load_radius": Reading(falling.radius_or_spot(least), LENGTH)}
+    )
 
 
 def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float) -> dict[str, Reading]:

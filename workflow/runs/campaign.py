@@ -30,7 +30,7 @@ from contact1d.workflow.experiments.spacing import with_spacing
 from contact1d.workflow.model.chain import MIX_UP, in_words, require_steps
 from contact1d.workflow.model.motion import require_way
 from contact1d.workflow.model.settings import Settings, settings_for
-from contact1d.workflow.runs.finished import Run
+from contact1d.workflow.runs.finished import Run, draw
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.processors import cores, require_ranks
 from contact1d.workflow.runs.refinement import Refined, refined
@@ -144,8 +144,6 @@ def _finished(folder: Path, document: Mapping[str, Any], scene: Scene, curve: Cu
 def _draw(run: Run, figures: bool | str) -> None:
     """The figures of a run, in the format that `figures` names, if they are wanted."""
     if figures:
-        from contact1d.workflow.runs.drawing import draw
-
         draw(run, figures if isinstance(figures, str) else FORMATS[0], scales_of(run.scene, run.results))
 
 
