@@ -42,7 +42,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
         r"the path would take .* rows",
     ),
     "springs of nothing": (
-        chains(100.0, bodies={"particles": 20, "bulk_stiffness": 1e-40}, experiment=LOAD),
+        chains(100.0, bodies={"particles": 20, "bulk_stiffness": 1e-300}, experiment=LOAD),
         r"would go as far as .* another unit",
     ),
     "springs that digits do not resolve": (

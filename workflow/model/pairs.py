@@ -79,6 +79,8 @@ def tabulated(profile: Profile, spacing: float) -> Tabulated:
 GRID = 4000
 CONTACT_POINTS = 401
 BRANCH_POINTS, COARSE_POINTS = 400, 40
+FARTHEST = 1e12
+"""Displacement over spacing and force-free distance beyond which none is looked for: no deck holds it (`chain.require_travel`)."""
 CUTS, PARTS = 5, 17
 """How often the bracket of a displacement is cut, and at how many places: then the force is straight in it to 1e-10.
 `scipy.optimize.brentq` would do it too, but its import takes a quarter of the time of a whole small run."""
@@ -302,7 +304,8 @@ class ContactEstimate:
             raise OverflowError("the spacing is nothing beside the body")
         low = self._largest_tension[0]  # where the force begins to rise
         high = max(self.spacing, 2 * self.rest)
-        while (reached := self.contact_force(high)) < force:
+        farthest = FARTHEST * max(self.spacing, self.rest)
+        while (reached := self.contact_force(high)) < force and high < farthest:
             if self.profile.reach < np.inf and high > self._all_the_way:
                 raise NotCarriedError(reached)
             high *= 2
