@@ -88,7 +88,7 @@ def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, p
                 ran.append(judged(replace(one, **vars(done[one.label]), details=details), reference, noisy))
             return ran
 
-        variants = _against_own(run_all("runs", list(_planned(scene, knobs))), knobs)
+        variants = _against_own(run_all("runs", list(_planned(scene, knobs))), knobs, noisy)
         found = [] if noisy else list(combinations(knobs, variants, base_keys(scene)))
         variants += run_all("combinations", found) if found else []
         progress.phase("effects, step by step")
@@ -195,16 +195,15 @@ def _ran(knob: Knob, variants: Sequence[Variant]) -> list[Variant]:
     return [one for one in variants if one.knob == knob.name and not one.failure]
 
 
-def _against_own(variants: Sequence[Variant], knobs: Sequence[Knob]) -> list[Variant]:
-    """Errors of the knobs that the reference does not have, against the finest level that ran."""
+def _against_own(variants: Sequence[Variant], knobs: Sequence[Knob], noisy: bool) -> list[Variant]:
+    """Errors of the knobs that the reference does not have, against the finest level that ran, which has none."""
     found = {one.label: one for one in variants}
-    for knob in knobs:
-        ran = _ran(knob, variants) if knob.own_reference else []
-        for finest in sorted(ran, key=lambda one: knob.coarseness(one.value))[:1]:
-            for one in ran:
-                errors = {name: abs(one.values[name] / value - 1.0) for name, value in finest.values.items()}
-                largest = math.nan if one is finest else max(errors.values())
-                found[one.label] = replace(one, errors=errors, error=largest)
+    for knob in (one for one in knobs if one.own_reference):
+        ran = sorted(_ran(knob, variants), key=lambda one: knob.coarseness(one.value))
+        for one in ran:
+            finest = {name: ran[0].quantities[name] for name in one.values}
+            again = judged(one, finest, noisy)
+            found[one.label] = replace(again, error=math.nan) if one is ran[0] else again
     return list(found.values())
 
 
@@ -219,13 +218,12 @@ def _with_order(knob: Knob, variants: Sequence[Variant], base_error: float) -> K
 def _with_changes(effects: Sequence[EffectCost], variants: Sequence[Variant]) -> tuple[EffectCost, ...]:
     """The costs with what leaving an effect out does to the main results."""
     own = next(one for one in variants if one.knob == AS_IT_IS).values
-    left = {one.label: one.values for one in variants if one.knob == EFFECT and not one.failure}
-    found = []
-    for effect in effects:
-        values = left.get(f"without {effect.name}", {})
-        changes = {name: value / own[name] - 1.0 for name, value in values.items() if name in own}
-        found.append(replace(effect, changes=changes))
-    return tuple(found)
+    left = {one.label: one.values for one in variants if one.knob == EFFECT}
+    return tuple(
+        replace(effect, changes={name: value / own[name] - 1.0 for name, value in values.items() if name in own})
+        for effect in effects
+        for values in [left.get(f"without {effect.name}", {})]
+    )
 
 
 FLOOR_FACTOR = 5.0
