@@ -23,6 +23,7 @@ from annotated_types import Ge, MinLen
 from pydantic import Discriminator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from contact1d.analysis.theory.indenters import galin_factor
 from contact1d.workflow.scene.quantities import Height, Length, Ratio, Table, Unit
 
 if TYPE_CHECKING:
@@ -39,11 +40,6 @@ CELLS = 1_000_000
 
 LAST_SHARE = 1.0 - 1e-12
 """The transform of a circle grows without end at its edge, and is taken up to this share of the radius."""
-
-
-def galin_factor(n: float) -> float:
-    """κ_n = (√π/2) n Γ(n/2)/Γ((n+1)/2)."""
-    return 0.5 * math.sqrt(math.pi) * n * math.exp(math.lgamma(0.5 * n) - math.lgamma(0.5 * (n + 1.0)))
 
 
 class Shape(Table):

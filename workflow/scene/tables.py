@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, cast
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from contact1d.analysis.theory.indenters import galin_factor
 from contact1d.workflow.scene.effects import (
     Adhesion,
     Cantilever,
@@ -40,7 +41,7 @@ from contact1d.workflow.scene.effects import (
 )
 from contact1d.workflow.scene.experiments import Experiment, Method
 from contact1d.workflow.scene.problems import tables_as_toml
-from contact1d.workflow.scene.profiles import Flat, Parabola, Profile, galin_factor
+from contact1d.workflow.scene.profiles import Flat, Parabola, Profile
 from contact1d.workflow.scene.quantities import (
     AllOr,
     AnyParticleCount,
