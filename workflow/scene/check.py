@@ -43,7 +43,7 @@ from contact1d.workflow.units import SI
 
 MISSING = "missing"
 """Pydantic's name of this fault."""
-KINDS = "a table with kind = "
+OF_KINDS = "a table with kind = "
 """How `statement` begins of a table that has several; its `kind` must be what follows."""
 AnyTables = TypeVar("AnyTables", bound=Tables)
 BOLTZMANN = Fraction(1380649, 10**29)
@@ -119,7 +119,7 @@ def _mended_word(data: dict[str, Any], place: Place, words: tuple[str, ...]) -> 
     wrong = isinstance(place.value, str) and place.value not in words
     if wrong and (meant := nearest(place.value, words)):
         place.put(data, meant)
-        must = f"must be {statement(place.allowed).removeprefix(KINDS)}"
+        must = f"must be {statement(place.allowed).removeprefix(OF_KINDS)}"
         hint = f'did you mean "{meant}"?' if len(words) > 1 else ""
         yield Problem(path_of(place.keys), must, shown(place.value), hint)
 
@@ -154,7 +154,7 @@ def _homes(key: str) -> list[str]:
 def _problem(place: Place, details: ErrorDetails) -> Problem | None:
     """What an error of pydantic's at a place means for the person who wrote the scene."""
     path, kind, given, allowed = path_of(place.keys), details["type"], place.value, statement(place.allowed)
-    must, of_kind = f"must be {allowed}", f"must be {allowed.removeprefix(KINDS)}"
+    must, of_kind = f"must be {allowed}", f"must be {allowed.removeprefix(OF_KINDS)}"
     if kind == MISSING:
         top = len(place.keys) == 1 and any(choice.table for choice in place.allowed.choices)
         return Problem(path, "missing", hint="required table" if top else must)
