@@ -80,7 +80,8 @@ GRID = 4000
 CONTACT_POINTS = 401
 BRANCH_POINTS, COARSE_POINTS = 400, 40
 FARTHEST = 1e12
-"""Displacement over spacing and force-free distance beyond which none is looked for: no deck holds it (`chain.require_travel`)."""
+"""Displacement over spacing and force-free distance beyond which none is looked for: no deck holds it
+(`chain.require_travel`)."""
 CUTS, PARTS = 5, 17
 """How often the bracket of a displacement is cut, and at how many places: then the force is straight in it to 1e-10.
 `scipy.optimize.brentq` would do it too, but its import takes a quarter of the time of a whole small run."""
