@@ -23,7 +23,6 @@ from annotated_types import Ge, MinLen
 from pydantic import Discriminator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from contact1d.analysis.theory.indenters import galin_factor
 from contact1d.workflow.scene.quantities import Height, Length, Ratio, Table, Unit
 
 if TYPE_CHECKING:
@@ -225,6 +224,8 @@ class Power(Shape):
 
     def transformed(self, x: Array) -> Array:
         """g = κ_n z."""
+        from contact1d.analysis.theory.indenters import galin_factor  # it loads numpy, which a scene can do without
+
         return galin_factor(self.exponent) * self.height(x)
 
 

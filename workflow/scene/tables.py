@@ -26,7 +26,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, cast
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from contact1d.analysis.theory.indenters import galin_factor
 from contact1d.workflow.scene.effects import (
     Adhesion,
     Cantilever,
@@ -158,6 +157,8 @@ def wider_than_body(profile: Mapping[str, Any]) -> float | None:
     n = exponents.get(str(profile.get("kind")))
     if isinstance(n, bool) or not isinstance(n, int | float) or not n >= 1.0:
         return None
+    from contact1d.analysis.theory.indenters import galin_factor  # it loads numpy, which a scene can do without
+
     return float((2.0 * galin_factor(n)) ** (1.0 / (n + 1.0)))
 
 
