@@ -95,6 +95,8 @@ def test_a_class_of_seconds_has_no_new_failure(name: str, tmp_path: Path) -> Non
 def test_speed_rows_are_ours_over_theirs() -> None:
     plain = importlib.import_module("validation.speed.plain")
     scaling = importlib.import_module("validation.speed.scaling")
+    overhead = importlib.import_module("validation.speed.overhead")
+    assert overhead.over([2.0, 9.0, 4.0], [1.0, 3.0, 1.0]) == pytest.approx(3.0)
     seconds = {"quasistatic": 1.0, "dynamic": 2.0, "plain": 200.0, "plain, tuned": 20.0, "scipy solver": 4.0}
     rows: list[Row] = plain.rows_of(1e-3, seconds, {"quasistatic": 1e-4, "dynamic": 1e-4})
     assert rows[0].value == pytest.approx(1.0 / 200.0)

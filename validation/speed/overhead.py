@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import statistics
+from collections.abc import Sequence
 from pathlib import Path
 
 from validation.doors import Deck, Displace, Engine, Session, scene_from_dict, settings_for, write_deck
@@ -61,7 +62,7 @@ def loop_time(session: Session, folder: Path, steps: str) -> float:
 
 
 def ratio(name: str, folder: Path) -> float:
-    """Median over the turns of the time of the generated deck over that by hand."""
+    """Of a scene, see `over`."""
     scene = scene_from_dict({"title": name} | SCENES[name])
     settings = settings_for(scene)
     deck = Deck(scene, settings)
@@ -81,7 +82,12 @@ def ratio(name: str, folder: Path) -> float:
         for turn in range(ROUNDS):
             for index in (0, 1) if turn % 2 == 0 else (1, 0):
                 times[index].append(loop_time(sessions[index], folder, steps[index]))
-    return statistics.median(generated / hand for generated, hand in zip(*times, strict=True))
+    return over(*times)
+
+
+def over(times: Sequence[float], by_hand: Sequence[float]) -> float:
+    """Median over the turns of the time of the generated deck over that by hand."""
+    return statistics.median(generated / hand for generated, hand in zip(times, by_hand, strict=True))
 
 
 OVERHEAD = Study(
