@@ -103,3 +103,13 @@ def test_speed_rows_are_ours_over_theirs() -> None:
     assert rows[0].verdict == "PASS"
     assert scaling.spread({200: 3.0, 2000: 6.0}) == pytest.approx(2.0)
     assert at_most("slow", 3.0, scaling.SPREAD, "asked").verdict == "FAIL"
+    peers = importlib.import_module("validation.speed.peers")
+    found = {
+        "contact": "hertz",
+        "setting": "any",
+        "wall": 0.01,
+        "errors": {"limit_force": 1e-3, "limit_relative": 1e-3},
+    }
+    solvers = {peers.OURS: 0.002, peers.ELEMENTS[0]: 1.0}
+    compared = peers.rows_of([found | {"solver": solver, "seconds": time} for solver, time in solvers.items()])
+    assert [row.value for row in compared] == pytest.approx([0.002, 0.002, 0.01])
