@@ -11,11 +11,19 @@ With q a polynomial between neighbouring places, q′ = c₀ + c₁ x + c₂ x²
 
 and where q ends at the edge a by a jump q(a), as under a flat punch or in JKR, that adds q(a)/π√(a² − r²). So the root
 at Hertz's edge, the pole at a punch's and the logarithm at a cone's tip are exact, not resolved by a grid.
+
+Independent springs on a plane have the body's own shape, q(x) = c (d − h(x)), whose x^n no polynomial follows at the
+axis unless n is even. There polynomials are put through q + c h alone, and
+
+    p(r) = … + (c/π) ∫_0^√(a² − r²) h′(x)/x dt,   x² = r² + t²
+
+whose integrand grows as t^(n − 2) on the axis, over intervals that halve towards it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,6 +39,11 @@ SAME = 1e-6
 """Of a spacing: places so alike on both sides of the axis are the same."""
 AT_ONCE = 100
 """Distances from the axis that are worked out at once, to bound the memory."""
+HALVINGS, NODES = 40, 8
+"""Intervals of an integral that halve towards the axis, and Gauss's places in each."""
+DIFFERENCE = 1e-5
+"""Of a place, up to which a slope is a difference: exact to some 1e-10."""
+Body = Callable[[Array], Array]
 FEWEST = 3
 """Places on one side from which a shape can be told."""
 
@@ -41,11 +54,17 @@ class LineLoad:
 
     Attributes:
         breaks: 0 = x₀ < x₁ < … < x_n = edge, shape (n + 1,) [length].
-        coefficients: of q = Σ_k coefficients[k] x^k between them, shape (4, n).
+        coefficients: of q = Σ_k coefficients[k] x^k between them, shape (4, n); with a `body` of q + c h.
+        body: c h(x) of places x of any shape [force/length], where it is known.
+        jump: q just inside the edge [force/length], where it is known; None: that of the polynomials.
+        apex: whether the body's slope does not vanish on the axis.
     """
 
     breaks: Array
     coefficients: Array
+    body: Body | None = None
+    jump: float | None = None
+    apex: bool = False
 
     @property
     def edge(self) -> float:
@@ -55,12 +74,15 @@ class LineLoad:
     @property
     def at_edge(self) -> float:
         """q just inside the edge [force/length]: the jump there."""
-        return float(np.polynomial.polynomial.polyval(self.edge, self.coefficients[:, -1]))
+        if self.jump is not None:
+            return self.jump
+        less = 0.0 if self.body is None else float(self.body(np.asarray([self.edge]))[0])
+        return float(np.polynomial.polynomial.polyval(self.edge, self.coefficients[:, -1])) - less
 
     @property
     def has_apex(self) -> bool:
         """Whether its slope does not vanish on the axis: the pressure then grows without bound there."""
-        return bool(self.coefficients[1, 0] != 0.0)
+        return self.apex or bool(self.coefficients[1, 0] != 0.0)
 
     def pressure(self, r: ArrayLike) -> Array:
         """Return p(r) [force/length²], exactly; infinite at r = 0 under an apex, 0 from the edge on.
@@ -86,13 +108,39 @@ class LineLoad:
         total[off] += np.sum((c_0 + 0.5 * c_2 * r[off] ** 2) * np.diff(np.arccosh(ends[off] / r[off])), axis=1)
         total[on] += np.sum(c_0[1:] * np.diff(np.log(self.breaks[1:])))
         found = (self.at_edge / root[:, -1] - total) / np.pi
+        if self.body is not None:
+            found += _of_body(self.body, r[:, 0], self.edge)
         if self.has_apex:
-            found[on] = np.copysign(np.inf, -c_0[0])
+            found[on] = np.inf if self.apex else np.copysign(np.inf, -c_0[0])
         return np.asarray(found)
 
 
+def _of_body(body: Body, r: Array, edge: float) -> Array:
+    """(c/π) ∫_0^s h′(x)/x dt at distances r < edge, s² = edge² − r²; what is left of it at 0 as a power of t."""
+    node, weight = np.polynomial.legendre.leggauss(NODES)
+    ends = 0.5 ** np.arange(HALVINGS + 1.0)
+    middle, half = 0.5 * (ends[:-1] + ends[1:]), 0.5 * (ends[:-1] - ends[1:])
+    share = (middle[:, None] + half[:, None] * node).ravel()
+    width = np.sqrt((edge - r) * (edge + r))
+
+    def slope(x: Array) -> Array:
+        return (body(x * (1.0 + DIFFERENCE)) - body(x * (1.0 - DIFFERENCE))) / (2.0 * DIFFERENCE * x)
+
+    x, near = np.hypot(r[:, None], width[:, None] * share), width * ends[-1]
+    inner = width * ((slope(x) / x) @ (half[:, None] * weight).ravel())
+    first, second = slope(np.hypot(r, near)), slope(np.hypot(r, 2.0 * near))
+    power = np.maximum(np.log2(second / first), np.finfo(np.float64).tiny)  # h′ ∝ t^power on the axis
+    left = first * np.where(r > 0.0, near / np.hypot(r, near), 1.0 / power)
+    return np.asarray((inner + left) / np.pi)
+
+
 def line_load(
-    x: ArrayLike, load: ArrayLike, edge: float | None = None, ends_at_zero: bool = True, apex: bool = False
+    x: ArrayLike,
+    load: ArrayLike,
+    edge: float | None = None,
+    ends_at_zero: bool = True,
+    apex: bool = False,
+    body: Body | None = None,
 ) -> LineLoad:
     """Return the even line load through values at places, a cubic through the four nearest; of both sides the mean.
 
@@ -105,6 +153,7 @@ def line_load(
         edge: a, where it ends [length]; None: it fades out, and ends at 0 at the last place.
         ends_at_zero: whether q(a) = 0; else the last piece goes on to the edge, where q jumps to 0.
         apex: whether q has a kink on the axis, as under a cone; else it is smooth there, an even function.
+        body: c h(x) of the body, where q = c (d − h) with nothing else.
 
     Raises:
         ValueError: fewer than FEWEST places on a side within the edge, or places that are not the same on both sides.
@@ -115,9 +164,11 @@ def line_load(
     right, mean = right[inside], mean[inside]
     if right.size < FEWEST:
         raise ValueError(f"a pressure needs {FEWEST} places on each side of the axis, got {right.size}")
-    if ends_at_zero:
+    if body is not None:
+        mean = mean + body(right)
+    elif ends_at_zero:
         right, mean = np.append(right, end), np.append(mean, 0.0)
-    if apex:
+    if apex and body is None:
         return _cubics(right, mean, end)
     own = slice(None) if right[0] > 0.0 else slice(1, None)
     even = _cubics(np.append(-right[own][::-1], right), np.append(mean[own][::-1], mean), end)
@@ -125,7 +176,7 @@ def line_load(
         even.coefficients[1, 0] = 0.0  # by symmetry, but for round-off
     else:  # the four nearest are not the same on both sides of the axis
         even.coefficients[:, 0] = (mean[0], 0.0, (mean[1] - mean[0]) / right[1] ** 2, 0.0)
-    return even
+    return even if body is None else replace(even, body=body, jump=0.0 if ends_at_zero else None, apex=apex)
 
 
 def of_both_sides(x: ArrayLike, load: ArrayLike) -> tuple[Array, Array, float]:

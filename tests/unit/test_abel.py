@@ -184,3 +184,17 @@ def test_the_pressure_of_any_cubics_is_that_of_quadrature() -> None:
                     total += quad(lambda t, s=slope, r=r: s(r * math.cosh(t)), *ends)[0]
             exact = (load.at_edge / math.sqrt(breaks[-1] ** 2 - r**2) - total) / math.pi
             assert float(load.pressure(r)) == pytest.approx(exact, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("particles", [6, 40])
+@pytest.mark.parametrize("exponent", [1.05, 1.2, 1.5, 2.0, 2.4, 3.0])
+def test_springs_of_a_known_shape_have_its_pressure_whatever_their_number(exponent: float, particles: int) -> None:
+    """z = rⁿ/2: p(r) by quadrature; on the axis (E*/π) n g(a)/(n − 1)a, which polynomials in x miss for n < 2."""
+    exact = ReducedContact(lambda r: 0.5 * exponent * r ** (exponent - 1.0), E)
+    x = np.arange(-particles - 2, particles + 3) / particles
+    rise, depth = exact.profile(1.0), exact.displacement(1.0)
+    load = E * np.maximum(0.0, depth - rise * np.abs(x) ** exponent)
+    found = line_load(x, load, 1.0, body=lambda x: E * rise * x**exponent)
+    r = np.asarray([0.01, 0.3, 0.9])
+    assert found.pressure(r) == pytest.approx([exact.pressure(at, 1.0) for at in r.tolist()], rel=1e-8)
+    assert found.pressure(0.0) == pytest.approx(E / math.pi * exponent / (exponent - 1.0) * rise, rel=1e-8)

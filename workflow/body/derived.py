@@ -27,7 +27,7 @@ from contact1d.analysis.pressure import Array
 from contact1d.potentials import DoubleExponential
 from contact1d.workflow.body.reading import product
 from contact1d.workflow.body.theory import Case
-from contact1d.workflow.body.traction import body_pressures, is_of_a_body
+from contact1d.workflow.body.traction import BodyPressure, body_pressures, is_of_a_body
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.model.pairs import row_force
 from contact1d.workflow.model.settings import Settings
@@ -36,8 +36,10 @@ from contact1d.workflow.units import ENERGY, FORCE, LINE_PRESSURE, MEAN_PRESSURE
 
 REPORTED = ("deepest", "final", "zero_load")
 """States whose pressure is a result, the first that a run has."""
-ERRORS = ("displacement", "contact_radius", "largest_force", "largest_radius", "zero_load_radius")
-"""Results whose relative uncertainty, that of the lattice included, is the pressure's, too."""
+RADII = ("contact_radius", "largest_radius", "zero_load_radius")
+ERRORS = ("displacement", "largest_force", *RADII)
+"""Results whose relative uncertainty, that of the lattice included, is the pressure's, too; of springs on a plane,
+whose pressure is a function of the radius, that of the radius alone."""
 WIDER = {"mdr": 1.0, "geike_popov": 4.0}
 """W π s a/w."""
 EFFECTIVE = {"mdr": 1.0, "geike_popov": 0.5}
@@ -129,18 +131,24 @@ def with_body(scene: Scene, outcome: Outcome) -> Outcome:
 
 
 def _pressures(scene: Scene, outcome: Outcome) -> dict[str, Quantity]:
-    """p(0) and the largest pressure of the reported state."""
+    """p(0) and the largest pressure of the reported state, as uncertain as its radius makes them besides."""
     found = outcome.quantities
-    unknown = sum(
-        found[name].uncertainty / abs(found[name].value) for name in ERRORS if name in found and found[name].value
-    )
+    shares = {name: one.uncertainty / abs(one.value) for name in ERRORS if (one := found.get(name)) and one.value}
+    radius = next((shares[name] for name in RADII if name in shares), 0.0)
     reported = [name for name in REPORTED if name in outcome.profiles][:1]
     pressures = body_pressures(scene, {name: outcome.profiles[name] for name in reported})
     return {
-        name: Quantity(p.value, p.uncertainty + unknown * abs(p.value), p.unit)
+        name: Quantity(p.value, p.uncertainty + _swing(pressure, name, radius, sum(shares.values())), p.unit)
         for pressure in pressures.values()
         for name, p in pressure.results.items()
     }
+
+
+def _swing(pressure: BodyPressure, name: str, radius: float, every: float) -> float:
+    """What the relative errors of the radius, or of every result, make of a pressure [FU/LU²]."""
+    if name in pressure.swings:
+        return radius * pressure.swings[name]
+    return every * abs(pressure.results[name].value)
 
 
 def _of_the_contact(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:

@@ -19,7 +19,7 @@ from contact1d.analysis.radius import ContactRadius, whole_cells
 from contact1d.analysis.shear import kinks_of, shear_load
 from contact1d.workflow.body.reading import stands_for_spheres
 from contact1d.workflow.continuation.state import RadiusRule
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Measured, Scene
 from contact1d.workflow.scene.tables import WIDER_THAN_SPHERES
 from contact1d.workflow.units import MEAN_PRESSURE, Quantity
 
@@ -27,8 +27,11 @@ MOST = 1000
 """Particles on a side that are used, and radii that p is given at; of more, every second, third …"""
 RADII = 100
 """Evenly from 0 to the contact radius, at which q is given, and at its kinks besides."""
-TIP, KINK = 1e-3, 0.5
-"""A profile has an apex where so little of a spacing off the axis its slope is that share of the one to a spacing."""
+BETWEEN = 101
+"""Radii between two particles at which the largest pressure is looked for."""
+TIP, KNOWN_TIP, KINK = 1e-3, 1e-9, 0.5
+"""A profile has an apex where so little of a spacing off the axis its slope is that share of the one to a spacing; the
+second where the body's own shape is taken, and not what particles make of it."""
 INSIDE = 1.0 - 1e-9
 """Of the edge, up to which p is given: round-off."""
 SHRINKS = 0.45
@@ -48,6 +51,8 @@ class BodyPressure:
         contact_radius: of the body [LU]; where bodies attract, tension reaches beyond it.
         results: `central_pressure`, p(0), and `peak_pressure`, the largest one [FU/LU²]; without one that has no bound,
             as at a cone's tip, a punch's edge or a rim.
+        swings: by how much each of them changes, over the relative change of the contact radius, at most [FU/LU²]; none
+            where that is not known.
     """
 
     r: Array
@@ -55,6 +60,7 @@ class BodyPressure:
     uncertainty: Array
     contact_radius: float
     results: Mapping[str, Quantity]
+    swings: Mapping[str, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,8 +111,11 @@ def _pressure(scene: Scene, profile: Profile, radius: ContactRadius) -> BodyPres
     edge = radius.value / wider if jumps or scene.interaction is None else None
     own = -(-(x.size - x.size // 2) // MOST)
 
+    body = _body(scene)
+    apex = _has_apex(scene, TIP if body is None else KNOWN_TIP)
+
     def load(chosen: Array) -> LineLoad:
-        return line_load(x[chosen], q[chosen], edge, ends_at_zero=not jumps, apex=_has_apex(scene))
+        return line_load(x[chosen], q[chosen], edge, not jumps, apex, body)
 
     levels = [_through(x.size, own * stride, load) for stride in (1, 2, 4)]
     fine = levels[0]
@@ -130,7 +139,29 @@ def _pressure(scene: Scene, profile: Profile, radius: ContactRadius) -> BodyPres
         if off_axis or top in bounded.values():
             bounded["peak_pressure"] = top
     results = {name: Quantity(float(p[at]), float(spread[at]), MEAN_PRESSURE) for name, at in bounded.items()}
-    return BodyPressure(r, p, spread, radius.value / wider, results)
+    if bounded.get("peak_pressure"):  # it lies between two particles
+        highest = float(fine.pressure(np.linspace(r[top - 1], r[min(top + 1, r.size - 1)], BETWEEN)).max())
+        results["peak_pressure"] = Quantity(highest, float(spread[top]), MEAN_PRESSURE)
+    swings = {} if fine.body is None else {name: float(_swing(fine, r, p)[at]) for name, at in bounded.items()}
+    return BodyPressure(r, p, spread, radius.value / wider, results, swings)
+
+
+def _body(scene: Scene) -> Callable[[Array], Array] | None:
+    """c h(x) [FU/LU] of springs that are all that carries, on a plane; None of others, and of a table of places."""
+    bodies = scene.bodies
+    known = not (bodies.profile.has_edge or isinstance(bodies.profile, Measured))
+    if bodies.lower != "rigid_plane" or scene.neighbours is not None or not known:
+        return None
+    layer = scene.bulk_stiffness / bodies.spacing
+    return lambda x: layer * bodies.height(x)
+
+
+def _swing(load: LineLoad, r: Array, p: Array) -> Array:
+    """|a ∂p/∂a| at most: of the shape's own pressure, ∝ a^(n − 1), and of the jump's, ∝ a^(−½) in JKR, which cancel."""
+    assert load.body is not None
+    jump = load.at_edge / (np.pi * np.sqrt((load.edge - r) * (load.edge + r)))
+    inner, outer = load.body(load.edge * np.asarray([0.5, 1.0]))
+    return max(1.0, float(np.log2(outer / inner))) * np.abs(p - jump) + np.abs(jump)
 
 
 def _converges(levels: Sequence[float], noise: float) -> bool:
@@ -142,10 +173,10 @@ def _converges(levels: Sequence[float], noise: float) -> bool:
     return change <= noise * abs(first) or change < SHRINKS * abs(first - fourth)
 
 
-def _has_apex(scene: Scene) -> bool:
-    """Whether the profile has a tip, below which a pressure has no bound."""
-    tip, beside = scene.bodies.height(np.array([TIP, 1.0]) * scene.bodies.spacing)
-    return bool(tip > KINK * TIP * beside)
+def _has_apex(scene: Scene, off: float = TIP) -> bool:
+    """Whether the profile has a tip, below which a pressure has no bound, by its slope `off` spacings from the axis."""
+    tip, beside = scene.bodies.height(np.array([off, 1.0]) * scene.bodies.spacing)
+    return bool(tip > KINK * off * beside)
 
 
 def _through(size: int, stride: int, load: Callable[[Array], LineLoad]) -> LineLoad | None:
