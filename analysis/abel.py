@@ -129,7 +129,8 @@ def _of_body(body: Body, r: Array, edge: float) -> Array:
     x, near = np.hypot(r[:, None], width[:, None] * share), width * ends[-1]
     inner = width * ((slope(x) / x) @ (half[:, None] * weight).ravel())
     first, second = slope(np.hypot(r, near)), slope(np.hypot(r, 2.0 * near))
-    power = np.maximum(np.log2(second / first), np.finfo(np.float64).tiny)  # h′ ∝ t^power on the axis
+    ratio = np.divide(second, first, out=np.full_like(first, 2.0), where=first > 0.0)
+    power = np.maximum(np.log2(ratio), np.finfo(np.float64).tiny)  # h′ ∝ t^power on the axis
     left = first * np.where(r > 0.0, near / np.hypot(r, near), 1.0 / power)
     return np.asarray((inner + left) / np.pi)
 

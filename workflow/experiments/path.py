@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
@@ -150,13 +151,13 @@ def _adhesion(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Readi
 
 def _fixed_grips(branch: Trace) -> dict[str, Reading]:
     """The displacement at which a contact without a range is lost at once: between the last row held and the next."""
-    held = [branch.radius(i) is not None for i in range(len(branch))]
-    for i, (here, after) in enumerate(pairwise(held)):
-        if here and not after:
-            before, beyond = branch.displacement[i : i + 2].tolist()
-            errors = {"sampling": 0.5 * abs(before - beyond)}
-            return {"fixed_grips_displacement": Reading(0.5 * (before + beyond), LENGTH, errors)}
-    return {}
+    rows = range(len(branch))
+    lost = bisect_left(rows, True, key=lambda i: branch.radius(i) is None)
+    if not 0 < lost < len(branch):
+        return {}
+    before, beyond = branch.displacement[lost - 1 : lost + 1].tolist()
+    errors = {"sampling": 0.5 * abs(before - beyond)}
+    return {"fixed_grips_displacement": Reading(0.5 * (before + beyond), LENGTH, errors)}
 
 
 def schedule(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
