@@ -116,7 +116,7 @@ class LineLoad:
 
 
 def _of_body(body: Body, r: Array, edge: float) -> Array:
-    """(c/π) ∫_0^s h′(x)/x dt at distances r < edge, s² = edge² − r²; what is left of it at 0 as a power of t."""
+    """(c/π) ∫_0^s h′(x)/x dt at distances r < edge, s² = edge² − r²; its remainder at 0 as a power of t."""
     node, weight = np.polynomial.legendre.leggauss(NODES)
     ends = 0.5 ** np.arange(HALVINGS + 1.0)
     middle, half = 0.5 * (ends[:-1] + ends[1:]), 0.5 * (ends[:-1] - ends[1:])

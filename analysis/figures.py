@@ -267,7 +267,7 @@ def stick_slip_figure(states: Mapping[str, tuple[Profile, Array, float, float]],
     """Shear traction over x of each state between ±μp, the particles that stick and those that slip in two colours.
 
     Args:
-        states: by name the profile, what is left of μp of each particle [FU/LU], (n,), 0 where it slips, the half-width
+        states: by name the profile, the rest of μp of each particle [FU/LU], (n,), 0 where it slips, the half-width
             of the zone that sticks [LU], and the place of the body along x [LU].
         coefficient: μ.
     """

@@ -23,13 +23,13 @@ from contact1d.analysis.pressure import Array, Profile
 from contact1d.analysis.radius import ContactRadius, compressive_radius
 
 ROUND_OFF = 1e-10
-"""What is left of μ f over the largest μ f below which nothing is: a history is a sum over all rows."""
+"""Remaining μ f over the largest μ f below which there is none: a history is a sum over all rows."""
 NEAR = 1e-6
 """Of a spacing: a particle nearer to a kink than that belongs to it."""
 
 
 def stick_margin(profile: Profile, coefficient: float, direction: int) -> Array:
-    """Return what is left of μ p in the direction of motion [FU/LU], (n,); 0 where a particle slips or is not touched.
+    """Return the part of μ p not used up in the direction of motion [FU/LU], (n,); 0 where a particle slips or is free.
 
     Args:
         profile: pressure p, and shear of the lower body on the upper one, which is against the motion [FU/LU].

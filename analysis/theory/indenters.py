@@ -17,6 +17,7 @@ consistent units; E* is the contact modulus [stress].
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -45,19 +46,19 @@ def require_positive(**values: float) -> None:
             raise ValueError(f"{name} must be positive and finite, got {value}")
 
 
-class Contact:
+class Contact(ABC):
     """One contact by a theory: force and displacement over the contact radius a, and what follows from the two.
 
     Under a fixed load it pulls off where F(a) is lowest, under fixed grips where d(a) is: beyond, both rise with a.
     """
 
+    @abstractmethod
     def force(self, contact_radius: float) -> float:
         """Return F(a) [force], positive in compression; a >= 0 [length]."""
-        raise NotImplementedError
 
+    @abstractmethod
     def displacement(self, contact_radius: float) -> float:
         """Return d(a) [length]; a >= 0 [length]."""
-        raise NotImplementedError
 
     @property
     def reach(self) -> float:

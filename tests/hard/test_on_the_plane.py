@@ -107,7 +107,7 @@ def test_a_path_that_only_loads_says_that_nothing_was_pulled(tmp_path: Path) -> 
     path = {"kind": "path", "displacements": {"from": -1.0, "to": 1.0, "steps": 20, "return": False}}
     found = run(scene(adhesion={"work_of_adhesion": ENERGY}, experiment=path), tmp_path / "run", figures=False)
     assert "adhesion_force" not in found.results
-    assert "never draws the bodies apart" in found.warnings["no_peak"]
+    assert "never unloads the contact" in found.warnings["no_peak"]
 
 
 def test_the_finest_tolerance_claims_what_its_particles_leave(tmp_path: Path) -> None:

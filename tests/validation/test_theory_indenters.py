@@ -42,7 +42,10 @@ FLAT_END = ReducedContact(lambda r: 0.0, MODULUS, ADHESION)
 
 def power_law(exponent: float, work: float = 0.0) -> tuple[PowerLaw, ReducedContact]:
     """The same indenter z = 0.2 r^n twice: closed form and quadrature."""
-    slope = lambda r: 0.2 * exponent * r ** (exponent - 1.0)  # noqa: E731
+
+    def slope(r: float) -> float:
+        return 0.2 * exponent * r ** (exponent - 1.0)
+
     return PowerLaw(0.2, exponent, MODULUS, work), ReducedContact(slope, MODULUS, work)
 
 

@@ -45,7 +45,7 @@ def contact1d(
 ) -> None:
     """Contact, adhesion and friction with the one-dimensional particle model of Geike and Popov, on LAMMPS.
 
-    A scene file says what the bodies are, which effects act and what is done with them. `run` turns it into a LAMMPS
+    A scene file says what the bodies are, which effects act and the experiment. `run` turns it into a LAMMPS
     deck, runs it, and leaves a folder with numbers (results.json), tables (CSV), figures and the deck itself, which
     `lmp -in in.lammps` repeats. Start with `contact1d doctor`, `contact1d new my.toml`, `contact1d run my.toml`.
     """
@@ -257,7 +257,7 @@ def report(
     ],
     out: Annotated[Path, typer.Option(help="The page.")] = Path("report.html"),
 ) -> None:
-    """Write a page of runs or of a sweep, with figures that answer to the hand; it needs no network, no other file."""
+    """Write a page of runs or of a sweep, with interactive figures; it needs no network and no other file."""
     with command("the report", quiet=True):
         from contact1d.workflow.report.report import report as write
 
@@ -294,7 +294,7 @@ Kind = StrEnum("Kind", ["PULL_OFF", "LOAD", "PATH", "HOLD", "SLIDE", "TANGENTIAL
 
 def new(
     name: Annotated[Path, typer.Argument(metavar="NAME", help="The file; .toml is added if need be.")],
-    kind: Annotated[Kind, typer.Option(help="What is done with the bodies.")] = Kind.PULL_OFF,
+    kind: Annotated[Kind, typer.Option(help="The experiment.")] = Kind.PULL_OFF,
 ) -> None:
     """Write a scene file to start from: it runs as it stands, and says of every key what it is and may be."""
     if name.name in ("", ".."):

@@ -84,12 +84,12 @@ class Branch(ContactBranch):
 
     @property
     def unloading(self) -> Trace:
-        """What was held on the way apart, by falling displacement."""
+        """The states that were held while unloading, by falling displacement."""
         return of_states(self.falling, limit=self._limit).falling()
 
     @property
     def peak(self) -> Peak:
-        """The largest tension by all states that were held on the way apart."""
+        """The largest tension of the states that were held while unloading."""
         return peak_of(self.unloading)
 
     @property
@@ -171,7 +171,7 @@ class Branch(ContactBranch):
     # --- the largest tension
 
     def maximum(self) -> None:
-        """Find the largest tension on the way apart; the last state is then at it.
+        """Find the largest tension of the unloading; the last state is then at it.
 
         Rows past it, back to it, and at half the distance beside it until they change nothing. Just below snapping F(d)
         has a tooth for each pair that is lost: every one that may be the highest is looked at.

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import TracebackType
 from typing import Self
 
 from contact1d.workflow.continuation.contact import Contact
@@ -110,9 +111,11 @@ class ContactBranch:
         self.contact: Contact = self._open.enter_context(self.context.contact(meanwhile=self._meanwhile))
         return self
 
-    def __exit__(self, *error: object) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
         """Close it."""
-        self._open.__exit__(*error)  # type: ignore[arg-type]
+        self._open.__exit__(kind, error, traceback)
 
     @property
     def phases(self) -> tuple[Phase, ...]:

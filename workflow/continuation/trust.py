@@ -90,7 +90,7 @@ def _more_particles(scene: Scene, settings: Settings) -> str:
 
 
 def is_converged(settings: Settings, state: State) -> bool:
-    """Whether what is left of a force on a particle is below RESIDUAL_LIMIT."""
+    """Whether the residual force on every particle is below RESIDUAL_LIMIT."""
     return state.residual <= RESIDUAL_LIMIT * settings.tolerance * settings.force_scale
 
 

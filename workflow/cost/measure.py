@@ -62,13 +62,13 @@ class Measured:
     failure: str = ""
     warnings: Annotated[frozenset[str], Field(exclude=True)] = frozenset()
 
-    @computed_field  # type: ignore[prop-decorator]
+    @computed_field  # type: ignore[prop-decorator]  # mypy knows no decorator on a property
     @property
     def cpu_s(self) -> float:
         """Median CPU time in LAMMPS [s]."""
         return median(self.cpu_runs or (math.nan,))
 
-    @computed_field  # type: ignore[prop-decorator]
+    @computed_field  # type: ignore[prop-decorator]  # mypy knows no decorator on a property
     @property
     def total_s(self) -> float:
         """Median wall time [s]."""

@@ -50,7 +50,7 @@ class Variant(Measured):
     error: float = math.nan
     spread: float = 0.0
 
-    @computed_field  # type: ignore[prop-decorator]
+    @computed_field  # type: ignore[prop-decorator]  # mypy knows no decorator on a property
     @property
     def same_physics(self) -> bool:
         """Whether its errors are errors at all: not where an effect was left out."""

@@ -1,4 +1,4 @@
-"""An experiment: a script that moves a contact and a reader of what it leaves; both run on the reduced model, too."""
+"""An experiment: mostly a script that moves a contact and a reader of its states, also on the reduced model."""
 
 from __future__ import annotations
 
@@ -48,21 +48,6 @@ class Experiment(ABC):
     branches: ClassVar[Mapping[str, str]] = {}
 
     @abstractmethod
-    def script(self, branch: Any, scene: Scene) -> None:
-        """Move a contact: a `Branch`, a `LoadBranch` or a `ModelBranch`."""
-
-    @abstractmethod
-    def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Results of what the script has passed."""
-
-    @abstractmethod
-    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The schedule of a deck that is written and not run: known for a path, expected where a run would search."""
-
-    def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """What the experiment adds to its outcome, or refuses of it."""
-        return outcome
-
     def run(self, context: RunContext) -> Outcome:
         """Run it.
 
@@ -70,6 +55,48 @@ class Experiment(ABC):
             UntrustedError: the result can't be trusted.
             EngineError: LAMMPS failed.
         """
+
+    @abstractmethod
+    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+        """The schedule of a deck that is written and not run: known for a path, expected where a run would search."""
+
+    def reduction(self, scene: Scene, settings: Settings) -> Reduction | None:
+        """The experiment on the reduced model of a scene; None where it has no states at rest."""
+        return None
+
+    def advice(self, scene: Scene) -> str:
+        """What makes the uncertainty of a result smaller."""
+        if scene.method == "dynamic":
+            return 'What helps is method = "quasistatic"'
+        if scene.interaction is None:
+            return f"What helps is {FINER_SPACING}"
+        return (
+            f'What helps is to leave interaction.cutoff and bodies.particles "auto"; for a radius {FINER_SPACING}, too'
+        )
+
+    def branch(self, phase: str) -> str:
+        """The branch of the curve that a phase belongs to."""
+        name = phase.partition("_")[0]
+        return self.branches.get(name, name)
+
+
+class Scripted(Experiment):
+    """An experiment of states at rest: a script over a branch, and a reader of the trace that it leaves."""
+
+    @abstractmethod
+    def script(self, branch: Any, scene: Scene) -> None:
+        """Move a contact: a `Branch`, a `LoadBranch` or a `ModelBranch`."""
+
+    @abstractmethod
+    def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
+        """Results of what the script has passed."""
+
+    def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
+        """What the experiment adds to its outcome, or refuses of it."""
+        return outcome
+
+    def run(self, context: RunContext) -> Outcome:
+        """Run the script on LAMMPS; the reader's results with their error budget."""
         scene, settings = context.deck.scene, context.deck.settings
         case = self.reduction(scene, settings)
         with branch_of(context, lambda: case.lattice) as branch:
@@ -90,21 +117,6 @@ class Experiment(ABC):
         return Reduction(
             scene, settings, partial(self.script, scene=scene), partial(self.read, scene=scene, settings=settings)
         )
-
-    def advice(self, scene: Scene) -> str:
-        """What makes a result that is known too little known better."""
-        if scene.method == "dynamic":
-            return 'What helps is method = "quasistatic"'
-        if scene.interaction is None:
-            return f"What helps is {FINER_SPACING}"
-        return (
-            f'What helps is to leave interaction.cutoff and bodies.particles "auto"; for a radius {FINER_SPACING}, too'
-        )
-
-    def branch(self, phase: str) -> str:
-        """The branch of the curve that a phase belongs to."""
-        name = phase.partition("_")[0]
-        return self.branches.get(name, name)
 
 
 def branch_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | LoadBranch:

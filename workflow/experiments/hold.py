@@ -10,13 +10,13 @@ from typing import Any
 from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import DisplaceInTime, Phase, UnderLoad
-from contact1d.workflow.experiments.experiment import Experiment
+from contact1d.workflow.experiments.experiment import Scripted
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Hold, Scene
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
 
-class HoldExperiment(Experiment):
+class HoldExperiment(Scripted):
     """d, F, a and F/(πa²) at the end, and by how much what is not held has changed since the beginning."""
 
     main_results = ("displacement", "force", "contact_radius")

@@ -17,14 +17,14 @@ from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.stepped import LOADING_STEPS, curve_steps
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import Phase, displacements
-from contact1d.workflow.experiments.experiment import Experiment
+from contact1d.workflow.experiments.experiment import Scripted
 from contact1d.workflow.experiments.thermal import planned_samples, thermal_load
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Load, Scene
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
 
-class LoadExperiment(Experiment):
+class LoadExperiment(Scripted):
     """d, F, a and F/(πa²) under a force. A tension is approached from F = 0, as an experiment would."""
 
     main_results = ("displacement", "force", "contact_radius")

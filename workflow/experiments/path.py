@@ -23,7 +23,7 @@ from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import doubts, require_trust
 from contact1d.workflow.deck.steps import DisplaceInTime, Phase, Row, displacements
-from contact1d.workflow.experiments.experiment import FINER_SPACING, Experiment
+from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.experiments.thermal import CERTAIN, averaged, thermal_rows
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
@@ -36,7 +36,7 @@ EARLINESS = 8.0
 """Square of the longest move of bodies that part over the range squared, per unit of tolerance."""
 
 
-class PathExperiment(Experiment):
+class PathExperiment(Scripted):
     """F_A, a₀ and a_cr, read off the branch that unloads last; the energy that a closed path dissipates."""
 
     main_results = ("adhesion_force", "zero_load_radius", "critical_radius", "largest_force", "largest_radius")
@@ -99,17 +99,17 @@ class PathExperiment(Experiment):
         if not scene.adheres:
             return {}
         if not any(phase.name.startswith("unloading") for phase in phases) and not results:
-            never = "the path never draws the bodies apart, so it gives no"
+            never = "the path never unloads the contact, so it gives no"
             return {"no_peak": f"{never} adhesion_force", "no_zero_load": f"{never} zero_load_radius"}
         warnings = {}
         if "adhesion_force" not in results:
             warnings["no_peak"] = (
-                "the largest tension lies at an end of the last way apart, so the path gives no adhesion_force: "
+                "the largest tension lies at an end of the last unloading, so the path gives no adhesion_force: "
                 'go further back, or use kind = "pull_off"'
             )
         if "zero_load_radius" not in results:
             warnings["no_zero_load"] = (
-                "the force does not pass 0 on the last way apart, so there is no zero_load_radius"
+                "the force does not pass 0 in the last unloading, so there is no zero_load_radius"
             )
         return warnings
 
@@ -135,7 +135,7 @@ def _largest(trace: Trace) -> dict[str, Reading]:
 def _adhesion(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
     """Of the last phase in which the bodies are drawn apart; where a smooth curve has none, the last one says the same.
 
-    Where pairs snap, or an edge has no range, the tension on the way down is that at which the bodies jump together.
+    Where pairs snap, or an edge has no range, the tension while loading is that at which the bodies snap in.
     """
     apart = [name for name in trace.phase if name.startswith("unloading")]
     jumps = settings.estimate.snaps or scene.adhesion is not None

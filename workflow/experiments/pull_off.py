@@ -19,7 +19,7 @@ from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import require_no_contradiction
 from contact1d.workflow.deck.steps import Phase, displacements
 from contact1d.workflow.experiments.detachment import planned_detachment, pull_off_thermal
-from contact1d.workflow.experiments.experiment import Experiment
+from contact1d.workflow.experiments.experiment import Scripted
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import PullOff, Scene
 from contact1d.workflow.units import FORCE, LENGTH
@@ -30,7 +30,7 @@ LARGEST_TENSION = 1.2
 """The last of these tensions over the expected pull-off force."""
 
 
-class PullOffExperiment(Experiment):
+class PullOffExperiment(Scripted):
     """F_A, a_cr and a₀ after a preload; with noise the detachment force of each pull."""
 
     main_results = ("adhesion_force", "zero_load_radius", "critical_radius")

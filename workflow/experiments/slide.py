@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -19,9 +18,8 @@ from contact1d.analysis import friction
 from contact1d.workflow.continuation.contact import TOLD, Contact
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.holding import MOST_HOLDS, Start, at_rest, hold, hold_row
-from contact1d.workflow.continuation.outcome import Outcome, Reading, Result
+from contact1d.workflow.continuation.outcome import Outcome, Result
 from contact1d.workflow.continuation.state import State
-from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import (
     OffEndError,
     PartedError,
@@ -60,14 +58,6 @@ class SlideExperiment(Experiment):
     """
 
     main_results = ("mean_friction", "static_friction")
-
-    def script(self, branch: Any, scene: Scene) -> None:
-        """Motion is no branch of states at rest."""
-        raise NotImplementedError
-
-    def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """See `outcome_of`."""
-        raise NotImplementedError
 
     def run(self, context: RunContext) -> Outcome:
         """Load, then drive leg by leg.

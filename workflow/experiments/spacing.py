@@ -82,6 +82,8 @@ def left_by_lattice(scene: Scene) -> float:
     except SettingsError:
         return 0.0
     case = kind_of(scene).reduction(scene, settings)
+    if case is None:
+        return 0.0
     trace = case.trace(reduced(scene, settings))
     exact = ForceErrors(np.zeros(len(trace)), np.zeros(len(trace)))
     results = budgeted(case, trace, exact)

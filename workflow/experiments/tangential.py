@@ -29,7 +29,7 @@ from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import UntrustedError, doubts
 from contact1d.workflow.deck.lattice import places
 from contact1d.workflow.deck.steps import Draw, Phase
-from contact1d.workflow.experiments.experiment import FINER_SPACING, Experiment
+from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.model.friction import Sliders, Stop, sliders_of, stops, without_rests
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene, Tangential
@@ -45,7 +45,7 @@ AS_PREDICTED = 1e-8
 """How far a particle's tangential force may be from what spring and slider make of the row before, over its limit."""
 
 
-class TangentialExperiment(Experiment):
+class TangentialExperiment(Scripted):
     """F_N, F_x, a, c and the dissipated energy Σ ∫ |s_i| dδ_i of the last row; a particle has slipped by δ_i."""
 
     main_results = ("tangential_force", "contact_radius", "stick_radius", "dissipated_energy")

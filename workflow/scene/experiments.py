@@ -90,7 +90,7 @@ TIMELESS = "its load steps follow each other without time, each in equilibrium"
 
 
 class Kind(Table):
-    """What is done. Each kind says here what other rooms must know of it.
+    """The experiment. Each kind says here what other rooms must know of it.
 
     Attributes:
         only_method: the one method that it has; None: the key `method` says it, or the effects do.

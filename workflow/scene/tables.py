@@ -284,7 +284,7 @@ class Tables(Table):
     output: Output | None = None
     """what is kept besides the results"""
     experiment: Experiment
-    """what is done"""
+    """the experiment"""
 
     @model_validator(mode="after")
     def _choose_reduction(self) -> Self:
