@@ -228,18 +228,20 @@ class Ellipsoid(Contact):
         radius: c [length].
         half_axis: b [length]; of a sphere c.
         contact_modulus: E* [stress].
+        work_of_adhesion: W >= 0 [force/length]; the tension at the edge is JKR's, whatever the profile.
 
     Raises:
-        ValueError: if one of them is not positive.
+        ValueError: if one of them is out of its range.
     """
 
     radius: float
     half_axis: float
     contact_modulus: float
+    work_of_adhesion: float = 0.0
 
     def __post_init__(self) -> None:
         """Check the signs."""
-        require_positive(**vars(self))
+        require_positive(radius=self.radius, half_axis=self.half_axis, contact_modulus=self.contact_modulus)
 
     @property
     def reach(self) -> float:
@@ -247,24 +249,45 @@ class Ellipsoid(Contact):
         return RIM * self.radius
 
     def displacement(self, contact_radius: float) -> float:
-        """Return d = (b/c) a artanh(a/c) [length]; 0 <= a < c [length]."""
-        return self.half_axis / self.radius * contact_radius * math.atanh(contact_radius / self.radius)
+        """Return d = (b/c) a artanh(a/c) - sqrt(2 pi W a/E*) [length]; 0 <= a < c [length]."""
+        stretch = math.sqrt(2.0 * math.pi * self.work_of_adhesion * contact_radius / self.contact_modulus)
+        return self.half_axis / self.radius * contact_radius * math.atanh(contact_radius / self.radius) - stretch
 
     def force(self, contact_radius: float) -> float:
-        """Return F = (b/c) E* [(c^2 + a^2) artanh(a/c) - a c] [force]; 0 <= a < c [length]."""
-        a, c = contact_radius, self.radius
-        return self.half_axis / c * self.contact_modulus * ((c**2 + a**2) * math.atanh(a / c) - a * c)
+        """Return F = (b/c) E* [(c^2 + a^2) artanh(a/c) - a c] - sqrt(8 pi E* W a^3) [force]; 0 <= a < c [length]."""
+        a, c, e = contact_radius, self.radius, self.contact_modulus
+        pressed = self.half_axis / c * e * ((c**2 + a**2) * math.atanh(a / c) - a * c)
+        return pressed - math.sqrt(8.0 * math.pi * e * self.work_of_adhesion * a**3)
+
+    def critical_radius(self) -> float:
+        """Return a where a fixed load pulls off [length]."""
+        return self._edge(0.75)
+
+    def fixed_grips_radius(self) -> float:
+        """Return a where a prescribed displacement pulls off [length]."""
+        return self._edge(0.25)
+
+    def _edge(self, factor: float) -> float:
+        """a with g'(a) sqrt(a) = factor sqrt(8 pi W/E*): where a derivative by a vanishes."""
+        wanted = factor * math.sqrt(8.0 * math.pi * self.work_of_adhesion / self.contact_modulus)
+        return self._where(lambda a: self._rate(a) * math.sqrt(a), wanted, 0.0) if wanted else 0.0
+
+    def _rate(self, place: float) -> float:
+        """g'(x) = (b/c) [artanh(x/c) + x c/(c^2 - x^2)], 0 <= x < c [length]."""
+        x, c = place, self.radius
+        return self.half_axis / c * (math.atanh(x / c) + x * c / (c**2 - x**2))
 
     def central_pressure(self, contact_radius: float) -> float:
-        """Return p(0) = (E*/pi) int_0^a g'/x dx [stress], g' = (b/c) [artanh(x/c) + x c/(c^2 - x^2)]; a < c [length].
+        """Return p(0) = (E*/pi) int_0^a g'/x dx - sqrt(2 E* W/pi a) [stress]; 0 < a < c [length].
 
         By quadrature: the first part has no elementary form.
         """
         nodes, weights = np.polynomial.legendre.leggauss(POINTS)
-        half, c = 0.5 * contact_radius, self.radius
-        x = half * (nodes + 1.0)
-        rate = float(weights @ (np.arctanh(x / c) / x + c / (c**2 - x**2)))
-        return self.contact_modulus / math.pi * self.half_axis / c * half * rate
+        half, a = 0.5 * contact_radius, contact_radius
+        places = half * (nodes + 1.0)
+        rate = float(weights @ [self._rate(float(x)) / x for x in places])
+        tension = math.sqrt(2.0 * self.contact_modulus * self.work_of_adhesion / (math.pi * a))
+        return self.contact_modulus / math.pi * half * rate - tension
 
     peak_pressure = central_pressure
 

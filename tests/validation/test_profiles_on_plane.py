@@ -155,7 +155,7 @@ def test_force_is_the_sum_over_particles(run_tables: RunTables, name: str) -> No
         assert state.displacement == pytest.approx(float(depth), rel=1e-9)
         assert state.force == pytest.approx(discrete_sum(indenter, state), rel=tolerance)
     assert done.document["reduction"] == "mdr"
-    assert set(done.warnings) <= {"lattice"}  # an even chain was chosen, and other bodies stand otherwise
+    assert set(done.warnings) <= {"lattice", "tolerance", "slope"}  # of a few particles, under steep bodies
 
 
 @pytest.mark.parametrize("name", INDENTERS)

@@ -28,7 +28,7 @@ from contact1d.potentials import DoubleExponential
 from contact1d.workflow.body.reading import product
 from contact1d.workflow.body.theory import Case
 from contact1d.workflow.body.traction import BodyPressure, body_pressures, is_of_a_body
-from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.continuation.outcome import MODEL, Outcome, Result
 from contact1d.workflow.model.pairs import row_force
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
@@ -62,12 +62,17 @@ def first_of(found: Mapping[str, Quantity], *names: str) -> Quantity | None:
 
 
 def with_implied(scene: Scene, settings: Settings, outcome: Outcome) -> Outcome:
-    """The outcome of a run, and what its interaction implies; it counts as derived."""
+    """The outcome of a run with what its interaction implies."""
     return _with(outcome, implied(scene, settings, outcome.quantities))
 
 
 def _with(outcome: Outcome, made: Mapping[str, Quantity]) -> Outcome:
-    return replace(outcome, derived={**outcome.derived, **made})
+    """The outcome with what was made of its results; W is two readings of one quantity."""
+    sources = {"work_of_adhesion": MODEL}
+    results = {
+        name: Result(one.value, one.unit, {sources.get(name, "input"): one.uncertainty}) for name, one in made.items()
+    }
+    return replace(outcome, results={**outcome.results, **results})
 
 
 def implied(scene: Scene, settings: Settings, found: Mapping[str, Quantity]) -> dict[str, Quantity]:

@@ -113,9 +113,9 @@ class Case:
         if self.kind == "power":
             return PowerLaw(profile.height_there / profile.radius**profile.exponent, profile.exponent, e, self.work)
         if self.kind == "ellipsoid":
-            return Ellipsoid(profile.radius, profile.half_axis, e)
+            return Ellipsoid(profile.radius, profile.half_axis, e, self.work)
         radius, *rest = self.sphere
-        return Ellipsoid(radius, radius, e) if self.kind == "circle" else PowerLaw.sphere(radius, *rest)
+        return Ellipsoid(radius, radius, *rest) if self.kind == "circle" else PowerLaw.sphere(radius, *rest)
 
     @cached_property
     def contact_radius(self) -> float:
@@ -379,6 +379,8 @@ FORMS = (
                _adheres("cone", "a cone that adheres, without a range"), _adhesive_values),
     ClosedForm("Popov and Heß, power", "V. L. Popov, M. Heß, Method of Dimensionality Reduction, 2015, section 4.4",
                _adheres("power", "a power of the radius that adheres, without a range"), _adhesive_values),
+    ClosedForm("JKR, whole sphere", "D. Maugis, Langmuir 11 (1995) 679",
+               _adheres("circle", "a whole sphere that adheres, without a range"), _adhesive_values),
     ClosedForm("Kendall, flat punch", "K. Kendall, J. Phys. D 4 (1971) 1186",
                _adheres("flat_punch", "a flat punch that adheres, without a range"), _adhesive_punch_values),
     ClosedForm("Maugis and Dugdale", MAUGIS, _with_a_range, _maugis_values),

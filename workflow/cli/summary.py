@@ -48,9 +48,12 @@ def quantities(results: Mapping[str, Any]) -> list[str]:
     for name, entry in results.items():
         if isinstance(entry, dict) and {"value", "uncertainty", "unit"} <= entry.keys():
             label = NAMES.get(name, name.replace("_", " "))
-            number = in_si(entry["si"]) if "si" in entry else (
-                f"{rounded(entry['value'], entry['uncertainty'])} {entry['unit']}"
-            )  # fmt: skip
+            if entry["value"] is None:
+                number = "not reported"
+            elif "si" in entry:
+                number = in_si(entry["si"])
+            else:
+                number = f"{rounded(entry['value'], entry['uncertainty'])} {entry['unit']}"
             lines.append(f"  {label:<28} {number:<32} {', '.join(in_words(results, name))}".rstrip())
     if "units" in results:
         lines += [f"  {'1 ' + unit:<28} {in_si(entry)}" for unit, entry in results["units"].items()]

@@ -16,13 +16,12 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.continuation.model_branch import ModelBranch
-from contact1d.workflow.continuation.outcome import LATTICE, Reading, Result, in_words
+from contact1d.workflow.continuation.outcome import LATTICE, Reading, Result
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import law_error
@@ -218,28 +217,3 @@ def _changes(read: Reader, values: Values, perturbed: list[Trace]) -> Values:
 
 def _values(readings: Mapping[str, Reading]) -> Values:
     return {name: one.value for name, one in readings.items()}
-
-
-def lattice_warning(scene: Scene, results: Mapping[str, Result]) -> dict[str, str]:
-    """The warning `lattice`: results that the positions of the particles leave less certain than the tolerance."""
-    shares = {}
-    for name, one in results.items():
-        left = one.errors.get(LATTICE, 0.0) - one.read
-        if left and (one.size or name.endswith("radius")):
-            shares[name] = left / one.size if one.size else inf
-    shares = {name: share for name, share in shares.items() if share > scene.accuracy.tolerance}
-    if not shares:
-        return {}
-    spacing = scene.bodies.spacing * np.sqrt(0.5 * scene.accuracy.tolerance / min(1.0, max(shares.values())))
-    limits = f"{in_words(shares)} only, more than the tolerance of {scene.accuracy.tolerance:g}, because "
-    return {
-        "lattice": limits
-        + (
-            f"the edge of the contact moves through cells: take a bodies.spacing of {spacing:.2g} LU at "
-            "the same stiffness per length"
-            if scene.adheres and scene.adhesion is not None
-            else "the contact's centre may lie on a particle or anywhere between two of this chain: take a smaller "
-            "bodies.spacing at the same stiffness and energy per length, or give bodies.particles where these very "
-            "particles are meant"
-        )
-    }

@@ -26,6 +26,10 @@ MOST_NUMBERS = 400_000
 """Forces that are worked out in a path with dense positions."""
 
 
+UNSEEN = ""
+"""Phase of states that make the history of a path and are none of it."""
+
+
 class ModelBranch:
     """States of the model, with positions as dense as asked for; they are worked out together in the end.
 
@@ -116,4 +120,5 @@ class ModelBranch:
             phases, positions, asked = zip(*self._rows, strict=True)
             displacement = np.asarray(positions)
             along, followed = np.zeros_like(displacement), self.model.follow(displacement)
-        return of_model(phases, displacement, along, asked, followed, rule, spacing, self.model.apart)
+        whole = of_model(phases, displacement, along, asked, followed, rule, spacing, self.model.apart)
+        return whole.chosen([i for i, name in enumerate(phases) if name != UNSEEN])

@@ -11,9 +11,10 @@ from contact1d.workflow.continuation.state import State
 from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.units import Quantity
 
-SOURCES = ("solver", "sampling", "discretisation", "instability", "statistics", "input")
-"""What an error may come from."""
+SOURCES = ("solver", "sampling", "discretisation", "instability", "statistics", "input", "model")
+"""What an error may come from. "input": results that a number is made of; "model": two readings of one quantity."""
 LATTICE = "discretisation"
+MODEL = "model"
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ class Reading:
         value: in `unit`.
         unit: of the model.
         errors: by source.
-        scale: what the uncertainty is compared with, where that is not the value itself.
+        scale: what the uncertainty is compared with where the value may be 0.
         prescribed: whether the scene prescribes it.
     """
 
@@ -43,8 +44,8 @@ class Result:
         value: in `unit`.
         unit: of the model.
         errors: by the names of SOURCES, in `unit`.
-        scale: what the uncertainty is compared with, where that is not the value itself.
-        prescribed: whether the scene prescribes it: no result.
+        scale: what the uncertainty is compared with where the value may be 0.
+        prescribed: whether the scene prescribes it, or it closes a balance: no tolerance is asked of it.
         read: part of the discretisation error that is left by reading between particles, whatever the settings.
     """
 
@@ -67,8 +68,8 @@ class Result:
 
     @property
     def size(self) -> float:
-        """What the uncertainty is compared with."""
-        return abs(self.value) if self.scale is None else self.scale
+        """What the uncertainty is compared with: the value, or a scale where the value may be 0."""
+        return abs(self.value) if self.scale is None or self.uncertainty < abs(self.value) else self.scale
 
     @property
     def share(self) -> float:
@@ -98,7 +99,6 @@ class Outcome:
         columns: further columns of curve.csv.
         tables: columns of further files, by the names of these.
         refinement: None where the settings were given, or are not refined.
-        derived: what follows from the results, of the body of three dimensions or the interaction.
     """
 
     results: Mapping[str, Result]
@@ -109,13 +109,11 @@ class Outcome:
     columns: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     tables: Mapping[str, Mapping[str, tuple[float, ...]]] = field(default_factory=dict)
     refinement: Refinement | None = None
-    derived: Mapping[str, Quantity] = field(default_factory=dict)
 
     @property
     def quantities(self) -> dict[str, Quantity]:
-        """Results and what follows from them, each with its uncertainty and unit."""
-        own = {name: Quantity(one.value, one.uncertainty, one.unit) for name, one in self.results.items()}
-        return own | dict(self.derived)
+        """Results, each with its uncertainty and unit."""
+        return {name: Quantity(one.value, one.uncertainty, one.unit) for name, one in self.results.items()}
 
     @property
     def profiles(self) -> dict[str, Profile]:

@@ -29,9 +29,9 @@ from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.engine.session import Engine, Session
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.model.settings import Settings, SettingsError, settings_for
+from contact1d.workflow.runs.accuracy import open_results
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.processors import pool
-from contact1d.workflow.runs.report import open_results
 from contact1d.workflow.scene import Scene, SceneError
 from contact1d.workflow.units import Quantity
 

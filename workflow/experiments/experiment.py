@@ -12,7 +12,6 @@ from contact1d.workflow.continuation.budget import (
     Reduction,
     budgeted,
     force_errors,
-    lattice_warning,
 )
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.load_control import LoadBranch
@@ -108,7 +107,7 @@ class Scripted(Experiment):
         left = branch.unbalance if isinstance(branch, LoadBranch) else None
         errors = force_errors(scene, settings, branch.states, branch.marked.values(), left)
         results = budgeted(case, trace, errors, length=length)
-        warnings = doubts(scene, settings, tuple(branch.states)) | lattice_warning(scene, results)
+        warnings = doubts(scene, settings, tuple(branch.states))
         outcome = Outcome(results, tuple(branch.states), branch.marked, branch.phases, warnings)
         return self.finish(outcome, scene, settings)
 

@@ -14,10 +14,10 @@ from contact1d.analysis.curve_marks import loop_of
 from contact1d.workflow.continuation.budget import (
     budgeted,
     force_errors,
-    lattice_warning,
 )
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.marks import unloading
+from contact1d.workflow.continuation.model_branch import UNSEEN
 from contact1d.workflow.continuation.outcome import Outcome, Reading, Result
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace, of_states
@@ -26,9 +26,11 @@ from contact1d.workflow.deck.steps import DisplaceInTime, Phase, Row, displaceme
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.experiments.thermal import CERTAIN, averaged, thermal_rows
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Path, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
 
+APART = 4.0
+"""Distance from touch, over the range of the attraction, at which a path begins: pairs there are on one branch."""
 RELAXATIONS = 14.0
 """Time that a dynamic path gives the particles at each displacement, over the time constant of their slowest decay."""
 ROUND_OFF = 1e-9
@@ -63,17 +65,18 @@ class PathExperiment(Scripted):
         results = budgeted(case, of_states(seen), errors, sampled=scene.noise is None)
         warnings = self._missing(results, scene, phases) | doubts(scene, settings, tuple(reported))
         tables = {} if scene.noise is None else {"means": _means(settings, reported)}
-        warnings |= lattice_warning(scene, results)
         return Outcome(results, tuple(reported), ends, phases, warnings, tables=tables)
 
     def script(self, branch: Any, scene: Scene) -> None:
-        """The displacements that the scene asks for; where pairs snap, those between them, too."""
+        """The approach, which no reader sees, and what the scene asks for; where pairs snap also what is between."""
         settings = branch.settings
-        positions = scene.experiment.places()
-        if settings.estimate.snaps:
-            all_of_it = way(scene, settings)
-            first = [asked for _, asked in all_of_it].index(True)
-            positions = [position for position, _ in all_of_it[first:]]
+        all_of_it = way(scene, settings)
+        first = [asked for _, asked in all_of_it].index(True)
+        if first:
+            branch.begin(UNSEEN)
+            branch.visit([position for position, _ in all_of_it[:first]])
+        passed = all_of_it[first:] if settings.estimate.snaps else [one for one in all_of_it if one[1]]
+        positions = [position for position, _ in passed]
         for name, stretch in stretches(positions):
             branch.begin(name)
             branch.visit(stretch)
@@ -188,20 +191,25 @@ def stretches(positions: Sequence[float]) -> list[tuple[str, list[float]]]:
 
 
 def way(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
-    """Displacements [LU] of all rows, and whether the scene asks for them or they lie between two of those.
+    """Displacements [LU] of all states, and whether the scene asks for them or they are passed on the way.
 
-    The path starts at 0, where the bodies are in system.data, unless the first displacement draws them apart: from
-    there it is the state that comes from far away.
+    A path begins where bodies that attract each other are APART ranges from touch, or farther: there they have one
+    state. With `start = "contact"` it then goes to the largest displacement before the first one.
     """
-    found: list[tuple[float, bool]] = []
-    before = 0.0
-    for value in scene.experiment.places():
+    experiment, law = scene.experiment, settings.law
+    assert isinstance(experiment, Path)
+    asked = experiment.places()
+    before = -APART * law.attraction.range if law is not None and law.attraction is not None else 0.0
+    goals = [(value, True) for value in asked]
+    if experiment.start == "contact":
+        goals.insert(0, (max(asked), False))
+    before = min(before, goals[0][0])
+    found = [(before, False)] if before not in (0.0, goals[0][0]) else []
+    for value, one in goals:
         longest = settings.longest_move if value > before else _longest_drop(settings)
         moves = max(1, math.ceil(abs(value - before) / longest - ROUND_OFF))
-        if not found and value < before:
-            moves = 1
         found += [(before + (value - before) * i / moves, False) for i in range(1, moves)]
-        found.append((value, True))
+        found.append((value, one))
         before = value
     return found
 

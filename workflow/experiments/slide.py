@@ -154,8 +154,9 @@ def means(scene: Scene, settings: Settings, motion: Motion) -> dict[str, Result]
             pull, FORCE, {"statistics": friction.interval(pulled), "solver": tolerance * abs(pull)}
         )
     if number == _first_moving(motion) and way[-1] - way[0] >= scene.bodies.spacing:
-        top, missed = friction.largest_before(force, way, scene.bodies.spacing)
-        found["static_friction"] = Result(top, FORCE, {"sampling": missed, "solver": tolerance * abs(top)})
+        for name, curve in (("static_friction", force), ("static_cantilever_force", pulls)):
+            top, missed = friction.largest_before(curve, way, scene.bodies.spacing)
+            found[name] = Result(top, FORCE, {"sampling": missed, "solver": tolerance * abs(top)})
     return found
 
 
@@ -179,7 +180,8 @@ def energies(motion: Motion) -> dict[str, Result]:
         "stored_energy": float(motion.stored[-1]),
     }
     open_ = abs(ends["cantilever_work"] - ends["dissipated_energy"] - ends["stored_energy"])
-    return {name: Result(value, ENERGY, {"solver": open_}) for name, value in ends.items()}
+    results = {name: Result(value, ENERGY, {"solver": open_}) for name, value in ends.items()}
+    return results | {"stored_energy": replace(results["stored_energy"], prescribed=True)}
 
 
 def slips_of(scene: Scene, motion: Motion) -> list[friction.Slip]:

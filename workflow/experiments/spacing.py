@@ -33,6 +33,8 @@ LARGEST = 0.1
 SAME = 0.01
 """Difference of a radius at two spacings over it, below which it is the body's."""
 RADII = ("contact_radius", "stick_radius", "zero_load_radius", "critical_radius", "largest_radius")
+SQUARED = 2.0
+"""Error of a square over that of its root: areas and mean pressures follow from radii."""
 WIDEST = 0.5
 """Radius that is tried first, 1 LU or this share of where a body ends or of its curvature."""
 MOST_SIZES = 60
@@ -87,7 +89,11 @@ def left_by_lattice(scene: Scene) -> float:
     trace = case.trace(reduced(scene, settings))
     exact = ForceErrors(np.zeros(len(trace)), np.zeros(len(trace)))
     results = budgeted(case, trace, exact)
-    left = [(one.errors[LATTICE], one.size) for name, one in results.items() if not one.prescribed or name in RADII]
+    left = [
+        (SQUARED * one.errors[LATTICE] if name in RADII else one.errors[LATTICE], one.size)
+        for name, one in results.items()
+        if not one.prescribed or name in RADII
+    ]
     shares = [error / size for error, size in left if size]
     appear = any(
         error for name, one in results.items() if (error := one.errors[LATTICE]) and not one.size and name in RADII

@@ -21,7 +21,6 @@ from contact1d.analysis.shear import slip, stick_margin, stick_radius
 from contact1d.workflow.continuation.budget import (
     budgeted,
     force_errors,
-    lattice_warning,
 )
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.outcome import Outcome, Reading
@@ -66,7 +65,7 @@ class TangentialExperiment(Scripted):
         farthest = reported[int(np.argmax([abs(row.position) for row in kept]))]
         errors = force_errors(scene, settings, states, (states[-1],))
         results = budgeted(case, trace, errors)
-        warnings = doubts(scene, settings, tuple(reported)) | lattice_warning(scene, results)
+        warnings = doubts(scene, settings, tuple(reported))
         marked = {"farthest": farthest, "final": reported[-1]}
         return Outcome(results, tuple(reported), marked, phases, warnings, columns=_columns(kept))
 

@@ -30,6 +30,7 @@ from contact1d.workflow.experiments.spacing import with_spacing
 from contact1d.workflow.model.chain import MIX_UP, in_words, require_steps
 from contact1d.workflow.model.motion import require_way
 from contact1d.workflow.model.settings import Settings, settings_for
+from contact1d.workflow.runs.accuracy import reported, require_results
 from contact1d.workflow.runs.finished import Run, draw
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.processors import cores, require_ranks
@@ -105,6 +106,8 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
     try:
         outcome = perform(context)
         last = refined(context, outcome) if refine else Refined(context.deck, outcome)
+        context.left = last.outcome
+        require_results(scene, last.outcome)
     except (EngineError, UntrustedError) as error:
         facts = {
             "message": error.message if isinstance(error, EngineError) else str(error),
@@ -120,7 +123,7 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
     outcome = with_body(scene, outcome)
     write_whole(folder / "in.lammps", last.deck.text(outcome.phases))
     curve = curve_of(last.deck.scene, outcome)
-    write_tables(folder, scene, outcome, curve)
+    write_tables(folder, scene, reported(scene, outcome), curve)
     document = results(scene, outcome, timing()) | formulas(scene, outcome.quantities)
     finished = _finished(folder, document, scene, curve, outcome)
     _draw(finished, figures)

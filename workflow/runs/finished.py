@@ -42,7 +42,7 @@ from contact1d.workflow.continuation.state import RadiusRule
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.runs.report import RESULTS
 from contact1d.workflow.scene import PullOff, Scene, SceneError, Slide, Tangential, scene_from_dict
-from contact1d.workflow.units import FORCE, LENGTH, MASS, Quantity, Scales, scale_of
+from contact1d.workflow.units import FORCE, LENGTH, MASS, Quantity, Scales, numbers_in, scale_of
 
 if TYPE_CHECKING:
     from ase import Atoms
@@ -112,8 +112,8 @@ class Run:
 
     def __post_init__(self) -> None:
         """Take the quantities from the document."""
-        entries = {name: entry for name, entry in self.document.items() if isinstance(entry, dict) and "value" in entry}
-        object.__setattr__(self, "results", Results({name: Quantity.of(entry) for name, entry in entries.items()}))
+        found = {name: Quantity.of(entry) for name, entry in numbers_in(self.document).items()}
+        object.__setattr__(self, "results", Results(found))
 
     @property
     def status(self) -> str:

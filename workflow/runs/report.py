@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import platform
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -25,10 +25,11 @@ from contact1d.files import write_whole
 from contact1d.workflow.body.reading import doubt_of_the_image, of_the_body
 from contact1d.workflow.body.theory import theory
 from contact1d.workflow.body.traction import BodyPressure, BodyShear, body_pressures, body_shears
-from contact1d.workflow.continuation.outcome import LATTICE, Outcome, in_words, unmet
+from contact1d.workflow.body.validity import checks
+from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.experiments import kind_of
-from contact1d.workflow.experiments.experiment import FINER_SPACING
 from contact1d.workflow.experiments.keeping import kept_states
+from contact1d.workflow.runs.accuracy import accuracy_warnings, reported
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.scales import scales_of, unfound
 from contact1d.workflow.scene import Scene
@@ -54,23 +55,23 @@ FILES = (
 
 def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict[str, Any]:
     """What results.json holds after a run that was done."""
-    scales = scales_of(scene, outcome.quantities)
-    found = of_the_body(scene, outcome.quantities)
-    quantities = {name: quantity.entry() for name, quantity in found.items()}
+    known = reported(scene, outcome)
+    scales, found = scales_of(scene, known.quantities), of_the_body(scene, known.quantities)
+    quantities = {name: quantity.entry() for name, quantity in of_the_body(scene, outcome.quantities).items()}
     if scales is not None:
         for entry in quantities.values():
             entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
+    for name in quantities.keys() - found.keys():
+        for part in (quantities[name], quantities[name].get("si", {})):
+            part["value"] = None
+    if scales is not None:
         quantities["units"] = {
             unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE, MASS, TIME) if scales.know(unit)
         }
     doubts = dict(outcome.warnings) | doubt_of_the_image(scene) | implausible(scene, scales, found)
-    if coarse := open_results(scene, outcome):
-        ended = "" if outcome.refinement is None else f" ({outcome.refinement.ended})"
-        doubts["tolerance"] = (
-            f"{in_words(coarse)}, which is more than the tolerance of {scene.accuracy.tolerance:g} that was asked for"
-            f"{ended}. {_what_helps(scene, outcome, coarse)}"
-        )
-    if missing := unfound(scene, outcome.quantities):
+    checked = checks(scene, found, scales)
+    doubts |= {one.name: one.message for one in checked if not one.holds} | accuracy_warnings(scene, outcome, scales)
+    if missing := unfound(scene, known.quantities):
         doubts["no_units"] = (
             f"the run found no {' and no '.join(missing)} above 0, from which surface_energy would fix both units, so "
             'nothing is in SI: use kind = "pull_off", and a radius that makes the contact many spacings wide'
@@ -80,21 +81,8 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
         "tolerance": scene.accuracy.tolerance if refinement is None else float(f"{refinement.tolerance:.6g}"),
         "refinements": 0 if refinement is None else refinement.count,
     }
-    beside = {"theory": theory(scene, found, scales)}
+    beside = {"theory": theory(scene, found, scales), "validity": [one.entry() for one in checked]}
     return quantities | beside | {"accuracy": accuracy} | _frame(scene, "done", _warnings(doubts), timing)
-
-
-def open_results(scene: Scene, outcome: Outcome) -> dict[str, float]:
-    """Results that are known less well than the tolerance, on the very lattice that ran; under noise none is."""
-    return {} if scene.noise is not None else unmet(outcome.results, scene.accuracy.tolerance, (LATTICE,))
-
-
-def _what_helps(scene: Scene, outcome: Outcome, coarse: Iterable[str]) -> str:
-    """Against results that are known less well than asked for, by what limits them."""
-    tolerance = scene.accuracy.tolerance
-    if any(outcome.results[name].read > tolerance * outcome.results[name].size for name in coarse):
-        return f"A radius is known no better than the spacing lets it: take {FINER_SPACING}"
-    return kind_of(scene).advice(scene)
 
 
 def failure(scene: Scene, error: Mapping[str, object], timing: Mapping[str, float]) -> dict[str, Any]:

@@ -175,6 +175,9 @@ class Path(Kind):
     """prescribed displacement, there and back"""
     displacements: Displacements
     """displacements, compression positive: a list or an even span"""
+    start: Literal["approach", "contact"] = "approach"
+    """branch of the first point, where adhesion has two: bodies come from afar, or back from the largest displacement
+    """
     method: AnyMethod = None
 
     def places(self) -> list[float]:

@@ -89,6 +89,8 @@ class Elastic(Table):
     """Young's modulus E"""
     poisson_ratio: Poisson
     """Poisson's ratio ν"""
+    yield_strength: Pascal | None = None
+    """yield strength Y, for the check of validity alone: the body stays elastic"""
 
     @property
     def compliance(self) -> float:

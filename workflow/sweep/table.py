@@ -14,6 +14,7 @@ from contact1d.files import whole
 from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.runs.report import RESULTS
 from contact1d.workflow.scene.problems import as_toml
+from contact1d.workflow.units import numbers_in
 
 RECORD = "sweep.toml"
 """The sweep, as it ran last."""
@@ -90,7 +91,7 @@ def write_parquet(folder: Path) -> None:
 
 def _quantities(folder: Path, answer: Answer) -> dict[str, dict[str, Any]]:
     document = document_in(folder / answer.run) if answer.status == "done" else None
-    return {name: entry for name, entry in (document or {}).items() if isinstance(entry, dict) and "value" in entry}
+    return numbers_in(document or {})
 
 
 def document_in(folder: Path) -> dict[str, Any] | None:

@@ -1,0 +1,149 @@
+"""Whether the theory that a run stands for holds: numbers of a contact beside the limits of half-space elasticity.
+
+Slope of the profile at the contact edge: the half-space theory is for small slopes (K. L. Johnson, Contact Mechanics,
+1985, section 4.1), and a paraboloid is a ball for a << R only. Tabor parameter: JKR has no range of the attraction
+(D. Maugis, 1992). Pressure: a ball yields where p(0) exceeds 1.60 Y (Johnson, section 6.1; ν = 0.3), a cone and a punch
+at once. Contact radius over the half-width of the body.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+
+from contact1d.analysis.theory.adhesion import JKR_TABOR, MaugisDugdale, Theory
+from contact1d.analysis.theory.indenters import Ellipsoid, PowerLaw
+from contact1d.workflow.body.theory import Case
+from contact1d.workflow.body.traction import is_of_a_body
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.units import MEAN_PRESSURE, Quantity, Scales, prefixed
+
+SLOPE, HALF_WIDTH = 0.1, 0.5
+"""Conventions: largest slope at the edge, and contact radius over the half-width of a body, without a warning."""
+YIELD = 1.6
+"""Pressure on the axis over the yield strength at which a ball begins to yield below the surface."""
+RANGE = 0.3e-9
+"""Range of the attraction [m] that is assumed for the Tabor parameter where none is given: an atomic distance."""
+STEP = 1e-6
+"""Relative, for the slope of a profile."""
+RADII = ("contact_radius", "largest_radius", "zero_load_radius", "critical_radius")
+SINGULAR = ("cone", "flat_punch")
+"""Profiles under which a pressure has no bound."""
+PRESSURES = ("central_pressure", "peak_pressure")
+
+
+@dataclass(frozen=True)
+class Check:
+    """A number of the contact beside its limit.
+
+    Attributes:
+        name: of the warning.
+        quantity: what the number is: "p(0)/Y".
+        value, limit: the number, and up to where the theory holds, or from where on for the Tabor parameter.
+        holds: whether it does.
+        message: what is wrong otherwise, with the size of the error where it is known.
+    """
+
+    name: str
+    quantity: str
+    value: float
+    limit: float
+    holds: bool
+    message: str
+
+    def entry(self) -> dict[str, Any]:
+        """What results.json has of it; a number without bound is null."""
+        value = self.value if math.isfinite(self.value) else None
+        return {"name": self.name, "quantity": self.quantity, "value": value, "limit": self.limit, "holds": self.holds}
+
+
+def checks(scene: Scene, found: Mapping[str, Quantity], scales: Scales | None) -> list[Check]:
+    """The checks that a run allows; `found`: its results, of the body."""
+    radius = max((found[name].value for name in RADII if name in found), default=0.0)
+    if not is_of_a_body(scene) or radius <= 0.0:
+        return []
+    case = Case(scene, found)
+    return [*_slope(case, radius), *_half_width(case, radius), *_tabor(case, scales), *_yield(case, scales)]
+
+
+def _slope(case: Case, radius: float) -> Iterator[Check]:
+    profile = case.scene.bodies.profile
+    if profile.has_edge:  # it is plane at the edge
+        return
+    around = np.asarray([1.0 - STEP, 1.0]) * min(radius, profile.reach)
+    low, high = profile.height(around)
+    slope = float((high - low) / np.diff(around)[0])
+    message, holds = "", slope <= SLOPE
+    if not holds:
+        message = (
+            f"the slope of the profile at the contact edge is {slope:.3g}, and the theory of the elastic half-space is "
+            f"for slopes below {SLOPE:g}{_beside_a_ball(case, radius)}"
+        )
+    yield Check("slope", "f'(a)", slope, SLOPE, holds, message)
+
+
+def _beside_a_ball(case: Case, radius: float) -> str:
+    """What a ball has instead of a paraboloid under the force of this contact radius."""
+    if case.kind != "parabola":
+        return ""
+    r, e, w = case.sphere
+    force = max(PowerLaw.sphere(r, e, w).force(radius), 0.0)
+    less = 1.0 - Ellipsoid(r, r, e, w).contact_radius(force) / PowerLaw.sphere(r, e, w).contact_radius(force)
+    return (
+        f"; a ball of this radius has a contact radius {less:.1%} smaller than the paraboloid: profile.kind = "
+        '"circle" is the ball'
+    )
+
+
+def _half_width(case: Case, radius: float) -> Iterator[Check]:
+    profile = case.scene.bodies.profile
+    if not np.isfinite(profile.reach) or profile.has_edge:
+        return
+    share = radius / profile.reach
+    message = (
+        f"the contact radius is {share:.3g} of the half-width of the body, and the theory of the elastic half-space is "
+        f"for bodies much wider than the contact, here less than {HALF_WIDTH:g}"
+    )
+    yield Check("body_size", "a/half-width", share, HALF_WIDTH, share <= HALF_WIDTH, message)
+
+
+def _tabor(case: Case, scales: Scales | None) -> Iterator[Check]:
+    adhesion, radius = case.scene.adhesion, case.radius
+    if adhesion is None or radius is None or not adhesion.work or (scales is None and adhesion.range is None):
+        return
+    reach, assumed = adhesion.range, ""
+    if reach is None and scales is not None:
+        reach, assumed = RANGE / scales.length, f" with an assumed range of the attraction of {prefixed(RANGE, 'm')}"
+    theory = MaugisDugdale(radius, case.contact_modulus, adhesion.work, cast("float", reach))
+    message, holds = "", theory.tabor >= JKR_TABOR
+    if not holds:
+        error = theory.theories[Theory.JKR].pull_off_force() / theory.pull_off_force() - 1.0
+        message = (
+            f"the Tabor parameter is {theory.tabor:.2g}{assumed}, and JKR holds above {JKR_TABOR:g}: JKR's pull-off "
+            f"force is {abs(error):.1%} {'larger' if error > 0.0 else 'smaller'} than that of Maugis and Dugdale"
+        )
+    yield Check("tabor", "Tabor parameter", theory.tabor, JKR_TABOR, holds, message)
+
+
+def _yield(case: Case, scales: Scales | None) -> Iterator[Check]:
+    material = case.scene.material
+    bodies = () if material is None else (material.upper, material.lower)
+    strength = min((body.yield_strength or math.inf for body in bodies if body is not None), default=math.inf)
+    if math.isinf(strength) or scales is None:
+        return
+    pressures = [case.quantities[name].value for name in PRESSURES if name in case.quantities]
+    if case.radius is not None and "preload" in case.quantities:
+        pressures.append(case.body.central_pressure(case.body.contact_radius(case.quantities["preload"].value)))
+    pressure = max(pressures, default=0.0) * scales.factor(MEAN_PRESSURE)
+    share, reached = pressure / strength, f"the largest pressure is {prefixed(pressure, 'Pa')}"
+    if case.kind in SINGULAR:
+        share, reached = math.inf, "a tip or an edge yields at once"
+    message = (
+        f"{reached}, and a smooth elastic ball yields from {YIELD:g} times the yield strength on, "
+        f"{prefixed(YIELD * strength, 'Pa')} (Poisson's ratio near 0.3): pressures are those of an elastic body"
+    )
+    yield Check("yield", "largest pressure/Y", share, YIELD, share <= YIELD, message)

@@ -1,0 +1,141 @@
+"""Which results of a run miss its tolerance, and which are known too little to be reported."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from contact1d.workflow.continuation.outcome import LATTICE, MODEL, Outcome, Result, in_words, unmet
+from contact1d.workflow.continuation.trust import UntrustedError
+from contact1d.workflow.experiments import kind_of
+from contact1d.workflow.experiments.experiment import FINER_SPACING
+from contact1d.workflow.runs.scales import scales_of
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.units import FORCE, LENGTH, Scales
+
+UNKNOWN = 0.5
+"""Uncertainty over a value above which the value is not reported."""
+
+
+def accuracy_warnings(scene: Scene, outcome: Outcome, scales: Scales | None) -> dict[str, str]:
+    """By name: `unknown`, results that are not reported; `lattice` and `tolerance`, those that miss the tolerance.
+
+    `lattice` has those whose discretisation error alone exceeds it. Noise has its own statistics.
+    """
+    missing, tolerance = unknown(scene, outcome), scene.accuracy.tolerance
+    known = {name: one for name, one in outcome.results.items() if name not in missing}
+    by_lattice = {} if scene.noise is not None else _by_lattice(known, tolerance)
+    others = {} if scene.noise is not None else unmet(known, tolerance, (MODEL,))
+    others = {name: share for name, share in others.items() if name not in by_lattice}
+    warnings = {}
+    if missing:
+        wide = ", ".join(f"{name} (± {_written(one, scales)})" for name, one in missing.items())
+        warnings["unknown"] = (
+            f"not reported, because the uncertainty is more than half of the value: {wide}. "
+            f"{_advice(scene, outcome, missing)}"
+        )
+    if by_lattice:
+        warnings["lattice"] = _lattice_message(scene, by_lattice)
+    if others:
+        ended = "" if outcome.refinement is None else f" ({outcome.refinement.ended})"
+        warnings["tolerance"] = (
+            f"{in_words(others)}, which is more than the tolerance of {tolerance:g} that was asked for{ended}. "
+            f"{_advice(scene, outcome, others)}"
+        )
+    return warnings
+
+
+def unknown(scene: Scene, outcome: Outcome) -> dict[str, Result]:
+    """The results whose uncertainty exceeds UNKNOWN of the value and the tolerance of the run's own scale.
+
+    The scale of a force or a displacement is the largest of the run, that of another result the largest one of its
+    unit: a number that is 0 beside it is known to be 0. Means are reported whatever their standard errors.
+    """
+    scales = {
+        FORCE: max((abs(state.force) for state in outcome.states), default=0.0),
+        LENGTH: max((abs(state.displacement) for state in outcome.states), default=0.0),
+    }
+    for name, one in outcome.results.items():
+        kind = _kind(name, one)
+        scales[kind] = max(scales.get(kind, 0.0), abs(one.value), one.scale or 0.0)
+    tolerance = scene.accuracy.tolerance
+    missing = {}
+    for name, one in outcome.results.items():
+        error = one.uncertainty - one.errors.get("statistics", 0.0)
+        if not one.prescribed and error > max(UNKNOWN * abs(one.value), tolerance * scales[_kind(name, one)]):
+            missing[name] = one
+    return missing
+
+
+def require_results(scene: Scene, outcome: Outcome) -> None:
+    """Raise UntrustedError where a run has main results and none of them can be reported.
+
+    A path that the scene gives has its curve, whatever can be read off it.
+    """
+    if scene.experiment.way_is_given:
+        return
+    main = [name for name in kind_of(scene).main_results if name in outcome.results]
+    main = [name for name in main if not outcome.results[name].prescribed and name != scene.experiment.load_key]
+    if main and not set(main) - unknown(scene, outcome).keys():
+        raise UntrustedError(accuracy_warnings(scene, outcome, scales_of(scene, {}))["unknown"])
+
+
+def reported(scene: Scene, outcome: Outcome) -> Outcome:
+    """The outcome without results that are not reported."""
+    missing = unknown(scene, outcome)
+    return replace(outcome, results={name: one for name, one in outcome.results.items() if name not in missing})
+
+
+def open_results(scene: Scene, outcome: Outcome) -> dict[str, float]:
+    """Results that are known less well than the tolerance on the very lattice that ran; under noise none is."""
+    return (
+        {} if scene.noise is not None else unmet(outcome.results, scene.accuracy.tolerance, (LATTICE, "input", MODEL))
+    )
+
+
+def _written(one: Result, scales: Scales | None) -> str:
+    """The uncertainty, in SI where the units are known."""
+    if scales is None or not scales.know(one.unit):
+        factor, unit = 1.0, one.unit
+    else:
+        factor, unit = scales.written(one.uncertainty, one.unit)
+    return f"{float(f'{one.uncertainty * factor:.2g}'):g} {unit}"
+
+
+def _kind(name: str, one: Result) -> str:
+    """Radii are compared with radii, others by their unit."""
+    return "radius" if name.endswith("radius") else one.unit
+
+
+def _advice(scene: Scene, outcome: Outcome, names: Iterable[str]) -> str:
+    """What makes these results better, by what limits them."""
+    tolerance, results = scene.accuracy.tolerance, outcome.results
+    if all(MODEL in results[name].errors for name in names):
+        return "Two readings of one quantity (`formulas` in results.json) differ by so much"
+    if any(results[name].read > tolerance * results[name].size for name in names):
+        return f"A radius is known no better than the spacing lets it: take {FINER_SPACING}"
+    return kind_of(scene).advice(scene)
+
+
+def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, float]:
+    """Discretisation errors above the tolerance, without what is left by reading, relative, by name."""
+    left = {name: one.errors.get(LATTICE, 0.0) - one.read for name, one in results.items()}
+    found = {name: replace(results[name], errors={LATTICE: error}, read=0.0) for name, error in left.items()}
+    return unmet(found, tolerance)
+
+
+def _lattice_message(scene: Scene, shares: Mapping[str, float]) -> str:
+    spacing = scene.bodies.spacing * np.sqrt(0.5 * scene.accuracy.tolerance / min(1.0, max(shares.values())))
+    limits = f"{in_words(shares)} only, more than the tolerance of {scene.accuracy.tolerance:g}, because "
+    if scene.adheres and scene.adhesion is not None:
+        return (
+            f"{limits}the edge of the contact moves through cells: take a bodies.spacing of {spacing:.2g} LU at the "
+            "same stiffness per length"
+        )
+    return (
+        f"{limits}the contact's centre may lie on a particle or anywhere between two of this chain: take a smaller "
+        "bodies.spacing at the same stiffness and energy per length, or give bodies.particles where these very "
+        "particles are meant"
+    )
