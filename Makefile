@@ -45,7 +45,7 @@ docs: $(READY) ## build the site in site/; the tutorial runs on the way
 mutants: $(READY) ## put random faults into the code and see whether the tests notice: ARGS='--number 100 --seed 1'
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m validation.tools.mutants $(ARGS)
 
-validation: $(READY) ## the paper's statements anew, then VALIDATION.md, its tables and the README's table
+validation: $(READY) ## the paper's statements anew, then VALIDATION.md and its tables
 	@rm -rf reproduced  # runs of an older state of the program would be taken over
 	@$(BIN)/python -m validation paper --out reproduced
 	@cp reproduced/record.json validation/results/paper.json && cp reproduced/*.png docs/reproduced/

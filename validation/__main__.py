@@ -45,14 +45,13 @@ def speed(only: Only = None, out: Out = None, full: Full = False, workers: Worke
 
 @app.command()
 def pages() -> None:
-    """VALIDATION.md, the tables and the README's table from the records in validation/results."""
-    from validation.page import readme_table, speed_table, summary, tables_page, write_between
+    """VALIDATION.md, the tables and the times of docs/performance.md from the records in validation/results."""
+    from validation.page import speed_table, summary, tables_page, write_between
     from validation.study import read_record
 
     records = {name: read_record(RESULTS / f"{name}.json") for name in ("paper", "hard", "speed")}
     (ROOT / "VALIDATION.md").write_text(summary(records["paper"], records["hard"]), encoding="utf-8")
     (RESULTS / "tables.md").write_text(tables_page([records["paper"], records["hard"]]), encoding="utf-8")
-    write_between(ROOT / "README.md", "reproduced", readme_table(records["paper"]))
     write_between(ROOT / "docs" / "performance.md", "speed", speed_table(records["speed"]))
 
 

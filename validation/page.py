@@ -166,16 +166,15 @@ def summary(paper: Record, hard: Record) -> str:
         "hard": agreement(hard.rows),
         "failing": _failing([*paper.answers, *hard.answers]),
         "evidence": table(("held against", "which is", "rows", "pass", "differ"), counted),
-        "studies": readme_table(paper),
+        "studies": studies_table(paper),
         "classes": table(("class", "what goes wrong in a program that is not careful", "rows", "smallest margin"),
                          [_class(answer) for answer in hard.answers]),
-        "made": f"Made with {made}, the paper's studies from {sum(one.runs for one in paper.answers)} runs, "
-        f"the hard cases in {duration(hard.wall_s)} on {hard.machine}.",
+        "made": f"Made with {made}; the hard cases in {duration(hard.wall_s)} on {hard.machine}.",
     }  # fmt: skip
     return (Path(__file__).parent / "validation.md").read_text(encoding="utf-8").format(**filled)
 
 
-def readme_table(record: Record) -> str:
+def studies_table(record: Record) -> str:
     """A row for each study: its name, what was asked, what came out, the verdict."""
     return table(("study", "asked", "result", "verdict"), [_study(answer) for answer in record.answers])
 

@@ -23,7 +23,7 @@ PARTICLES, DRAG, PLATE_DRAG, MASS, PLATE_MASS = 30, 0.3, 20.0, 1.0, 30.0
 STIFFNESS, VELOCITY, DISTANCE = 20.0, 0.05, 6.0
 SPLINE = 2e-4
 """Relative: a cubic spline through five rows beside the polynomial that the program takes."""
-BALANCE = 0.05
+BALANCE = 0.015
 """Of the static friction: rows, of whose ends the means are made here, and the drag of particles that swing."""
 
 

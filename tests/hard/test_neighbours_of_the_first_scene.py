@@ -1,5 +1,5 @@
-"""Claim: the README's first scene is no trap. Each of its numbers divided and multiplied by three, and each pair,
-gives a result, or a message; a remedy that it says was tried gives one.
+"""Claim: the first scene of docs/effects.md is no trap. Each of its numbers divided and multiplied by three, and each
+pair, gives a result, or a message; a remedy that it says was tried gives one.
 
 The reference is the claim itself: what a message says to type is typed, and the run must end with a pull-off force.
 """

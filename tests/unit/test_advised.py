@@ -17,7 +17,7 @@ from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
 from tests.scenes import STEEL_ON_GLASS, chains
 
 SIDEWAYS = chains(1000.0, horizontal={}, experiment={"kind": "pull_off", "preload": 3.0})
-"""The README's scene without neighbours under three times its preload: its particles step aside."""
+"""The scene of docs/effects.md without neighbours under three times its preload: its particles step aside."""
 
 
 class Trials(Silent):

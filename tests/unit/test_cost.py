@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import math
-import os
 from collections.abc import Callable
 from dataclasses import replace
 from io import StringIO
@@ -23,11 +22,11 @@ from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import Quantity
 from tests.costs import effects_markdown, read_record
+from tests.pages import require_shown
 
 MakeScene = Callable[..., Scene]
 ROOT = Path(__file__).parents[2]
 SCENES = ROOT / "lammps_inputs" / "scenes"
-BEGIN, END = "<!-- cost: begin -->\n", "<!-- cost: end -->\n"
 ROUND_OFF = 1e-12
 
 
@@ -207,13 +206,7 @@ def test_the_summary_and_the_readme_say_orders_costs_failures_and_advice() -> No
 
 def test_the_table_of_the_page_is_what_the_kept_record_says() -> None:
     """Renew docs with `contact1d cost lammps_inputs/scenes/pull_off.toml`, then WRITE_DOCS=1 pytest this file."""
-    page = ROOT / "docs" / "performance.md"
-    kept = effects_markdown(read_record(ROOT / "docs" / "cost.json"))
-    before, begin, rest = page.read_text(encoding="utf-8").partition(BEGIN)
-    there, end, after = rest.partition(END)
-    if os.environ.get("WRITE_DOCS"):
-        page.write_text(before + begin + kept + end + after, encoding="utf-8")
-        there = kept
-    assert begin
-    assert there == kept
+    require_shown(
+        "docs/performance.md", "cost", effects_markdown(read_record(ROOT / "docs" / "cost.json")), exactly=True
+    )
     assert (ROOT / "docs" / "cost.png").is_file()

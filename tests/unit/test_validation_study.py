@@ -9,11 +9,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from tests.pages import require_shown
 from tests.punch import PUNCH
 from validation import doors
 from validation.__main__ import RESULTS, ROOT, app
 from validation.hard import STUDIES as HARD
-from validation.page import readme_table, summary, tables_page
+from validation.page import speed_table, summary, tables_page
 from validation.paper import STUDIES as PAPER
 from validation.row import Row, at_most
 from validation.speed import STUDIES as SPEED
@@ -65,10 +66,10 @@ def test_an_unknown_study_is_told_with_the_known_ones(command: str, tmp_path: Pa
 
 def test_the_pages_are_what_the_records_say() -> None:
     """Renew them with `python -m validation pages`."""
-    paper, hard = (read_record(RESULTS / f"{name}.json") for name in ("paper", "hard"))
+    paper, hard, speed = (read_record(RESULTS / f"{name}.json") for name in ("paper", "hard", "speed"))
     assert (ROOT / "VALIDATION.md").read_text(encoding="utf-8") == summary(paper, hard)
     assert (RESULTS / "tables.md").read_text(encoding="utf-8") == tables_page([paper, hard])
-    assert readme_table(paper) in (ROOT / "README.md").read_text(encoding="utf-8")
+    require_shown("docs/performance.md", "speed", speed_table(speed), exactly=True)
 
 
 @pytest.mark.parametrize(("name", "studies"), [("paper", PAPER), ("hard", HARD), ("speed", SPEED)])

@@ -22,8 +22,6 @@ from contact1d import Run, run
 from contact1d.workflow.scene import SceneError, scene_from_dict
 from validation.references.mdr import ReducedContact
 
-ASKED = 0.01
-"""Relative, of every number: what an engineer asks for."""
 REACHED = 2e-4
 """Relative, of F, d, a and p(0): the lattice of some fifty particles; measured 2e-5."""
 PRESSURE = 2e-4
@@ -144,7 +142,6 @@ def test_numbers_in_si_are_those_of_the_closed_form(finished: dict[str, Run], na
         si = found[quantity].si
         assert si is not None
         assert si.value == pytest.approx(value, rel=REACHED), quantity
-    assert REACHED < ASKED
     assert not finished[name].warnings
     assert finished[name].document["reduction"] == "mdr"
     assert ("peak_pressure" in found) == (name not in ("cone", "flat punch"))  # there it has no bound
@@ -160,7 +157,6 @@ def test_pressure_in_si_is_that_of_the_closed_form(finished: dict[str, Run], nam
     assert len(inside) > 15
     for r, p in inside:
         assert p == pytest.approx(contact.pressure(r), rel=PRESSURE), r / contact.radius
-    assert PRESSURE < ASKED
 
 
 @pytest.mark.parametrize("name", CONTACTS)

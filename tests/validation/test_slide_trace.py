@@ -74,7 +74,7 @@ def both(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
 def test_the_trace_is_that_of_the_integrator(both: tuple[Run, Trace]) -> None:
     slid, expected = both
     peak = float(np.abs(expected.friction).max())
-    assert np.allclose(slid.friction["time"], expected.time, rtol=1e-12)
+    assert slid.friction["time"] == pytest.approx(expected.time, rel=1e-12)
     assert slid.friction["friction"] == pytest.approx(expected.friction, abs=TRACE * peak)
     assert slid.friction["cantilever_force"] == pytest.approx(expected.cantilever_force, abs=TRACE * peak)
     assert slid.friction["plate_x"] == pytest.approx(expected.place, abs=TRACE)

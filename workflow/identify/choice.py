@@ -131,7 +131,7 @@ def _particles(contact: AskedContact, theories: Theories | None, doubts: dict[st
 def from_material(source: AnyContact, folder: AnyPath, progress: Progress | None = None) -> MaterialRun:
     """Choose a scene for a contact that is described in SI, and run it.
 
-        contact1d.from_material("silica.toml", "runs/silica").run.results.adhesion_force
+        contact1d.from_material("rubber.toml", "runs/rubber").run.results.adhesion_force
 
     Args:
         source: a TOML file, by its path, or its tables; see docs/identify.md.

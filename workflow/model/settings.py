@@ -3,7 +3,7 @@
 Each is derived from `[accuracy] tolerance` (relative, on the main results): by its measured share of it, or by the rule
 stated beside it. The shares are in `calibration.json`, which `python -m validation.tools.calibration` writes: it turns
 every value over a ladder in a number of scenes, at tolerances of 1e-2 to 1e-5, and takes the cheapest that adds a small
-part of the tolerance at most to the errors of the main results in each of them.
+part of the tolerance at most to the errors of the main results in each of them; the residual has a set limit, too.
 
 The cutoff of a slide follows from how a particle is held along x by a straight row of opposite ones,
 

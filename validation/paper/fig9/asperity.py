@@ -45,7 +45,7 @@ EITHER = {
     "tolerance": "the largest friction between two rows, for which the bound allows",
     "drag": "the plate may be held to the drive's pace: it passes every place, and the largest friction is the row's",
 }
-MIDDLE = "the law lies in the middle of the step by chance"
+MIDDLE = "the sweep was laid about the law: it is the middle of the step in which it lies"
 BY_CHANCE = "what is left of the velocity cancels by chance"
 PRANDTL = "Prandtl and Tomlinson with the corrugation there is: the energy that a slip loses"
 

@@ -1,0 +1,32 @@
+"""What a page shows of a run or of a record, between its markers: compared with it, and written with WRITE_DOCS=1."""
+
+from __future__ import annotations
+
+import os
+import re
+from decimal import Decimal
+from pathlib import Path
+
+from validation.page import write_between
+
+ROOT = Path(__file__).parents[1]
+NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+def require_shown(page: str, name: str, text: str, exactly: bool = False) -> None:
+    """The page shows `text` under that name, word for word.
+
+    Unless `exactly`, which is for records, the last decimal of a number may be off by one: round-off of a processor.
+    """
+    path = ROOT / page
+    if os.environ.get("WRITE_DOCS"):
+        write_between(path, name, text)
+    _, begin, rest = path.read_text(encoding="utf-8").partition(f"<!-- {name}: begin -->\n")
+    shown, end, _ = rest.partition(f"<!-- {name}: end -->\n")
+    assert begin, f"{page} does not show {name}"
+    assert end
+    assert not exactly or shown == text
+    assert NUMBER.sub("#", shown).split() == NUMBER.sub("#", text).split()
+    for there, here in zip(NUMBER.findall(shown), NUMBER.findall(text), strict=True):
+        last = Decimal((0, (1,), int(Decimal(there).as_tuple().exponent))) if "." in there else 0
+        assert abs(Decimal(there) - Decimal(here)) <= last, f"{page}: {there}"
