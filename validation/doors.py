@@ -26,6 +26,7 @@ from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Engine, EngineError, Session
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments import planned
+from contact1d.workflow.experiments.spacing import with_spacing
 from contact1d.workflow.experiments.thermal import chunk_steps
 from contact1d.workflow.identify import Target, estimated, identify, jkr_target, material_scene
 from contact1d.workflow.model.settings import CALIBRATION, Settings, SettingsError, settings_for
@@ -70,7 +71,7 @@ def finished(scene: Scene, folder: Path) -> Run | None:
         run = read_run(folder)
     except FolderError:
         return None
-    return run if run.scene == scene and run.document.get("versions") == versions() else None
+    return run if run.scene == with_spacing(scene) and run.document.get("versions") == versions() else None
 
 
 def finish(scenes: Mapping[str, Scene], folder: Path, workers: int) -> None:

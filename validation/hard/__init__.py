@@ -10,6 +10,7 @@ from validation.hard import (
     loops,
     modes,
     motion,
+    plane_adhesive,
     pressed,
     random_scenes,
     settling,
@@ -24,5 +25,5 @@ from validation.study import Study
 STUDIES: tuple[Study, ...] = (
     stiffness.STIFFNESS, sharp.SHARP, random_scenes.RANDOM, loads.LOADS, settling.SETTLING, loops.LOOPS,
     friction.FRICTION, similarity.SIMILARITY, forces.FORCES, motion.MOTION, modes.EQUIPARTITION, *thermal.CLASSES,
-    extremes.EXTREMES, *pressed.CLASSES, slides.SLIDES, faults.FAULTS, fuzz.FUZZ,
+    extremes.EXTREMES, *pressed.CLASSES, plane_adhesive.ADHESIVE, slides.SLIDES, faults.FAULTS, fuzz.FUZZ,
 )  # fmt: skip

@@ -6,6 +6,7 @@ and a number that is further off than the tolerance has a warning that names it.
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -24,6 +25,8 @@ NAMING = ("tolerance", "lattice")
 WORDS = (" is known to", " cannot be told from")
 MISSING = ("no_peak", "no_zero_load", "no_radius")
 """Warnings that say that a number is not there."""
+UNKNOWN = "unknown"
+"""Warning that names numbers that are less certain than half of themselves, and have no value."""
 OF_ALL = ("near_pull_off", "cutoff", "table_core")
 """Warnings that are about every number of a run."""
 IMAGE = "image_"
@@ -115,14 +118,14 @@ class Tally:
 def errors_of(scene: str, run: Run, exact: Mapping[str, float], slack: float) -> list[Error]:
     """The errors of a run's numbers, as far as the reference has them.
 
-    A number that is missing is infinitely off, unless the run says that there is none. A length that is 0 has no
-    relative error: it is compared with its claim alone.
+    A number that is missing is infinitely off, unless the run says that there is none, or that it is not known. A
+    length that is 0 has no relative error: it is compared with its claim alone.
     """
     tolerance, found = run.scene.accuracy.tolerance, []
     for name, value in exact.items():
         quantity = run.results.get(IMAGE + name, run.results.get(name))
-        if quantity is None:
-            if not set(MISSING) & set(run.warnings):
+        if quantity is None or math.isnan(quantity.value):
+            if not set(MISSING) & set(run.warnings) and name not in run.warnings.get(UNKNOWN, ""):
                 found.append(Error(scene, name, float("inf"), float("inf"), told=False))
             continue
         error = max(0.0, abs(quantity.value - value) - slack * abs(value))

@@ -11,6 +11,7 @@ Sources: Johnson, Kendall and Roberts (1971); Maugis and Barquins (1983); Popov 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -27,8 +28,44 @@ STEP = 1e-4
 """Relative, of the difference whose root is a minimum: a stationary place is then exact to its square."""
 
 
+class Marks(ABC):
+    """Radii and forces of a contact that d(a) and F(a) give by search; with adhesion both fall before they rise."""
+
+    @abstractmethod
+    def displacement(self, radius: float, /) -> Floats | float:
+        """d(a) [length]; a >= 0 [length]."""
+
+    @abstractmethod
+    def force(self, radius: float, /) -> Floats | float:
+        """F(a) [force], positive in compression; a >= 0 [length]."""
+
+    def critical_radius(self) -> float:
+        """a of the largest tension [length], dF/da = 0."""
+        return _rising(lambda a: _slope(self.force, a), self.zero_load_radius())
+
+    def fixed_grips_radius(self) -> float:
+        """a at which the bodies part under a prescribed displacement [length], dd/da = 0."""
+        return _rising(lambda a: _slope(self.displacement, a), self.zero_load_radius())
+
+    def zero_load_radius(self) -> float:
+        """a with F(a) = 0 [length]."""
+        return _rising(lambda a: float(self.force(a)), 1.0)
+
+    def radius_under(self, force: float) -> float:
+        """a of the stable contact that carries a force above that of pull-off [length]."""
+        return _rising(lambda a: float(self.force(a)) - force, self.critical_radius())
+
+    def snap_in_radius(self) -> float:
+        """a with d(a) = 0 [length]: bodies that touch snap into this contact."""
+        return _rising(lambda a: float(self.displacement(a)), self.zero_load_radius())
+
+    def pull_off_force(self) -> float:
+        """F_A [force], a positive magnitude."""
+        return -float(self.force(self.critical_radius()))
+
+
 @dataclass(frozen=True)
-class Indenter:
+class Indenter(Marks):
     """One contact.
 
     Args:
@@ -60,22 +97,6 @@ class Indenter:
         a, n = np.asarray(radius, dtype=np.float64), self.exponent
         return np.asarray(2.0 * self.contact_modulus * a * (self.displacement(a) - self.rise * a**n / (n + 1.0)))
 
-    def critical_radius(self) -> float:
-        """a of the largest tension [length], dF/da = 0."""
-        return _rising(lambda a: _slope(self.force, a), self.zero_load_radius())
-
-    def fixed_grips_radius(self) -> float:
-        """a at which the bodies part under a prescribed displacement [length], dd/da = 0."""
-        return _rising(lambda a: _slope(self.displacement, a), self.zero_load_radius())
-
-    def zero_load_radius(self) -> float:
-        """a with F(a) = 0 [length]."""
-        return _rising(lambda a: float(self.force(a)), 1.0)
-
-    def pull_off_force(self) -> float:
-        """F_A [force], a positive magnitude."""
-        return -float(self.force(self.critical_radius()))
-
 
 def jkr(radius: float, contact_modulus: float, work_of_adhesion: float) -> Indenter:
     """JKR's contact of a sphere R [length]."""
@@ -89,7 +110,7 @@ def with_zero_load_radius(coefficient: float, exponent: float, contact_modulus: 
     return Indenter(coefficient, exponent, contact_modulus, stretch**2 * contact_modulus / (2.0 * math.pi * radius))
 
 
-def _slope(curve: Callable[[float], Floats], a: float) -> float:
+def _slope(curve: Callable[[float], Floats | float], a: float) -> float:
     """Central difference, fourth order."""
     h = STEP * a
     near, far = (float(curve(a + k * h) - curve(a - k * h)) for k in (1.0, 2.0))
@@ -98,8 +119,6 @@ def _slope(curve: Callable[[float], Floats], a: float) -> float:
 
 def _rising(function: Callable[[float], float], guess: float) -> float:
     """The root of a function that is negative below it and positive above."""
-    low = high = guess
-    for _ in range(DOUBLINGS):
-        low = low if function(low) < 0.0 else 0.5 * low
-        high = high if function(high) > 0.0 else 2.0 * high
+    low = next(a for a in (guess * 0.5**k for k in range(DOUBLINGS)) if function(a) < 0.0)
+    high = next(a for a in (guess * 2.0**k for k in range(DOUBLINGS)) if function(a) > 0.0)
     return float(brentq(function, low, high, xtol=1e-300, rtol=1e-14))

@@ -12,10 +12,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from scipy.integrate import quad
 from scipy.optimize import brentq
+
+from validation.references.indenters import Marks
 
 ACCURACY = 1e-12
 """Relative accuracy asked of F, U and g."""
@@ -23,6 +25,8 @@ PRESSURE_ACCURACY = 1e-9
 """Relative accuracy asked of the pressure away from the edge."""
 PRESSURE_ROUND_OFF = 1e-11
 """Its accuracy near the edge over a^2/(a^2 - r^2): the integrand has a difference of nearly equal values."""
+ROOT = 20.0
+"""m of the substitution in the pressure on the axis: no pole at 0 from n = 1.05 on."""
 DOUBLINGS = 200
 """How often the search for a contact radius may double or halve its first guess."""
 
@@ -49,7 +53,7 @@ def edge_elongation(contact_radius: float, contact_modulus: float, work_of_adhes
 
 
 @dataclass(frozen=True)
-class ReducedContact:
+class ReducedContact(Marks):
     """One axisymmetric contact, reduced. A flat punch is the slope 0 at its own radius a.
 
     Args:
@@ -73,9 +77,13 @@ class ReducedContact:
         return self.profile(contact_radius) - stretch
 
     def force(self, contact_radius: float) -> float:
-        """Return F(a) = 2 E* int_0^a (d - g) dx [force], positive in compression; a >= 0 [length]."""
+        """Return F(a) = 2 E* int_0^a (d - g) dx [force], positive in compression; a >= 0 [length].
+
+        int_0^a g dx = int_0^a f'(r) sqrt(a^2-r^2) dr by a change of the order, here with r = a sin phi.
+        """
         a, d = contact_radius, self.displacement(contact_radius)
-        return 2.0 * self.contact_modulus * (a * d - _integral(self.profile, 0.0, a))
+        area = a**2 * _integral(lambda phi: self.slope(a * math.sin(phi)) * math.cos(phi) ** 2, 0.0, 0.5 * math.pi)
+        return 2.0 * self.contact_modulus * (a * d - area)
 
     def energy(self, contact_radius: float) -> float:
         """Return the elastic U(a) = E* int_0^a (d - g)^2 dx [force length], without -pi a^2 W; a >= 0 [length]."""
@@ -125,3 +133,24 @@ class ReducedContact:
         accuracy = max(PRESSURE_ACCURACY, PRESSURE_ROUND_OFF * (a / s) ** 2)
         inside = _integral(lambda t: (self.profile(math.hypot(r, t)) - g_r) / t**2, 0.0, s, accuracy)
         return self.contact_modulus / math.pi * (ends + inside)
+
+    def central_pressure(self, contact_radius: float) -> float:
+        """Return p(0) [stress] at `contact_radius` a [length], the limit of `pressure`; a cone has none.
+
+        The integral is over v, t = a v^m: its integrand is v^(m (n-1) - 1) where the slope begins as r^(n-1).
+        """
+        a = contact_radius
+        stretch = edge_elongation(a, self.contact_modulus, self.work_of_adhesion)
+        ends = (self.profile(a) - stretch) / a
+        inside = _integral(lambda v: ROOT / v * self.profile(a * v**ROOT) / (a * v**ROOT), 0.0, 1.0, PRESSURE_ACCURACY)
+        return self.contact_modulus / math.pi * (ends + inside)
+
+
+def with_zero_load_radius(slope: Callable[[float], float], contact_modulus: float, radius: float) -> ReducedContact:
+    """Return the contact of that slope [1] and E* [stress] whose radius without a load is `radius` [length].
+
+    At F = 0 the stretch of the edge takes all that carries the contact without adhesion, 2 E* a Delta_l = F.
+    """
+    pressed = ReducedContact(slope, contact_modulus)
+    stretch = pressed.force(radius) / (2.0 * contact_modulus * radius)
+    return replace(pressed, work_of_adhesion=stretch**2 * contact_modulus / (2.0 * math.pi * radius))
