@@ -207,14 +207,16 @@ def tops(tension: list[float], fall: float) -> list[int]:
 
 CLOSURE = 1e-9
 """Distance of two displacements over the width of the path up to which they are one: round-off."""
+SAME_FORCE = 1e-6
+"""Difference of two forces over the largest of a path up to which they are one: minimisers leave less."""
 
 
 @dataclass(frozen=True)
-class Loop:
-    """A closed path.
+class Work:
+    """Work along a path.
 
     Attributes:
-        area: ∮ F dd [FU·LU], by the trapezoidal rule.
+        area: ∫ F dd [FU·LU], by the trapezoidal rule; of a closed path what it dissipates.
         uncertainty: of it, by the rows between which F is not known [FU·LU].
         whole: ∫ |F| |dd| [FU·LU]: of all that is done on the way.
         length: ∫ |dd| [LU].
@@ -226,17 +228,17 @@ class Loop:
     length: float
 
 
-def loop_of(displacement: Sequence[float], force: Sequence[float]) -> Loop | None:
-    """The loop of a path through the rows, (n,) [LU] and (n,) [FU]; None where it does not close, or stays in place.
+def work_of(displacement: Sequence[float], force: Sequence[float]) -> Work | None:
+    """The work along a path through points, (n,) [LU] and (n,) [FU]; None where it stays in place.
 
-    Between two rows a smooth curve departs from its chord by h³F″/12, F″ from the chords before and after. Where the
-    chord's own slope is not the mean of these two, the force may have jumped, anywhere between the rows: that part of
-    its change may count for half of the increment h more or less. A way back over the same places misses as much of the
-    same curve as the way there, so that there the difference of the two is what counts.
+    Between two points a smooth curve departs from its chord by h³F″/12, F″ from the chords before and after. Where the
+    chord's own slope is not the mean of these two, the force may have jumped, anywhere between the points: that part of
+    its change may count for half of the increment h more or less. An unloading through the same displacements misses as
+    much of the same curve as the loading, so that there the difference of the two is what counts.
     """
     d, f = np.asarray(displacement, dtype=np.float64), np.asarray(force, dtype=np.float64)
     same = CLOSURE * float(np.ptp(d))
-    if same == 0.0 or len(d) < 3 or abs(d[-1] - d[0]) > same:
+    if same == 0.0 or len(d) < 3:
         return None
     h, mean = np.diff(d), 0.5 * (f[1:] + f[:-1])
     half = len(d) // 2
@@ -246,7 +248,17 @@ def loop_of(displacement: Sequence[float], force: Sequence[float]) -> Loop | Non
         turns = np.flatnonzero(np.diff(np.sign(h)) != 0.0) + 1
         legs = [leg for leg in np.split(np.arange(len(h)), turns) if h[leg[0]] != 0.0]
         uncertainty = sum(_missed(np.abs(h[leg]), np.diff(f)[leg]) for leg in legs)
-    return Loop(float(mean @ h), uncertainty, float(np.abs(mean) @ np.abs(h)), float(np.abs(h).sum()))
+    return Work(float(mean @ h), uncertainty, float(np.abs(mean) @ np.abs(h)), float(np.abs(h).sum()))
+
+
+def closes(displacement: Sequence[float], force: Sequence[float], tolerance: float) -> bool:
+    """Whether a path ends in the state that it began in: at the same displacement, under the same force.
+
+    `tolerance`: relative, of the forces at both ends; SAME_FORCE of the largest is none.
+    """
+    d, f = np.asarray(displacement), np.asarray(force)
+    ends = tolerance * max(abs(f[0]), abs(f[-1])) + SAME_FORCE * np.abs(f).max()
+    return bool(abs(d[-1] - d[0]) <= CLOSURE * np.ptp(d) and abs(f[-1] - f[0]) <= ends)
 
 
 def _missed(h: Array, rise: Array) -> float:

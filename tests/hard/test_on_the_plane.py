@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from contact1d import RunError, run
 from contact1d.analysis.theory.indenters import PowerLaw
 from contact1d.workflow.scene import SceneError, scene_from_dict
 from validation.references.indenters import Indenter, jkr, with_zero_load_radius
+from validation.references.mdr import ReducedContact
 
 RADIUS, ENERGY = 1000.0, 0.005
 
@@ -107,6 +109,45 @@ def test_a_path_down_and_up_again_has_the_tension_of_its_way_apart(tmp_path: Pat
     tables = steel(adhesion={"surface_energy": "50 mJ/m²"}, experiment={"kind": "path", "displacements": span})
     force = run(tables, tmp_path / "run", figures=False).results.adhesion_force
     assert abs(force.value - 1.5 * math.pi * 0.1 * 0.01) <= force.uncertainty
+
+
+def energies(contact: ReducedContact) -> tuple[float, float, float]:
+    """What snap-in at touch and separation under fixed grips lose, and the work from F = 0 to separation."""
+    snapped, parted, rested = (
+        contact.energy(a) - math.pi * a**2 * contact.work_of_adhesion
+        for a in (contact.snap_in_radius(), contact.fixed_grips_radius(), contact.zero_load_radius())
+    )
+    return -snapped, parted, parted - rested
+
+
+@pytest.mark.parametrize("steps", [40, 300])
+@pytest.mark.parametrize(
+    ("ends", "returns"), [((-1.0, 1.0), False), ((1.0, -1.0), False), ((-1.0, 1.0), True), ((-0.05, 1.0), True)]
+)
+@pytest.mark.parametrize("slope", [lambda r: r / RADIUS, lambda _: 0.02])
+def test_a_path_with_adhesion_has_the_energy_of_its_instabilities(
+    slope: Callable[[float], float], ends: tuple[float, float], returns: bool, steps: int, tmp_path: Path
+) -> None:
+    """Dissipated by a closed path, lost by an open one; and the work from F = 0 to separation."""
+    contact = ReducedContact(slope, 1.0, ENERGY)
+    snap_in, separation, work = energies(contact)
+    profile = {"kind": "cone", "slope": 0.02} if slope(1.0) == slope(2.0) else {"kind": "parabola", "radius": RADIUS}
+    limit, rested = (contact.displacement(a) for a in (contact.fixed_grips_radius(), contact.zero_load_radius()))
+    start, end = (-1.5 * limit * end if end < 0.0 else 1.5 * max(rested, -limit) * end for end in ends)
+    span = {"from": start, "to": end, "steps": steps, "return": returns}
+    tables = scene(adhesion={"work_of_adhesion": ENERGY}, experiment={"kind": "path", "displacements": span})
+    tables["bodies"] |= {"profile": profile}
+    found = run(tables, tmp_path / "run", figures=False)
+    parts = ends == (1.0, -1.0) or (returns and ends[0] == -1.0)
+    touches = ends[0] < 0.0
+    exact = {"dissipated_energy" if returns and parts else "instability_energy": touches * snap_in + parts * separation}
+    exact |= {"work_of_separation": work} if parts else {}
+    named = {"dissipated_energy", "instability_energy", "work_of_separation"} & found.document.keys()
+    assert named == set(exact)
+    for name, value in exact.items():
+        if name in found.results:
+            assert abs(found.results[name].value - value) <= found.results[name].uncertainty
+    assert steps == 40 or set(exact) <= found.results.keys()
 
 
 def test_a_path_that_only_loads_says_that_nothing_was_pulled(tmp_path: Path) -> None:

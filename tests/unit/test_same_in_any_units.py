@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from contact1d.analysis.curve_marks import largest_tension, loop_of, promised, rivals, smooth_crossing
+from contact1d.analysis.curve_marks import largest_tension, promised, rivals, smooth_crossing, work_of
 from contact1d.analysis.extremum import Place, place_of_minimum
 from contact1d.analysis.friction import block_means, largest_before, mean_of, slips
 from contact1d.analysis.pressure import Profile
@@ -119,8 +119,8 @@ def test_the_marks_of_a_curve(d: list[float], force: list[float]) -> None:
         assert smooth_crossing(places, forces, 0.0) - shift == pytest.approx(length * crossed, rel=exactly, abs=exactly)
         expected = {tooth: scale * more for tooth, more in rivals(d, force, peak).items()}
         assert rivals(places, forces, other) == pytest.approx(expected, rel=exactly, abs=exactly)
-        back = loop_of([*d, *d[::-1][1:]], [*force, *(0.5 * f for f in force[::-1][1:])])
-        moved_back = loop_of([*places, *places[::-1][1:]], [*forces, *(0.5 * f for f in forces[::-1][1:])])
+        back = work_of([*d, *d[::-1][1:]], [*force, *(0.5 * f for f in force[::-1][1:])])
+        moved_back = work_of([*places, *places[::-1][1:]], [*forces, *(0.5 * f for f in forces[::-1][1:])])
         assert back is not None
         assert moved_back is not None
         work = length * scale

@@ -125,7 +125,9 @@ def _pressure(scene: Scene, profile: Profile, radius: ContactRadius) -> BodyPres
     inside = side[(side > 0.0) & (side < fine.edge * INSIDE)]
     r = inside if fine.has_apex else np.append(0.0, inside)
     p = fine.pressure(r)
-    spread = _spread(p, levels[1], r) + radius.uncertainty / radius.value * np.abs(p)
+    # Of a known shape nothing lies between the particles: where they are too few to show it, its edge alone is open.
+    exact = levels[1] is None and fine.body is not None
+    spread = (0.0 if exact else _spread(p, levels[1], r)) + radius.uncertainty / radius.value * np.abs(p)
     within = np.count_nonzero(side < radius.value / wider)
     told = [level for i, level in enumerate(levels) if level is not None and within >= FEWEST * 2**i]
     noise, top = NOISE * scene.accuracy.tolerance, int(p.argmax())

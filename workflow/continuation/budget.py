@@ -20,7 +20,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.workflow.continuation.model_branch import ModelBranch
+from contact1d.workflow.continuation.model_branch import MOST_NUMBERS, ModelBranch
 from contact1d.workflow.continuation.outcome import LATTICE, Reading, Result
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
@@ -32,16 +32,16 @@ from contact1d.workflow.scene import Scene
 Array = NDArray[np.float64]
 MARGIN = 1.25
 """Error over the change of the model with the lattice: it knows no neighbours. Measured on both parities: 1.01."""
-PATH_MARGIN = 1.5
-"""The same of the steps of a path, where the model's maximum lies elsewhere."""
+STEP_MARGIN, PATH_MARGIN = 1.25, 1.5
+"""The same of the steps of a path: dense ones have errors, too; the second where the model's maximum lies elsewhere."""
 PHASES = (0.25, 0.0)
 """Positions of the apex between particles, over the spacing, that an even chain is compared with."""
 MORE_PHASES = (0.375, 0.25, 0.125, 0.0)
 """Such positions where friction makes several edges, the errors of which may cancel at two positions."""
 SHIFTS = (0.0, 0.25, 0.5, 0.75)
 """Shifts of a path's steps over their width, of which the worst counts where the model is no copy of the deck."""
-DENSE = 16
-"""Positions of the model in one step of a path."""
+DENSE, FEWEST = 16, 200
+"""Positions of the model in one step of a path; particles that the model of a plane keeps for so many."""
 SLOWEST = 0.9
 """Ratio of two differences of three spacings above which they do not shrink."""
 
@@ -86,28 +86,31 @@ class Reduction:
 
     @cached_property
     def lattice(self) -> Values:
-        """By name of a result, what the lattice leaves open; infinite where finer spacings bring it no nearer."""
+        """By name of a result, its discretisation error; a result that another lattice does not have may be 0."""
         if not (self.on_lattice or self.converges):
             return {}
         model = reduced(self.scene, self.settings)
         own = self.values(model)
         if self.converges:
-            others = [self.values(model.finer()), self.values(model.finer().finer())]
+            others = [self.values(model.resized(0.5)), self.values(model.resized(0.25))]
             return {
-                name: MARGIN * _extrapolated(value, *(one.get(name, value) for one in others))
+                name: MARGIN * _extrapolated(value, *(one.get(name, 0.0) for one in others))
                 for name, value in own.items()
             }
         phases = MORE_PHASES if self.scene.friction is not None else PHASES
         others = [self.values(model.shifted(phase)) for phase in phases]
-        return {name: MARGIN * max(abs(one.get(name, value) - value) for one in others) for name, value in own.items()}
+        return {name: MARGIN * max(abs(one.get(name, 0.0) - value) for one in others) for name, value in own.items()}
 
 
 def _extrapolated(coarse: float, fine: float, finest: float) -> float:
-    """|v_h − v_{h/2}|/(1 − 2⁻ᵖ) with the observed order p of three spacings; what the finest leaves is added."""
+    """|v_h − v_{h/2}|/(1 − q) with the observed ratio q = 2⁻ᵖ of the differences of three spacings.
+
+    Where the second is the larger one, the first is small by accident, and later ones are taken to halve.
+    """
     first, second = abs(coarse - fine), abs(fine - finest)
-    if first == 0.0:
-        return second
-    return first / (1.0 - min(second / first, SLOWEST))
+    if second > first:
+        return first + 2.0 * second
+    return first / (1.0 - min(second / first, SLOWEST)) if first else 0.0
 
 
 def sampling_errors(case: Reduction, trace: Trace) -> Values:
@@ -115,10 +118,12 @@ def sampling_errors(case: Reduction, trace: Trace) -> Values:
     model, found = reduced(case.scene, case.settings), dict[str, float]()
     step = float(np.median(np.abs(np.diff(trace.displacement)))) if len(trace) > 1 else 0.0
     is_copy = case.scene.is_stepped
+    while is_copy and DENSE * len(trace) * model.x.size > MOST_NUMBERS and model.x.size > FEWEST:
+        model = model.resized(2.0)  # steps miss the same on a coarser lattice
     for share in SHIFTS[:1] if is_copy else SHIFTS:
         dense, same = (case.values(model, between, share * step) for between in (DENSE, 1))
         for name in same.keys() & dense.keys():
-            missed = (1.0 if is_copy else PATH_MARGIN) * abs(same[name] - dense[name])
+            missed = (STEP_MARGIN if is_copy else PATH_MARGIN) * abs(same[name] - dense[name])
             found[name] = max(found.get(name, 0.0), missed)
     return found
 

@@ -10,21 +10,27 @@ from numpy.typing import NDArray
 from contact1d.analysis.curve_marks import Peak, crossing, largest_tension, rivals, smooth_crossing
 from contact1d.workflow.continuation.outcome import Reading
 from contact1d.workflow.continuation.trace import Trace
+from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.units import FORCE, LENGTH
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.units import ENERGY, FORCE, LENGTH
 
 Array = NDArray[np.float64]
 BRANCH_DISTANCE = 0.02
 """Distance of two displacements over the whole path from which on a change is more than interpolation error."""
 LAST = 1e-6
 """Distance from the limit point, over the way from F = 0 to there, within which the last row stands for it."""
+SEPARATED = 0.02
+"""Force over the largest tension below which bodies count as separated: the model has the rest."""
+CURVE = 1001
+"""Points of the model's curve."""
 TINY = float(np.finfo(np.float64).tiny)
 PLACE_FACTOR = 2.0
 """Error of the position of the largest tension over the distance between those of two polynomials."""
 
 
-def unloading(branch: Trace, settings: Settings) -> dict[str, Reading]:
-    """F_A, a_cr and a₀ of a branch of falling displacement, those of the three that it has.
+def unloading(branch: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
+    """F_A, a_cr, a₀ and the work of separation of a branch of falling displacement, those of the four that it has.
 
     F_A is the largest tension, at the vertex of a smooth curve or at the last row before a jump, and a_cr the radius
     there; a₀ is the radius where the force crosses 0. A largest tension at an end of the branch is none, but at the
@@ -40,7 +46,30 @@ def unloading(branch: Trace, settings: Settings) -> dict[str, Reading]:
             found["critical_radius"] = _critical_radius(branch, peak, settings, sum(errors.values()))
     if (zero := _zero_load(branch)) is not None:
         found["zero_load_radius"] = zero
+    if "adhesion_force" in found and zero is not None:
+        found |= _separation(branch, peak, scene, settings)
     return found
+
+
+def _separation(branch: Trace, peak: Peak, scene: Scene, settings: Settings) -> dict[str, Reading]:
+    """∫ −F dd from F = 0 until nothing is felt; none where the branch ends before.
+
+    The reduced model has the curve between the states; the difference from it is interpolated.
+    """
+    model = reduced(scene, settings)
+    d, force = branch.lists
+    start, end = smooth_crossing(d, force, 0.0), model.apart
+    held = [(one, own) for one, own in zip(d[::-1], force[::-1], strict=True) if end <= one < start]
+    lost = branch.radius(len(branch) - 1) is None or _distance_from_limit(branch) <= LAST
+    if not held or not (lost or abs(force[-1]) <= SEPARATED * peak.tension):
+        return {}
+    places = end + (start - end) * np.linspace(0.0, 1.0, CURVE) ** 2  # a limit point has an infinite slope
+    at, own = np.asarray([*held, (start, 0.0)]).T
+    off = own - model.held(at)
+    curve = model.held(places) + np.interp(places, at, off, left=0.0)
+    missed = 0.5 * float(np.abs(np.diff(off)) @ np.diff(at))  # at most, of a curve that is monotonic between them
+    value, coarse = (-float(np.trapezoid(curve[::step], places[::step])) for step in (1, 2))
+    return {"work_of_separation": Reading(value, ENERGY, {"sampling": missed + abs(value - coarse)})}
 
 
 def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: float) -> Reading:

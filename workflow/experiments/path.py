@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from contact1d.analysis.curve_marks import loop_of
+from contact1d.analysis.curve_marks import closes, work_of
 from contact1d.workflow.continuation.budget import (
     budgeted,
     force_errors,
@@ -86,12 +86,9 @@ class PathExperiment(Scripted):
         return schedule(scene, settings)
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """What the last unloading has, or without adhesion the deepest state; and the loop."""
+        """What the last unloading has, or without adhesion the deepest state; and the energy that is lost."""
         found = _adhesion(trace, scene, settings) if scene.adheres else _largest(trace)
-        if (loop := loop_of(*trace.lists)) is not None:
-            errors = {"sampling": loop.uncertainty}
-            found["dissipated_energy"] = Reading(loop.area, ENERGY, errors, scale=loop.whole)
-        return found
+        return found | _lost(trace, scene, settings)
 
     def advice(self, scene: Scene) -> str:
         """The rows are the scene's own."""
@@ -101,7 +98,8 @@ class PathExperiment(Scripted):
         """Warnings of results that the path does not reach."""
         if not scene.adheres:
             return {}
-        if not any(phase.name.startswith("unloading") for phase in phases) and not results:
+        marks = {"adhesion_force", "zero_load_radius"}
+        if not any(phase.name.startswith("unloading") for phase in phases) and not marks & results.keys():
             never = "the path never unloads the contact, so it gives no"
             return {"no_peak": f"{never} adhesion_force", "no_zero_load": f"{never} zero_load_radius"}
         warnings = {}
@@ -112,7 +110,7 @@ class PathExperiment(Scripted):
             )
         if "zero_load_radius" not in results:
             warnings["no_zero_load"] = (
-                "the force does not pass 0 in the last unloading, so there is no zero_load_radius"
+                "the force does not pass 0 while the last unloading holds the contact, so there is no zero_load_radius"
             )
         return warnings
 
@@ -146,10 +144,35 @@ def _adhesion(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Readi
         return {}
     name = apart[-1] if apart else trace.phase[-1]
     branch = trace.chosen(np.flatnonzero([phase == name for phase in trace.phase]))
-    found = unloading(branch, settings)
+    found = unloading(branch, scene, settings)
     if scene.adhesion is not None:
         found |= _fixed_grips(branch)
     return found
+
+
+def _lost(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
+    """The area of a closed path; of an open one on a plane what its instabilities lose, ∫F dd less the energy gained.
+
+    Adhesion holds fewer states on the way up than on the way down: noise alone, whose forces differ at each visit, does
+    not open a path.
+    """
+    if (work := work_of(*trace.lists)) is None:
+        return {}
+    errors, states = {"sampling": work.uncertainty}, [trace.radius(state) for state in (0, len(trace) - 1)]
+    d, force = trace.lists
+    tolerance = math.inf if scene.noise is not None else settings.tolerance
+    if closes(d, force, tolerance) and (states[0] is None) == (states[1] is None):
+        return {"dissipated_energy": Reading(work.area, ENERGY, errors, scale=work.whole)}
+    first, last = (settings.estimate.energy(d[i], radius or 0.0) for i, radius in ((0, states[0]), (-1, states[1])))
+    if first is None or last is None or not _is_unstable(trace):
+        return {}
+    return {"instability_energy": Reading(work.area - (last - first), ENERGY, errors, scale=work.whole)}
+
+
+def _is_unstable(trace: Trace) -> bool:
+    """Whether the contact is made or lost along the path."""
+    held = [trace.radius(state) is not None for state in range(len(trace))]
+    return any(before != after for before, after in pairwise(held))
 
 
 def _fixed_grips(branch: Trace) -> dict[str, Reading]:

@@ -63,7 +63,11 @@ class PullOffExperiment(Scripted):
         preload = float(loading.force[-1])
         given = Reading(preload, FORCE, {"solver": abs(preload - scene.experiment.preload)}, prescribed=True)
         falling = trace.phases("unloading", "pulling", "separating", "critical")
-        marks = _under_load(falling, scene, settings, preload) if trace.bracket else _held(falling.falling(), settings)
+        marks = (
+            _under_load(falling, scene, settings, preload)
+            if trace.bracket
+            else _held(falling.falling(), scene, settings)
+        )
         return marks | {"preload": given}
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
@@ -98,9 +102,9 @@ class PullOffExperiment(Scripted):
         return super().advice(scene) + since
 
 
-def _held(falling: Trace, settings: Settings) -> dict[str, Reading]:
+def _held(falling: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
     """The marks of an unloading under displacement control, which begins at F = 0 where there was no preload."""
-    found, least = unloading(falling, settings), int(np.argmin(np.abs(falling.force)))
+    found, least = unloading(falling, scene, settings), int(np.argmin(np.abs(falling.force)))
     return (
         found
         if "zero_load_radius" in found

@@ -168,6 +168,12 @@ class AdhesiveEstimate(ContactEstimate):
         bend = np.where(outer - inner > narrowest, bend, 0.0)
         return Cells(heights, heights - inner, width, heights - body.height(np.abs(at - half)), bend)
 
+    def energy(self, displacement: float, radius: float) -> float | None:
+        """U(d, a) = E* ∫_0^a (d − g)² dx − πa²W [FU·LU], 0 of bodies apart; ∂U/∂a = 0 in equilibrium."""
+        x = np.linspace(0.0, radius, PLACES)
+        elastic = self.modulus * float(np.trapezoid((displacement - self.profile.height(x)) ** 2, x))
+        return elastic - math.pi * radius**2 * self.work
+
     def contact_forces(self, displacements: Array) -> Array:
         """F(d) [FU] of a contact that is held at each of the displacements [LU]; 0 where none is."""
         _, h, force, least = self._grid

@@ -152,6 +152,10 @@ class ContactEstimate:
         per_particle = np.ascontiguousarray(np.interp(gap.T, self.gap, self.force, right=0.0).T)
         return np.asarray(np.trapezoid(per_particle, x, axis=0)) / self.spacing
 
+    def energy(self, displacement: float, radius: float) -> float | None:
+        """Energy of a contact [FU·LU] of radius [LU] at a displacement [LU], without that of bodies apart, if known."""
+        return None
+
     def half_width(self, displacement: float, gap: float) -> float:
         """`half_widths` at one displacement."""
         return float(self.half_widths(np.asarray([displacement]), gap)[0])

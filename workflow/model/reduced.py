@@ -6,7 +6,7 @@
     springs with a slider       s ← clip(s + k_t Δu, ±μ f)
 
 It follows any path of displacements with the memory that its particles have, all positions at once. No result
-depends on it: it predicts, and it says how a result changes with the lattice (`shifted`, `finer`).
+depends on it: it predicts, and it says how a result changes with the lattice (`shifted`, `resized`).
 """
 
 from __future__ import annotations
@@ -91,14 +91,12 @@ class Reduced(ABC):
         """The same with the apex `phase` spacings off a particle."""
         return replace(self, x=places_within(self._reach, self.estimate.spacing, phase))
 
-    def finer(self) -> Reduced:
-        """The same body with twice as many particles."""
-        estimate = self.estimate
-        half = replace(
-            estimate, spacing=0.5 * estimate.spacing, stiffness=0.5 * estimate.stiffness, force=0.5 * estimate.force
-        )
+    def resized(self, factor: float) -> Reduced:
+        """The same body with its particles `factor` times as far apart."""
+        own = self.estimate
+        other = replace(own, spacing=factor * own.spacing, stiffness=factor * own.stiffness, force=factor * own.force)
         phase = 0.5 if self.x.size % 2 == 0 else 0.0
-        return replace(self, estimate=half, x=places_within(self._reach, half.spacing, phase))
+        return replace(self, estimate=other, x=places_within(self._reach, other.spacing, phase))
 
     @property
     def _reach(self) -> float:
@@ -114,12 +112,15 @@ class Reduced(ABC):
         for _ in range(ROUNDS):
             forces = self.held(positions)
             below = np.flatnonzero(forces < force)
-            if below.size == 0:
-                return float(positions[int(np.argmin(forces))])
-            last = min(int(below[-1]), positions.size - 2)
-            bracket, ends = positions[last : last + 2], forces[last : last + 2]
+            lowest, last = int(np.argmin(forces)), positions.size - 1
+            # Where none is below, a lower one may lie on either side of the lowest.
+            first, end = max(lowest - 1, 0), min(lowest + 1, last)
+            if below.size:
+                first = min(int(below[-1]), last - 1)
+                end = first + 1
+            best, bracket, ends = float(positions[lowest]), positions[[first, end]], forces[[first, end]]
             positions = np.linspace(bracket[0], bracket[1], POINTS)
-        return float(np.interp(force, ends, bracket))
+        return float(np.interp(force, ends, bracket)) if below.size else best
 
 
 @dataclass(frozen=True, eq=False)
