@@ -33,7 +33,9 @@ in K or °C, and is kept as k_BT.
 RESULTS = """
 # What results.json holds
 
-Every quantity is `{"value", "uncertainty", "unit"}`; where LU and FU are known it has `si`, the same in SI. Beside:
+Every quantity is `{"value", "uncertainty", "unit"}`; where LU and FU are known it has `si`, the same in SI. A
+pressure also has its `state`. A `value` is `null` where the uncertainty is more than half of it; the warning `unknown`
+names it. Beside:
 
 | key | what |
 | --- | --- |
@@ -42,6 +44,8 @@ BESIDE = {
     "`theory`": 'every closed form that applies, a list of `{"name", "source", "applies", "values"}`: its name (Hertz, '
     "Sneddon, JKR …), where it is written down, why it holds here, and for each result that it speaks of "
     '`{"value", "unit", "si", "deviation"}`, the deviation being the run\'s value over it minus 1',
+    "`validity`": 'numbers of the contact beside the limits of the theory, a list of `{"name", "quantity", "value", '
+    '"limit", "holds"}`; one that does not hold has a warning of its name',
     "`units`": "one LU and one FU in SI, where they are known",
     "`reduction`": "which one the numbers are of; `image_…` is a length of the plane image that is not the body's",
     "`scene`, `experiment`, `method`, `effects`": "what ran",

@@ -140,13 +140,17 @@ def _pressures(scene: Scene, outcome: Outcome) -> dict[str, Quantity]:
     found = outcome.quantities
     shares = {name: one.uncertainty / abs(one.value) for name in ERRORS if (one := found.get(name)) and one.value}
     radius = next((shares[name] for name in RADII if name in shares), 0.0)
-    reported = [name for name in REPORTED if name in outcome.profiles][:1]
-    pressures = body_pressures(scene, {name: outcome.profiles[name] for name in reported})
+    pressures = body_pressures(scene, {name: outcome.profiles[name] for name in reported_state(outcome)})
     return {
         name: Quantity(p.value, p.uncertainty + _swing(pressure, name, radius, sum(shares.values())), p.unit)
         for pressure in pressures.values()
         for name, p in pressure.results.items()
     }
+
+
+def reported_state(outcome: Outcome) -> list[str]:
+    """The name of the state whose pressures are results; none where a run has no such state."""
+    return [name for name in REPORTED if name in outcome.profiles][:1]
 
 
 def _swing(pressure: BodyPressure, name: str, radius: float, every: float) -> float:

@@ -23,8 +23,8 @@ NAMES = {
     "zero_load_radius": "zero-load radius a_0",
     "contact_radius": "contact radius a",
     "image_contact_radius": "half-width of the image",
-    "mean_pressure": "mean pressure F/(pi a^2)",
-    "central_pressure": "pressure on the axis p(0)",
+    "mean_pressure": "mean pressure",
+    "central_pressure": "p(0) on the axis",
     "contact_stiffness": "stiffness dF/dd",
     "adhesion_energy": "energy of adhesion",
     "separation_energy": "separation energy per length",
@@ -44,19 +44,21 @@ def quantities(results: Mapping[str, Any]) -> list[str]:
 
     In SI where the units are known, and then also what LU and FU are.
     """
-    lines = [f"  {'reduction':<28} {_whose(results)}"] if "reduction" in results else []
+    lines = [f"  {'reduction':<31} {_whose(results)}"] if "reduction" in results else []
     for name, entry in results.items():
         if isinstance(entry, dict) and {"value", "uncertainty", "unit"} <= entry.keys():
             label = NAMES.get(name, name.replace("_", " "))
+            if state := entry.get("state"):
+                label += f", {state.replace('_', ' ')}"
             if entry["value"] is None:
                 number = "not reported"
             elif "si" in entry:
                 number = in_si(entry["si"])
             else:
                 number = f"{rounded(entry['value'], entry['uncertainty'])} {entry['unit']}"
-            lines.append(f"  {label:<28} {number:<32} {', '.join(in_words(results, name))}".rstrip())
+            lines.append(f"  {label:<31} {number:<32} {', '.join(in_words(results, name))}".rstrip())
     if "units" in results:
-        lines += [f"  {'1 ' + unit:<28} {in_si(entry)}" for unit, entry in results["units"].items()]
+        lines += [f"  {'1 ' + unit:<31} {in_si(entry)}" for unit, entry in results["units"].items()]
     return lines
 
 

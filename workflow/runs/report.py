@@ -22,6 +22,7 @@ from contact1d.analysis.curve import (
     write_states,
 )
 from contact1d.files import write_whole
+from contact1d.workflow.body.derived import reported_state
 from contact1d.workflow.body.reading import doubt_of_the_image, of_the_body
 from contact1d.workflow.body.theory import theory
 from contact1d.workflow.body.traction import BodyPressure, BodyShear, body_pressures, body_shears
@@ -58,6 +59,10 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
     known = reported(scene, outcome)
     scales, found = scales_of(scene, known.quantities), of_the_body(scene, known.quantities)
     quantities = {name: quantity.entry() for name, quantity in of_the_body(scene, outcome.quantities).items()}
+    for state in reported_state(outcome):
+        for entry in quantities.values():
+            if entry["unit"] == MEAN_PRESSURE:
+                entry["state"] = state
     if scales is not None:
         for entry in quantities.values():
             entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
