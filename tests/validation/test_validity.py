@@ -1,0 +1,146 @@
+"""Claim: every run says where its theory ends: slope, size of the body, Tabor parameter, yield, each with its number.
+
+References: the whole sphere by quadrature of its slope, Maugis and Dugdale's equations, Hertz.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import pytest
+
+from contact1d import Run, run
+from tests.pages import ROOT, require_shown
+from validation.references.maugis import LAMBDA_OVER_TABOR, marks
+from validation.references.mdr import ReducedContact
+
+RADIUS, RATIOS = 1.0, (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7)
+"""R [LU], and contact radii of the ball over it."""
+NUMBERS = {"contact_radius": "contact radius a", "displacement": "displacement d", "central_pressure": "pressure p(0)"}
+LATTICE = 2e-3
+"""Of the difference of two runs at 1e-3 beside that of the closed forms."""
+
+
+def ball(r: float) -> float:
+    """f′(r) of a whole sphere."""
+    return r / math.sqrt((RADIUS - r) * (RADIUS + r))
+
+
+def contact(kind: str, experiment: Mapping[str, Any], **more: Any) -> dict[str, Any]:
+    """E* = 1 Pa, R = 1 m, particles by the tolerance."""
+    bodies = {
+        "particles": "auto", "spacing": "auto", "lower": "rigid_plane", "profile": {"kind": kind, "radius": "1 m"},
+    }  # fmt: skip
+    material = {"contact_modulus": "1 Pa"}
+    return {"title": kind, "bodies": bodies, "material": material, "experiment": experiment} | more
+
+
+def checks(found: Run) -> dict[str, Any]:
+    """By name."""
+    return {one["name"]: one for one in found.document["validity"]}
+
+
+def test_the_error_of_a_paraboloid_over_its_radius_is_on_the_page(tmp_path: Path) -> None:
+    sphere, paraboloid = ReducedContact(ball, 1.0), ReducedContact(lambda r: r / RADIUS, 1.0)
+    rows, errors = [], dict[str, list[float]]((name, []) for name in NUMBERS)
+    for ratio in RATIOS:
+        force = sphere.force(ratio)
+        runs = [
+            run(contact(kind, {"kind": "load", "force": f"{force!r} N"}), tmp_path / f"{kind}{ratio}", figures=False)
+            for kind in ("parabola", "circle")
+        ]
+        for name in NUMBERS:
+            flat, whole = (found.results[name].value for found in runs)
+            errors[name].append(flat / whole - 1.0)
+        a = paraboloid.contact_radius(paraboloid_depth(force))
+        assert errors["contact_radius"][-1] == pytest.approx(a / ratio - 1.0, abs=LATTICE)
+        rows.append(f"| {ratio:g} | " + " | ".join(f"{100.0 * errors[name][-1]:+.2g} %" for name in NUMBERS) + " |\n")
+        slopes = [checks(found)["slope"] for found in runs]
+        assert [one["value"] for one in slopes] == pytest.approx([a, ball(ratio)], rel=2e-2)
+        for found, slope in zip(runs, slopes, strict=True):
+            assert slope["holds"] == (slope["value"] <= slope["limit"]) == ("slope" not in found.warnings)
+        if a > 0.1:
+            assert f"a contact radius {1.0 - ratio / a:.1%} smaller" in runs[0].warnings["slope"]
+    head = "| a/R of the ball | " + " | ".join(NUMBERS.values()) + " |\n| ---" + " | ---" * len(NUMBERS) + " |\n"
+    require_shown("docs/validity.md", "paraboloid", head + "".join(rows))
+    if os.environ.get("WRITE_DOCS"):
+        draw(errors)
+    assert (ROOT / "docs" / "validity.png").is_file()
+
+
+def paraboloid_depth(force: float) -> float:
+    """Hertz's d [LU] of R = 1, E* = 1."""
+    return float((0.75 * force) ** (2.0 / 3.0))
+
+
+def draw(errors: Mapping[str, list[float]]) -> None:
+    """The figure of the page."""
+    figure, axes = plt.subplots(figsize=(6.0, 4.0), layout="constrained")
+    for name, values in errors.items():
+        axes.plot(RATIOS, [abs(value) for value in values], "o-", label=NUMBERS[name])
+    axes.set(xscale="log", yscale="log", xlabel="contact radius of the ball over its radius, a/R")
+    axes.set_xticks(RATIOS, [f"{ratio:g}" for ratio in RATIOS])
+    axes.set_xticks([], minor=True)
+    axes.set_ylabel("relative error of the paraboloid")
+    axes.axvline(0.1, color="0.6", ls="--", label="limit of the warning")
+    axes.legend()
+    figure.savefig(ROOT / "docs" / "validity.png", dpi=150)
+
+
+@pytest.mark.parametrize(("work", "reach"), [(1.0, None), (0.2, None), (0.08, 0.1e-9)])
+def test_jkr_is_held_against_maugis_and_dugdale(work: float, reach: float | None, tmp_path: Path) -> None:
+    """A sphere of 1 µm and E* = 50 GPa; without a range 0.3 nm are assumed, and said."""
+    tables = contact("parabola", {"kind": "pull_off", "preload": "1 pN"})
+    tables["bodies"]["profile"]["radius"] = "1 µm"
+    tables |= {"material": {"contact_modulus": "50 GPa"}, "adhesion": {"work_of_adhesion": f"{work} J/m²"}}
+    if reach:
+        tables["adhesion"] |= {"range": f"{reach} m"}
+    found = run(tables, tmp_path / "run", figures=False)
+    tabor = (1e-6 * work**2 / (50e9**2 * (reach or 0.3e-9) ** 3)) ** (1.0 / 3.0)
+    assert checks(found)["tabor"]["value"] == pytest.approx(tabor, rel=1e-9)
+    warned = found.warnings["tabor"]
+    error = 1.5 / marks(LAMBDA_OVER_TABOR * tabor)[1] - 1.0
+    assert f"{abs(error):.1%} smaller" in warned
+    assert ("assumed" in warned) == (reach is None)
+
+
+@pytest.mark.parametrize(
+    ("kind", "force", "strength", "yields"),
+    [
+        ("parabola", 0.999, 1.0, False),
+        ("parabola", 1.001, 1.0, True),
+        ("flat_punch", 1e-2, 1.0, True),
+        ("cone", 1e-2, 1.0, True),
+    ],
+)
+def test_the_softer_body_yields_at_1_6_y(
+    kind: str, force: float, strength: float, yields: bool, tmp_path: Path
+) -> None:
+    """F at first yield by Hertz: p(0)³ = 6 F E*²/π³R² with p(0) = 1.6 Y."""
+    upper = {"youngs_modulus": "200 GPa", "poisson_ratio": 0.3, "yield_strength": "900 MPa"}
+    lower = {"youngs_modulus": "100 GPa", "poisson_ratio": 0.3, "yield_strength": "300 MPa"}
+    modulus = 1.0 / (0.91 / 200e9 + 0.91 / 100e9)
+    first = (1.6 * 300e6) ** 3 * math.pi**3 * 0.01**2 / (6.0 * modulus**2)
+    tables = contact(kind, {"kind": "load", "force": f"{first * force * strength!r} N"})
+    profile = {"kind": "cone", "slope": 0.05} if kind == "cone" else {"kind": kind, "radius": "10 mm"}
+    tables["bodies"] |= {"profile": profile}
+    if kind == "flat_punch":
+        tables["bodies"] |= {"spacing": "0.5 mm"}
+    found = run(tables | {"material": {"upper": upper, "lower": lower}}, tmp_path / "run", figures=False)
+    assert ("yield" in found.warnings) == yields
+    assert not yields or "480 MPa" in found.warnings["yield"]
+
+
+def test_a_contact_as_wide_as_its_body_is_named(tmp_path: Path) -> None:
+    tables = contact("ellipsoid", {"kind": "load", "force": "1 mN"})
+    tables["bodies"]["profile"] = {"kind": "ellipsoid", "radius": "1 m", "height": "5 mm"}
+    found = run(tables, tmp_path / "run", figures=False)
+    share = checks(found)["body_size"]
+    assert share["value"] == pytest.approx(found.results.contact_radius.value, rel=1e-9)
+    assert share["holds"] == ("body_size" not in found.warnings)
+    assert share["value"] > 0.3
