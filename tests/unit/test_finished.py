@@ -45,7 +45,7 @@ def test_results_are_quantities_by_name_and_as_attributes(finished: Run) -> None
     assert (force.si.value, force.si.unit) == (entry["si"]["value"], "N")
     assert finished.results.adhesion_force is force
     assert "adhesion_force" in dir(finished.results)
-    found = {"adhesion_force", "critical_radius", "zero_load_radius", "preload"}
+    found = {"adhesion_force", "critical_radius", "zero_load_radius", "preload", "work_of_separation"}
     body = {"central_pressure", "peak_pressure", "adhesion_energy"}
     assert set(finished.results) == found | body | {"separation_energy", "work_of_adhesion"}
     with pytest.raises(KeyError, match="no pull_off_force, it has adhesion_force"):

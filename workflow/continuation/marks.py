@@ -67,7 +67,8 @@ def _separation(branch: Trace, peak: Peak, scene: Scene, settings: Settings) -> 
     at, own = np.asarray([*held, (start, 0.0)]).T
     off = own - model.held(at)
     curve = model.held(places) + np.interp(places, at, off, left=0.0)
-    missed = 0.5 * float(np.abs(np.diff(off)) @ np.diff(at))  # at most, of a curve that is monotonic between them
+    others = [*range(0, len(at) - 1, 2), len(at) - 1]
+    missed = abs(float(np.trapezoid(off, at) - np.trapezoid(off[others], at[others])))
     value, coarse = (-float(np.trapezoid(curve[::step], places[::step])) for step in (1, 2))
     return {"work_of_separation": Reading(value, ENERGY, {"sampling": missed + abs(value - coarse)})}
 

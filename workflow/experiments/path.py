@@ -34,6 +34,8 @@ APART = 4.0
 RELAXATIONS = 14.0
 """Time that a dynamic path gives the particles at each displacement, over the time constant of their slowest decay."""
 ROUND_OFF = 1e-9
+ANY_FORCE = 2.0
+"""Difference of two forces over the larger of them that none exceeds."""
 EARLINESS = 8.0
 """Square of the longest move of bodies that part over the range squared, per unit of tolerance."""
 
@@ -153,17 +155,16 @@ def _adhesion(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Readi
 def _lost(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
     """The area of a closed path; of an open one on a plane what its instabilities lose, ∫F dd less the energy gained.
 
-    Adhesion holds fewer states on the way up than on the way down: noise alone, whose forces differ at each visit, does
-    not open a path.
+    Under noise forces and radii differ at each visit: a path closes where its displacement does.
     """
     if (work := work_of(*trace.lists)) is None:
         return {}
-    errors, states = {"sampling": work.uncertainty}, [trace.radius(state) for state in (0, len(trace) - 1)]
-    d, force = trace.lists
-    tolerance = math.inf if scene.noise is not None else settings.tolerance
-    if closes(d, force, tolerance) and (states[0] is None) == (states[1] is None):
+    errors, ends = {"sampling": work.uncertainty}, [trace.radius(state) for state in (0, len(trace) - 1)]
+    (d, force), noisy = trace.lists, scene.noise is not None
+    same = noisy or (ends[0] is None) == (ends[1] is None)
+    if same and closes(d, force, ANY_FORCE if noisy else settings.tolerance):
         return {"dissipated_energy": Reading(work.area, ENERGY, errors, scale=work.whole)}
-    first, last = (settings.estimate.energy(d[i], radius or 0.0) for i, radius in ((0, states[0]), (-1, states[1])))
+    first, last = (settings.estimate.energy(d[i], radius or 0.0) for i, radius in zip((0, -1), ends, strict=True))
     if first is None or last is None or not _is_unstable(trace):
         return {}
     return {"instability_energy": Reading(work.area - (last - first), ENERGY, errors, scale=work.whole)}

@@ -24,12 +24,12 @@ def accuracy_warnings(scene: Scene, outcome: Outcome, scales: Scales | None) -> 
 
     `lattice` has those whose discretisation error alone exceeds it. Noise has its own statistics.
     """
-    missing, tolerance = unknown(scene, outcome), scene.accuracy.tolerance
+    if scene.noise is not None:
+        return {}
+    missing, tolerance, warnings = unknown(scene, outcome), scene.accuracy.tolerance, {}
     known = {name: one for name, one in outcome.results.items() if name not in missing}
-    by_lattice = {} if scene.noise is not None else _by_lattice(known, tolerance)
-    others = {} if scene.noise is not None else unmet(known, tolerance, (MODEL,))
-    others = {name: share for name, share in others.items() if name not in by_lattice}
-    warnings = {}
+    by_lattice = _by_lattice(known, tolerance)
+    others = {name: share for name, share in unmet(known, tolerance, (MODEL,)).items() if name not in by_lattice}
     if missing:
         wide = ", ".join(f"{name} (± {_written(one, scales)})" for name, one in missing.items())
         warnings["unknown"] = (
@@ -53,6 +53,8 @@ def unknown(scene: Scene, outcome: Outcome) -> dict[str, Result]:
     The scale of a force or a displacement is the largest of the run, that of another result the largest one of its
     unit: a number that is 0 beside it is known to be 0. Means are reported whatever their standard errors.
     """
+    if scene.noise is not None:
+        return {}
     scales = {
         FORCE: max((abs(state.force) for state in outcome.states), default=0.0),
         LENGTH: max((abs(state.displacement) for state in outcome.states), default=0.0),

@@ -16,8 +16,9 @@ from contact1d.workflow.continuation.trust import UntrustedError, doubts
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import EngineError
-from contact1d.workflow.experiments import perform
+from contact1d.workflow.experiments import kind_of, perform
 from contact1d.workflow.model.settings import SettingsError, settings_for
+from contact1d.workflow.scene import Scene
 
 TOLERANCE_RATIO = 5.0
 """Tolerance of a pass over that of the next one."""
@@ -48,7 +49,7 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
         return Refined(deck, outcome)
     wanted, count, ended = scene.accuracy.tolerance, 0, ""
     tolerance = wanted
-    while open_ := unmet(outcome.results, wanted, (LATTICE,)):
+    while open_ := _open(scene, outcome):
         results = outcome.results
         left = {name: share for name, share in open_.items() if results[name].read <= wanted * abs(results[name].value)}
         if not left:
@@ -66,7 +67,7 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
         tolerance, count = tolerance / TOLERANCE_RATIO, count + 1
         before, deck, outcome = outcome, finer_deck, nested(outcome, finer)
         ended = _after(count)
-        if unmet(outcome.results, wanted, (LATTICE,)) and not _helped(left, before, outcome):
+        if _open(scene, outcome) and not _helped(left, before, outcome):
             ended += ", the last of which did not help"
             break
     # What a pass doubts by its own tolerance is no doubt of a run that was asked for less.
@@ -74,6 +75,12 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
     warnings = {name: text for name, text in outcome.warnings.items() if name not in stricter}
     warnings |= doubts(scene, replace(deck.settings, tolerance=scene.accuracy.tolerance), outcome.states)
     return Refined(deck, replace(outcome, warnings=warnings, refinement=Refinement(tolerance, count, ended)))
+
+
+def _open(scene: Scene, outcome: Outcome) -> dict[str, float]:
+    """Main results that are known less well than the tolerance on the very lattice that ran."""
+    main = {name: one for name, one in outcome.results.items() if name in kind_of(scene).main_results}
+    return unmet(main, scene.accuracy.tolerance, (LATTICE,))
 
 
 def nested(coarse: Outcome, fine: Outcome) -> Outcome:
