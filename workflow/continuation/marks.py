@@ -22,7 +22,7 @@ LAST = 1e-6
 """Distance from the limit point, over the way from F = 0 to there, within which the last row stands for it."""
 SEPARATED = 0.02
 """Force over the largest tension below which bodies count as separated: the model has the rest."""
-CURVE = 1001
+CURVE = 301
 """Points of the model's curve."""
 TINY = float(np.finfo(np.float64).tiny)
 PLACE_FACTOR = 2.0
