@@ -96,3 +96,20 @@ def test_pairs_that_are_drawn_apart_hold_until_their_snap(ratio: float, wide: fl
     scene = {"title": "hold"} | case.scene() | {"experiment": {"kind": "path", "displacements": [DEEPEST, *rows[::-1]]}}
     held = run(scene, tmp_path / "run", figures=False).curve.force[-1]
     assert held == pytest.approx(float(pairs.unloading(np.array([rows[0]]), DEEPEST)[0]), rel=ROWS)
+
+
+@pytest.mark.parametrize("first", [-0.05, -0.02, 0.0, 0.02])
+@pytest.mark.parametrize("ratio", [2.0, 8.0])
+def test_a_path_begins_on_the_branch_that_the_scene_names(ratio: float, first: float, tmp_path: Path) -> None:
+    """From afar, or with start = "contact" back from the largest displacement: pairs have two states between."""
+    case = PairCase("start", ratio, shaped("parabola", 40, reach(ratio)), 40, 0.0)
+    deepest, exact = 0.06, case.exact()
+    states = {"approach": exact.loading(first), "contact": exact.unloading(first, deepest)}
+    top, found = max(abs(float(one)) for one in states.values()), {}
+    for start, force in states.items():
+        path = {"kind": "path", "displacements": [first, 0.5 * (first + deepest), deepest], "start": start}
+        done = run(case.scene() | {"title": start, "experiment": path}, tmp_path / start, figures=False)
+        found[start] = float(done.curve.force[0])
+        assert done.curve.displacement == pytest.approx(path["displacements"], abs=1e-12)
+        assert found[start] == pytest.approx(float(force), abs=1e-3 * top)
+    assert abs(found["approach"] - found["contact"]) > 0.05 * top
