@@ -29,8 +29,6 @@ from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Path, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
 
-APART = 4.0
-"""Distance from touch, over the range of the attraction, at which a path begins: pairs there are on one branch."""
 RELAXATIONS = 14.0
 """Time that a dynamic path gives the particles at each displacement, over the time constant of their slowest decay."""
 ROUND_OFF = 1e-9
@@ -217,13 +215,14 @@ def stretches(positions: Sequence[float]) -> list[tuple[str, list[float]]]:
 def way(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
     """Displacements [LU] of all states, and whether the scene asks for them or they are passed on the way.
 
-    A path begins where bodies that attract each other are APART ranges from touch, or farther: there they have one
-    state. With `start = "contact"` it then goes to the largest displacement before the first one.
+    Where pairs snap, a path begins before the first of them joins. With `start = "contact"` it then goes to the largest
+    displacement before the first one.
     """
-    experiment, law = scene.experiment, settings.law
+    experiment, estimate, before = scene.experiment, settings.estimate, 0.0
     assert isinstance(experiment, Path)
     asked = experiment.places()
-    before = -APART * law.attraction.range if law is not None and law.attraction is not None else 0.0
+    if settings.snaps:
+        before = min(0.0, estimate.rest - estimate.joins - settings.longest_move)
     goals = [(value, True) for value in asked]
     if experiment.start == "contact":
         goals.insert(0, (max(asked), False))
