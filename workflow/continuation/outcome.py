@@ -25,7 +25,7 @@ class Reading:
         value: in `unit`.
         unit: of the model.
         errors: by source.
-        scale: what the uncertainty is compared with where the value may be 0.
+        scale: what the uncertainty is compared with, where the value may be 0.
         prescribed: whether the scene prescribes it.
     """
 
@@ -44,7 +44,7 @@ class Result:
         value: in `unit`.
         unit: of the model.
         errors: by the names of SOURCES, in `unit`.
-        scale: what the uncertainty is compared with where the value may be 0.
+        scale: what the uncertainty is compared with, where the value may be 0.
         prescribed: whether the scene prescribes it, or it closes a balance: no tolerance is asked of it.
         read: part of the discretisation error that is left by reading between particles, whatever the settings.
     """
@@ -68,8 +68,8 @@ class Result:
 
     @property
     def size(self) -> float:
-        """What the uncertainty is compared with: the value, or a scale where the value may be 0."""
-        return abs(self.value) if self.scale is None or self.uncertainty < abs(self.value) else self.scale
+        """What the uncertainty is compared with."""
+        return abs(self.value) if self.scale is None else self.scale
 
     @property
     def share(self) -> float:

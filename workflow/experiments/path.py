@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from contact1d.analysis.curve_marks import closes, work_of
+from contact1d.analysis.curve_marks import Work, closes, work_of
 from contact1d.workflow.continuation.budget import (
     budgeted,
     force_errors,
@@ -161,11 +161,17 @@ def _lost(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
     (d, force), noisy = trace.lists, scene.noise is not None
     same = noisy or (ends[0] is None) == (ends[1] is None)
     if same and closes(d, force, ANY_FORCE if noisy else settings.tolerance):
-        return {"dissipated_energy": Reading(work.area, ENERGY, errors, scale=work.whole)}
+        return {"dissipated_energy": Reading(work.area, ENERGY, errors, scale=_scale(work.area, work))}
     first, last = (settings.estimate.energy(d[i], radius or 0.0) for i, radius in zip((0, -1), ends, strict=True))
     if first is None or last is None or not _is_unstable(trace):
         return {}
-    return {"instability_energy": Reading(work.area - (last - first), ENERGY, errors, scale=work.whole)}
+    lost = work.area - (last - first)
+    return {"instability_energy": Reading(lost, ENERGY, errors, scale=_scale(lost, work))}
+
+
+def _scale(energy: float, work: Work) -> float | None:
+    """All work of the path for an energy [FU·LU] that may be 0; None for one that is not."""
+    return work.whole if abs(energy) <= work.uncertainty else None
 
 
 def _is_unstable(trace: Trace) -> bool:

@@ -83,7 +83,7 @@ class TangentialExperiment(Scripted):
         strongest = max(row.carried for row in rows)
         error = ROUND_OFF * len(rows) * strongest + _moved_too_far(scene, settings)
         work = sum(0.5 * (a.carried + b.carried) * abs(b.position - a.position) for a, b in pairwise(rows))
-        force = float(trace.force[final])
+        lost, force = error * scene.experiment.way, float(trace.force[final])
         given = scene.experiment.compression is not None
         radius = trace.radius(final) or 0.0
         return {
@@ -95,7 +95,7 @@ class TangentialExperiment(Scripted):
                 prescribed=last.stick.value == last.stick.uncertainty == 0.0,
             ),
             "dissipated_energy": Reading(
-                last.dissipated, ENERGY, {"solver": error * scene.experiment.way}, scale=work
+                last.dissipated, ENERGY, {"solver": lost}, scale=work if abs(last.dissipated) <= lost else None
             ),
         }  # fmt: skip
 

@@ -39,7 +39,7 @@ def accuracy_warnings(scene: Scene, outcome: Outcome, scales: Scales | None) -> 
     if by_lattice:
         warnings["lattice"] = _lattice_message(scene, by_lattice)
     if others:
-        ended = "" if outcome.refinement is None else f" ({outcome.refinement.ended})"
+        ended = f" ({outcome.refinement.ended})" if outcome.refinement and outcome.refinement.ended else ""
         warnings["tolerance"] = (
             f"{in_words(others)}, which is more than the tolerance of {tolerance:g} that was asked for{ended}. "
             f"{_advice(scene, outcome, others)}"
