@@ -111,6 +111,8 @@ def rounded(value: float, uncertainty: float) -> str:
     if not math.isfinite(uncertainty) or uncertainty <= 0.0:
         return f"{value:.10g} ± {uncertainty:.2g}"
     place = 1 - math.floor(math.log10(uncertainty))
+    if -3 <= place < 0:
+        return f"{round(value, place):.0f} ± {round(uncertainty, place):.0f}"
     if not 0 <= place <= 10:
         return f"{value:.6g} ± {uncertainty:.2g}"
     return f"{value:.{place}f} ± {uncertainty:.{place}f}"

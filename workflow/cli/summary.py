@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 NAMES = {
     "adhesion_force": "adhesion force (pull-off)",
     "critical_radius": "critical radius a_cr",
-    "fixed_grips_displacement": "fixed grips let go at d",
+    "fixed_grips_displacement": "separation at d, fixed grips",
     "zero_load_radius": "zero-load radius a_0",
     "contact_radius": "contact radius a",
     "image_contact_radius": "half-width of the image",

@@ -40,7 +40,10 @@ VISCOUS = 0.02
 """Of an exponent, from two velocities."""
 LIMIT = "what is left of the velocity after v^{2/3} and v"
 BETWEEN = "the largest friction lies between two rows of the trace, of which a spacing has 50"
-EDGE = {"tolerance": "the largest friction between two rows: only the mean is asked for"}
+EDGE = {
+    "tolerance": "the largest friction between two rows: only the mean is asked for",
+    "unknown": "the cantilever's largest force of the first period: only the mean is asked for",
+}
 EITHER = {
     "tolerance": "the largest friction between two rows, for which the bound allows",
     "drag": "the plate may be held to the drive's pace: it passes every place, and the largest friction is the row's",

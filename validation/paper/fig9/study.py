@@ -80,7 +80,7 @@ def energy_checks(row: Rows) -> list[Row]:
     source, limit = "bound that was asked for", "the drag is sampled at every fifth step"
 
     def closed(words: str, value: float, on: list[str]) -> Row:
-        answers = dict.fromkeys(("tolerance", "drag", "fast", "energy"), "the energies are asked for, and no mean")
+        answers = dict.fromkeys(("tolerance", "unknown", "drag", "fast", "energy"), "the energies are asked for, and no mean")
         return row.at_most(words, value, Reference(CLOSED, source, "set bound"), limit, on=on, despite=answers,
                    wide="timesteps are chosen for the means, and the energy follows")  # fmt: skip
 
