@@ -80,7 +80,8 @@ def energy_checks(row: Rows) -> list[Row]:
     source, limit = "bound that was asked for", "the drag is sampled at every fifth step"
 
     def closed(words: str, value: float, on: list[str]) -> Row:
-        answers = dict.fromkeys(("tolerance", "unknown", "drag", "fast", "energy"), "the energies are asked for, and no mean")
+        others = ("tolerance", "unknown", "drag", "fast", "energy")
+        answers = dict.fromkeys(others, "the energies are asked for, and no mean")
         return row.at_most(words, value, Reference(CLOSED, source, "set bound"), limit, on=on, despite=answers,
                    wide="timesteps are chosen for the means, and the energy follows")  # fmt: skip
 
