@@ -26,6 +26,7 @@ SLOW = 0.05
 EDGE = {
     "tolerance": "a largest friction or a mean that is nearly none: only the mean beside the others is asked for",
     "drag": "the plate is held to the drive's pace by the cantilever, and is to be",
+    "unknown": "the cantilever's largest force of the first period: only the mean is asked for",
 }
 PINNED = 2
 """Of the stiffnesses, the softest, whose slow limit is held against the law."""
