@@ -9,18 +9,17 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
-from contact1d.workflow.cost.report import EFFECT_COLUMNS, CostRecord, effect_row
+from contact1d.workflow.cost.report import CostRecord, table
 
 
-def effects_markdown(record: CostRecord) -> str:
-    """The table of docs/performance.md of what each effect costs, with the advice below it."""
-    rows = [EFFECT_COLUMNS, ["---"] * len(EFFECT_COLUMNS)]
-    cells = [(f"`{row[0]}`", *row[1:]) for row in map(effect_row, record.effect_costs)]
-    table = "".join("| " + " | ".join(row) + " |\n" for row in [*rows, *cells])
-    return table + "\n" + "".join(f"- {one.text}\n" for one in record.advice)
+def markdown(record: CostRecord) -> str:
+    """The table of docs/performance.md."""
+    header, *rows = table(record)
+    cells = [header, ["---"] * len(header), *((f"`{name}`", *others) for name, *others in rows)]
+    return "".join("| " + " | ".join(row) + " |\n" for row in cells)
 
 
-NUMBERS = {"own", "value", "error", "memory_mb", "with_us", "without_us", "ratio", "ratio_error"}
+NUMBERS = {"h", "error", "memory_mb", "without_us", "ratio", "ratio_error"}
 """Fields in which null stands for NaN."""
 
 
@@ -30,6 +29,4 @@ def read_record(path: Path) -> CostRecord:
 
 
 def _entry(entry: dict[str, Any]) -> dict[str, Any]:
-    numbers = {name: math.nan for name, value in entry.items() if value is None and name in NUMBERS}
-    empty = {name: {} for name in ("values", "errors") if name in entry and entry[name] is None}
-    return entry | numbers | empty
+    return entry | {name: math.nan for name, value in entry.items() if value is None and name in NUMBERS}

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from contact1d.workflow.cost.study import TARGETS
 from contact1d.workflow.model.settings import CALIBRATION, FILE, Calibration, calibration_of, settings_for
 from contact1d.workflow.scene import Scene
 from validation.tools.calibration import (
@@ -18,6 +17,7 @@ from validation.tools.calibration import (
     PART,
     PROMISED,
     SCENES,
+    TARGETS,
     TOGETHER,
     Row,
     chosen_values,

@@ -28,8 +28,7 @@ from typing import Any
 
 from contact1d.workflow.cost.knobs import at_tolerance, changed
 from contact1d.workflow.cost.measure import Measured, measure
-from contact1d.workflow.cost.report import power
-from contact1d.workflow.cost.study import TARGETS, reference_of
+from contact1d.workflow.cost.study import reference_of
 from contact1d.workflow.engine.progress import choose_progress
 from contact1d.workflow.model.settings import (
     CALIBRATION,
@@ -45,6 +44,8 @@ from contact1d.workflow.units import Quantity
 
 ROOT = Path(__file__).parents[2]
 RECORD = ROOT / "validation" / "results" / "calibration.csv"
+TARGETS = (1e-2, 1e-3, 1e-4, 1e-5)
+"""The tolerances."""
 PART = 0.1
 """Of the tolerance, that one share may add to the error of a main result."""
 SAME_COST = 0.03
@@ -141,6 +142,11 @@ def studied(name: str, shares: Mapping[str, Sequence[Calibration]]) -> list[Row]
                     values = [getattr(one, share, math.nan) for one in many]
                     rows += _rows((name, tolerance, share), values, found, reference, claims=not in_time)
     return rows
+
+
+def power(value: float) -> str:
+    """`1e-3`."""
+    return f"{value:.0e}".replace("e-0", "e-")
 
 
 def _effective(scene: Scene, settings: Settings) -> str:

@@ -221,17 +221,17 @@ def cost(
     scene: SceneFile,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for cost.json, cost.csv, cost.png.", show_default="costs/<name of the scene>"),
+        typer.Option(help="Folder for cost.json and cost.png.", show_default="costs/<name of the scene>"),
     ] = None,
     set_: Set = None,
     without: Without = None,
     repeats: Annotated[int, typer.Option(min=1, help="Runs of each variant; times are their medians.")] = 3,
     workers: Annotated[int | None, typer.Option(min=1, help="Runs at a time.", show_default="processors")] = None,
 ) -> None:
-    """Measure what accuracy costs in time: every numerical knob of a scene, its error beside its CPU time.
+    """Measure what accuracy costs in time: for every numerical setting and effect of a scene, its error and CPU time.
 
-    Leaves cost.json, cost.csv and a work-precision figure, cost.png, and says for each tolerance what reaches it at
-    the least cost. The scene itself is not changed.
+    Prints a row for each: its value, the value that is enough, errors, times, what to do. Leaves cost.json and
+    cost.png, a work-precision figure. The scene itself is not changed.
     """
     folder = out if out is not None else Path("costs") / scene.stem
     with command("the study", kept="it begins anew next time") as progress:
@@ -247,7 +247,7 @@ def cost(
         folder.mkdir(parents=True, exist_ok=True)
         record = cost_of(checked, scene.stem, folder, repeats, workers or cores(), progress)
         write_report(record, folder)
-    typer.echo("\n".join(summary(record)) + f"; {folder}")
+    say(summary(record), {}, folder)
 
 
 def report(

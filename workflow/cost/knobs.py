@@ -1,16 +1,16 @@
-"""The numerical knobs of a scene: what its file can turn without changing the physics, the values to try, and how.
+"""The numerical settings of a scene: what its file can change without changing the physics, and the values to try.
 
-They are turned one at a time from a base that is much more exact than the scene asks for (`base_keys`), so that an
-error belongs to the knob. base + one knob's keys = a variant;  base + several = a combination. A spacing is turned
-with stiffness and drag per length kept, and of neighbour springs stiffness times length.
+One is changed at a time, from a base that is much more exact than the scene asks for (`base_keys`), so that an error
+belongs to the setting. With a spacing, stiffness and drag per length are kept, and of neighbour springs stiffness times
+length.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 from pydantic import Field
 
@@ -66,40 +66,40 @@ def is_sampled(scene: Scene) -> bool:
 def main_results(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Quantity]:
     """Those that have a relative error: present and not 0. With noise the force that a load holds is no result."""
     names = [name for name in kind_of(scene).main_results if scene.noise is None or name != "force"]
-    named = {name: quantities[name] for name in names if name in quantities}
-    return {name: one for name, one in named.items() if one.value != 0.0 and math.isfinite(one.value)}
+    found = {name: quantities.get(name) for name in names}
+    return {name: one for name, one in found.items() if one and one.value != 0.0 and math.isfinite(one.value)}
 
 
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
-TOLERANCE_FACTORS = (8.0, 4.0, 2.0, 1.0, 0.5)
+"""Without the last one in time."""
+TOLERANCE_FACTORS = (8.0, 4.0, 2.0, 0.5)
 """Of a scene whose results are averages over time, which cost by the square of the tolerance; over its own."""
 OTHER_METHOD = {"dynamic": (1e-2, 3e-3), "quasistatic": (1e-1, 1e-2, 1e-3, 1e-4)}
 """Tolerances of the method that the scene does not have."""
 CUTOFF_SHARES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
-"""Force at the cutoff over the law's own."""
+"""Force at the cutoff over the law's own, its h."""
 CHAIN_FACTORS = (0.6, 0.7, 0.8, 0.9)
 """Over the length that is automatic for the scene's tolerance."""
-INCREMENT_FACTORS = (4.0, 2.0, 1.0, 0.5)
-DAMPING_FACTORS = (0.25, 0.5, 1.0, 2.0, 4.0)
-SPACING_FACTORS = (4.0, 2.0, 1.0, 0.5, 0.125)
-"""Over the scene's own."""
+INCREMENT_FACTORS = (1.0, 4.0, 2.0, 0.5)
+DAMPING_FACTORS = (1.0, 0.25, 0.5, 2.0, 4.0)
+SPACING_FACTORS = (1.0, 4.0, 2.0, 0.5, 0.125)
+"""Over the scene's own, which is the first."""
 
 
 class Level(NamedTuple):
-    """One value of a knob; `label` says it with its unit."""
+    """A value of a setting as text with its unit; `h` goes to zero as it gets finer, NaN where it is on no scale."""
 
-    value: float
-    label: str
+    h: float
+    value: str
     keys: Keys
 
 
 @dataclass(frozen=True)
 class Order:
-    """p of error ∝ h^p, its standard error, and how many points it comes from."""
+    """p of error ∝ h^p, and its standard error."""
 
     order: float
     standard_error: float
-    points: int
 
     def __str__(self) -> str:
         """`0.94 ± 0.04`."""
@@ -108,99 +108,111 @@ class Order:
 
 @dataclass(frozen=True)
 class Knob:
-    """Something that costs time and buys accuracy.
+    """A numerical setting, which costs time and buys accuracy.
 
     Attributes:
-        name: one word or two.
-        meaning: of its value, with the unit.
-        own: the value that the scene has, by itself or by the rules; NaN where there is no such.
-        levels: to try.
-        finer: which values are the more exact ones.
+        name: its key in a scene file.
+        now: value that the scene has, by itself or by the rules, with its unit.
+        h: of this value.
+        levels: to try, with the scene's own.
         own_reference: whether its errors are against its own finest level, since the reference does not have it.
+        has_order: whether its error is expected to be a power of h.
         order: of its error, None where there is none to be fitted.
-        has_order: whether its error is expected to be a power of the value.
-        alternative: whether it is another way, to be compared with the scene's own and not combined with it.
     """
 
     name: str
-    meaning: str
-    own: float
+    now: str
+    h: float
     levels: Annotated[tuple[Level, ...], Field(exclude=True)] = ()
-    finer: Literal["larger", "smaller"] = "smaller"
     own_reference: bool = False
+    has_order: bool = True
     order: Order | None = None
-    has_order: Annotated[bool, Field(exclude=True)] = True
-    alternative: Annotated[bool, Field(exclude=True)] = False
-
-    def coarseness(self, value: float) -> float:
-        """What falls as the knob gets finer."""
-        return value if self.finer == "smaller" else 1.0 / value
 
 
 def knobs_of(scene: Scene, own: Settings) -> tuple[tuple[Knob, ...], dict[str, str]]:
-    """The knobs that a scene has; and those that one could think of and that are not turned, each with the reason.
+    """The settings that a scene has; and those that one could think of and that are not tried, each with the reason.
 
     Args:
-        scene: whose file is turned.
+        scene: whose file is changed.
         own: settings of the scene as it is.
     """
     found = {
-        "tolerance": _tolerance(scene),
-        "cutoff": _cutoff(scene, own),
-        "chain length": _chain(scene, own),
-        "damping": _damping(scene, own),
-        "load increment": _increment(scene),
-        "method": _method(scene),
-        "spacing": _spacing(scene),
+        "accuracy.tolerance": _tolerance(scene),
+        "interaction.cutoff": _cutoff(scene, own),
+        "bodies.particles": _chain(scene, own),
+        "damping.coefficient": _damping(scene, own),
+        "experiment.displacements.steps": _increment(scene),
+        "experiment.method": _method(scene),
+        "bodies.spacing": _spacing(scene),
     }
     reasons = {name: knob for name, knob in found.items() if isinstance(knob, str) and knob}
     return tuple(knob for knob in found.values() if isinstance(knob, Knob)), reasons
 
 
+def _knob(
+    scene: Scene,
+    name: str,
+    values: Iterable[float],
+    h: Callable[[float], float] = float,
+    unit: str = "",
+    keys: Callable[[float], Keys] | None = None,
+    **more: Any,
+) -> Knob:
+    """A setting of these values, the first of them the scene's own; others than `keys` are changed from the base."""
+    keys = keys or (lambda value: (*base_keys(scene), f"{name}={value!r}"))
+    levels = tuple(Level(h(value), f"{value:g}{unit}", keys(value)) for value in dict.fromkeys(values))
+    return Knob(name, levels[0].value, levels[0].h, levels, **more)
+
+
+def _inverse(value: float) -> float:
+    return 1.0 / value
+
+
 def _tolerance(scene: Scene) -> Knob:
     own = scene.accuracy.tolerance
-    values: tuple[float, ...] = TOLERANCES[:-1] if scene.method == "dynamic" else TOLERANCES
+    values: Iterable[float] = TOLERANCES[:-1] if scene.method == "dynamic" else TOLERANCES
     if is_sampled(scene):
-        values = tuple(min(own * factor, 0.1) for factor in TOLERANCE_FACTORS)
-    levels = (Level(t, f"accuracy.tolerance = {t:g}", at_tolerance(scene, t)) for t in dict.fromkeys(values))
-    return Knob("tolerance", "accuracy.tolerance, which sets all others", own, tuple(levels))
+        values = (min(own * factor, 0.1) for factor in TOLERANCE_FACTORS)
+    return _knob(scene, "accuracy.tolerance", (own, *values), keys=lambda value: at_tolerance(scene, value))
 
 
 def _cutoff(scene: Scene, own: Settings) -> Knob | str:
-    if own.law is None or own.law.attraction is None:
+    if (law := own.law) is None or law.attraction is None:
         physics = "without attraction displacements count from the cutoff, so it is physics"
         return "" if scene.interaction is None else physics
-    cutoffs = {share: own.law.cutoff_for(share) for share in CUTOFF_SHARES}
-    levels = (Level(share, f"cutoff {c:.3g} LU", (f"interaction.cutoff={c!r}",)) for share, c in cutoffs.items())
-    share = math.exp(-(own.cutoff - own.law.force_free_distance()) / own.law.longest_range)
-    return Knob("cutoff", "force at the cutoff over the law's own", share, tuple(levels))
+    cutoffs = (own.cutoff, *map(law.cutoff_for, CUTOFF_SHARES))
+    free, reach = law.force_free_distance(), law.longest_range
+    return _knob(
+        scene, "interaction.cutoff", map(_rounded, cutoffs), lambda cutoff: math.exp((free - cutoff) / reach), " LU"
+    )
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.3g}")
 
 
 def _chain(scene: Scene, own: Settings) -> Knob | str:
     if scene.bodies.profile.has_edge:
         return "a flat punch is as long as it is wide"
     automatic = settings_for(changed(scene, at_tolerance(scene, scene.accuracy.tolerance))).particles
-    counts = dict.fromkeys(max(4, 2 * round(0.5 * factor * automatic)) for factor in CHAIN_FACTORS)
-    levels = (Level(n, f"chain of {n} particles", (f"bodies.particles={n}",)) for n in counts)
+    counts = (max(4, 2 * round(0.5 * factor * automatic)) for factor in CHAIN_FACTORS)
     # The tail of the pressure falls exponentially where a cutoff ends it, algebraically where springs carry it on.
-    return Knob("chain length", "particles per body", own.particles, tuple(levels), "larger", has_order=False)
+    return _knob(scene, "bodies.particles", (own.particles, *counts), _inverse, has_order=False)
 
 
 def _damping(scene: Scene, own: Settings) -> Knob | str:
     if scene.damping is None:
         return ""
-    values = (factor * own.damping for factor in DAMPING_FACTORS)
-    levels = (Level(c, f"damping {c:.3g} FU·TU/LU", (f"damping.coefficient={c!r}",)) for c in values)
-    return Knob("damping", "damping of a particle [FU·TU/LU]", own.damping, tuple(levels), has_order=False)
+    values = (_rounded(factor * own.damping) for factor in DAMPING_FACTORS)
+    return _knob(scene, "damping.coefficient", values, unit=" FU·TU/LU", has_order=False)
 
 
 def _increment(scene: Scene) -> Knob | str:
     span = None if scene.experiment.goes_along else getattr(scene.experiment, "displacements", None)
     if not isinstance(span, Span):
         return ""
-    counts = dict.fromkeys(max(1, round(span.steps / factor)) for factor in INCREMENT_FACTORS)
-    levels = (Level(n, f"{n} increments", (f"experiment.displacements.steps={n}",)) for n in counts)
-    return Knob("load increment", "increments of a leg", span.steps, tuple(levels), "larger", own_reference=True)
+    counts = (max(1, round(span.steps / factor)) for factor in INCREMENT_FACTORS)
+    return _knob(scene, "experiment.displacements.steps", counts, _inverse, own_reference=True)
 
 
 def _method(scene: Scene) -> Knob | str:
@@ -210,11 +222,9 @@ def _method(scene: Scene) -> Knob | str:
         return "what is asked for exists in time only"
     other = "dynamic" if scene.method == "quasistatic" else "quasistatic"
     keys = with_method(scene, other)
-    levels = (
-        Level(t, f"{other}, accuracy.tolerance = {t:g}", at_tolerance(scene, t) + keys) for t in OTHER_METHOD[other]
-    )
-    meaning = f"the other method, {other}, by its accuracy.tolerance"
-    return Knob(f"method {other}", meaning, math.nan, tuple(levels), has_order=False, alternative=True)
+    others = (Level(math.nan, f"{other}, tolerance {t:g}", at_tolerance(scene, t) + keys) for t in OTHER_METHOD[other])
+    levels = Level(math.nan, scene.method, ()), *others
+    return Knob("experiment.method", scene.method, math.nan, levels, has_order=False)
 
 
 def _spacing(scene: Scene) -> Knob | str:
@@ -225,13 +235,13 @@ def _spacing(scene: Scene) -> Knob | str:
     if scene.interaction is not None:
         return "the force of a row of opposite particles belongs to its spacing: no amplitudes keep it at another one"
     values = (factor * scene.bodies.spacing for factor in SPACING_FACTORS)
-    levels = (Level(h, f"spacing {h:g} LU", _at_spacing(scene, h)) for h in values)
-    meaning = "spacing [LU], same stiffness per length"
-    return Knob("spacing", meaning, scene.bodies.spacing, tuple(levels), own_reference=True)
+    return _knob(
+        scene, "bodies.spacing", values, unit=" LU", keys=lambda value: _at_spacing(scene, value), own_reference=True
+    )
 
 
 def _at_spacing(scene: Scene, spacing: float) -> Keys:
-    """Scene keys that go with the spacing [LU]."""
+    """Keys of the base with those that go with the spacing [LU]."""
     factor, bodies = spacing / scene.bodies.spacing, scene.bodies
     values: dict[str, float] = {"bodies.spacing": spacing, "bodies.mass": factor * bodies.mass}
     if bodies.bulk_stiffness != "auto":
@@ -242,4 +252,4 @@ def _at_spacing(scene: Scene, spacing: float) -> Keys:
         values["neighbours.stiffness"] = scene.neighbours.stiffness / factor
     if scene.damping is not None and scene.damping.coefficient != "auto":
         values["damping.coefficient"] = factor * scene.damping.coefficient
-    return tuple(f"{key}={value!r}" for key, value in values.items())
+    return (*base_keys(scene), *(f"{key}={value!r}" for key, value in values.items()))

@@ -7,16 +7,17 @@ evaluates every force once, and so does a step of a minimiser; reading tables an
 from __future__ import annotations
 
 import math
-import os
+import re
 import shutil
 from collections.abc import Iterator, Mapping
 from concurrent.futures import as_completed
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from statistics import median, stdev
+from statistics import median
 from typing import Annotated
 
+import numpy as np
 from pydantic import Field, computed_field
 
 from contact1d.workflow.cost.knobs import WITHOUT, Keys, changed
@@ -36,7 +37,7 @@ from contact1d.workflow.scene import Scene, SceneError
 from contact1d.workflow.units import Quantity
 
 LONG_RUN = 4.0
-"""Wall time [s] from which on a run is not repeated: what disturbs a timing is short against it."""
+"""CPU time [s] from which on a run is not repeated: what disturbs a timing is short against it."""
 Prepared = tuple[Scene, Settings]
 """A variant that is ready to run."""
 
@@ -47,7 +48,7 @@ class Measured:
 
     Attributes:
         quantities: main results and all others, by name; the same in every run.
-        cpu_runs, total_runs: CPU time in LAMMPS and wall time of each run, LAMMPS and all around it [s].
+        cpu_runs: CPU time in LAMMPS of each run [s].
         steps: minimiser iterations or timesteps of a run.
         memory_mb: peak resident memory of the LAMMPS process, NaN where the system does not tell.
         failure: why there are no numbers, "" where there are.
@@ -56,7 +57,6 @@ class Measured:
 
     quantities: Annotated[Mapping[str, Quantity], Field(exclude=True)] = field(default_factory=dict)
     cpu_runs: tuple[float, ...] = ()
-    total_runs: Annotated[tuple[float, ...], Field(exclude=True)] = ()
     steps: int = 0
     memory_mb: float = math.nan
     failure: str = ""
@@ -68,16 +68,9 @@ class Measured:
         """Median CPU time in LAMMPS [s]."""
         return median(self.cpu_runs or (math.nan,))
 
-    @computed_field  # type: ignore[prop-decorator]  # mypy knows no decorator on a property
-    @property
-    def total_s(self) -> float:
-        """Median wall time [s]."""
-        return median(self.total_runs or (math.nan,))
-
     def __add__(self, later: Measured) -> Measured:
         """With the times of a later run, or its failure."""
-        runs, totals = self.cpu_runs + later.cpu_runs, self.total_runs + later.total_runs
-        return later if later.failure else replace(self, cpu_runs=runs, total_runs=totals)
+        return later if later.failure else replace(self, cpu_runs=self.cpu_runs + later.cpu_runs)
 
 
 def measure(
@@ -95,7 +88,7 @@ def measure(
     done: dict[str, Measured] = {}
     with pool(min(workers, len(variants))) as executor:
         for turn in range(repeats):
-            again = [label for label in variants if turn == 0 or done[label].total_s < LONG_RUN]
+            again = [label for label in variants if turn == 0 or done[label].cpu_s < LONG_RUN]
             futures = {
                 executor.submit(run_once, variants[label], folder / f"{turn}_{index}", fresh=turn == 0): label
                 for index, label in enumerate(again)
@@ -125,7 +118,6 @@ def run_once(variant: Prepared, folder: Path, fresh: bool) -> Measured:
     return Measured(
         outcome.quantities,
         (timing["lammps_cpu_s"],),
-        (timing["total_s"],),
         int(timing["steps"]),
         children_peak_mb() if fresh else math.nan,
         warnings=frozenset({*outcome.warnings, *open_}),
@@ -135,10 +127,9 @@ def run_once(variant: Prepared, folder: Path, fresh: bool) -> Measured:
 def children_peak_mb() -> float:
     """Largest peak resident memory [MB] of the living child processes, as /proc has it; NaN where there is no such."""
     try:
-        tasks = Path(f"/proc/{os.getpid()}/task").glob("*/children")
-        children = [child for task in tasks for child in task.read_text().split()]
-        lines = [line for child in children for line in Path(f"/proc/{child}/status").read_text().splitlines()]
-        return max(int(line.split()[1]) for line in lines if line.startswith("VmHWM:")) / 1024.0
+        children = [child for task in Path("/proc/self/task").glob("*/children") for child in task.read_text().split()]
+        texts = [Path(f"/proc/{child}/status").read_text() for child in children]
+        return max(int(peak) for text in texts for peak in re.findall(r"VmHWM:\s+(\d+) kB", text)) / 1024.0
     except (OSError, ValueError):
         return math.nan
 
@@ -155,80 +146,64 @@ class EffectCost:
 
     Attributes:
         name: the effect.
-        particles: of both bodies.
-        with_us, without_us: CPU time of a step with all effects, and without this one [µs]; medians.
+        with_us, without_us: CPU time of a step with all effects, and without this one [µs]; medians, NaN where it
+            cannot be left out.
         ratio, ratio_error: of the two, median over turns, and its standard error.
-        reason: why it cannot be left out; "" where it can.
-        changes: what the main results become without it, over those with it, minus 1.
     """
 
     name: str
-    particles: int
     with_us: float
-    without_us: float = math.nan
-    ratio: float = math.nan
-    ratio_error: float = math.nan
-    reason: str = ""
-    changes: Mapping[str, float] | None = None
-
-    @property
-    def ns_per_particle(self) -> float:
-        """What it adds to a step, per particle [ns], by the ratio."""
-        return 1e3 * self.with_us * (1.0 - 1.0 / self.ratio) / self.particles
+    without_us: float
+    ratio: float
+    ratio_error: float
 
 
-def without_effects(scene: Scene) -> tuple[dict[str, Keys], dict[str, str]]:
-    """How to leave out each effect that can be, by its name; and why others cannot."""
+def without_effects(scene: Scene) -> dict[str, Keys]:
+    """How to leave out each effect that can be, by its name."""
     has_one = scene.experiment.motion_is_result or scene.experiment.goes_along
     method = () if has_one else (f"experiment.method={scene.method}",)
-    found, reasons = {}, {}
+    found = {}
     for effect in scene.effects:
-        keys = (*method, WITHOUT + effect)
-        try:
-            changed(scene, keys)
-        except SceneError as error:
-            reasons[effect] = "; ".join(f"{problem.path} {problem.message}" for problem in error.problems)
-        else:
+        with suppress(SceneError):
+            changed(scene, keys := (*method, WITHOUT + effect))
             found[effect] = keys
-    return found, reasons
+    return found
 
 
-def effect_costs(scene: Scene, folder: Path, turns: int = TURNS) -> tuple[EffectCost, ...]:
-    """CPU time of a step with and without each effect; medians over `turns` (at least 2) blocks of STEPS steps.
+def effect_costs(scene: Scene, folder: Path) -> tuple[EffectCost, ...]:
+    """CPU time of a step with and without each effect; medians over TURNS blocks of STEPS steps.
 
     What a slide could not run without, but take steps, is left out with the settings of the whole scene, so that its
     particles, its cutoff and its table are the same; a plate that is pulled is measured beside a deck without
     cantilever, with and without it.
     """
-    settings, (keys, reasons) = settings_for(scene), without_effects(scene)
+    settings = settings_for(scene)
     decks = {"": Deck(scene, settings)}
-    for effect in keys:
-        other = changed(scene, keys[effect])
+    for effect, keys in without_effects(scene).items():
+        other = changed(scene, keys)
         decks[effect] = Deck(other, settings_for(other))
     if scene.experiment.motion_is_result:
         gone = {"cantilever": ["cantilever"], "plate": ["cantilever", "plate"]}
         gone |= {} if scene.noise is not None else {"damping": ["damping"]}
         for effect in gone.keys() & set(scene.effects):
             decks[effect] = Deck(scene.model_copy(update=dict.fromkeys(gone[effect])), settings)
-    times = _interleaved(decks, folder, turns)
+    times = _interleaved(decks, folder)
     found = []
     for effect in scene.effects:
         beside = times["cantilever" if effect == "plate" and scene.experiment.motion_is_result else ""]
-        cost = EffectCost(effect, settings.particles * scene.chains, median(beside), reason=reasons.get(effect, ""))
-        if effect in times:
-            ratios = [both / without for both, without in zip(beside, times[effect], strict=True)]
-            error = MEDIAN_ERROR * stdev(ratios) / math.sqrt(turns)
-            cost = replace(cost, without_us=median(times[effect]), ratio=median(ratios), ratio_error=error, reason="")
-        found.append(cost)
+        without = times.get(effect, [math.nan] * TURNS)
+        ratios = [both / without for both, without in zip(beside, without, strict=True)]
+        error = MEDIAN_ERROR * float(np.std(ratios, ddof=1)) / math.sqrt(TURNS)
+        found.append(EffectCost(effect, median(beside), median(without), median(ratios), error))
     return tuple(found)
 
 
-def _interleaved(decks: Mapping[str, Deck], folder: Path, turns: int) -> dict[str, list[float]]:
+def _interleaved(decks: Mapping[str, Deck], folder: Path) -> dict[str, list[float]]:
     """CPU time of a step [µs] in each turn of each deck; the first block warms up."""
     blocks: dict[str, list[float]] = {effect: [] for effect in decks}
     with ExitStack() as stack:
         sessions = {name: stack.enter_context(opened(deck, folder / f"step_{name}")) for name, deck in decks.items()}
-        for _ in range(turns + 1):
+        for _ in range(TURNS + 1):
             for effect, session in sessions.items():
                 before = session.lammps_cpu_seconds
                 session.execute(_steps(decks[effect]))
