@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from contact1d.analysis.curve_marks import Work, closes, work_of
+from contact1d.analysis.curve_marks import SAME_FORCE, Work, closes, work_of
 from contact1d.workflow.continuation.budget import (
     budgeted,
     force_errors,
@@ -171,7 +171,7 @@ def _lost(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
 
 def _scale(energy: float, work: Work) -> float | None:
     """All work of the path for an energy [FU·LU] that may be 0; None for one that is not."""
-    return work.whole if abs(energy) <= work.uncertainty else None
+    return work.whole if abs(energy) <= work.uncertainty + SAME_FORCE * work.whole else None
 
 
 def _is_unstable(trace: Trace) -> bool:
