@@ -130,14 +130,8 @@ def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, fl
 
 def _lattice_message(scene: Scene, shares: Mapping[str, float]) -> str:
     spacing = scene.bodies.spacing * np.sqrt(0.5 * scene.accuracy.tolerance / min(1.0, max(shares.values())))
-    limits = f"{in_words(shares)} only, more than the tolerance of {scene.accuracy.tolerance:g}, because "
-    if scene.adheres and scene.adhesion is not None:
-        return (
-            f"{limits}the edge of the contact moves through cells: take a bodies.spacing of {spacing:.2g} LU at the "
-            "same stiffness per length"
-        )
     return (
-        f"{limits}the contact's centre may lie on a particle or anywhere between two of this chain: take a smaller "
-        "bodies.spacing at the same stiffness and energy per length, or give bodies.particles where these very "
-        "particles are meant"
+        f"{in_words(shares)} only, more than the tolerance of {scene.accuracy.tolerance:g}: the discretisation error "
+        f"of this lattice. Take a smaller bodies.spacing, about {spacing:.2g} LU, at the same stiffness and energy per "
+        "length, or give bodies.particles where these very particles are meant"
     )
