@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+import json
+from collections.abc import Callable, Mapping
 from concurrent.futures import Executor, Future
 from pathlib import Path
 from typing import Any
@@ -59,3 +60,36 @@ def rows(folder: Path) -> list[dict[str, str]]:
     """The table of a sweep."""
     with (folder / TABLE).open(newline="") as file:
         return list(csv.DictReader(file))
+
+
+Document = dict[str, Any]
+
+
+def changed(**keys: Any) -> Callable[[Document], str]:
+    """Makes of what results.json holds its text with other keys."""
+    return lambda whole: json.dumps(whole | keys)
+
+
+def with_force(**keys: Any) -> Callable[[Document], str]:
+    """Makes of what results.json holds its text with other keys of the force."""
+    return lambda whole: json.dumps(whole | {"force": whole["force"] | keys})
+
+
+def lacking(key: str) -> Callable[[Document], str]:
+    """Makes of what results.json holds its text without a key."""
+    return lambda whole: json.dumps({name: value for name, value in whole.items() if name != key})
+
+
+BROKEN: dict[str, Callable[[Document], str]] = {
+    "empty": lambda _: "", "half": lambda whole: json.dumps(whole)[:-200], "words": lambda _: "results",
+    "a table": lambda _: "{}", "a list": lambda _: "[1, 2]", "null": lambda _: "null", "a text": lambda _: '"done"',
+    "nested": lambda _: "[" * 5000 + "]" * 5000, "digits": with_force(value=10**400),
+    "NaN": with_force(value=float("nan")), "Infinity": with_force(uncertainty=float("inf")),
+    "words for a number": with_force(value="1.0"), "truth for a number": with_force(value=True),
+    "no uncertainty": changed(force={"value": 1.0, "unit": "FU"}), "no unit": with_force(unit=None),
+    "no status": lacking("status"), "another status": changed(status="well"), "no error": changed(status="failed"),
+    "an error without words": changed(status="failed", error={}), "no scene": lacking("scene"),
+    "no warnings": lacking("warnings"), "other warnings": changed(warnings=[3]), "other times": changed(timing=3),
+    "a theory without values": changed(theory=[{"name": "Hertz"}]), "an accuracy in words": changed(accuracy="high"),
+}  # fmt: skip
+"""What is no results.json of a run, made of one that is."""

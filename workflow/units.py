@@ -100,12 +100,6 @@ class Quantity:
         return f"{rounded(self.value, self.uncertainty)} {self.unit}"
 
 
-def numbers_in(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """The entries of results.json that have a value, by name; a result that is not reported has `null`."""
-    entries = {name: entry for name, entry in document.items() if isinstance(entry, dict)}
-    return {name: entry for name, entry in entries.items() if entry.get("value") is not None}
-
-
 def rounded(value: float, uncertainty: float) -> str:
     """`value ± uncertainty`, the uncertainty with two digits and the value to the same place."""
     if not math.isfinite(uncertainty) or uncertainty <= 0.0:

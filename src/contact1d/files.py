@@ -1,4 +1,4 @@
-"""Files that are whole or not there: written under a temporary name, then renamed."""
+"""Files that are whole or not there, written under a temporary name and renamed; text files of a user, read safely."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+LARGEST = 8_000_000
+"""Bytes of a text file that is read: a scene with a measured profile of 1e5 points has half of them."""
 PART = ".part"
 """What ends the name of a file that is not whole yet."""
 FULL_DISK = {
@@ -24,6 +26,37 @@ def whole(path: Path) -> Iterator[Path]:
     part = path.with_name(path.name + PART)
     yield part
     os.replace(part, path)
+
+
+class UnreadableError(ValueError):
+    """A file that can't be read as text; its arguments are the path, and why with what to do."""
+
+    def __str__(self) -> str:
+        """Return both."""
+        return ": ".join(self.args)
+
+
+def read_text(path: Path) -> str:
+    """The text of a regular file of at most LARGEST bytes, in UTF-8. Raises UnreadableError.
+
+    A pipe or a device is not opened: it may have no end.
+    """
+    try:
+        if path.stat().st_size > LARGEST:
+            reason = f"has {path.stat().st_size} bytes, and at most {LARGEST} are read; make it smaller"
+        elif path.is_dir():
+            reason = "is a directory; name a file in it"
+        elif not path.is_file():
+            reason = "is not a regular file (a pipe or a device); save its content in a file"
+        else:
+            return path.read_bytes().decode("utf-8-sig")
+    except FileNotFoundError:
+        reason = "no such file"
+    except UnicodeDecodeError as error:
+        reason = f"line {len(error.object[: error.start + 1].splitlines())} is not UTF-8 text; save the file as UTF-8"
+    except (OSError, ValueError) as error:
+        reason = f"cannot be read: {getattr(error, 'strerror', None) or error}"
+    raise UnreadableError(str(path), reason)
 
 
 def write_whole(path: Path, text: str) -> None:

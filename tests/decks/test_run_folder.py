@@ -258,3 +258,18 @@ def test_deck_of_a_shipped_scene_runs_under_lmp(name: str, tmp_path: Path) -> No
     assert Counter(phases) == {name: int(count) for name, count in planned}
     assert np.isfinite(rows).all()
     assert (tmp_path / "deck" / "states.lammpstrj").stat().st_size > 0
+
+
+@pytest.mark.parametrize("far", [-60.0, -3000.0])
+@pytest.mark.parametrize(
+    "tables",
+    [STICKY, STICKY | {"bodies": BODY | {"lower": "rigid_chain"}}, PLANE, PLANE | {"neighbours": {"stiffness": 0.2}}],
+    ids=["two chains", "rigid chain", "plane", "plane with neighbours"],
+)
+def test_a_path_far_apart_stays_in_the_box(tables: dict[str, Any], far: float, tmp_path: Path) -> None:
+    """No particle is lost, in the run or by `lmp`, and nothing pulls at that distance."""
+    path = {"experiment": {"kind": "path", "displacements": [0.0, far]}}
+    finished = run(scene_from_dict({"title": "far"} | tables | path), tmp_path, figures=False)
+    assert finished.curve.displacement[-1] == pytest.approx(far, rel=1e-12)
+    assert finished.curve.force[-1] == 0.0
+    assert lmp(finished.folder).returncode == 0

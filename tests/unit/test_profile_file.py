@@ -98,7 +98,7 @@ UNREADABLE = {
     "comments only": ("# r z\n\n#\n", "has no points"),
     "half a body": ("-1.5,2.25\n-0.5,0.25\n0.5,0.25\n1.5,2.25\n", "at least 4 points from the axis out, not 2"),
     "no axis": ("-2.5,6\n-1.5,2\n-0.5,0\n0.5,0\n1.5,2\n2.5,6\n3.5,9\n-3,9\n", "begin at the radius 0, not -2.5"),
-    "no text": (b"\x89PNG\r\n\x1a\n\x00\xff", "is no text (UTF-8)"),
+    "no text": (b"\x89PNG\r\n\x1a\n\x00\xff", "line 1 is not UTF-8 text"),
 }
 """Content, and what the message says."""
 
@@ -116,7 +116,7 @@ def test_what_is_no_profile_is_one_problem_that_never_quotes_the_file(name: str,
 
 def test_what_is_no_file_is_one_problem(tmp_path: Path) -> None:
     (tmp_path / "inner").mkdir()
-    for name, words in {"p.csv": "there is no file", "inner": "Is a directory", "a\0b": "no name"}.items():
+    for name, words in {"p.csv": "no such file", "inner": "is a directory", "a\0b": "cannot be read"}.items():
         (line,) = lines(tables(file=name), tmp_path)
         assert words in line
 

@@ -100,7 +100,7 @@ def test_the_effective_scene_reads_back(tmp_path: Path) -> None:
 
 def test_files_that_are_no_scene(tmp_path: Path) -> None:
     missing = tmp_path / "no.toml"
-    for path, reason in [(missing, "no such file"), (tmp_path, "is a directory; name the scene file in it")]:
+    for path, reason in [(missing, "no such file"), (tmp_path, "is a directory; name a file in it")]:
         with pytest.raises(SceneError) as caught:
             read_scene(path)
         assert str(caught.value) == f"{path}: {reason}"
@@ -111,7 +111,7 @@ def test_files_that_are_no_scene(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "line"),
     [
-        (b"a = 1\nb = '\xe9'\n", "FILE, line 2: not UTF-8 text; save it as UTF-8"),
+        (b"a = 1\nb = '\xe9'\n", "FILE: line 2 is not UTF-8 text; save the file as UTF-8"),
         ("a = 1\na = 2\n", "FILE, line 2, column 6: this key is given twice: a = 2"),
         ("[a]\n[b]\n[a]\n", "FILE, line 3, column 3: this table is given twice: [a]"),
         ("a = 0,83\n", "FILE, line 1, column 6: there is something behind the value: a = 0,83; one key = value"),
@@ -122,7 +122,7 @@ def test_files_that_are_no_scene(tmp_path: Path) -> None:
         ('a = "b\n', "FILE, line 1, column 7: the text is not closed with a quote"),
         ("a = [1", "FILE, at its end: a list is not closed"),
         ("a = " + "9" * 5000, "FILE: a whole number has thousands of digits"),
-        ("a = " + "[" * 50000, "FILE: lists or tables are nested too deeply"),
+        ("a = " + "[" * 50000, "FILE: tables or lists are nested more than 100 deep"),
     ],
 )
 def test_mistakes_in_the_toml_name_their_line(tmp_path: Path, text: str | bytes, line: str) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -16,9 +18,10 @@ from typer.testing import CliRunner
 import contact1d.workflow.sweep.sweep as sweeping
 from contact1d import FolderError, load_run, sweep
 from contact1d.workflow.cli.app import app
+from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.sweep.sweep import ExecutorError
-from contact1d.workflow.sweep.table import PARQUET, TABLE
-from tests.sweeps import FORCE, RADIUS, Here, Stub, axis, plane, rows
+from contact1d.workflow.sweep.table import PARQUET, RECORD, TABLE
+from tests.sweeps import BROKEN, FORCE, RADIUS, Here, Stub, axis, plane, rows
 
 PATIENCE = 120.0
 
@@ -53,14 +56,86 @@ def test_what_is_done_is_not_run_again_and_values_may_be_added(tmp_path: Path) -
     assert [row["status"] for row in rows(tmp_path)] == ["done"] * 3
 
 
-def test_a_run_that_was_cut_short_is_run_again_and_no_other(tmp_path: Path) -> None:
-    sweep(plane(axis(FORCE, 0.5, 1.0)), tmp_path, Here(), figures=False)
-    before = (tmp_path / TABLE).read_text()
-    cut = tmp_path / rows(tmp_path)[1]["run"]
-    (cut / "results.json").write_text('{"half": ')
-    sweep(plane(axis(FORCE, 0.5, 1.0)), tmp_path, again := Here(), figures=False)
-    assert again.given == [cut.name]
-    assert (tmp_path / TABLE).read_text() == before
+class Notes(Silent):
+    """Keeps what is noted."""
+
+    def __init__(self) -> None:
+        self.notes: list[str] = []
+
+    def note(self, text: str) -> None:
+        self.notes.append(text)
+
+
+TWO = plane(axis(FORCE, 0.5, 1.0))
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a finished sweep, TWO; to be copied."""
+    folder = tmp_path_factory.mktemp("finished")
+    sweep(TWO, folder, Here(), figures=False)
+    return folder
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_a_run_whose_results_are_broken_is_run_again_and_no_other(name: str, finished: Path, tmp_path: Path) -> None:
+    folder = shutil.copytree(finished, tmp_path / "s")
+    cut = folder / rows(folder)[1]["run"] / "results.json"
+    cut.write_text(BROKEN[name](json.loads(cut.read_text())))
+    sweep(TWO, folder, again := Here(), figures=False, progress=(progress := Notes()))
+    assert again.given == [cut.parent.name]
+    assert progress.notes == [f"{cut.parent.name}: its results.json is not that of a run, so it is run again"]
+    assert (folder / TABLE).read_text() == (finished / TABLE).read_text()
+
+
+def test_a_result_that_cannot_be_trusted_is_an_empty_cell(finished: Path, tmp_path: Path) -> None:
+    folder = shutil.copytree(finished, tmp_path / "s")
+    results = folder / rows(folder)[1]["run"] / "results.json"
+    document = json.loads(results.read_text())
+    document["force"] |= {"value": None}
+    results.write_text(json.dumps(document))
+    sweep(TWO, folder, again := Here())
+    assert again.given == []
+    assert [bool(row["force"]) for row in rows(folder)] == [True, False]
+    assert [bool(row["force_uncertainty"]) for row in rows(folder)] == [True, False]
+
+
+@pytest.mark.parametrize("kept", [0, 5, 60, 300])
+def test_a_record_that_was_cut_short_is_replaced(kept: int, finished: Path, tmp_path: Path) -> None:
+    folder = shutil.copytree(finished, tmp_path / "s")
+    whole = (folder / RECORD).read_text()
+    (folder / RECORD).write_text(whole[:kept])
+    page = CliRunner().invoke(app, ["report", str(folder), "--out", str(tmp_path / "page.html")])
+    assert (page.exit_code, page.output.count("\n")) == (2, 1)
+    assert "sweep.toml is no record of a sweep: start the sweep again" in page.output
+    sweep(TWO, folder, again := Here(), figures=False, progress=(progress := Notes()))
+    assert again.given == []
+    assert progress.notes == [f"{folder / RECORD} is no record of a sweep and is replaced"]
+    assert (folder / RECORD).read_text() == whole
+    assert (folder / TABLE).read_text() == (finished / TABLE).read_text()
+
+
+def test_a_broken_file_that_no_sweep_left_is_kept(tmp_path: Path) -> None:
+    (tmp_path / RECORD).write_text("mine = [")
+    with pytest.raises(FolderError, match="choose another folder"):
+        sweep(TWO, tmp_path, Here())
+    assert (tmp_path / RECORD).read_text() == "mine = ["
+
+
+@pytest.mark.parametrize(
+    "content", [b"\xff\xfe\x00", b"status\ndone", b"a" * 200_000, None], ids=["binary", "half", "a long cell", "none"]
+)
+def test_a_page_of_a_broken_table_says_to_start_the_sweep_again(
+    content: bytes | None, finished: Path, tmp_path: Path
+) -> None:
+    folder = shutil.copytree(finished, tmp_path / "s")
+    (folder / TABLE).unlink()
+    if content is not None:
+        (folder / TABLE).write_bytes(content)
+    page = CliRunner().invoke(app, ["report", str(folder), "--out", str(tmp_path / "page.html")])
+    assert (page.exit_code, page.output.count("\n")) == (2, 1)
+    assert page.output.endswith("start the run or the sweep again\n")
+    assert not (tmp_path / "page.html").exists()
 
 
 def test_a_folder_of_another_sweep_or_of_other_things_is_left_alone(tmp_path: Path) -> None:

@@ -5,11 +5,16 @@ Units, materials and files of profiles, in a scene in SI and in one in units of 
 
 from __future__ import annotations
 
+import os
+import socket
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
+from contact1d.workflow.cli.app import app
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.scene import Scene, SceneError, read_scene
 from contact1d.workflow.units import Scales
@@ -225,3 +230,126 @@ def test_an_odd_file_gets_its_sentence_and_the_remedy_works(name: str, tmp_path:
     assert sentence in str(caught.value)
     (tmp_path / "p.csv").write_text(mended, encoding="utf-8")
     assert isinstance(read_scene(STEEL_ON_GLASS, profile), Scene)
+
+
+def _socket(path: Path) -> None:
+    with socket.socket(socket.AF_UNIX) as one:
+        one.bind(path.name)
+
+
+def _large(path: Path) -> None:
+    path.touch()
+    os.truncate(path, 3 * 10**9)
+
+
+UNREADABLE: dict[str, tuple[Callable[[Path], object], str]] = {
+    "directory": (Path.mkdir, "is a directory; name a file in it"),
+    "pipe": (os.mkfifo, "is not a regular file (a pipe or a device); save its content in a file"),
+    "device": (lambda path: path.symlink_to("/dev/zero"), "is not a regular file"),
+    "socket": (_socket, "is not a regular file"),
+    "binary": (
+        lambda path: path.write_bytes(b"title = 1\n\x80\xff"),
+        "line 2 is not UTF-8 text; save the file as UTF-8",
+    ),
+    "large": (_large, "has 3000000000 bytes, and at most 8000000 are read; make it smaller"),
+    "link to itself": (lambda path: path.symlink_to(path), "cannot be read: Too many levels of symbolic links"),
+}
+"""What makes a file that can't be read, and the sentence."""
+
+
+def ended(*arguments: object) -> list[str]:
+    """The lines of a command that ends because its input is wrong; nothing is written."""
+    result = CliRunner().invoke(app, [*map(str, arguments), "--out", "out"])
+    assert isinstance(result.exception, SystemExit)
+    assert result.exit_code == 2
+    assert not Path("out").exists()
+    return result.output.splitlines()
+
+
+@pytest.mark.parametrize("name", UNREADABLE)
+def test_a_file_that_cannot_be_read_is_one_sentence(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As a scene, as a profile, as a sweep and as the scene of a sweep; none is waited for."""
+    make, sentence = UNREADABLE[name]
+    monkeypatch.chdir(tmp_path)
+    make(Path("odd"))
+    Path("scene.toml").write_text(
+        STEEL_ON_GLASS.replace('kind = "parabola", radius = "10 mm"', 'kind = "table", file = "odd"')
+    )
+    axes = '[[axes]]\nkey = "experiment.force"\nvalues = ["1 N"]\n'
+    Path("sweep.toml").write_text(f'scene = "odd"\n{axes}')
+    for command in (("run", "odd"), ("run", "scene.toml"), ("sweep", "odd"), ("sweep", "sweep.toml")):
+        _, line = ended(*command)
+        assert f"odd: {sentence}" in line
+
+
+DEEP = [100, 300, 500, 50_000]
+NESTED = {
+    "dotted key": lambda depth: f"{'a.' * depth}a = 1",
+    "quoted keys": lambda depth: " . ".join(["'a b'"] * (depth + 1)) + " = 1",
+    "table": lambda depth: f"[{'a.' * depth}a]",
+    "list": lambda depth: f"extra = {'[' * depth}{']' * depth}",
+    "inline table": lambda depth: f"extra = {'{ a = ' * depth}1{' }' * depth}",
+}
+
+
+@pytest.mark.parametrize("depth", DEEP)
+@pytest.mark.parametrize("kind", NESTED)
+def test_what_is_nested_deeply_is_one_sentence(
+    kind: str, depth: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In a scene and in a sweep's [base]."""
+    monkeypatch.chdir(tmp_path)
+    text = NESTED[kind](depth)
+    Path("scene.toml").write_text(f"{STEEL_ON_GLASS}\n{text}\n")
+    Path("sweep.toml").write_text(f'[[axes]]\nkey = "experiment.force"\nvalues = ["1 N"]\n[base]\n{text}\n')
+    for command in ("run", "sweep"):
+        _, line = ended(command, f"{'scene' if command == 'run' else command}.toml")
+        assert line.endswith("tables or lists are nested more than 100 deep; look for a dot or a bracket too many")
+
+
+def test_tables_that_are_nested_deeply_are_refused_from_python_as_well() -> None:
+    table: object = 1
+    for _ in range(500):
+        table = {"a": [table]}
+    with pytest.raises(SceneError, match="nested more than 100 deep"):
+        read_scene({"title": table})
+    with pytest.raises(SceneError, match="not a path of keys"):
+        read_scene(STEEL_ON_GLASS).with_({"a." * 500 + "a": 1})
+
+
+@pytest.mark.parametrize(
+    ("added", "count"),
+    [
+        ("\n".join(f"k{i} = 1" for i in range(10_000)), 10_000),
+        ("\n".join(f"[t{i}]" for i in range(1000)), 1000),
+        (f"[output]\nstates = [{'1, ' * 500}]\nother = 1", 2),
+    ],
+    ids=["keys", "tables", "few"],
+)
+def test_of_many_problems_the_first_are_listed(
+    added: str, count: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("many.toml").write_text(f"{STEEL_ON_GLASS}\n{added}\n")
+    head, *lines = ended("run", "many.toml")
+    assert head == f"many.toml: {count} problems"
+    assert len(lines) == min(count, 21)
+    assert (lines[-1] == f"  and {count - 20} more") is (count > 20)
+
+
+def test_a_key_without_end_is_cut() -> None:
+    with pytest.raises(SceneError) as caught:
+        read_scene(f"{STEEL_ON_GLASS}\n{'k' * 10**6} = 1\n")
+    assert str(caught.value).endswith("k…: unknown key; allowed here: kind, force, method")
+    assert len(str(caught.value)) < 1100
+
+
+@pytest.mark.parametrize(("count", "sentence"), [(100_001, "has 100001 lines"), (2_000_000, "bytes, and at most")])
+def test_a_profile_of_too_many_lines_is_refused_with_the_limit(count: int, sentence: str, tmp_path: Path) -> None:
+    (tmp_path / "long.csv").write_text("".join(f"{i},{i}\n" for i in range(count)))
+    with pytest.raises(SceneError) as caught:
+        read_scene(
+            STEEL_ON_GLASS, (f"bodies.profile={{ kind = 'table', file = '{tmp_path / 'long.csv'}', scale = '1 µm' }}",)
+        )
+    assert len(caught.value.problems) == 1
+    assert sentence in str(caught.value)

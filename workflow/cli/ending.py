@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -75,13 +75,14 @@ def read(path: Path, overrides: list[str] | None, without: list[str] | None, pro
                 return read_scene(path, (*(overrides or ()), *options(edit)), (*(without or ()), *edit.without))
 
             error = mended(edited, error, progress)
-        stop(problems_in(str(path), error.problems), CALL_IS_WRONG)
+        stop(problems_in(str(path), error), CALL_IS_WRONG)
 
 
-def problems_in(where: str, problems: Sequence[object]) -> str:
-    """Every problem of a file on a line of its own, under their number."""
-    count = len(problems)
-    return "\n".join([f"{where}: {count} problem{'s' if count > 1 else ''}", *(f"  {one}" for one in problems)])
+def problems_in(where: str, error: Exception) -> str:
+    """The problems of a file, each on a line of its own, under their number; another error in its own words."""
+    count = len(getattr(error, "problems", ()))
+    head = [f"{where}: {count} problem{'s' if count > 1 else ''}"] if count else []
+    return "\n  ".join([*head, *str(error).split("\n")])
 
 
 @contextmanager
@@ -123,8 +124,7 @@ def _of_the_call(error: BaseException, folder: str) -> str:
     from contact1d.workflow.errors import Contact1dError
 
     if isinstance(error, Contact1dError) and error.exit_code == CALL_IS_WRONG:
-        problems = getattr(error, "problems", ())
-        return problems_in("the scene", problems) if problems else str(error)
+        return problems_in("the scene", error)
     if isinstance(error, OSError):
         place = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else folder
         if error.errno in (errno.EEXIST, errno.ENOTDIR) and os.path.isfile(place):

@@ -131,7 +131,7 @@ def _from_material(file: Path, out: Path) -> None:
         try:
             found = from_material(file, out, progress)
         except SceneError as error:
-            stop(problems_in(str(file), error.problems), CALL_IS_WRONG)
+            stop(problems_in(str(file), error), CALL_IS_WRONG)
     from contact1d.workflow.cli.summary import beside_theories, quantities, regime
 
     lines = [found.scene.title, *regime(found), "", *quantities(found.run.document), *beside_theories(found)]

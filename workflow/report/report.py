@@ -5,15 +5,16 @@ A scene is put in words for somebody who has not seen its file, from the tables'
 
 from __future__ import annotations
 
+import csv
 import json
 import re
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from html import escape
 from importlib.resources import files
 from itertools import islice
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 
@@ -26,8 +27,7 @@ from contact1d.workflow.runs.campaign import AnyPath
 from contact1d.workflow.runs.finished import Run, read_run
 from contact1d.workflow.scene import Scene, Table, scene_to_toml
 from contact1d.workflow.scene.quantities import keys_of
-from contact1d.workflow.sweep.axes import read_sweep
-from contact1d.workflow.sweep.table import RECORD, TABLE, counts_in, read_table, units_in
+from contact1d.workflow.sweep.table import RECORD, counts_in, read_record, read_table, units_in
 
 PACKAGE = files("contact1d.workflow.report")
 MOST_ROWS = 500
@@ -58,7 +58,13 @@ def report(folders: Sequence[AnyPath], out: AnyPath = "report.html") -> Path:
         raise FolderError(f"{sweeps[0]} holds a sweep: a page shows one sweep, or runs")
     if len(places) > MOST_RUNS:
         raise FolderError(f"{len(places)} runs are more than the {MOST_RUNS} that one page can show")
-    write_whole(Path(out), _of_sweep(places[0]) if sweeps else _of_runs([read_run(place) for place in places]))
+    try:
+        page = _of_sweep(places[0]) if sweeps else _of_runs([read_run(place) for place in places])
+    except (OSError, LookupError, TypeError, ValueError, EOFError, BadZipFile, csv.Error) as error:
+        raise FolderError(
+            f"a file in {' or '.join(map(str, places))} can't be read ({error}): start the run or the sweep again"
+        ) from error
+    write_whole(Path(out), page)
     return Path(out)
 
 
@@ -112,9 +118,7 @@ def _names(runs: Sequence[Run]) -> list[str]:
 
 
 def _of_sweep(folder: Path) -> str:
-    if not (folder / TABLE).is_file():
-        raise FolderError(f"{folder} holds a sweep without {TABLE}: start it again, it goes on")
-    plan, units = read_sweep(tomllib.loads(_text(folder / RECORD))), units_in(folder)
+    plan, units = read_record(folder), units_in(folder)
     return _page(
         "sweep.html", over_axes(folder, plan, units), None, plan=plan, units=units, folder=folder,
         rows=list(islice(read_table(folder), MOST_ROWS)), counts=counts_in(folder),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +13,7 @@ from contact1d.workflow.experiments.spacing import with_spacing
 from contact1d.workflow.model.settings import Settings, SettingsError, settings_for
 from contact1d.workflow.runs import campaign
 from contact1d.workflow.runs.finished import Run
-from contact1d.workflow.runs.report import RESULTS, write_results
+from contact1d.workflow.runs.report import read_results, write_results
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import AnyScene, Scene, SceneError, read_scene
 from contact1d.workflow.scene.problems import as_toml
@@ -133,7 +132,7 @@ def _in_si(scene: Scene, edit: SceneEdit) -> SceneEdit:
 
 def _reported(error: RunError, cause: UntrustedError, found: str) -> RunError:
     """The error with what the trial found, before advice that nobody tried; results.json says the same."""
-    document = json.loads((error.folder / RESULTS).read_text(encoding="utf-8"))
+    document = read_results(error.folder)
     facts = document["error"]
     advice = f": {cause.advice}" if cause.advice and "gives a result" not in found else ""
     facts["message"] = f"{cause.message}{advice}. {found}"

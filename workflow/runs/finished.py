@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import csv
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
@@ -40,9 +40,9 @@ from contact1d.workflow.body.traction import BodyPressure, BodyShear, body_press
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.state import RadiusRule
 from contact1d.workflow.errors import FolderError, RunError
-from contact1d.workflow.runs.report import RESULTS
+from contact1d.workflow.runs.report import quantities_in, read_results
 from contact1d.workflow.scene import PullOff, Scene, SceneError, Slide, Tangential, scene_from_dict
-from contact1d.workflow.units import FORCE, LENGTH, MASS, Quantity, Scales, numbers_in, scale_of
+from contact1d.workflow.units import FORCE, LENGTH, MASS, Quantity, Scales, scale_of
 
 if TYPE_CHECKING:
     from ase import Atoms
@@ -112,8 +112,8 @@ class Run:
 
     def __post_init__(self) -> None:
         """Take the quantities from the document."""
-        found = {name: Quantity.of(entry) for name, entry in numbers_in(self.document).items()}
-        object.__setattr__(self, "results", Results(found))
+        entries = quantities_in(self.document).items()
+        object.__setattr__(self, "results", Results({name: Quantity.of(entry) for name, entry in entries}))
 
     @property
     def status(self) -> str:
@@ -195,19 +195,13 @@ def load_run(folder: str | PathLike[str]) -> Run:
     """
     found = read_run(Path(folder))
     if found.status != "done":
-        raise RunError(str(found.document["error"]["message"]), found.folder)
+        raise RunError(found.document["error"]["message"], found.folder)
     return found
 
 
 def read_run(folder: Path) -> Run:
     """As `load_run`, but a run that failed is returned, without results, curve and profiles."""
-    path = folder / RESULTS
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise FolderError(f"{path}: {error.strerror}; give the folder of a finished run") from None
-    except ValueError:
-        raise FolderError(f"{path} is no results file: run the scene again") from None
+    document = read_results(folder)
     try:
         scene = scene_from_dict(document["scene"])
         if document["status"] == "done":
@@ -221,10 +215,9 @@ def read_run(folder: Path) -> Run:
                 detachments = read_columns(folder / f"{DETACHMENTS}.csv", DETACHMENT_COLUMNS)
         else:
             curve, profiles, friction, detachments = Curve(*np.empty((6, 0))), {}, {}, {}
-            str(document["error"]["message"])
         return Run(folder.resolve(), document, scene, curve, profiles, friction, detachments)
-    except (KeyError, TypeError, AttributeError, ValueError, OSError, SceneError) as error:
-        reason = f"no {error}" if isinstance(error, KeyError) else str(error).partition("\n")[0]
+    except (ValueError, OSError, SceneError, csv.Error) as error:
+        reason = str(error).partition("\n")[0]
         raise FolderError(f"{folder} holds no run that this version can read: {reason}. Run its scene again") from None
 
 

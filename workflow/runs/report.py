@@ -9,9 +9,10 @@ from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
+from pydantic import BaseModel, ConfigDict, TypeAdapter
 
 from contact1d.analysis.curve import (
     Column,
@@ -21,13 +22,14 @@ from contact1d.analysis.curve import (
     write_columns,
     write_states,
 )
-from contact1d.files import write_whole
+from contact1d.files import UnreadableError, read_text, write_whole
 from contact1d.workflow.body.derived import reported_state
 from contact1d.workflow.body.reading import doubt_of_the_image, of_the_body
 from contact1d.workflow.body.theory import theory
 from contact1d.workflow.body.traction import BodyPressure, BodyShear, body_pressures, body_shears
 from contact1d.workflow.body.validity import checks
 from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.errors import FolderError
 from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.experiments.keeping import kept_states
 from contact1d.workflow.runs.accuracy import accuracy_warnings, reported
@@ -118,6 +120,70 @@ def _frame(scene: Scene, status: str, warnings: list[dict[str, str]], timing: Ma
 def versions() -> dict[str, str]:
     """Versions of what a result depends on; asked once, since looking them up takes milliseconds."""
     return {name: version(name) for name in PACKAGES} | {"python": platform.python_version()}
+
+
+TABLE = TypeAdapter(dict[str, Any])
+
+
+class _Part(BaseModel):
+    """What must hold of a part of results.json; other keys of it are not looked at."""
+
+    model_config = ConfigDict(strict=True, allow_inf_nan=False)
+
+
+class _Number(_Part):
+    value: float
+
+
+class _Entry(_Part):
+    value: float
+    uncertainty: float
+    unit: str
+    si: _Entry | None = None
+
+
+class _Message(_Part):
+    message: str
+
+
+class _Form(_Part):
+    name: str
+    values: dict[str, _Number]
+
+
+class _Document(_Part):
+    status: Literal["done", "failed"]
+    scene: dict[str, Any]
+    reduction: str
+    method: str
+    warnings: list[dict[str, str]]
+    timing: dict[str, float]
+    versions: dict[str, str]
+    accuracy: dict[str, float] = {}
+    theory: list[_Form] = []
+    results: dict[str, _Entry]
+
+
+class _Failed(_Document):
+    error: _Message
+
+
+def quantities_in(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """The results in what results.json holds, by name, without those that are not reported, whose value is null."""
+    entries = {name: entry for name, entry in document.items() if isinstance(entry, dict)}
+    return {name: entry for name, entry in entries.items() if entry.get("value") is not None}
+
+
+def read_results(folder: Path) -> dict[str, Any]:
+    """What results.json in a run folder holds. Raises FolderError where that is not what a run writes."""
+    try:
+        document = TABLE.validate_json(read_text(folder / RESULTS))
+        model = _Failed if document.get("status") == "failed" else _Document
+        model.model_validate(document | {"results": quantities_in(document)})
+        return document
+    except ValueError as error:
+        reason = error if isinstance(error, UnreadableError) else f"{folder / RESULTS} is not what a run writes"
+        raise FolderError(f"{reason}; give the folder of a finished run, or run its scene again") from None
 
 
 def write_results(folder: Path, document: Mapping[str, Any]) -> None:

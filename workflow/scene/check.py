@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, TypeVar
@@ -22,7 +23,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from contact1d.workflow.scene.experiments import Kind
-from contact1d.workflow.scene.problems import Problem, as_toml, nearest, path_of, shown
+from contact1d.workflow.scene.problems import MOST_PROBLEMS, Problem, as_toml, nearest, path_of, shown
 from contact1d.workflow.scene.quantities import (
     Keys,
     Length,
@@ -92,9 +93,9 @@ def _keys(details: ErrorDetails, value: Any) -> Keys:
     """The keys of an error of pydantic's, whose location names the kinds of tables as well."""
     keys: list[Any] = []
     for step in details["loc"]:
-        if step in (range(len(value)) if isinstance(value, list) else value if isinstance(value, dict) else ()):
-            keys.append(step)
+        with suppress(LookupError, TypeError):
             value = value[step]
+            keys.append(step)
     return (*keys, *details["loc"][-1:]) if details["type"] == MISSING else tuple(keys)
 
 
@@ -104,15 +105,18 @@ def _mended(data: dict[str, Any], place: Place) -> Iterator[Problem]:
     yield from _mended_word(data, place, place.allowed.words)
     if not isinstance(value, dict):
         return
-    similar = next((key for key in value if nearest(key, ["kind"])), None)
-    if kinds and "kind" not in value and similar:
+    if kinds and "kind" not in value and (similar := next((key for key in value if nearest(key, ["kind"])), None)):
         value["kind"] = value.pop(similar)
         yield Problem(path_of((*place.keys, similar)), "unknown key", hint='did you mean "kind"?')
     if kinds:
         yield from _mended_word(data, Place((*place.keys, "kind"), value.get("kind"), place.allowed), tuple(kinds))
     table = place.allowed.table_for(value)
-    for key in [key for key in value if table and key not in keys_of(table)]:
+    unknown = [key for key in value if table and key not in keys_of(table)]
+    for key in unknown[:MOST_PROBLEMS]:
         yield _mended_key(place, table or Table, key)
+    for key in unknown[MOST_PROBLEMS:]:
+        del value[key]
+        yield Problem(path_of((*place.keys, key)), "unknown key")
 
 
 def _mended_word(data: dict[str, Any], place: Place, words: tuple[str, ...]) -> Iterator[Problem]:

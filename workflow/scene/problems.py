@@ -13,6 +13,10 @@ from contact1d.workflow.errors import Contact1dError, SceneEdit
 
 SHOWN_LENGTH = 60
 """Characters of a given value that a message shows."""
+LONGEST = 1000
+"""Characters of a path that a message shows."""
+MOST_PROBLEMS = 20
+"""Problems that are listed; of more, their number is."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +36,7 @@ class Problem:
         """One line: `path = given: message; hint`."""
         given = "" if self.given is None else f" = {self.given}"
         hint = f"; {self.hint}" if self.hint else ""
-        return f"{self.path}{given}: {self.message}{hint}"
+        return f"{_cut(self.path, LONGEST)}{given}: {self.message}{hint}"
 
 
 class SceneError(Contact1dError):
@@ -53,8 +57,9 @@ class SceneError(Contact1dError):
         return tuple(SceneEdit({**way, **common}) for way in first.ways)
 
     def __str__(self) -> str:
-        """All problems, one on each line."""
-        return "\n".join(str(problem) for problem in self.problems)
+        """The first problems, one on each line, and how many more there are."""
+        more = len(self.problems) - MOST_PROBLEMS
+        return "\n".join([*map(str, self.problems[:MOST_PROBLEMS]), *[f"and {more} more"][: max(more, 0)]])
 
 
 def as_toml(value: object) -> str:
@@ -82,7 +87,11 @@ def shown(value: object) -> str:
         text = as_toml(value)
     except (ValueError, RecursionError):  # an integer of thousands of digits; nesting without end
         return "…"
-    return text if len(text) <= SHOWN_LENGTH else text[: SHOWN_LENGTH - 1] + "…"
+    return _cut(text, SHOWN_LENGTH)
+
+
+def _cut(text: str, most: int) -> str:
+    return text if len(text) <= most else text[: most - 1] + "…"
 
 
 def as_key(key: str) -> str:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
+from contact1d.files import read_text
 from contact1d.workflow.scene.profiles import FEWEST_POINTS
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
 
@@ -18,6 +19,8 @@ SIDES = ("x",)
 HEIGHTS = ("z", "h", "height", "heights")
 NAME = re.compile(r"([^\W_]+)\s*(?:\[(.*)\]|\((.*)\)|/\s*(.+)|_(\w+)|\sin\s+(.+)|)$")
 MODEL = "LU"
+MOST_LINES = 100_000
+"""Lines of a file: a scene with as many points takes ten seconds to run."""
 FORM = "name the radius r and the height z, with units if they have any (r [µm], z [µm])"
 PLACE_DIFFERENCE = 1e-3
 """Places left and right count as the same up to this share of the mean step."""
@@ -50,8 +53,9 @@ def read_profile(path: Path, scale: object = None) -> tuple[dict[str, list[float
         scale: size of one unit of its numbers by the scene: None, a number [LU], or "1 µm".
 
     Raises:
-        ProfileFileError: if there is no such file, a cell is empty or no number, a line has one column, there are
-            fewer than FEWEST_POINTS points, names are not known, or the two sides of a profile are not the same.
+        UnreadableError: if there is no such file, or it is no text.
+        ProfileFileError: if it has more than MOST_LINES, a cell is empty or no number, a line has one column, there
+            are fewer than FEWEST_POINTS points, names are not known, or the two sides of a profile are not the same.
         ScaleError: a scale that is no size, too large, or beside units of the file's own.
     """
     header, rows = _header(path.name, _rows(path))
@@ -96,16 +100,9 @@ def _scaled(
 
 def _rows(path: Path) -> list[Row]:
     """The lines that have content, each with its number, as cells."""
-    try:
-        lines = path.read_bytes().decode("utf-8-sig").splitlines()
-    except FileNotFoundError:
-        raise ProfileFileError(f"there is no file {path}") from None
-    except UnicodeDecodeError:
-        raise ProfileFileError(f"{path} is no text (UTF-8); save it as CSV in UTF-8") from None
-    except OSError as error:
-        raise ProfileFileError(f"{path} cannot be read: {error.strerror}") from None
-    except ValueError:
-        raise ProfileFileError("is no name that a file can have") from None
+    lines = read_text(path).splitlines()
+    if len(lines) > MOST_LINES:
+        raise ProfileFileError(f"{path} has {len(lines)} lines, and at most {MOST_LINES} are read; thin it out")
     full = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
     if full and re.fullmatch(r"sep=.", full[0][1].strip()):
         del full[0]

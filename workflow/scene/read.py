@@ -12,9 +12,10 @@ from typing import Any
 
 from pydantic import ConfigDict
 
+from contact1d.files import UnreadableError, read_text
 from contact1d.workflow.scene.check import FILE, PROFILE, UNIT_KEYS, Conversion, PointsFile, check_tables, mend_words
 from contact1d.workflow.scene.problems import Problem, SceneError, nearest, path_of, shown
-from contact1d.workflow.scene.profile_file import ProfileFileError, ScaleError, read_profile
+from contact1d.workflow.scene.profile_file import ScaleError, read_profile
 from contact1d.workflow.scene.quantities import Table, keys_of
 from contact1d.workflow.scene.rules import check_fit
 from contact1d.workflow.scene.si_text import split
@@ -23,6 +24,11 @@ from contact1d.workflow.units import SI
 
 IN_MODEL_UNITS = re.compile(r"[1-9][-+.\de]* \((LU|FU)")
 """A number in them, in a message."""
+DEEPEST = 100
+"""Levels of tables and lists in a scene."""
+TOO_DEEP = f"tables or lists are nested more than {DEEPEST} deep; look for a dot or a bracket too many"
+LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')\s*+\.\s*+){{{DEEPEST}}}""")
+"""A dotted key that is deeper: tomllib takes minutes for it."""
 MEANING = {
     "Cannot overwrite a value": "this key is given twice",
     "Cannot declare": "this table is given twice",
@@ -112,20 +118,10 @@ def read_tables(source: str | PathLike[str]) -> dict[str, Any]:
         raise SceneError([Problem("scene", f"must be a path, TOML text, tables or a Scene, not {given}")])
     if _is_text(source):
         return _tables(str(source), "scene")
-    path = fspath(source)
     try:
-        text = FilePath(path).read_bytes().decode("utf-8-sig")
-    except FileNotFoundError as error:
-        raise SceneError([Problem(path, "no such file")]) from error
-    except IsADirectoryError as error:
-        raise SceneError([Problem(path, "is a directory", hint="name the scene file in it")]) from error
-    except UnicodeDecodeError as error:
-        line = error.object[: error.start].count(b"\n") + 1
-        raise SceneError([Problem(f"{path}, line {line}", "not UTF-8 text", hint="save it as UTF-8")]) from error
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise SceneError([Problem(path, f"cannot be read: {reason}")]) from error
-    return _tables(text, path)
+        return _tables(read_text(FilePath(source)), fspath(source))
+    except UnreadableError as error:
+        raise SceneError([Problem(*error.args)]) from error
 
 
 def _is_text(source: object) -> bool:
@@ -214,7 +210,7 @@ def _with_points(data: dict[str, Any], folder: FilePath) -> tuple[PointsFile | N
             points, units = read_profile(folder / file, scale)
             profile |= points
             return PointsFile(file, units), []
-        except (ProfileFileError, ScaleError) as error:
+        except ValueError as error:
             message, hint, key = str(error), "", "scale" if isinstance(error, ScaleError) else "file"
     problem = Problem(f"bodies.profile.{key}", message, shown(scale if key == "scale" else file), hint)
     profile |= {"r": [0.0, 1.0, 2.0, 3.0], "z": [0.0, 1.0, 4.0, 9.0]}  # so that the rest of the scene is still checked
@@ -275,7 +271,7 @@ def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
 
 def _set(data: dict[str, Any], path: str, value: Any, where: str, form: str) -> list[Problem]:
     keys = [key.strip() for key in path.split(".")]
-    if not all(re.fullmatch(r"[A-Za-z0-9_-]+", key) for key in keys):
+    if len(keys) > DEEPEST or not all(re.fullmatch(r"[A-Za-z0-9_-]+", key) for key in keys):
         return [Problem(where, "not a path of keys", hint=form)]
     table = data
     for depth, key in enumerate(keys[:-1], start=1):
@@ -299,17 +295,19 @@ def _listed(words: Iterable[str]) -> list[str]:
     return [words] if isinstance(words, str) else list(words)
 
 
-def plain_data(value: Any) -> Any:
-    """A copy of `value` in dicts and lists, without keys that hold None."""
+def plain_data(value: Any, levels: int = DEEPEST) -> Any:
+    """A copy of `value` in dicts and lists, without keys that hold None. Raises SceneError below so many `levels`."""
+    if not levels:
+        raise SceneError([Problem("scene", TOO_DEEP)])
     if isinstance(value, Table):
         chosen = {"reduction"} - value.model_fields_set  # anew: what changes may change it
         value = {name: getattr(value, key.field) for name, key in keys_of(type(value)).items() if name not in chosen}
     if isinstance(value, Mapping):
-        return {str(key): plain_data(item) for key, item in value.items() if item is not None}
+        return {str(key): plain_data(item, levels - 1) for key, item in value.items() if item is not None}
     if isinstance(value, list | tuple):
-        return [plain_data(item) for item in value]
+        return [plain_data(item, levels - 1) for item in value]
     if hasattr(value, "tolist"):  # numpy's arrays and numbers
-        return plain_data(value.tolist())
+        return plain_data(value.tolist(), levels)
     return value
 
 
@@ -325,11 +323,13 @@ def _rank(problem: Problem) -> int:
 def _tables(text: str, path: str) -> dict[str, Any]:
     """TOML text as a dict; `path` is where it is from. Raises SceneError with one problem."""
     try:
-        return tomllib.loads(text)
+        if not LONG_KEY.search(text):
+            return dict(plain_data(tomllib.loads(text)))
     except ValueError as error:
         raise SceneError([_syntax_problem(path, text, str(error))]) from error
-    except RecursionError as error:
-        raise SceneError([Problem(path, "lists or tables are nested too deeply")]) from error
+    except RecursionError:
+        pass
+    raise SceneError([Problem(path, TOO_DEEP)])
 
 
 def _syntax_problem(path: str, text: str, reason: str) -> Problem:

@@ -20,7 +20,7 @@ import numpy as np
 
 from contact1d.workflow.scene import Problem, Scene, SceneError, read_tables, scene_from_dict
 from contact1d.workflow.scene.problems import nearest, shown
-from contact1d.workflow.scene.read import set_values
+from contact1d.workflow.scene.read import plain_data, set_values
 from contact1d.workflow.scene.si_text import UnitTextError, split
 
 AnySweep = str | PathLike[str] | Mapping[str, Any]
@@ -113,7 +113,7 @@ def read_sweep(source: AnySweep) -> SweepPlan:
     Raises:
         SceneError: every problem of the sweep file; or those of the base scene's file, if it can't be read.
     """
-    tables = dict(source) if isinstance(source, Mapping) else read_tables(source)
+    tables = plain_data(source) if isinstance(source, Mapping) else read_tables(source)
     folder = Path.cwd() if isinstance(source, Mapping) else Path(source).parent
     title, combine, given = tables.get("title", ""), tables.get("combine", "product"), tables.get("axes")
     scene, base = tables.get("scene"), tables.get("base")
@@ -240,7 +240,7 @@ def points(plan: SweepPlan) -> Iterator[Point]:
         try:
             scene = _scene(plan, values)
         except SceneError as error:
-            yield Point(values, None, "", "; ".join(str(problem) for problem in error.problems))
+            yield Point(values, None, "", str(error).replace("\n", "; "))
         else:
             yield Point(values, scene, name_of(scene))
 

@@ -82,8 +82,7 @@ def lines_of(folder: Path, plan: SweepPlan, names: Iterable[str]) -> dict[str, l
         for name in known:
             if row[name]:
                 known[name][labels][place].append((float(row[name]), float(row[f"{name}_uncertainty"])))
-        document = document_in(folder / row["run"]) if row["status"] == "done" else None
-        for form in (document or {}).get("theory", ()):
+        for form in document_in(folder / row["run"]).get("theory", ()):
             for name, entry in form["values"].items():
                 said[name][labels][form["name"]][place] = entry["value"]
     return {

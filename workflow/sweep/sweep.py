@@ -5,7 +5,6 @@ What is done is told by the run folders alone, so a sweep that was broken off at
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from contextlib import AbstractContextManager, contextmanager, nullcontext
@@ -24,6 +23,7 @@ from contact1d.workflow.errors import Contact1dError, FolderError
 from contact1d.workflow.model.settings import SettingsError
 from contact1d.workflow.runs.campaign import LOCK, AnyPath, alone, run
 from contact1d.workflow.runs.processors import cores, pool
+from contact1d.workflow.runs.report import RESULTS
 from contact1d.workflow.scene import Scene, SceneError
 from contact1d.workflow.scene.problems import as_toml
 from contact1d.workflow.sweep.axes import AnySweep, SweepPlan, points, read_sweep, require_keys
@@ -34,6 +34,7 @@ from contact1d.workflow.sweep.table import (
     Answer,
     answer_in,
     counts_in,
+    read_record,
     write_parquet,
     write_table,
 )
@@ -86,8 +87,8 @@ def sweep(
     folder = Path(folder).absolute()
     workplace = workplace_of(executor, workers, folder, partition)
     record = _record(plan)
-    _require_own(folder, record)
     progress = progress or Silent()
+    _require_own(folder, record, progress)
     rows: list[str | Answer] = []
     answers: dict[str, Answer] = {}
     with alone(folder, "a sweep is at work in"):
@@ -116,19 +117,24 @@ def _record(plan: SweepPlan) -> str:
     return f"{head}{axes}\n[base]\n{base}"
 
 
-def _same(record: str, other: str) -> bool:
-    """Whether base scene and keys of the axes are the same. Values may be added."""
-    plans = [read_sweep(tomllib.loads(text)) for text in (record, other)]
+def _same(folder: Path, record: str, progress: Progress) -> bool:
+    """Whether base scene and keys of the axes are the same. Values may be added; a broken record is replaced."""
+    try:
+        plans = [read_record(folder), read_sweep(record)]
+    except FolderError:
+        if own := (folder / RUNS).is_dir():
+            progress.note(f"{folder / RECORD} is no record of a sweep and is replaced")
+        return own
     one, two = ((plan.base, [axis.key for axis in plan.axes]) for plan in plans)
     return one == two
 
 
-def _require_own(folder: Path, record: str) -> None:
+def _require_own(folder: Path, record: str, progress: Progress) -> None:
     """Make the folder, or see that it is this sweep's."""
     if folder.is_file():
         raise FolderError(f"{folder} is a file; a sweep needs a folder")
     if (folder / RECORD).is_file():
-        if not _same((folder / RECORD).read_text(encoding="utf-8"), record):
+        if not _same(folder, record, progress):
             raise FolderError(
                 f"{folder} holds another sweep: its base scene or the keys of its axes differ; choose another folder"
             )
@@ -149,6 +155,8 @@ def _missing(plan: SweepPlan, folder: Path, rows: list[str | Answer], progress: 
             rows.append(point.name)
             if point.name not in seen and answer_in(folder, point.name) is None:
                 seen.add(point.name)
+                if (folder / RUNS / point.name / RESULTS).exists():
+                    progress.note(f"{point.name}: its {RESULTS} is not that of a run, so it is run again")
                 yield point.scene, folder / RUNS / point.name
                 continue
         progress.advance(1)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -11,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from contact1d.files import whole
-from contact1d.workflow.errors import Contact1dError
-from contact1d.workflow.runs.report import RESULTS
+from contact1d.workflow.errors import Contact1dError, FolderError
+from contact1d.workflow.runs.report import quantities_in, read_results
+from contact1d.workflow.scene import SceneError
 from contact1d.workflow.scene.problems import as_toml
-from contact1d.workflow.units import numbers_in
+from contact1d.workflow.sweep.axes import SweepPlan, read_sweep
 
 RECORD = "sweep.toml"
 """The sweep, as it ran last."""
@@ -42,10 +42,9 @@ class Answer:
 def answer_in(folder: Path, name: str) -> Answer | None:
     """What the run of that name in a sweep's folder says; None where none came to its end there."""
     document = document_in(folder / RUNS / name)
-    if document is None:
+    if not document:
         return None
-    status = str(document["status"])
-    return Answer(status, "" if status == "done" else str(document["error"]["message"]), f"{RUNS}/{name}")
+    return Answer(document["status"], document.get("error", {}).get("message", ""), f"{RUNS}/{name}")
 
 
 def write_table(
@@ -67,8 +66,8 @@ def write_table(
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow([*axes, *FIXED, *numbers])
         for values, answer in rows():
-            known = _quantities(folder, answer)
-            cells = [known[name][key] if name in known else "" for name in units for key in ("value", "uncertainty")]
+            known = quantities_in(document_in(folder / answer.run))
+            cells = [known.get(name, {}).get(key) for name in units for key in ("value", "uncertainty")]
             writer.writerow([*map(cell, values), answer.status, answer.reason, answer.run, *cells])
     return units
 
@@ -89,18 +88,20 @@ def write_parquet(folder: Path) -> None:
         parquet.write_table(arrow.read_csv(folder / TABLE), part)
 
 
-def _quantities(folder: Path, answer: Answer) -> dict[str, dict[str, Any]]:
-    document = document_in(folder / answer.run) if answer.status == "done" else None
-    return numbers_in(document or {})
-
-
-def document_in(folder: Path) -> dict[str, Any] | None:
-    """What results.json in a run folder holds; None where it can't be read."""
+def document_in(folder: Path) -> dict[str, Any]:
+    """What results.json in a run folder holds; nothing where it can't be read."""
     try:
-        document: dict[str, Any] = json.loads((folder / RESULTS).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    return document
+        return read_results(folder)
+    except FolderError:
+        return {}
+
+
+def read_record(folder: Path) -> SweepPlan:
+    """The sweep in a folder, as it ran last. Raises FolderError."""
+    try:
+        return read_sweep(folder / RECORD)
+    except SceneError:
+        raise FolderError(f"{folder / RECORD} is no record of a sweep: start the sweep again") from None
 
 
 def units_in(folder: Path) -> dict[str, str]:
@@ -111,7 +112,7 @@ def units_in(folder: Path) -> dict[str, str]:
 def _units(folder: Path, answers: Iterable[Answer]) -> dict[str, str]:
     units: dict[str, str] = {}
     for answer in answers:
-        for name, entry in _quantities(folder, answer).items():
+        for name, entry in quantities_in(document_in(folder / answer.run)).items():
             units.setdefault(name, str(entry["unit"]))
     return units
 
