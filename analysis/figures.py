@@ -221,7 +221,7 @@ def tangential_figure(columns: Mapping[str, Array], branches: NDArray[np.str_], 
     Args:
         columns: of curve.csv, `tangential_displacement`, `tangential_force`, `normal_force`.
         branches: "forward" or "backward" of each row.
-        theory: F_x [FU] of Cattaneo and Mindlin, (n,).
+        theory: u [LU] and F_x [FU] of Cattaneo and Mindlin along the path, (2, n).
     """
     u, force, load = (columns[f"{name}"] for name in ("tangential_displacement", "tangential_force", "normal_force"))
     varies = float(np.ptp(load)) > 1e-9 * float(np.max(np.abs(load)))
@@ -234,7 +234,7 @@ def tangential_figure(columns: Mapping[str, Array], branches: NDArray[np.str_], 
             label = branch if part[0] == lines[0] else None
             _line(axis, u[rows], force[rows], FEW_ALONG, color=colour, linewidth=2.6, label=label)
     if theory is not None:
-        beside(axis, ("Cattaneo–Mindlin", u, theory))
+        beside(axis, ("Cattaneo–Mindlin", *theory))
     describe(axis, y="tangential force (FU)")
     axis.margins(y=0.09)
     legend(axis, size=None)

@@ -1,4 +1,4 @@
-"""Closed forms that users see beside the results: contact with adhesion, other shapes, friction, and Tabor's map.
+"""Closed forms that users see beside the results: contact with adhesion, other shapes, friction, and the map of adhesion theories.
 
 `indenters` (Hertz, JKR and other shapes), `adhesion` (DMT, Maugis and Dugdale, which theory is valid), `mindlin`.
 """

@@ -1,15 +1,15 @@
 """Which theory of an adhesive sphere holds, and those of an attraction with a range: DMT, Maugis and Dugdale.
 
-Tabor's mu = (R W^2/(E*^2 z_0^3))^(1/3) is the elastic stretch of the surfaces before they part over the range z_0 of
-the attraction: JKR (`indenters`) holds for a large one, DMT for a small one, Maugis and Dugdale between the two. The
-map is that of K. L. Johnson, J. A. Greenwood, J. Colloid Interface Sci. 192 (1997) 326, after D. Tabor, ibid. 58 (1977)
-2: the zones are theirs. Their figure was not at hand: each boundary is a criterion written out below, not read off it,
-and how small is negligible is a convention in all but one. The lines mu = 5 (JKR) and mu = 0.1 (DMT) are common usage
-and independent of the load, which the criteria behind them are not. What they cost, against Maugis and Dugdale: at mu =
-5 JKR's contact radius is 0.7 % too large at F = 0 and its pull-off 0.3 % too small; at mu = 0.1 DMT's radius is 6 % too
-small at F = 0 (8 % at -pi W R, 2 % at 40 pi W R) and its pull-off 3 % too large. The rest is computed, with 5 % as
-negligible: the compression over z_0 for the rigid sphere, the load that attraction adds over F for Hertz. F positive in
-compression; a << R. Any consistent units.
+The Tabor parameter mu = (R W^2/(E*^2 z_0^3))^(1/3) is the elastic stretch of the surfaces before they part over the
+range z_0 of the attraction: JKR (`indenters`) holds for a large one, DMT for a small one, Maugis and Dugdale between
+the two. The map is that of K. L. Johnson, J. A. Greenwood, J. Colloid Interface Sci. 192 (1997) 326, after D. Tabor,
+ibid. 58 (1977) 2: the zones are theirs. Their figure was not at hand: each boundary is a criterion written out below,
+not read off it, and how small is negligible is a convention in all but one. The lines mu = 5 (JKR) and mu = 0.1 (DMT)
+are common usage and independent of the load, which the criteria behind them are not. What they cost, against Maugis and
+Dugdale: at mu = 5 JKR's contact radius is 0.7 % too large at F = 0 and its pull-off 0.3 % too small; at mu = 0.1 DMT's
+radius is 6 % too small at F = 0 (8 % at -pi W R, 2 % at 40 pi W R) and its pull-off 3 % too large. The rest is
+computed, with 5 % as negligible: the compression over z_0 for the rigid sphere, the load that attraction adds over F
+for Hertz. F positive in compression; a << R. Any consistent units.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from contact1d.analysis.theory.indenters import Contact, PowerLaw, require_posit
 LENNARD_JONES_STRESS = 16.0 / (9.0 * math.sqrt(3.0))
 """1.026: the largest tension of the 9-3 surface law of Lennard-Jones over W/z_0; taken as sigma_0."""
 LAMBDA_OVER_TABOR = 2.0 * LENNARD_JONES_STRESS * math.cbrt(9.0 / (16.0 * math.pi))
-"""1.157: lambda over Tabor's mu, for the sigma_0 of Lennard-Jones."""
+"""1.157: lambda over the Tabor parameter mu, for the sigma_0 of Lennard-Jones."""
 LARGEST_CRITICAL_RADIUS = 1.5
 """A above that of every pull-off: JKR's, the largest, is (3/2)^(1/3) = 1.145."""
 ROOT = 4.0 * np.finfo(np.float64).eps
@@ -268,10 +268,10 @@ def valid_theory(tabor: float, reduced_load: float) -> Verdict:
                 Theory.HERTZ, f"attraction adds {share:.1%} to the load, less than {HERTZ_ADHESION_SHARE:.0%}"
             )
     if usual is Theory.JKR and reduced_load >= -jkr:
-        return Verdict(usual, f"Tabor's number {tabor:.3g} is above {JKR_TABOR:g}: the range is negligible")
+        return Verdict(usual, f"{tabor:.3g} is above {JKR_TABOR:g}: the range is negligible")
     if usual is Theory.DMT:
-        return Verdict(usual, f"Tabor's number {tabor:.3g} is below {DMT_TABOR:g}: attraction deforms little")
-    reason = f"Tabor's number {tabor:.3g} is between {DMT_TABOR:g} and {JKR_TABOR:g}: neither DMT nor JKR"
+        return Verdict(usual, f"{tabor:.3g} is below {DMT_TABOR:g}: attraction deforms little")
+    reason = f"{tabor:.3g} is between {DMT_TABOR:g} and {JKR_TABOR:g}: neither DMT nor JKR"
     if usual is Theory.JKR:
         reason = "the tension exceeds JKR's pull-off force, 1.5 πWR, and not yet that of a finite range"
     return Verdict(Theory.MAUGIS, reason)

@@ -44,6 +44,9 @@ def test_the_slider_moves_force_profile_and_words_by_mouse_and_keyboard(browser:
     )
     page.goto(address)
     assert page.locator(".js-plotly-plot").count() >= 5
+    titles = page.locator(".modebar-btn").evaluate_all("buttons => buttons.map(one => one.dataset.title)")
+    assert titles
+    assert not [title for title in titles if "share" in str(title).lower()], "a chart would be uploaded"
 
     def state() -> tuple[Any, ...]:
         return (

@@ -166,7 +166,7 @@ def test_the_like_of_jkr_beside_other_profiles(profile: str, name: str) -> None:
 
 
 def test_maugis_and_dugdale_beside_a_range() -> None:
-    """At Tabor's number 50 they are JKR within 1 %; at 0.5 they are not, and DMT's pull-off is nearer."""
+    """At the Tabor parameter 50 they are JKR within 1 %; at 0.5 they are not, and DMT's pull-off is nearer."""
     work = 0.01
     for tabor, factor in ((50.0, 1.5), (0.05, 2.0)):
         span = (R * (work / E) ** 2) ** (1.0 / 3.0) / tabor
@@ -176,7 +176,7 @@ def test_maugis_and_dugdale_beside_a_range() -> None:
         of = Case(scene_from_dict(scene), {})
         jkr, maugis = applying(of)
         assert maugis.name == "Maugis and Dugdale"
-        assert f"Tabor's number is {tabor:.3g}" in maugis.applies(of)
+        assert f"the Tabor parameter is {tabor:.3g}" in maugis.applies(of)
         assert maugis.values(of)["adhesion_force"] == pytest.approx(factor * math.pi * work * R, rel=LIMIT)
         near = abs(maugis.values(of)["zero_load_radius"] / jkr.values(of)["zero_load_radius"] - 1.0) < LIMIT
         assert near == (tabor > 5.0)

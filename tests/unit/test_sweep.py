@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -66,6 +67,8 @@ class Notes(Silent):
         self.notes.append(text)
 
 
+SCENE = Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "steel_on_glass.toml"
+MODULUS = 1.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.22**2) / 70e9)
 TWO = plane(axis(FORCE, 0.5, 1.0))
 
 
@@ -247,3 +250,16 @@ def test_a_sweep_that_is_killed_at_any_moment_goes_on(tmp_path: Path) -> None:
     sweep(source, tmp_path / "whole", Here(), figures=False)
     assert (tmp_path / "s" / TABLE).read_text() == (tmp_path / "whole" / TABLE).read_text()
     assert all(path.stat().st_mtime_ns == stamp for path, stamp in stamps.items())
+
+
+def test_the_table_is_a_data_frame_of_numbers_whose_axes_have_one_unit(tmp_path: Path) -> None:
+    """A radius in mm, from a logarithmic row of texts, and forces in N."""
+    radius = {"key": "bodies.profile.radius", "from": "1 mm", "to": "10 mm", "steps": 2, "scale": "log"}
+    axes = [radius, {"key": "experiment.force", "values": ["1 N", "2 N"]}]
+    plan = {"title": "table", "scene": str(SCENE), "axes": axes}
+    table = sweep(plan, tmp_path / "s", figures=False).table()
+    assert table["bodies.profile.radius"].tolist() == pytest.approx(np.repeat([1.0, 10.0**0.5, 10.0], 2).tolist())
+    assert table["experiment.force"].tolist() == [1.0, 2.0] * 3
+    assert table.attrs["units"]["bodies.profile.radius"] == "mm"
+    hertz = (0.75 * table["experiment.force"] * 1e-3 * table["bodies.profile.radius"] / MODULUS) ** (1.0 / 3.0)
+    assert table["contact_radius"].tolist() == pytest.approx(hertz.tolist(), rel=3e-3)  # 5 to 27 particles in it

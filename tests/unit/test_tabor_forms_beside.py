@@ -1,4 +1,4 @@
-"""Claim: beside a sphere that an interaction holds stands the theory that Tabor's μ calls for.
+"""Claim: beside a sphere that an interaction holds stands the theory that the Tabor parameter μ calls for.
 
 References: the limits of Maugis and Dugdale, JKR's F_A = 1.5 πWR and a₀³ = 4.5 πWR²/E*, DMT's 2 and 1.5.
 """
@@ -29,7 +29,7 @@ def said(case: Case) -> dict[str, float]:
 
 
 def of_interaction(mu: float, **bodies: Any) -> Case:
-    """Two chains of which the implied W is such that Tabor's number is `mu`."""
+    """Two chains of which the implied W is such that the Tabor parameter is `mu`."""
     asked = scene_from_dict(chains(R, experiment=PULL, bodies={"reduction": "mdr"} | bodies))
     one = Case(asked, {"work_of_adhesion": Quantity(1.0, 0.0, "FU/LU")})
     at_one = tabor(one)

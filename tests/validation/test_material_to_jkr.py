@@ -149,7 +149,7 @@ def test_one_command_prints_the_run_beside_the_theories(tmp_path: Path, monkeypa
     )
     done = CliRunner().invoke(app, ["identify", "silica.toml"])
     assert done.exit_code == 0, done.stderr
-    assert "Tabor's μ = 1.1, Maugis-Dugdale" in done.stdout
+    assert "Tabor parameter μ = 1.1, Maugis-Dugdale" in done.stdout
     (force,) = (line for line in done.stdout.splitlines() if "2.356 µN" in line and "3.142 µN" in line)
     assert "2.468 µN" in force
     assert "warning tabor:" in done.stderr

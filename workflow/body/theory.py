@@ -1,8 +1,8 @@
 """The closed forms beside the results of a run: one table, each with when it applies and what it says of the results.
 
 Pressed without adhesion: Hertz, Sneddon, Galin. Adhesive on a plane: JKR and its like for other profiles, Maugis and
-Dugdale with a range. A sphere that an interaction holds: JKR, Maugis and Dugdale or DMT by Tabor's µ. Drawn along a
-plane with friction: Cattaneo and Mindlin.
+Dugdale with a range. A sphere that an interaction holds: JKR, Maugis and Dugdale or DMT by the Tabor parameter.
+Tangential displacement with friction: Cattaneo and Mindlin.
 
 results.json has them as `theory`: a list of {"name", "source", "applies", "values"}; of each result in `values` the
 closed form's "value" and "unit", with known units "si", and "deviation", the run's value over it minus 1.
@@ -298,7 +298,7 @@ def _with_a_range(case: Case) -> str:
     mu = tabor(case)
     if mu is None or case.scene.adhesion is None or case.kind != "parabola":
         return ""
-    return f"a paraboloid with a range; Tabor's number is {mu:.3g}, where {valid_theory(mu, 0.0).theory} holds"
+    return f"a paraboloid with a range; the Tabor parameter is {mu:.3g}, where {valid_theory(mu, 0.0).theory} holds"
 
 
 def _by_tabor(theory: Theory) -> Callable[[Case], str]:
@@ -309,7 +309,7 @@ def _by_tabor(theory: Theory) -> Callable[[Case], str]:
         sphere = case.kind == "parabola" and scene.bodies.reduction == "mdr" and scene.adhesion is None
         if mu is None or not sphere or scene.neighbours or scene.noise or of_tabor(mu) is not theory:
             return ""
-        return f"Tabor's μ = {mu:.3g}, with the W that the interaction implies and its force-free distance as range"
+        return f"the Tabor parameter μ = {mu:.3g}, of the implied W and the force-free distance"
 
     return applies
 

@@ -140,7 +140,7 @@ def regime(found: MaterialRun) -> Iterator[str]:
         said.append(f"load {prefixed(contact.load, 'N')}")
     yield f"  {', '.join(said)}"
     if theories is not None:
-        yield f"  Tabor's μ = {theories.tabor:.3g}, {theories.verdict.theory}: {theories.verdict.reason}"
+        yield f"  Tabor parameter μ = {theories.tabor:.3g}, {theories.verdict.theory}: {theories.verdict.reason}"
     material = found.scene.material
     assert material is not None
     assert material.length_unit is not None

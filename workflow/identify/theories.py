@@ -86,7 +86,7 @@ class Theories:
 
 
 LEAST_TABOR = 0.5
-"""Tabor's μ below which no chain is offered: JKR's F_A is there 10 % below that of Maugis and Dugdale."""
+"""Tabor parameter μ below which no chain is offered: JKR's F_A is there 10 % below that of Maugis and Dugdale."""
 ATOM = 0.3e-9
 """Diameter of an atom [m]: a contact that is narrower is none of a continuum."""
 ROUGH_SHARE, TOO_ROUGH_SHARE = 0.1, 1.0
@@ -122,8 +122,8 @@ def judged(contact: AskedContact, theories: Theories) -> dict[str, str]:
         doubts["roughness"] = f"{beside} at which the contact parts: it holds less than a smooth sphere's"
     if theories.holding != "JKR":
         doubts["tabor"] = (
-            f"{theories.verdict.reason}. The scene has JKR's law, whose pull-off force is {-theories.jkr_error:.1%} "
-            f"below that of {theories.holding} with this range"
+            f"the Tabor parameter {theories.verdict.reason}. The scene has JKR's law, whose pull-off force is "
+            f"{-theories.jkr_error:.1%} below that of {theories.holding} with this range"
         )
     return doubts
 
@@ -139,8 +139,8 @@ def _no_chain(theories: Theories) -> str:
         )
         between += "Maugis and Dugdale, between it and JKR"
     return (
-        f"DMT holds, and no chain stands for it: Tabor's μ is {theories.tabor:.2g}, so that the attraction reaches "
-        f"farther than it stretches the bodies. F_A = 2πWR = {prefixed(dmt, 'N')}, a_0 = "
+        f"DMT holds, and no chain stands for it: the Tabor parameter μ is {theories.tabor:.2g}, so that the attraction "
+        f"reaches farther than it stretches the bodies. F_A = 2πWR = {prefixed(dmt, 'N')}, a_0 = "
         f"{prefixed(theories.values['DMT']['zero_load_radius'], 'm')}{between}. A chain would have JKR's F_A, "
         f"{prefixed(jkr, 'N')}, which is {-theories.jkr_error:.0%} too small here; from μ = {LEAST_TABOR:g} on there "
         "is a scene"

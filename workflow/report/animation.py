@@ -16,7 +16,7 @@ from contact1d.analysis.plots import COMPRESSION, DPI, TENSION, describe, panels
 from contact1d.files import whole, write_whole
 from contact1d.workflow.deck.steps import STATES
 from contact1d.workflow.errors import Contact1dError, FolderError
-from contact1d.workflow.report.charts import main_curve, rows_of_branches, window
+from contact1d.workflow.report.charts import legs_of, main_curve, window
 from contact1d.workflow.runs.campaign import AnyPath
 from contact1d.workflow.runs.finished import Run, load_run
 
@@ -132,7 +132,7 @@ def _segments(x: NDArray[np.float32], z: NDArray[np.float32], length: float) -> 
 def _trace(axis: Axes, run: Run, states: States) -> Callable[[int], list[Any]]:
     """The main curve with a mark; returns what moves it."""
     main = main_curve(run)
-    for rows in rows_of_branches(run.curve.branch, main.x).values():
+    for _, rows in legs_of(run, main.x):
         axis.plot(main.x[rows], main.y[rows], color=COMPRESSION, linewidth=1.2)
     describe(axis, main.x_name, main.y_name)
     (mark,) = axis.plot([], [], "o", color=TENSION, markersize=8)

@@ -118,9 +118,11 @@ def curves(runs: Mapping[str, Run]) -> list[Chart]:
             if one.branch is None:
                 traces.append(trace(one.x, one.y, name, colour, one.mode))
                 continue
-            for (branch, rows), dash in zip(rows_of_branches(one.branch, one.x).items(), cycle(DASHES), strict=False):
+            dashes = dict(zip(dict.fromkeys(one.branch.tolist()), cycle(DASHES), strict=False))
+            for i, (branch, rows) in enumerate(legs_of(run, one.x)):
                 label = branch if len(runs) == 1 else f"{name}, {branch}"
-                made = trace(one.x[rows], one.y[rows], label, colour, one.mode, dash=dash)
+                made = trace(one.x[rows], one.y[rows], label, colour, one.mode, dash=dashes[branch])
+                made |= {"legendgroup": label, "showlegend": i < len(dashes)}
                 hover = f"{_with_value(one.x_name, '%{x:.5g}')}<br>force %{{y:.5g}} FU<br>state %{{customdata}}"
                 traces.append(made | {"customdata": rows.tolist(), "hovertemplate": hover})
     return list(found.values())
@@ -157,8 +159,7 @@ def way(run: Run, states: States) -> dict[str, Any]:
         touching = "" if math.isnan(radius) else f", contact radius {radius:.4g} LU"
         place = f"{_with_value(main.x_name, x)}, {_with_value(main.y_name, y)}"
         words.append(f"{place}, {curve.branch[row]}{touching}")
-    gap, branches = [-1], rows_of_branches(curve.branch, main.x).values()
-    order = np.concatenate([[*rows, *gap] for rows in branches])
+    order = np.concatenate([[*rows, -1] for _, rows in legs_of(run, main.x)])
     line = trace(np.append(main.x, math.nan)[order], np.append(main.y, math.nan)[order], "", "#999999", "lines")
     mark = {"x": [], "y": [], "mode": "markers", "marker": {"size": 12, "color": COLOURS[1]}}
     load = [_filled("pressure", COLOURS[0], shape="hvh"), _filled("shear", COLOURS[1], shape="hvh")]
@@ -188,13 +189,17 @@ def _with_value(name: str, value: str) -> str:
     return f"{quantity} {value} {rest.partition(')')[0]}"
 
 
-def rows_of_branches(branch: NDArray[np.str_], along: Array) -> dict[str, NDArray[np.int64]]:
-    """The rows of each branch, by name, in the order of the places `along`: a search goes to and fro."""
-    found = {}
-    for name in dict.fromkeys(branch.tolist()):
-        rows = np.flatnonzero(branch == name)
-        found[name] = rows[np.argsort(along[rows], kind="stable")]
-    return found
+def legs_of(run: Run, along: Array) -> list[tuple[str, NDArray[np.int64]]]:
+    """Name and rows of each leg of a prescribed path, which begins where the one before it ends.
+
+    Otherwise of each branch, in the order of the positions `along`: a search goes to and fro.
+    """
+    branch, kind = run.curve.branch, run.scene.experiment
+    if not (kind.way_is_given or kind.goes_along):
+        rows = [np.flatnonzero(branch == name) for name in dict.fromkeys(branch.tolist())]
+        return [(str(branch[part[0]]), part[np.argsort(along[part], kind="stable")]) for part in rows]
+    parts = np.split(np.arange(branch.size), np.flatnonzero(branch[1:] != branch[:-1]) + 1)
+    return [(str(branch[part[0]]), np.arange(max(part[0] - 1, 0), part[-1] + 1)) for part in parts]
 
 
 def window(states: States) -> tuple[float, NDArray[np.bool_]]:

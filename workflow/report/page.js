@@ -1,7 +1,7 @@
 "use strict";
 // Draws the figures of the page, and moves through the states of a run: profile, force and bodies together.
 const data = JSON.parse(document.getElementById("data").textContent);
-const config = { responsive: true, displaylogo: false };
+const config = { responsive: true, displaylogo: false, showSendToCloud: false };
 data.charts.forEach((chart, i) => Plotly.newPlot(`chart-${i}`, chart.data, chart.layout, config));
 
 if (data.way) {

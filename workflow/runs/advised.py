@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from weakref import finalize
 
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, RunError, SceneEdit, UntrustedError
@@ -29,7 +30,7 @@ Reader = Callable[[SceneEdit], Scene]
 
 def run(
     scene: AnyScene,
-    folder: campaign.AnyPath,
+    folder: campaign.AnyPath | None = None,
     figures: bool | str = True,
     progress: Progress | None = None,
     time_limit: float = campaign.TIME_LIMIT,
@@ -39,9 +40,15 @@ def run(
 ) -> Run:
     """As `workflow.runs.campaign.run`; where it fails, the first change that the error carries is tried.
 
-    Arguments and errors are the same; an error says whether the scene gives a result with that change.
+    Arguments and errors are the same; an error says whether the scene gives a result with that change. Without a
+    folder it is a temporary one, which is removed with the `Run`.
     """
     progress = progress or Silent()
+    if folder is None:
+        kept = TemporaryDirectory(prefix="contact1d-", ignore_cleanup_errors=True)
+        done = run(scene, Path(kept.name) / "run", figures, progress, time_limit, settings, workers, ranks)
+        finalize(done, kept.cleanup)
+        return done
 
     def edited(edit: SceneEdit) -> Scene:
         return read_scene(scene, overrides(edit), edit.without)

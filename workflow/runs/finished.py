@@ -55,6 +55,8 @@ MEASURED = ("sampling", "unloading", "pulling")
 Drawings = dict[str, Callable[[], "Figure"]]
 FINE = 300
 """Radii at which a closed form is drawn."""
+BETWEEN = 50
+"""Points of a closed form for each step of a path."""
 LEAST, LARGEST = 0.05, 1.3
 """Radii over a₀ from and to which JKR is drawn; on a plane from where fixed grips part."""
 SAME_LOAD = 1e-9
@@ -331,7 +333,7 @@ def _stick_slip(scene: Scene, profiles: Mapping[str, Profile], columns: Mapping[
 
 
 def _mindlin(scene: Scene, curve: Curve, columns: Mapping[str, Array]) -> Array | None:
-    """Cattaneo and Mindlin at the places of a parabola under one load; else None."""
+    """u and F_x of Cattaneo and Mindlin along the path of a parabola under one load, shape (2, n); else None."""
     places, loads = columns["tangential_displacement"], columns["normal_force"]
     if scene.bodies.plane_radius is None or scene.friction is None or not scene.friction.coefficient:
         return None
@@ -339,7 +341,9 @@ def _mindlin(scene: Scene, curve: Curve, columns: Mapping[str, Array]) -> Array 
         return None
     ratio, coefficient = scene.tangential_stiffness / scene.bulk_stiffness, scene.friction.coefficient
     sliding = sliding_displacement(coefficient, ratio, float(curve.displacement[0]))
-    return np.asarray(mindlin_path(places.tolist(), float(loads[0]), coefficient, sliding))
+    rows = np.arange(places.size)
+    dense = np.interp(np.linspace(0.0, rows[-1], 1 + BETWEEN * int(rows[-1])), rows, places)
+    return np.asarray([dense, mindlin_path(dense.tolist(), float(loads[0]), coefficient, sliding)])
 
 
 def _radius(scene: Scene, profile: Profile) -> float:

@@ -111,8 +111,8 @@ class Adhesion(Effect):
     surface_energy: LineEnergy | None = None
     """γ of one side, half the work of adhesion"""
     range: Length | None = None
-    """z₀ over which the surfaces attract, if known: the run has none, and beside its results stands by Tabor's
-    number how far a body of that range is from it
+    """z₀ over which the surfaces attract, if known: the run has none, and beside its results stands by the Tabor
+    parameter how far a body of that range is from it
     """
 
     @property

@@ -14,7 +14,7 @@ from itertools import chain, islice, repeat
 from pathlib import Path
 from shutil import which
 from subprocess import CalledProcessError
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings, simplefilter
 
 from contact1d.files import FULL_DISK, write_whole
@@ -31,6 +31,7 @@ from contact1d.workflow.sweep.table import (
     MANY_ROWS,
     RECORD,
     RUNS,
+    TABLE,
     Answer,
     answer_in,
     counts_in,
@@ -38,6 +39,9 @@ from contact1d.workflow.sweep.table import (
     write_parquet,
     write_table,
 )
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 Task = tuple[Scene, Path]
 
@@ -55,6 +59,23 @@ class Sweep:
     folder: Path
     counts: dict[str, int]
     quantities: Mapping[str, str]
+
+    def table(self) -> DataFrame:
+        """Return results.csv as a pandas.DataFrame; axes whose texts have one unit are numbers.
+
+        `.attrs["units"]` has the unit of each column that has one.
+        """
+        import pandas
+
+        found, units = pandas.read_csv(self.folder / TABLE), dict(self.quantities)
+        units |= {f"{name}_uncertainty": unit for name, unit in self.quantities.items()}
+        for axis in read_record(self.folder).axes:
+            numbers, unit = axis.numbers()
+            if unit:
+                found[axis.key] = found[axis.key].map(dict(zip(axis.values, numbers, strict=True)))
+                units[axis.key] = unit
+        found.attrs["units"] = units
+        return found
 
 
 def sweep(
