@@ -146,7 +146,7 @@ def friction_figure(columns: Mapping[str, Sequence[float] | Array]) -> Figure:
     upper.plot(columns["drive"], columns["friction"], color=COMPRESSION, linewidth=1.2)
     describe(upper, y="friction (FU)")
     lower.plot(columns["drive"], columns["normal_force"], color=TENSION, linewidth=1.2)
-    describe(lower, "way of the drive (LU)", "normal force (FU)", zero=False)
+    describe(lower, "displacement of the drive (LU)", "normal force (FU)", zero=False)
     return figure
 
 

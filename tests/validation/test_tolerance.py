@@ -58,7 +58,7 @@ def errors_of(scene: dict[str, Any], folder: Path) -> list[Error]:
         relative = max(0.0, error / abs(value) - SOLVER) / scene["accuracy"]["tolerance"]
         covered = max(0.0, error - SOLVER * abs(value)) / quantity["uncertainty"]
         doubts = [warning["message"] for warning in finished.document["warnings"] if warning["name"] == "tolerance"]
-        told = any(f"{name} is known to" in doubt for doubt in doubts)
+        told = any(f" {name} " in doubt for doubt in doubts)
         errors.append(Error(name, relative, covered, told))
     return errors
 

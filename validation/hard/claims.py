@@ -7,6 +7,7 @@ and a number that is further off than the tolerance has a warning that names it.
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -21,8 +22,7 @@ from validation.study import LONGEST, Refused
 INSIDE = 0.95
 """Share of the numbers that is to be within its claim, and of the scenes that is to run."""
 NAMING = ("tolerance", "lattice")
-"""Warnings whose message names the numbers that it is about, with one of WORDS behind the name."""
-WORDS = (" is known to", " cannot be told from")
+"""Warnings whose message names the numbers that it is about, each with its relative uncertainty."""
 MISSING = ("no_peak", "no_zero_load", "no_radius")
 """Warnings that say that a number is not there."""
 UNKNOWN = "unknown"
@@ -132,7 +132,7 @@ def errors_of(scene: str, run: Run, exact: Mapping[str, float], slack: float) ->
         relative = error / abs(value) / tolerance if value else 0.0
         claimed = quantity.uncertainty
         over = error / claimed if claimed > 0.0 else (0.0 if error == 0.0 else float("inf"))
-        told = any(name + words in run.warnings.get(warning, "") for warning in NAMING for words in WORDS)
+        told = any(re.search(rf"\b{name} (\d|inf)", run.warnings.get(warning, "")) for warning in NAMING)
         found.append(Error(scene, name, relative, over, told or bool(set(OF_ALL) & set(run.warnings))))
     return found
 

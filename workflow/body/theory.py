@@ -338,7 +338,7 @@ def _drawn_along(case: Case) -> str:
         return ""
     given = experiment.normal_forces() or experiment.places()
     one = case.radius is not None and min(given) > 0.0 and max(given) - min(given) <= SAME_LOAD * max(given)
-    return "a paraboloid under one load, drawn along a plane with friction" if one else ""
+    return "a paraboloid under one load, displaced tangentially with friction" if one else ""
 
 
 def _mindlin_values(case: Case) -> Values:

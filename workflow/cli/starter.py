@@ -19,7 +19,7 @@ WIDTH = 118
 HEAD = (
     "A scene of contact1d: `contact1d run` and the name of this file runs it.",
     "A # with a letter or a [ right behind it begins a key or a table that is not set: take the # away to set it.",
-    "Units: LU length, FU force, MU mass, TU = √(MU·LU/FU). What tables need of each other is told when it runs.",
+    "Units: LU length, FU force, MU mass, TU = √(MU·LU/FU). What tables need of each other is checked when it runs.",
 )
 
 BODY: dict[str, dict[str, Any]] = {

@@ -127,11 +127,8 @@ class Outcome:
 
 
 def in_words(shares: Mapping[str, float]) -> str:
-    """Relative uncertainties: "critical_radius has an uncertainty of 3.1e-04"."""
-    return ", ".join(
-        f"{name} is known to {share:.1e}" if share < 1.0 else f"{name} cannot be told from 0 and is known to 1 or worse"
-        for name, share in shares.items()
-    )
+    """Relative uncertainties by name: "critical_radius 3.1e-04"."""
+    return ", ".join(f"{name} {share:.1e}" for name, share in shares.items())
 
 
 def unmet(results: Mapping[str, Result], tolerance: float, without: Iterable[str] = ()) -> dict[str, float]:

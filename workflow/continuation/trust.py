@@ -153,7 +153,7 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
         found["snaps"] = (
             "the attraction of a pair of particles is steeper than its springs are stiff, so that pairs can snap "
             "together and apart: there are several equilibria under one load, and which one is reached depends on the "
-            "way there. The uncertainties are those of this way; another preload or method may end in another "
+            "loading history. The uncertainties are of this history; another preload or method may end in another "
             "equilibrium, a few particles wider or narrower. Stiffer springs or a longer range of the interaction "
             "leave one equilibrium only"
         )

@@ -43,7 +43,7 @@ class LoadExperiment(Scripted):
         doubt = (
             f"the contact does not hold a tension that is larger by {FIRST_RISE * settings.tolerance:g}: {-load:.6g} "
             f"FU is the pull-off force as nearly as a tolerance of {settings.tolerance:g} can tell, and whether it is "
-            "held for good can't be told. A smaller tolerance tells more, "
+            "held for good is open. A smaller tolerance decides it, "
             'kind = "pull_off" gives the force itself'
         )
         return replace(outcome, warnings={"near_pull_off": doubt, **outcome.warnings})

@@ -106,8 +106,8 @@ class SlideExperiment(Experiment):
         assert isinstance(scene.experiment, Slide)
         way = "experiment.distance" if scene.experiment.path is None else "last leg of experiment.path that moves"
         return (
-            f"What helps is a longer {way}, of more whole periods of the spacing; not for static_friction, which is "
-            f"known to what lies between two of {MOST_ROWS} rows in a spacing"
+            f"What helps is a longer {way}, of more whole periods of the spacing; not for static_friction, whose "
+            f"uncertainty is the change between two of {MOST_ROWS} points in a spacing"
         )
 
 

@@ -41,7 +41,7 @@ def accuracy_warnings(scene: Scene, outcome: Outcome, scales: Scales | None) -> 
     if others:
         ended = f" ({outcome.refinement.ended})" if outcome.refinement and outcome.refinement.ended else ""
         warnings["tolerance"] = (
-            f"{in_words(others)}, which is more than the tolerance of {tolerance:g} that was asked for{ended}. "
+            f"relative uncertainties above the tolerance of {tolerance:g}: {in_words(others)}{ended}. "
             f"{_advice(scene, outcome, others)}"
         )
     return warnings
@@ -131,7 +131,7 @@ def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, fl
 def _lattice_message(scene: Scene, shares: Mapping[str, float]) -> str:
     spacing = scene.bodies.spacing * np.sqrt(0.5 * scene.accuracy.tolerance / min(1.0, max(shares.values())))
     return (
-        f"{in_words(shares)} only, more than the tolerance of {scene.accuracy.tolerance:g}: the discretisation error "
-        f"of this lattice. Take a smaller bodies.spacing, about {spacing:.2g} LU, at the same stiffness and energy per "
+        f"relative discretisation errors above the tolerance of {scene.accuracy.tolerance:g}: {in_words(shares)}. "
+        f"Take a smaller bodies.spacing, about {spacing:.2g} LU, at the same stiffness and energy per "
         "length, or give bodies.particles where these very particles are meant"
     )
