@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -113,12 +113,15 @@ def _half_width(case: Case, radius: float) -> Iterator[Check]:
 
 def _tabor(case: Case, scales: Scales | None) -> Iterator[Check]:
     adhesion, radius = case.scene.adhesion, case.radius
-    if adhesion is None or radius is None or not adhesion.work or (scales is None and adhesion.range is None):
+    if adhesion is None or radius is None or not adhesion.work:
         return
-    reach, assumed = adhesion.range, ""
-    if reach is None and scales is not None:
+    if adhesion.range is not None:
+        reach, assumed = adhesion.range, ""
+    elif scales is not None:
         reach, assumed = RANGE / scales.length, f" with an assumed range of the attraction of {prefixed(RANGE, 'm')}"
-    theory = MaugisDugdale(radius, case.contact_modulus, adhesion.work, cast("float", reach))
+    else:
+        return
+    theory = MaugisDugdale(radius, case.contact_modulus, adhesion.work, reach)
     message, holds = "", theory.tabor >= JKR_TABOR
     if not holds:
         error = theory.theories[Theory.JKR].pull_off_force() / theory.pull_off_force() - 1.0

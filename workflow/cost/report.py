@@ -64,7 +64,7 @@ class CostRecord:
     Attributes:
         title, scene: of the scene, and its name.
         reference: label of the reference run, with its main results.
-        base_error: what is left of error in the base, the floor of every fit.
+        base_error: error of the base, the floor of every fit.
         limit: largest error that a value may leave to be enough.
         knobs, effect_costs: of the scene.
         variants: the scene as it is first, the others as far as they gave numbers.

@@ -219,7 +219,7 @@ def stretches(positions: Sequence[float]) -> list[tuple[str, list[float]]]:
 
 
 def way(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
-    """Displacements [LU] of all states, and whether the scene asks for them or they are passed on the way.
+    """Displacements [LU] of all states, and whether the scene asks for them or they are intermediate.
 
     Where pairs snap, a path begins before the first of them joins. With `start = "contact"` it then goes to the largest
     displacement before the first one.

@@ -1,4 +1,4 @@
-"""Which results of a run miss its tolerance, and which are known too little to be reported."""
+"""Which results of a run miss its tolerance, and which are too uncertain to be reported."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def _advice(scene: Scene, outcome: Outcome, names: Iterable[str]) -> str:
 
 
 def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, float]:
-    """Discretisation errors above the tolerance, without what is left by reading, relative, by name."""
+    """Relative discretisation errors above the tolerance, without those of reading between particles, by name."""
     left = {name: one.errors.get(LATTICE, 0.0) - one.read for name, one in results.items()}
     found = {name: replace(results[name], errors={LATTICE: error}, read=0.0) for name, error in left.items()}
     return unmet(found, tolerance)
