@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,56 +20,56 @@ CHUNK = 100_000
 """Rows that are turned into text at a time."""
 
 
-@dataclass(frozen=True, eq=False)
-class Curve:
-    """Measured states in the order in which they were passed; arrays (n,). Two are equal if they are the same object.
+class Columns(dict[str, Any]):
+    """The columns of a table by name, arrays (n,); each is also an attribute: `curve.force` is `curve["force"]`.
 
-    displacement [LU], force [FU], compression positive; contact_radius [LU] and its uncertainty, NaN where there is
-    none; smallest_distance between particles of opposite bodies [LU]; branch: "loading" or "unloading".
+    Attributes:
+        units: of the columns that are in SI, by name; without these, numbers are in units of the model.
     """
 
-    displacement: Array
-    force: Array
-    contact_radius: Array
-    smallest_distance: Array
-    branch: NDArray[np.str_]
-    contact_radius_uncertainty: Array
+    def __init__(self, columns: Mapping[str, Column], units: Mapping[str, str] | None = None) -> None:
+        """Make arrays of the columns. Raises ValueError for columns of unequal lengths."""
+        super().__init__({name: np.asarray(column) for name, column in columns.items()})
+        self.units = dict(units or {})
+        if len(lengths := {len(column) for column in self.values()}) > 1:
+            raise ValueError(f"the columns of a table must be equally long, got lengths {sorted(lengths)}")
 
-    def __post_init__(self) -> None:
-        """Check the lengths. Raises ValueError for unequal ones."""
-        lengths = {len(column) for column in vars(self).values()}
-        if len(lengths) != 1:
-            raise ValueError(f"the columns of a curve must be equally long, got lengths {sorted(lengths)}")
+    def __getattr__(self, name: str) -> Any:
+        """Return the column of that name."""
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"no column {name}; there are {', '.join(self)}") from None
+
+    def __dir__(self) -> list[str]:
+        """Names for completion, those of the columns among them."""
+        return [*super().__dir__(), *self]
 
 
 PROFILE_COLUMNS = tuple(field.name for field in fields(Profile))
-FRICTION_COLUMNS = (
-    "time", "drive", "plate_x", "plate_z", "friction", "normal_force", "cantilever_force", "cantilever_work",
-)  # fmt: skip
-"""Of a slide: times [TU], places [LU], forces [FU], work [FU·LU]."""
 DETACHMENTS = "detachments"
 """Name of the table, and of the figure, of a thermal pull-off."""
-DETACHMENT_COLUMNS = ("seed", "force", "time")
-"""Of it, one row for each pull: tension when the bodies part [FU], time since the pull began [TU]."""
 SAMPLE_TABLE = "samples"
 """Name of the table, and of the figure, of a contact under heat."""
-SAMPLE_COLUMNS = ("time", "load", "displacement", "force", "contact_radius")
-"""Of it, one row for each row of the curve: time since the start [TU], forces [FU], places [LU]."""
-TANGENTIAL_COLUMNS = (
-    "tangential_displacement", "tangential_force", "normal_force", "stick_radius", "stick_radius_uncertainty",
-    "dissipated_energy",
-)  # fmt: skip
-"""Of a tangential, in curve.csv: places [LU], forces [FU], the energy dissipated so far [FU·LU]."""
+HEADER = re.compile(r"(.+) \[(.+)\]")
+"""Of a column with a unit: `force [N]`."""
+WORDS = ("branch", "state")
+"""Columns that are no numbers."""
 
 
-def write_columns(path: Path, columns: Mapping[str, Column]) -> None:
-    """Write a CSV file with a header; numbers with 17 digits, NaN as an empty cell."""
+def write_columns(path: Path, columns: Mapping[str, Column], units: Mapping[str, str] | None = None) -> None:
+    """Write a CSV file; the header has the unit of SI of a column, `force [N]`; 17 digits, NaN as an empty cell."""
     with whole(path) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(columns)
+        writer.writerow(headed(columns, units or {}))
         for start in range(0, max(map(len, columns.values())), CHUNK):
             cells = [_cells(column[start : start + CHUNK]) for column in columns.values()]
             writer.writerows(zip(*cells, strict=True))
+
+
+def headed(names: Iterable[str], units: Mapping[str, str]) -> list[str]:
+    """Names of columns with their units: `force [N]`."""
+    return [f"{name} [{units[name]}]" if name in units else name for name in names]
 
 
 def _cells(column: Column) -> Sequence[str]:
@@ -79,20 +81,24 @@ def _cells(column: Column) -> Sequence[str]:
     return ["" if cell == "nan" else cell for cell in cells]
 
 
-def read_columns(path: Path, names: Iterable[str]) -> dict[str, Array]:
-    """Read columns of numbers, as `write_columns` has them, by name.
+def read_columns(path: Path, needed: Iterable[str] = ()) -> Columns:
+    """Read the columns of a table, as `write_columns` has them.
 
     Raises:
-        ValueError: if a column is missing or a cell is no number.
+        ValueError: if one of those `needed` is missing, or a cell is no number.
     """
-    return {name: _numbers(cells) for name, cells in _read(path, names).items()}
-
-
-def read_curve(path: Path) -> Curve:
-    """Read curve.csv. Raises ValueError as `read_columns`."""
-    columns = _read(path, [field.name for field in fields(Curve)])
-    branch = np.asarray(columns.pop("branch"))
-    return Curve(**{name: _numbers(cells) for name, cells in columns.items()}, branch=branch)
+    with path.open(newline="", encoding="utf-8") as file:
+        header, *rows = [*csv.reader(file)] or [[]]
+    if not rows:
+        raise ValueError(f"{path}: no rows")
+    parts = [found.groups() if (found := HEADER.fullmatch(name)) else (name, "") for name in header]
+    if missing := sorted({*needed} - {name for name, _ in parts}):
+        raise ValueError(f"{path}: no column {', '.join(missing)}")
+    columns = zip((name for name, _ in parts), zip(*rows, strict=True), strict=True)
+    return Columns(
+        {name: cells if name in WORDS else [float(cell or "nan") for cell in cells] for name, cells in columns},
+        {name: unit for name, unit in parts if unit},
+    )
 
 
 def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Column]:
@@ -103,29 +109,15 @@ def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Column]:
     return {**numbers, "state": [state for state, profile in profiles.items() for _ in profile.x]}
 
 
-def read_profiles(path: Path) -> dict[str, Profile]:
-    """Read profile.csv: profiles by the names of their states. Raises ValueError as `read_columns`."""
-    columns = _read(path, [*PROFILE_COLUMNS, "state"])
-    states = np.asarray(columns.pop("state"))
-    numbers = [_numbers(cells) for cells in columns.values()]
+def by_state(columns: Columns) -> dict[str, Columns]:
+    """The columns of each state, whose name the column `state` has; the rest of the columns."""
+    if "state" not in columns:
+        return {}
+    states, numbers = columns.state, {name: column for name, column in columns.items() if name != "state"}
     return {
-        state: Profile(*(column[states == state] for column in numbers)) for state in dict.fromkeys(states.tolist())
+        name: Columns({key: column[states == name] for key, column in numbers.items()}, columns.units)
+        for name in dict.fromkeys(states.tolist())
     }
-
-
-def _numbers(cells: Sequence[str]) -> Array:
-    return np.asarray([float(cell or "nan") for cell in cells])
-
-
-def _read(path: Path, names: Iterable[str]) -> dict[str, Sequence[str]]:
-    with path.open(newline="", encoding="utf-8") as file:
-        header, *rows = [*csv.reader(file)] or [[]]
-    if not rows:
-        raise ValueError(f"{path}: no rows")
-    if missing := [name for name in names if name not in header]:
-        raise ValueError(f"{path}: no column {', '.join(missing)}")
-    columns = dict(zip(header, zip(*rows, strict=True), strict=True))
-    return {name: columns[name] for name in names}
 
 
 Floats = NDArray[np.float32]

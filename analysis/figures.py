@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.curve import Curve
+from contact1d.analysis.curve import Columns
 from contact1d.analysis.plots import (
     COMPRESSION,
     LOADING,
@@ -39,6 +39,8 @@ BARQUINS = 4.0 ** (4.0 / 3.0) / 3.0
 """2.1165: makes the minimum of BARQUINS (ã² − √ã), at ã = 4^(−2/3) = 0.397, equal to −1: the 2D
 cylinder of M. Barquins, J. Adhesion 26 (1988) 1."""
 Theory = tuple[str, Array, Array]
+Legs = Sequence[tuple[str, NDArray[np.int64]]]
+"""Of a path: the name of each leg's branch, and its rows of the curve."""
 STICKS, SLIPS = COMPRESSION, TENSION
 BEFORE = "#bbbbbb"
 """Of what is not measured yet: a contact that forgets its start."""
@@ -82,33 +84,33 @@ def pressure_figure(profiles: Mapping[str, Profile], radii: Mapping[str, float])
     return figure
 
 
-def force_displacement_figure(curve: Curve, marks: Mapping[str, float], theory: Theory | None = None) -> Figure:
-    """Force over displacement, loading and unloading; beside it a theory."""
+def force_displacement_figure(
+    curve: Columns, legs: Legs, adhesion: tuple[float, float] | None = None, theory: Theory | None = None
+) -> Figure:
+    """Force over displacement, leg by leg; beside it a theory, and F_A with its uncertainty."""
     figure, (axis,) = panels()
     displacement, force = curve.displacement, curve.force
-    for branch, colour, width in (("loading", LOADING, 3.2), ("unloading", UNLOADING, 1.4)):
-        chosen = np.flatnonzero(curve.branch == branch)
-        rows = chosen[np.argsort(displacement[chosen], kind="stable")]
-        if rows.size:
-            _line(axis, displacement[rows], force[rows], FEW_ROWS, color=colour, linewidth=width, label=branch)
+    named: set[str] = set()
+    for branch, rows in legs:
+        colour, width = (LOADING, 3.2) if branch == "loading" else (UNLOADING, 1.4)
+        few = FEW_ROWS if theory is None else 0
+        _line(axis, displacement[rows], force[rows], few, color=colour, linewidth=width, label=_once(branch, named))
     if theory is not None:
         name, d, f = theory
         shown = (d >= displacement.min()) & (f <= force.max() + 0.05 * np.ptp(force))
         beside(axis, (name, d[shown], f[shown]))
     describe(axis, "displacement (LU), compression positive", "force (FU), compression positive")
-    adhesion = marks.get("adhesion_force")
-    if adhesion:
-        axis.axhline(-adhesion, color=TENSION, linewidth=1.0, linestyle=":")
-        axis.annotate(
-            f"$-F_A$ = \N{MINUS SIGN}{adhesion:.4g} FU", (0.0, -adhesion), xycoords=("axes fraction", "data"),
-            xytext=(6, -4), textcoords="offset points", ha="left", va="top", color=TENSION,
-        )  # fmt: skip
+    if adhesion is not None:
+        tension, spread = adhesion
+        axis.axhspan(-tension - spread, -tension + spread, color=TENSION, alpha=0.3, linewidth=0.0)
+        label = f"$-F_A$ = \N{MINUS SIGN}{tension:.4g} FU"
+        axis.axhline(-tension, color=TENSION, linewidth=1.0, linestyle=":", label=label)
     axis.margins(y=0.09)
     legend(axis, "upper left", None)
     return figure
 
 
-def force_radius_figure(curve: Curve, adhesion_force: float, zero_load_radius: float) -> Figure:
+def force_radius_figure(curve: Columns, adhesion_force: float, zero_load_radius: float) -> Figure:
     """F/F_A over a/a₀ of the unloading branch beside JKR and Barquins (the paper's Fig. 8)."""
     figure, (axis,) = panels()
     radius, force = curve.contact_radius / zero_load_radius, curve.force / adhesion_force
@@ -117,7 +119,8 @@ def force_radius_figure(curve: Curve, adhesion_force: float, zero_load_radius: f
     a = np.linspace(0.0, top, 400)
     beside(axis, ("JKR", a, 4.0 * a**3 - 4.0 * a**1.5), "-", 1.6)
     beside(axis, ("Barquins (2D)", a, BARQUINS * (a**2 - np.sqrt(a))), width=1.2)
-    axis.plot(radius[chosen], force[chosen], "o", color=UNLOADING, markersize=3.5, label="this run, unloading")
+    spread = curve.contact_radius_uncertainty[chosen] / zero_load_radius
+    _points(axis, radius[chosen], force[chosen], spread, "this run, unloading", UNLOADING)
     describe(axis, r"contact radius $a/a_0$", r"force $F/F_A$, compression positive")
     axis.set_xlim(0.0, top)
     axis.set_ylim(-1.25, max(1.0, 1.1 * float(force[chosen].max(initial=0.0))))
@@ -125,13 +128,14 @@ def force_radius_figure(curve: Curve, adhesion_force: float, zero_load_radius: f
     return figure
 
 
-def load_radius_figure(curve: Curve, theory: Theory | None = None) -> Figure:
+def load_radius_figure(curve: Columns, theory: Theory | None = None) -> Figure:
     """Force over contact radius of the states that touch; beside it a theory."""
     figure, (axis,) = panels()
     touching = curve.contact_radius > 0.0
     for branch in dict.fromkeys(curve.branch[touching].tolist()):
         chosen = touching & (curve.branch == branch)
-        axis.plot(curve.contact_radius[chosen], curve.force[chosen], "o", markersize=3.5, label=branch)
+        columns = curve.contact_radius, curve.force, curve.contact_radius_uncertainty
+        _points(axis, *(column[chosen] for column in columns), branch, LOADING if branch == "loading" else UNLOADING)
     if theory is not None:
         beside(axis, theory, "-")
     describe(axis, "contact radius (LU)", "force (FU), compression positive")
@@ -189,16 +193,19 @@ def samples_figure(columns: Mapping[str, Array], measured: NDArray[np.bool_], me
     return figure
 
 
-def body_pressure_figure(pressures: Mapping[str, tuple[Array, Array, float]], theories: Mapping[str, Theory]) -> Figure:
+def body_pressure_figure(
+    pressures: Mapping[str, tuple[Array, Array, Array, float]], theories: Mapping[str, Theory]
+) -> Figure:
     """p over r of each state, one panel below the other, the closed form beside it.
 
     Args:
-        pressures: r [LU], p [FU/LU²] and the contact radius [LU] by state.
+        pressures: r [LU], p and its uncertainty [FU/LU²], and the contact radius [LU] by state.
         theories: by state.
     """
     figure, axes = panels(len(pressures), 1.2 + 2.6 * len(pressures))
-    for axis, (name, (r, p, edge)) in zip(axes, pressures.items(), strict=True):
+    for axis, (name, (r, p, spread, edge)) in zip(axes, pressures.items(), strict=True):
         shown = np.isfinite(p)
+        axis.fill_between(r, p - spread, p + spread, color=COMPRESSION, alpha=0.3, linewidth=0.0)
         axis.plot(r[shown], p[shown], "o", color=COMPRESSION, markersize=3.5, label="this run")
         if name in theories:
             beside(axis, theories[name], "-")
@@ -209,30 +216,29 @@ def body_pressure_figure(pressures: Mapping[str, tuple[Array, Array, float]], th
         axis.set_ylim(max(1.1 * min(float(p[shown].min()), 0.0), -top), min(1.1 * max(float(p[shown].max()), 0.0), top))
         legend(axis)
     axes[-1].set_xlabel("distance from the axis r (LU)")
-    widest = max(edge for _, _, edge in pressures.values())
-    farthest = max(float(r.max()) for r, _, _ in pressures.values())
+    widest = max(edge for *_, edge in pressures.values())
+    farthest = max(float(r.max()) for r, *_ in pressures.values())
     axes[-1].set_xlim(0.0, 1.05 * min(max(farthest, widest), VIEW * widest))
     return figure
 
 
-def tangential_figure(columns: Mapping[str, Array], branches: NDArray[np.str_], theory: Array | None = None) -> Figure:
-    """F_x over u, and beside it a theory's F_x at the same places; the normal force below where it changes.
+def tangential_figure(columns: Columns, legs: Legs, theory: Array | None = None) -> Figure:
+    """F_x over u, leg by leg, and beside it a theory's F_x along the path; the normal force below where it changes.
 
     Args:
         columns: of curve.csv, `tangential_displacement`, `tangential_force`, `normal_force`.
-        branches: "forward" or "backward" of each row.
+        legs: of the path, "forward" or "backward".
         theory: u [LU] and F_x [FU] of Cattaneo and Mindlin along the path, (2, n).
     """
-    u, force, load = (columns[f"{name}"] for name in ("tangential_displacement", "tangential_force", "normal_force"))
+    u, force, load = columns.tangential_displacement, columns.tangential_force, columns.normal_force
     varies = float(np.ptp(load)) > 1e-9 * float(np.max(np.abs(load)))
     figure, axes = panels(1 + varies, height_ratios=(2, 1)[: 1 + varies])
     axis = axes[0]
-    for branch, colour in (("forward", LOADING), ("backward", TENSION)):
-        lines = np.flatnonzero(branches == branch)
-        for part in filter(len, np.split(lines, np.flatnonzero(np.diff(lines) > 1) + 1)):
-            rows = np.arange(max(part[0] - 1, 0), part[-1] + 1)  # a branch begins where the one before it ended
-            label = branch if part[0] == lines[0] else None
-            _line(axis, u[rows], force[rows], FEW_ALONG, color=colour, linewidth=2.6, label=label)
+    named: set[str] = set()
+    for branch, rows in legs:
+        colour = LOADING if branch == "forward" else TENSION
+        few = FEW_ALONG if theory is None else 0
+        _line(axis, u[rows], force[rows], few, color=colour, linewidth=2.6, label=_once(branch, named))
     if theory is not None:
         beside(axis, ("Cattaneo–Mindlin", *theory))
     describe(axis, y="tangential force (FU)")
@@ -241,19 +247,22 @@ def tangential_figure(columns: Mapping[str, Array], branches: NDArray[np.str_], 
     if varies:
         axes[1].plot(u, load, color=SLIPS, linewidth=1.4)
         describe(axes[1], y="normal force (FU)", zero=False)
-    axes[-1].set_xlabel("displacement along x (LU)")
+    axes[-1].set_xlabel("tangential displacement (LU)")
     return figure
 
 
-def body_shear_figure(states: Mapping[str, tuple[Array, Array, float, float]]) -> Figure:
+def body_shear_figure(states: Mapping[str, tuple[Array, Array, Array, float, float]]) -> Figure:
     """Shear traction over the distance from the axis of the body of three dimensions, mirrored at the axis.
 
     Args:
-        states: by name r [LU], q(r) [FU/LU²], contact and stick radius [LU].
+        states: by name r [LU], q(r) and its uncertainty [FU/LU²], contact and stick radius [LU].
     """
     figure, (axis,) = panels()
-    for (name, (r, shear, edge, stick)), colour in zip(states.items(), (TENSION, COMPRESSION), strict=False):
-        both, values = np.concatenate([-r[::-1], r]), np.concatenate([shear[::-1], shear])
+    for (name, (r, shear, spread, edge, stick)), colour in zip(states.items(), (TENSION, COMPRESSION), strict=False):
+        both, values, band = (
+            np.concatenate([c * part[::-1], part]) for c, part in ((-1.0, r), (1.0, shear), (1.0, spread))
+        )
+        axis.fill_between(both, values - band, values + band, color=colour, alpha=0.3, linewidth=0.0)
         axis.plot(both, values, color=colour, linewidth=1.8, label=_state(name))
         if 0.0 < stick < edge:
             mark(axis, -stick, stick, colour=colour)
@@ -296,9 +305,23 @@ def _state(name: str) -> str:
     return f"{name.replace('_', ' ')} state"
 
 
+def _once(name: str, named: set[str]) -> str | None:
+    """The name where it was not given before: a legend has each once."""
+    first = name not in named
+    named.add(name)
+    return name if first else None
+
+
 def _line(axis: Axes, x: Array, y: Array, few: int, **look: Any) -> None:
-    """A line, with its points where there are `few`."""
-    axis.plot(x, y, marker="o" if len(x) <= few else "", markersize=4, **look)
+    """A line; only points where there are few, and always beside a theory: lines between them would be no result."""
+    points = len(x) <= few or (not few and len(x) <= FEW_ALONG)
+    axis.plot(x, y, marker="o" if points else "", markersize=4, linestyle="-" if few or not points else "none", **look)
+
+
+def _points(axis: Axes, x: Array, y: Array, spread: Array, label: str, colour: str) -> None:
+    """Points with the uncertainty of x."""
+    axis.hlines(y, x - spread, x + spread, color=colour, alpha=0.3)
+    axis.plot(x, y, "o", markersize=3.5, color=colour, label=label)
 
 
 def _draw_bars(axis: Axes, x: Array, height: Array, width: float) -> None:
@@ -307,8 +330,8 @@ def _draw_bars(axis: Axes, x: Array, height: Array, width: float) -> None:
 
     left, right, zero = x - 0.5 * width, x + 0.5 * width, np.zeros_like(x)
     corners = np.stack([np.stack([left, left, right, right]), np.stack([zero, height, height, zero])]).T
-    colours = np.where(height >= 0.0, COMPRESSION, TENSION).tolist()
-    axis.add_collection(PolyCollection(list(corners), facecolors=colours, linewidths=0.0))
+    for colour, chosen in ((COMPRESSION, height > 0.0), (TENSION, height < 0.0)):
+        axis.add_collection(PolyCollection(list(corners[chosen]), facecolors=colour, linewidths=0.0))
 
 
 def _half_width(profile: Profile) -> float:

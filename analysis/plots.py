@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,11 +26,20 @@ COMPRESSION, TENSION, LOADING, UNLOADING, THEORY = "#0072B2", "#D55E00", "#56B4E
 """Okabe and Ito's colours, which the colour-blind can tell apart."""
 SIZE = (6.4, 4.2)
 DPI = 120
-Conversion = Callable[[float, str], tuple[float, str]]
-"""Of a number in a model unit: the factor to the unit that is written, and that unit, by the number's size."""
-UNIT = re.compile(r"\(([A-Z]{2}(?:[·/][A-Z]{2}²?)*)\)")
-NUMBER = re.compile(r"([\d.]+(?:e[+-]?\d+)?) ((?:LU|FU)(?:[·/][A-Z]{2}²?)*)")
-DIGITS = 4
+
+
+class Units(Protocol):
+    """What units of the model stand for."""
+
+    def written(self, value: float, unit: str) -> tuple[float, str]:
+        """The factor to the unit in which a number of this size is written, and that unit."""
+
+    def in_words(self, text: str) -> str:
+        """A text with its numbers in these units."""
+
+
+UNIT = re.compile(r"\(([^() ]+)\)")
+"""Of an axis, in its label."""
 
 
 def new_figure(size: tuple[float, float]) -> Figure:
@@ -98,32 +106,30 @@ def mark(axis: Axes, *places: float, colour: str = "black", label: str | None = 
         axis.axvline(place, color=colour, linewidth=1.0, linestyle="--", label=label)
 
 
-def in_si(figure: Figure, conversion: Conversion) -> Figure:
+def in_si(figure: Figure, units: Units) -> Figure:
     """The figure with units of SI at its axes and in its words; returns it. What is drawn stays as it is."""
     from matplotlib.text import Text
 
-    def number_in_si(found: re.Match[str]) -> str:
-        number = float(found[1])
-        factor, unit = conversion(number, found[2])
-        return f"{number * factor:.{DIGITS}g} {unit}"
-
     for axes in figure.axes:
         for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
-            _axis_in_si(axis, max(map(abs, limits)), conversion)
+            _axis_in_si(axis, max(map(abs, limits)), units)
         for text in axes.findobj(Text):
             assert isinstance(text, Text)
-            text.set_text(NUMBER.sub(number_in_si, text.get_text()))
+            text.set_text(units.in_words(text.get_text()))
     return figure
 
 
-def _axis_in_si(axis: Axis, largest: float, conversion: Conversion) -> None:
-    from matplotlib.ticker import FuncFormatter, MaxNLocator
+def _axis_in_si(axis: Axis, largest: float, units: Units) -> None:
+    from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 
     label = axis.get_label_text()
     found = UNIT.search(label)
     if found is None:
         return
-    factor, unit = conversion(largest, found[1])
+    factor, unit = units.written(largest, found[1])
+    axis.set_label_text(label.replace(found[0], f"({unit})"))
+    if factor == 1.0:
+        return
 
     class Scaled(MaxNLocator):
         """Round numbers in the unit that is written."""
@@ -131,6 +137,8 @@ def _axis_in_si(axis: Axis, largest: float, conversion: Conversion) -> None:
         def tick_values(self, vmin: float, vmax: float) -> Any:
             return np.asarray(super().tick_values(vmin * factor, vmax * factor)) / factor
 
-    axis.set_major_locator(Scaled(nbins=7, steps=[1, 2, 2.5, 5, 10]))
+    if axis.get_scale() == "linear":
+        axis.set_major_locator(Scaled(nbins=7, steps=[1, 2, 2.5, 5, 10]))
+    else:
+        axis.set_minor_formatter(NullFormatter())
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value * factor:.6g}".replace("-", "\N{MINUS SIGN}")))
-    axis.set_label_text(label.replace(found[0], f"({unit})"))

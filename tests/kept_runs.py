@@ -9,7 +9,7 @@ import gzip
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -17,16 +17,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d.analysis.curve import Curve
+from contact1d.analysis.curve import Columns, profile_columns
 from contact1d.analysis.pressure import Profile
-from contact1d.workflow.runs.finished import Run, read_run
+from contact1d.workflow.runs.finished import Results, Run, read_run
+from contact1d.workflow.runs.report import quantities_in
 from contact1d.workflow.scene import Scene, scene_from_dict
+from contact1d.workflow.units import Quantity
 from validation.paper.fig9 import asperity
 
 KEPT = Path(__file__).parents[1] / "validation" / "results" / "runs.json.gz"
 DIGITS, WHOLE, SHORT = 12, 17, 200
 """Of a number in a table; in a SHORT one it is kept WHOLE: orders of convergence are of differences near round-off."""
-COLUMNS = tuple(field.name for field in fields(Curve))
+COLUMNS = ("displacement", "force", "contact_radius", "smallest_distance", "branch", "contact_radius_uncertainty")
 READ: Mapping[str, tuple[str, ...]] = {
     "curve": ("curve_", "parting_", "jkr_plane", "tangential_"),
     "profiles": ("eq3_", "pull_off_R1000"),
@@ -78,7 +80,7 @@ def _write(found: Mapping[str, Any]) -> None:
 
 def keep(runs: Path) -> None:
     """Write what is read of all runs in a folder."""
-    found = {folder.name: kept(read_run(folder), folder.name) for folder in sorted(runs.iterdir())
+    found = {folder.name: kept(read_run(folder).model, folder.name) for folder in sorted(runs.iterdir())
              if (folder / "results.json").is_file()}  # fmt: skip
     _write({"runs": found})
     kept_runs.cache_clear()
@@ -96,14 +98,21 @@ def _run(name: str, entry: dict[str, Any]) -> Run:
         pressure = _numbers(one["pressure"])
         x = np.linspace(one["first"], -one["first"], len(pressure))
         profiles[state] = Profile(x, 0.0 * x, 0.0 * x, pressure, 0.0 * x)
-    return Run(
-        Path(name),
-        entry["document"],
-        scene_from_dict(entry["scene"]),
-        Curve(**{key: np.asarray(columns[key]) if key == "branch" else _numbers(columns[key]) for key in COLUMNS}),
-        profiles,
-        {key: _numbers(column) for key, column in entry.get("friction", nothing).items()},
-    )
+    friction = {key: _numbers(column) for key, column in entry.get("friction", nothing).items()}
+    curve = {key: np.asarray(columns[key]) if key == "branch" else _numbers(columns[key]) for key in COLUMNS}
+    scene = scene_from_dict(entry["scene"])
+    tables = {"curve": Columns(curve | friction if scene.experiment.goes_along else curve)}
+    tables |= {"profile": Columns(profile_columns(profiles))} if profiles else {}
+    tables |= {"friction": Columns(friction)} if friction else {}
+    return in_model_units(Run(Path(name), entry["document"], scene, tables))
+
+
+def in_model_units(run: Run) -> Run:
+    """A run whose tables are in units of the model already, as `Run.model`."""
+    entries = quantities_in(run.document).items()
+    numbers = {name: Quantity(entry["value"], entry["uncertainty"], entry["unit"]) for name, entry in entries}
+    vars(run).update(results=Results(numbers), model=run)
+    return run
 
 
 @cache

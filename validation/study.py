@@ -79,7 +79,7 @@ class Runs(dict[str, Run]):
 
     def __missing__(self, name: str) -> Run:
         """The run of that name."""
-        self[name] = doors.read_run(self._folder / name)
+        self[name] = doors.read_run(self._folder / name).model
         return self[name]
 
 
@@ -335,7 +335,7 @@ def margins(rows: Sequence[Row]) -> dict[str, Drawing]:
 
 def found(run: Run, name: str) -> Quantity:
     """A result; NaN where the run has none, since it failed."""
-    return run.results.get(name, NOTHING)
+    return run.model.results.get(name, NOTHING)
 
 
 def said(limited_by: str, run: Run | Refused) -> str:

@@ -7,8 +7,11 @@ registry reads the units in a scene's texts. `Scales` is what LU, FU and MU stan
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
+from operator import add, mul, pow, sub, truediv
 from typing import Any, NamedTuple
 
 LENGTH = "LU"
@@ -49,10 +52,20 @@ SI = {
     NUMBER: ModelUnit("1"),
 }
 """The units of the model by their names."""
+WITH_PREFIX = (*(own.si for own in SI.values() if own.si not in ("kg", "1")), "J/m²")
+"""Units of SI that take a prefix."""
 EXACT = 1e-12
 """By which the logarithm of a power of ten may fall short of it."""
 PREFIXES = {-6: "a", -5: "f", -4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G", 4: "T"}
 """Of SI units, by powers of 1000."""
+IN_WORDS = re.compile(
+    r"([-−]?\d[\d.]*(?:e[+-]?\d+)?) (\()?([LFM]U(?:[·/][LFMT]U²?)*|TU)(?(2)\))|\(([LFM]U(?:[·/][LFMT]U²?)*|TU)\)"
+)
+"""A number with a unit of the model in a text, "1.5 FU/LU" or "1.5 (FU/LU)"; or that unit alone, in brackets."""
+DIGITS = 4
+"""Of a number in a text."""
+EXACTNESS = 1e-9
+"""A relative uncertainty below it, as of a unit that was given, is left out."""
 
 
 def scale_of(value: float, unit: str) -> tuple[float, str]:
@@ -61,7 +74,7 @@ def scale_of(value: float, unit: str) -> tuple[float, str]:
     Of a compound unit (N/m) the first has the prefix, as in mN/m.
     """
     power = math.floor(math.log10(abs(value)) / 3.0 + EXACT) if value and math.isfinite(value) else 0
-    power = power if power in PREFIXES else 0
+    power = power if power in PREFIXES and unit in WITH_PREFIX else 0
     return 1000.0**-power, PREFIXES[power] + unit
 
 
@@ -71,14 +84,28 @@ def prefixed(value: float, unit: str) -> str:
     return f"{value * factor:.4g} {name}"
 
 
+@cache
+def registry() -> Any:
+    """Pint's units and those of the model, in which quantities calculate."""
+    import pint
+
+    units = pint.UnitRegistry()
+    for definition in ("LU = [model_length]", "FU = [model_force]", "MU = [model_mass]", "TU = [model_time]"):
+        units.define(definition)
+    return units
+
+
 @dataclass(frozen=True)
 class Quantity:
-    """A number with its uncertainty, both in `unit`; `si`: the same in SI, where the scene has a [material]."""
+    """A number with its uncertainty, both in `unit`: of SI, or of the model where a scene has no units.
+
+    Quantities and numbers calculate with each other, +, −, ·, / and powers: units by pint, and the uncertainty is the
+    sum of the changes that those of the operands make, since these may depend on each other.
+    """
 
     value: float
     uncertainty: float
     unit: str
-    si: Quantity | None = None
 
     def __float__(self) -> float:
         """The value."""
@@ -86,30 +113,91 @@ class Quantity:
 
     @classmethod
     def of(cls, entry: Mapping[str, Any]) -> Quantity:
-        """The quantity that `entry` wrote."""
-        si = entry.get("si")
-        return cls(entry["value"], entry["uncertainty"], entry["unit"], None if si is None else cls.of(si))
+        """The quantity of an entry in results.json, in SI where that is known."""
+        entry = entry.get("si", entry)
+        return cls(entry["value"], entry["uncertainty"], entry["unit"])
+
+    @property
+    def si(self) -> Quantity | None:
+        """This quantity where its unit is one of SI; None where the scene has no units."""
+        return None if self.unit in SI and self.unit != NUMBER else self
 
     def entry(self) -> dict[str, Any]:
         """What results.json holds of it."""
-        own = {"value": self.value, "uncertainty": self.uncertainty, "unit": self.unit}
-        return own if self.si is None else own | {"si": self.si.entry()}
+        return vars(self).copy()
+
+    def to(self, unit: str) -> Quantity:
+        """The same in another unit, "mN" for instance. Raises pint.DimensionalityError for another dimension."""
+        factor = registry().Quantity(1.0, self.unit).to(unit).magnitude
+        return Quantity(self.value * factor, self.uncertainty * factor, unit)
+
+    def _with(self, operation: Callable[[Any, Any], Any], other: Any, swapped: bool = False) -> Quantity:
+        other = other if isinstance(other, Quantity) else Quantity(float(other), 0.0, NUMBER)
+        first, second = (other, self) if swapped else (self, other)
+
+        def result(one: float, two: float) -> Any:
+            raised = operation is pow
+            return operation(
+                registry().Quantity(one, first.unit), two if raised else registry().Quantity(two, second.unit)
+            )
+
+        found = result(first.value, second.value)
+        found = found.to(next((name for name in WITH_PREFIX if found.check(name)), found.to_base_units().units))
+        moved = (
+            result(first.value + first.uncertainty, second.value),
+            result(first.value, second.value + second.uncertainty),
+        )
+        spread = sum(abs((one - found).to(found.units).magnitude) for one in moved)
+        return Quantity(float(found.magnitude), float(spread), f"{found.units:~P}".replace("Δ", "") or NUMBER)
+
+    def __add__(self, other: Any) -> Quantity:
+        """Sum."""
+        return self._with(add, other)
+
+    def __sub__(self, other: Any) -> Quantity:
+        """Difference."""
+        return self._with(sub, other)
+
+    def __mul__(self, other: Any) -> Quantity:
+        """Product."""
+        return self._with(mul, other)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Quantity:
+        """Ratio."""
+        return self._with(truediv, other)
+
+    def __rtruediv__(self, other: Any) -> Quantity:
+        """A number over this quantity."""
+        return self._with(truediv, other, True)
+
+    def __pow__(self, other: float) -> Quantity:
+        """Power with a number."""
+        return self._with(pow, other)
 
     def __str__(self) -> str:
-        """`1.483400 ± 0.000029 FU`."""
-        return f"{rounded(self.value, self.uncertainty)} {self.unit}"
+        """`402.7 ± 1.3 MPa`: the uncertainty with two digits, units of SI with a prefix."""
+        factor, unit = (1.0, self.unit) if self.si is None else scale_of(self.value or self.uncertainty, self.unit)
+        if 0.0 <= self.uncertainty <= EXACTNESS * abs(self.value):
+            number = f"{self.value * factor:.5g}"
+        else:
+            number = rounded(self.value * factor, self.uncertainty * factor)
+        return f"{number} {unit}" if unit != NUMBER else number
 
 
 def rounded(value: float, uncertainty: float) -> str:
-    """`value ± uncertainty`, the uncertainty with two digits and the value to the same place."""
-    if not math.isfinite(uncertainty) or uncertainty <= 0.0:
+    """`value ± uncertainty`, the uncertainty with two digits and the value to the same place, in one notation."""
+    if not math.isfinite(uncertainty) or uncertainty <= 1e-3 * EXACTNESS * abs(value):
         return f"{value:.10g} ± {uncertainty:.2g}"
-    place = 1 - math.floor(math.log10(uncertainty))
+    place, power = 1 - math.floor(math.log10(uncertainty)), 0
     if -3 <= place < 0:
         return f"{round(value, place):.0f} ± {round(uncertainty, place):.0f}"
     if not 0 <= place <= 10:
-        return f"{value:.6g} ± {uncertainty:.2g}"
-    return f"{value:.{place}f} ± {uncertainty:.{place}f}"
+        power = math.floor(math.log10(max(abs(value), uncertainty)))
+    value, uncertainty = (number / 10.0**power for number in (value, uncertainty))
+    text = f"{value:.{place + power}f} ± {uncertainty:.{place + power}f}"
+    return f"({text})e{power:+03d}" if power else text
 
 
 @dataclass(frozen=True)
@@ -120,6 +208,7 @@ class Scales:
         length, force: one LU [m], one FU [N].
         mass: one MU [kg]; None: not known, and with it no time.
         length_uncertainty, force_uncertainty: of these; 0 where they are given.
+        known: whether they stand for anything; see UNKNOWN.
     """
 
     length: float
@@ -127,10 +216,11 @@ class Scales:
     length_uncertainty: float = 0.0
     force_uncertainty: float = 0.0
     mass: float | None = None
+    known: bool = True
 
     def know(self, unit: str) -> bool:
         """Whether one `unit` is known in SI."""
-        return unit in SI and (self.mass is not None or not SI[unit].mass)
+        return self.known and unit in SI and (self.mass is not None or not SI[unit].mass)
 
     def factor(self, unit: str) -> float:
         """SI value of one `unit`. Raises KeyError for a unit that is not known."""
@@ -139,10 +229,33 @@ class Scales:
         own = SI[unit]
         return float(self.length**own.length * self.force**own.force * (self.mass or 1.0) ** own.mass)
 
+    def base(self, unit: str) -> tuple[float, str]:
+        """The factor from a model `unit` to the base unit in which its numbers are shown, and that unit.
+
+        Of SI where it is known, else the unit itself.
+        """
+        return (self.factor(unit), SI[unit].si) if self.know(unit) else (1.0, unit)
+
     def written(self, value: float, unit: str) -> tuple[float, str]:
-        """The factor from a model `unit` to the SI unit with which a number of this size is written, and that unit."""
-        factor, name = scale_of(value * self.factor(unit), SI[unit].si)
-        return factor * self.factor(unit), name
+        """As `base`, with the prefix with which a number of this size is written."""
+        factor, name = self.base(unit)
+        prefix, name = scale_of(value * factor, name)
+        return factor * prefix, name
+
+    def in_words(self, text: str) -> str:
+        """A text whose numbers and units of the model are in SI, where they are known: `1.5 nN` for `1.5e-09 FU`."""
+
+        def shown(found: re.Match[str]) -> str:
+            number, _, unit, alone = found.groups()
+            if alone or not self.know(unit):
+                return f"({self.base(alone)[1]})" if alone else found[0]
+            value = float(number.replace("−", "-"))
+            if not value:
+                return f"{number} ({self.base(unit)[1]})"
+            factor, name = self.written(value, unit)
+            return f"{value * factor:.{DIGITS}g} {name}"
+
+        return IN_WORDS.sub(shown, text)
 
     def in_si(self, value: float, uncertainty: float, unit: str) -> dict[str, float | str]:
         """The quantity in SI: value, uncertainty, unit. Relative uncertainties of the scales are added to its own."""
@@ -151,3 +264,7 @@ class Scales:
         scales += abs(own.force) * self.force_uncertainty / self.force
         spread = uncertainty * factor + abs(value * factor) * scales
         return {"value": value * factor, "uncertainty": spread, "unit": own.si}
+
+
+UNKNOWN = Scales(1.0, 1.0, known=False)
+"""Of a scene without units: all numbers stay in those of the model."""

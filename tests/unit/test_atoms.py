@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from contact1d.analysis.atoms import atoms
-from contact1d.analysis.curve import read_profiles
+from contact1d.analysis.curve import by_state, read_columns
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import scene_from_dict
 from tests.scenes import chains
@@ -24,7 +24,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_every_state_agrees_with_its_profile(folder: Path) -> None:
-    for index, profile in enumerate(read_profiles(folder / "profile.csv").values()):
+    for index, profile in enumerate(by_state(read_columns(folder / "profile.csv")).values()):
         state = atoms(folder, index)
         upper = (state.arrays["body"] == "upper") & (state.arrays["role"] == "particle")
         np.testing.assert_allclose(state.positions[upper, 2], profile.z_upper, rtol=ROUND_OFF)

@@ -26,7 +26,7 @@ def test_axes_words_and_ticks_are_in_si() -> None:
     axis.set_xlabel("displacement (LU), compression positive")
     axis.set_ylabel("pressure (FU/LU²)")
     axis.set_title("a = 15 LU, F = 2e-05 FU", loc="left")
-    in_si(figure, SCALES.written)
+    in_si(figure, SCALES)
     assert axis.get_xlabel() == "displacement (nm), compression positive"
     assert axis.get_ylabel() == "pressure (TPa)"
     assert axis.get_title(loc="left") == "a = 30 nm, F = 60 pN"
@@ -41,7 +41,7 @@ def test_axes_without_a_unit_stay_as_they_are() -> None:
     figure = new_figure((4.0, 3.0))
     axis = figure.subplots()
     axis.set_xlabel(r"contact radius $a/a_0$")
-    in_si(figure, SCALES.written)
+    in_si(figure, SCALES)
     assert axis.get_xlabel() == r"contact radius $a/a_0$"
 
 
@@ -57,7 +57,7 @@ def test_a_number_is_written_with_the_prefix_of_its_size(value: float, unit: str
 
 def test_a_pressure_without_bound_does_not_hide_the_rest() -> None:
     r = np.linspace(0.0, 0.999, 200)
-    figure = body_pressure_figure({"final": (r, 1.0 / np.sqrt(1.0 - r**2), 1.0)}, {})
+    figure = body_pressure_figure({"final": (r, 1.0 / np.sqrt(1.0 - r**2), 0.0 * r, 1.0)}, {})
     assert figure.axes[0].get_ylim()[1] < 10.0
     assert figure.axes[0].get_xlim()[1] >= 1.0
 
@@ -66,7 +66,7 @@ def test_a_pressure_that_is_infinite_on_the_axis_is_drawn_without_it() -> None:
     r = np.linspace(0.0, 0.9, 20)
     with np.errstate(divide="ignore"):
         p = np.arccosh(1.0 / r)
-    figure = body_pressure_figure({"final": (r, p, 1.0)}, {"final": ("theory", r[1:], p[1:])})
+    figure = body_pressure_figure({"final": (r, p, 0.0 * r, 1.0)}, {"final": ("theory", r[1:], p[1:])})
     assert np.isfinite(figure.axes[0].get_lines()[0].get_ydata()).all()
     assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()][:2] == ["this run", "theory"]
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from contact1d.analysis.curve import Curve, profile_columns, read_columns, read_curve, read_profiles, write_columns
+from contact1d.analysis.curve import Columns, by_state, profile_columns, read_columns, write_columns
 from contact1d.analysis.pressure import Profile
 
 COLUMNS = "displacement,force,contact_radius,smallest_distance,branch,contact_radius_uncertainty"
@@ -23,24 +23,34 @@ def awkward(rng: np.random.Generator, size: int) -> np.ndarray:
 
 
 @pytest.fixture
-def curve() -> Curve:
+def curve() -> Columns:
     rng = np.random.default_rng(4)
     radius = awkward(rng, 6)
     radius[2] = math.nan
     branch = np.array(["loading"] * 3 + ["unloading"] * 3)
     displacement, force, distance, spread = (awkward(rng, 6) for _ in range(4))
-    return Curve(displacement, force, radius, distance, branch, spread)
+    return Columns(dict(zip(COLUMNS.split(","), (displacement, force, radius, distance, branch, spread), strict=True)))
 
 
-def test_a_curve_comes_back_to_the_last_bit(curve: Curve, tmp_path: Path) -> None:
-    write_columns(tmp_path / "curve.csv", vars(curve))
-    back = read_curve(tmp_path / "curve.csv")
-    for field in fields(curve):
-        np.testing.assert_array_equal(getattr(back, field.name), getattr(curve, field.name))
+def test_a_curve_comes_back_to_the_last_bit(curve: Columns, tmp_path: Path) -> None:
+    write_columns(tmp_path / "curve.csv", curve)
+    back = read_columns(tmp_path / "curve.csv")
+    assert list(back) == list(curve)
+    for name in curve:
+        np.testing.assert_array_equal(getattr(back, name), curve[name])
 
 
-def test_the_columns_are_those_of_the_contract(curve: Curve, tmp_path: Path) -> None:
-    write_columns(tmp_path / "curve.csv", vars(curve))
+def test_a_unit_stands_in_the_header_and_comes_back(curve: Columns, tmp_path: Path) -> None:
+    write_columns(tmp_path / "curve.csv", curve, {"force": "N", "displacement": "m"})
+    header = (tmp_path / "curve.csv").read_text(encoding="utf-8").splitlines()[0]
+    assert header.startswith("displacement [m],force [N],contact_radius,")
+    back = read_columns(tmp_path / "curve.csv")
+    assert back.units == {"displacement": "m", "force": "N"}
+    np.testing.assert_array_equal(back.force, curve.force)
+
+
+def test_the_columns_are_those_of_the_contract(curve: Columns, tmp_path: Path) -> None:
+    write_columns(tmp_path / "curve.csv", curve)
     header, *rows = (tmp_path / "curve.csv").read_text(encoding="utf-8").splitlines()
     assert header == COLUMNS
     assert len(rows) == 6
@@ -56,7 +66,7 @@ def test_profiles_come_back_by_the_names_of_their_states(tmp_path: Path) -> None
     write_columns(tmp_path / "profile.csv", profile_columns(profiles))
     with (tmp_path / "profile.csv").open(encoding="utf-8") as file:
         assert next(csv.reader(file)) == ["x", "z_lower", "z_upper", "pressure", "shear", "state"]
-    back = read_profiles(tmp_path / "profile.csv")
+    back = by_state(read_columns(tmp_path / "profile.csv"))
     assert list(back) == ["zero_load", "critical"]
     for name, profile in profiles.items():
         for field in fields(profile):
@@ -67,9 +77,10 @@ def test_columns_of_numbers_come_back_by_name_beside_words(tmp_path: Path) -> No
     rng, names = np.random.default_rng(7), ("time", "load", "force")
     columns = {name: awkward(rng, 5) for name in names}
     columns["force"][3] = math.nan
-    write_columns(tmp_path / "table.csv", {"beside": ["a", "b, c", '"d"', "", "e"], **columns})
+    write_columns(tmp_path / "table.csv", {"state": ["a", "b, c", '"d"', "", "e"], **columns})
     back = read_columns(tmp_path / "table.csv", names)
-    assert tuple(back) == names
+    assert tuple(back) == ("state", *names)
+    assert back.state.tolist() == ["a", "b, c", '"d"', "", "e"]
     for name in names:
         np.testing.assert_array_equal(back[name], columns[name])
     with pytest.raises(ValueError, match="no column seed"):
@@ -79,9 +90,9 @@ def test_columns_of_numbers_come_back_by_name_beside_words(tmp_path: Path) -> No
         read_columns(tmp_path / "table.csv", names)
 
 
-def test_an_interrupted_write_leaves_the_old_table(curve: Curve, tmp_path: Path) -> None:
+def test_an_interrupted_write_leaves_the_old_table(curve: Columns, tmp_path: Path) -> None:
     path = tmp_path / "curve.csv"
-    write_columns(path, vars(curve))
+    write_columns(path, curve)
     before = path.read_bytes()
     for force in ([1.0], []):
         with pytest.raises(ValueError, match="zip"):
@@ -91,13 +102,13 @@ def test_an_interrupted_write_leaves_the_old_table(curve: Curve, tmp_path: Path)
 
 def test_columns_of_a_curve_are_equally_long() -> None:
     with pytest.raises(ValueError, match="equally long"):
-        Curve(np.zeros(2), *np.zeros((3, 1)), np.array(["loading"]), np.zeros(1))
+        Columns({"displacement": np.zeros(2), "force": np.zeros(1)})
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("displacement,force\n0,1\n", "no column contact_radius, smallest_distance, branch"),
+        ("displacement,force\n0,1\n", "no column branch, contact_radius"),
         (f"{COLUMNS}\n", "no rows"),
         (f"{COLUMNS}\n0,many,1,1,loading,0\n", "many"),
     ],
@@ -105,4 +116,4 @@ def test_columns_of_a_curve_are_equally_long() -> None:
 def test_what_is_no_curve_is_refused(text: str, message: str, tmp_path: Path) -> None:
     (tmp_path / "curve.csv").write_text(text, encoding="utf-8")
     with pytest.raises(ValueError, match=message):
-        read_curve(tmp_path / "curve.csv")
+        read_columns(tmp_path / "curve.csv", ("displacement", "force", "contact_radius", "branch"))

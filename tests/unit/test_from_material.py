@@ -115,11 +115,12 @@ def test_steel_on_glass_has_thirty_particles_in_hertzs_radius() -> None:
     assert choice.contact_radius == pytest.approx(radius, rel=GRID)
     scene = choice.scene
     assert scene.material is not None
-    assert scene.material.length_unit == pytest.approx(choice.contact_radius / 30.0, rel=ROUND_OFF)
-    assert scene.material.length_unit * scene.bodies.profile.curvature_radius == pytest.approx(0.01, rel=ROUND_OFF)
+    assert (scene.material.length_unit, scene.material.force_unit) == (1.0, 1.0)
+    assert scene.bodies.spacing == pytest.approx(choice.contact_radius / 30.0, rel=ROUND_OFF)
+    assert scene.bodies.profile.curvature_radius == pytest.approx(0.01, rel=ROUND_OFF)
     assert (scene.bodies.reduction, scene.bodies.lower, scene.effects) == ("mdr", "rigid_plane", ())
     assert scene.experiment.kind == "load"
-    assert scene.experiment.compression * scene.material.force_unit == pytest.approx(10.0, rel=ROUND_OFF)
+    assert scene.experiment.compression == pytest.approx(10.0, rel=ROUND_OFF)
     assert (choice.theories, choice.doubts) == (None, {})
 
 

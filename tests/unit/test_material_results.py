@@ -8,9 +8,11 @@ import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from contact1d import Run, run
+from contact1d.analysis.curve import read_columns
 from contact1d.workflow.scene import scene_from_dict
 from tests.materials import JKR, PATH, STEEL, tables
 
@@ -83,26 +85,25 @@ def test_units_by_jkr_stand_in_the_results_with_their_uncertainty(finished: dict
 
 
 @pytest.mark.parametrize("name", ["plane", "sticky"])
-def test_si_columns_stand_to_the_right_of_those_in_model_units(finished: dict[str, Run], name: str) -> None:
-    units = document(finished[name])["units"]
+def test_columns_are_in_si_with_the_unit_in_the_header_and_model_units_come_back(
+    finished: dict[str, Run], name: str
+) -> None:
+    run, units = finished[name], document(finished[name])["units"]
     length, force = units["LU"]["value"], units["FU"]["value"]
-    factors = {"_m": length, "_N": force, "_N_per_m": force / length}
+    factors = {"m": length, "N": force, "N/m": force / length}
     expected = {
-        "curve.csv": {"displacement": "_m", "force": "_N", "contact_radius": "_m", "smallest_distance": "_m"},
-        "profile.csv": {"x": "_m", "z_lower": "_m", "z_upper": "_m", "pressure": "_N_per_m", "shear": "_N_per_m"},
+        "curve": {"displacement": "m", "force": "N", "contact_radius": "m", "smallest_distance": "m"},
+        "profile": {"x": "m", "z_lower": "m", "z_upper": "m", "pressure": "N/m", "shear": "N/m"},
     }
-    for file, endings in expected.items():
-        found = columns(finished[name], file)
-        names = list(found)
-        own = [key for key in names if not key.endswith(tuple(factors))]
-        assert names[: len(own)] == own
-        for key, ending in endings.items():
-            assert key in own
-            for model, si in zip(found[key], found[key + ending], strict=True):
-                if model == "":
-                    assert si == ""
-                else:
-                    assert float(si) == pytest.approx(factors[ending] * float(model), rel=ROUND_OFF)
+    for table, wanted in expected.items():
+        read = read_columns(run.folder / f"{table}.csv")
+        for key, unit in wanted.items():
+            assert (read.units[key], run.tables[table].units[key]) == (unit, unit)
+            np.testing.assert_array_equal(read[key], run.tables[table][key])
+            np.testing.assert_allclose(run.model.tables[table][key] * factors[unit], read[key], rtol=ROUND_OFF)
+    assert run.outcome is not None
+    np.testing.assert_allclose(run.model.curve.force, [s.force for s in run.outcome.states], rtol=ROUND_OFF)
+    assert (run.results.adhesion_force if name == "sticky" else run.results.largest_force).unit == "N"
 
 
 def test_without_a_material_nothing_is_in_si(finished: dict[str, Run]) -> None:
@@ -112,7 +113,7 @@ def test_without_a_material_nothing_is_in_si(finished: dict[str, Run]) -> None:
     assert results["reduction"] == "mdr"
     assert "material" not in results["scene"]
     for file in ("curve.csv", "profile.csv"):
-        assert not [key for key in columns(finished["bare"], file) if key.endswith(("_m", "_N"))]
+        assert not [key for key in columns(finished["bare"], file) if "[" in key]
 
 
 def test_contact_of_one_pair_has_no_units_by_jkr(tmp_path: Path) -> None:

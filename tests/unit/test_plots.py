@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from contact1d.analysis import figures, plots
-from contact1d.analysis.curve import Curve
+from contact1d.analysis.curve import Columns
 from contact1d.analysis.pressure import Profile
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import scene_from_dict
@@ -20,7 +20,6 @@ GRID = 2e-3  # of F_A; the theory is drawn with 400 points
 PNG = b"\x89PNG\r\n\x1a\n"
 
 BODY_RADIUS, ADHESION, ZERO_LOAD = 1000.0, 1.5, 28.0
-MARKS = {"adhesion_force": ADHESION, "zero_load_radius": ZERO_LOAD}
 
 
 def profile(depth: float) -> Profile:
@@ -30,14 +29,20 @@ def profile(depth: float) -> Profile:
 
 
 @pytest.fixture
-def curve() -> Curve:
+def curve() -> Columns:
     down, up = np.linspace(-0.1, 0.3, 30), np.linspace(0.3, -0.3, 40)
     displacement = np.concatenate([down, up])
     radius = np.concatenate([100.0 * np.sqrt(down + 0.1), 60.0 * np.sqrt(up + 0.3)])
     radius[-1] = math.nan
     force = np.concatenate([4.0 * down - 0.5, 5.0 * up])
     branch = np.array(["loading"] * 30 + ["unloading"] * 40)
-    return Curve(displacement, force, radius, np.full(70, 0.2), branch, np.zeros(70))
+    return Columns(
+        {"displacement": displacement, "force": force, "contact_radius": radius, "branch": branch,
+         "contact_radius_uncertainty": np.zeros(70)}
+    )  # fmt: skip
+
+
+LEGS = [("loading", np.arange(30)), ("unloading", np.arange(30, 70))]
 
 
 def lines(axis: object) -> dict[str, np.ndarray]:
@@ -49,9 +54,9 @@ def lines(axis: object) -> dict[str, np.ndarray]:
 def test_every_particle_that_carries_pressure_is_a_bar_of_its_sign() -> None:
     shown = profile(0.05)
     (axis,) = figures.pressure_figure({"zero_load": shown}, {"zero_load": 28.0}).axes
-    (bars,) = axis.collections
-    corners = {round(path.vertices[:4, 0].mean()): path.vertices[:4, 1] for path in bars.get_paths()}
-    colours = dict(zip(corners, map(tuple, bars.get_facecolors()), strict=True))
+    drawn = [(bars, path.vertices[:4]) for bars in axis.collections for path in bars.get_paths()]
+    corners = {round(place[:, 0].mean()): place[:, 1] for _, place in drawn}
+    colours = {round(place[:, 0].mean()): tuple(bars.get_facecolors()[0]) for bars, place in drawn}
     for x, p in zip(shown.x, shown.pressure, strict=True):
         if abs(p) > 0.01 * shown.pressure.max():
             assert sorted(corners[round(x)]) == sorted([0.0, 0.0, p, p])
@@ -77,13 +82,13 @@ def test_a_state_without_contact_says_so(radii: dict[str, float]) -> None:
     assert [text.get_text() for text in axis.texts] == ["no contact"]
 
 
-def test_the_branches_are_drawn_as_measured(curve: Curve) -> None:
-    (axis,) = figures.force_displacement_figure(curve, {}).axes
+def test_the_branches_are_drawn_as_measured(curve: Columns) -> None:
+    (axis,) = figures.force_displacement_figure(curve, LEGS).axes
     drawn = lines(axis)
     assert set(drawn) == {"loading", "unloading"}
     points = np.column_stack([curve.displacement, curve.force])
     np.testing.assert_array_equal(drawn["loading"], points[:30])
-    np.testing.assert_array_equal(drawn["unloading"], points[30:][::-1])
+    np.testing.assert_array_equal(drawn["unloading"], points[30:])
     assert "(LU)" in axis.get_xlabel()
     assert "(FU)" in axis.get_ylabel()
 
@@ -123,7 +128,7 @@ def test_hertz_is_the_integral_of_the_springs_under_the_parabola(reduction: str,
     np.testing.assert_array_equal(again, force)
 
 
-def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(curve: Curve) -> None:
+def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(curve: Columns) -> None:
     (axis,) = figures.force_radius_figure(curve, ADHESION, ZERO_LOAD).axes
     drawn = lines(axis)
     run = drawn.pop("this run, unloading")
@@ -137,11 +142,11 @@ def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(curve
     assert barquins[np.argmin(barquins[:, 1]), 0] == pytest.approx(0.397, abs=0.01)  # (1/4)^(2/3), grid of 400
 
 
-def test_every_figure_is_a_whole_file(curve: Curve, tmp_path: Path) -> None:
+def test_every_figure_is_a_whole_file(curve: Columns, tmp_path: Path) -> None:
     columns = {"drive": [0.0, 1.0], "friction": [0.0, 1.0], "normal_force": [1.0, 1.0]}
     for name, figure in {
         "pressure": figures.pressure_figure({"final": profile(0.05)}, {"final": 28.0}),
-        "force_displacement": figures.force_displacement_figure(curve, MARKS),
+        "force_displacement": figures.force_displacement_figure(curve, LEGS, (ADHESION, 0.1)),
         "force_radius": figures.force_radius_figure(curve, ADHESION, ZERO_LOAD),
         "friction": figures.friction_figure(columns),
     }.items():

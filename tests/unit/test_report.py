@@ -80,12 +80,12 @@ def test_the_page_needs_nothing_beside_it_and_is_well_formed(finished: Run, tmp_
 
 
 def test_the_slider_moves_through_every_state_with_its_own_numbers(finished: Run, tmp_path: Path) -> None:
-    way = data_on(report([finished.folder], tmp_path / "r.html").read_text())["way"]
+    way = data_on(report([finished.folder], tmp_path / "r.html").read_text())["path"]
     count = len(finished.curve.force)
-    assert len(way["words"]) == len(way["pressure"]) == count
+    assert len(way["words"]) == len(way["loads"][0]) == count
     np.testing.assert_allclose(way["against"], finished.curve.force, rtol=SEVEN_DIGITS, atol=SEVEN_DIGITS)
     spacing = finished.scene.bodies.spacing
-    shown = [spacing * sum(row) for row in way["pressure"]]
+    shown = [spacing * sum(row) for row in way["loads"][0]]
     strong = np.argmax(np.abs(finished.curve.force))
     assert shown[strong] == pytest.approx(finished.curve.force[strong], rel=TAIL)
 
@@ -96,7 +96,7 @@ def test_several_runs_are_overlaid_and_a_failed_one_says_why(finished: Run, tmp_
         run(chains(400.0, experiment={"kind": "load", "force": 0.5}, bodies={"particles": 7}), tmp_path / "f", False)
     page = report([finished.folder, other.folder, tmp_path / "f"], tmp_path / "r.html").read_text()
     names = [trace["name"] for trace in data_on(page)["charts"][0]["data"]]
-    assert {name.partition(",")[0] for name in names} == {finished.scene.title, "other"}
+    assert {name.partition(",")[0] for name in names} >= {finished.scene.title, "other"}
     assert "end of the chain" in page
     assert str(other.results.adhesion_force) in page
 
@@ -107,9 +107,13 @@ def test_the_page_of_a_sweep_has_its_table_and_a_figure_for_each_result(tmp_path
     done = sweep({"title": "forces", "base": base, "axes": axes}, tmp_path / "s", workers=1, figures=False)
     page = report([tmp_path / "s"], tmp_path / "r.html").read_text()
     assert Balance(page).open == []
-    assert [chart["layout"]["title"]["text"] for chart in data_on(page)["charts"]] == [
-        name.replace("_", " ") for name in done.quantities
-    ]
+    charts = [chart["title"].partition(" over ")[0] for chart in data_on(page)["charts"]]
+    assert (
+        {"Displacement", "Contact radius"}
+        <= set(charts)
+        <= {name.replace("_", " ").capitalize() for name in done.quantities}
+    )
+    assert "Separation energy" not in charts  # it is the same everywhere
     assert page.count("<td>done</td>") == 2
 
 
@@ -123,7 +127,7 @@ def test_every_kind_of_run_has_a_page(name: str, tmp_path: Path) -> None:
     data = data_on(page)
     assert data["charts"]
     if len(kept.curve.force) > 1:
-        assert len(data["way"]["along"]) == len(data["way"]["words"])
+        assert len(data["path"]["along"]) == len(data["path"]["words"])
 
 
 def test_the_way_of_a_run_moves_a_picture_for_each_state(tmp_path: Path) -> None:

@@ -197,6 +197,6 @@ def test_a_wrong_text_is_one_line_and_the_rest_is_still_checked() -> None:
         read_scene(STEEL_ON_GLASS, ["bodies.profile.radius=10 N", "bodies.spacing=-4 µm", "accuracy.tolerance=2"])
     assert [str(problem) for problem in caught.value.problems] == [
         'bodies.profile.radius = "10 N": must be a length, such as 10 mm; 10 N is a force',
-        'bodies.spacing = "-4 µm": must be greater than 0 (LU), or "auto"',
+        'bodies.spacing = "-4 µm": must be greater than 0 (m), or "auto"',
         "accuracy.tolerance = 2: must be from 1e-07 to 0.1",
     ]

@@ -9,7 +9,7 @@ import pytest
 
 from contact1d.analysis.pressure import Profile
 from contact1d.workflow.cli.summary import pressure_plot, quantities
-from contact1d.workflow.units import rounded
+from contact1d.workflow.units import Scales, rounded
 
 
 @pytest.mark.parametrize(
@@ -65,7 +65,7 @@ def test_the_plot_shows_compression_above_and_tension_below_the_axis() -> None:
 
 def test_the_plot_is_in_si_where_units_are_known() -> None:
     x = np.linspace(-10.0, 10.0, 81)
-    units = {"LU": {"value": 1e-6}, "FU": {"value": 1e-3}}  # 1 FU/LU is 1 kN/m
+    units = Scales(1e-6, 1e-3)  # 1 FU/LU is 1 kN/m
     lines = pressure_plot(profile(np.where(np.abs(x) < 4.0, 2.0, 0.0)), 3.0, units)
     assert lines[0].split()[0] == "2"
     assert lines[-1].split()[0] == "kN/m"

@@ -258,8 +258,11 @@ def test_the_table_is_a_data_frame_of_numbers_whose_axes_have_one_unit(tmp_path:
     axes = [radius, {"key": "experiment.force", "values": ["1 N", "2 N"]}]
     plan = {"title": "table", "scene": str(SCENE), "axes": axes}
     table = sweep(plan, tmp_path / "s", figures=False).table()
-    assert table["bodies.profile.radius"].tolist() == pytest.approx(np.repeat([1.0, 10.0**0.5, 10.0], 2).tolist())
+    assert table["bodies.profile.radius"].tolist() == pytest.approx(
+        np.repeat([1e-3, 1e-3 * 10.0**0.5, 1e-2], 2).tolist()
+    )
     assert table["experiment.force"].tolist() == [1.0, 2.0] * 3
-    assert table.attrs["units"]["bodies.profile.radius"] == "mm"
-    hertz = (0.75 * table["experiment.force"] * 1e-3 * table["bodies.profile.radius"] / MODULUS) ** (1.0 / 3.0)
+    assert table.attrs["units"]["bodies.profile.radius"] == "m"
+    assert table.attrs["units"]["contact_radius"] == "m"
+    hertz = (0.75 * table["experiment.force"] * table["bodies.profile.radius"] / MODULUS) ** (1.0 / 3.0)
     assert table["contact_radius"].tolist() == pytest.approx(hertz.tolist(), rel=3e-3)  # 5 to 27 particles in it

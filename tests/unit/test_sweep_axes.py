@@ -48,16 +48,17 @@ def test_spans_have_steps_and_one_more_value_with_exact_ends() -> None:
 def test_an_axis_may_have_a_unit() -> None:
     span = {"key": RADIUS, "from": "1 µm", "to": "100 µm", "steps": 2, "scale": "log"}
     (radii,) = read_sweep(plane(span)).axes
-    assert radii.values == ("1.0 µm", "10.0 µm", "100.0 µm")
-    assert radii.numbers() == ((1.0, 10.0, 100.0), "µm")
-    assert Axis(RADIUS, ("1 µm", "1 mm")).numbers() == ((), "")
+    assert radii.values == ("1 µm", "1e-05 m", "100 µm")
+    assert radii.numbers() == ((1e-6, 1e-5, 1e-4), "m")
+    assert Axis(RADIUS, ("1 µm", "1 mm")).numbers() == ((1e-6, 1e-3), "m")
+    assert Axis(RADIUS, ("1 µm", "1 N")).numbers() == ((), "")
     assert Axis("bodies.lower", ("particles", "rigid_plane")).numbers() == ((), "")
 
 
 @pytest.mark.parametrize(
     ("source", "sentence"),
     [
-        (plane({"key": RADIUS, "from": "1 m", "to": "2 mm", "steps": 1}), "must have the same unit at both ends"),
+        (plane({"key": RADIUS, "from": "1 m", "to": "2 N", "steps": 1}), "must have the same dimension at"),
         (plane(), "axes: missing; write [[axes]]"),
         (plane(axis(RADIUS)), "axes[0].values: is empty: the sweep would have no point"),
         (plane(axis(RADIUS, 1.0), axis(RADIUS, 2.0)), "another axis has the same key"),

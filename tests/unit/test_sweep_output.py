@@ -10,6 +10,7 @@ import pytest
 from contact1d import sweep
 from contact1d.workflow.sweep.axes import read_sweep
 from contact1d.workflow.sweep.table import PARQUET, TABLE, write_parquet
+from contact1d.workflow.units import UNKNOWN
 from tests.sweeps import FORCE, RADIUS, Here, axis, plane, rows
 
 
@@ -36,14 +37,14 @@ def test_seeds_are_averaged_and_lines_told_apart(tmp_path: Path) -> None:
     np.testing.assert_allclose(first[0].get_ydata(), [2.0, 4.0])
     np.testing.assert_allclose(second[0].get_ydata(), [5.0])
     assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == [
-        "profile.radius = 50.0", "profile.radius = 100.0",
+        "radius of curvature R at the apex = 50.0", "radius of curvature R at the apex = 100.0",
     ]  # fmt: skip
     assert figure.axes[0].get_ylabel() == "displacement (LU)"
 
 
 def test_closed_forms_are_the_lines_of_a_sweeps_figures_and_the_runs_points_on_them(tmp_path: Path) -> None:
     """Hertz over the force for two radii: in the figure and on the page, in the colours of the runs beside them."""
-    from contact1d.workflow.report.charts import over_axes
+    from contact1d.workflow.report.charts import charts_of
     from contact1d.workflow.sweep.figures import lines_of, sweep_figure
 
     bodies = {
@@ -66,10 +67,16 @@ def test_closed_forms_are_the_lines_of_a_sweeps_figures_and_the_runs_points_on_t
         assert beside == pytest.approx(hertz, rel=1e-9)  # of the force that is held
     figure = sweep_figure(plan, "displacement", "LU", lines)
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
-    assert labels == ["Hertz", "profile.radius = 500.0", "profile.radius = 1000.0"]
-    chart = next(
-        c for c in over_axes(done.folder, plan, done.quantities) if c["layout"]["title"]["text"] == "displacement"
+    assert labels == ["Hertz", *(f"radius of curvature R at the apex = {radius}" for radius in radii)]
+    (chart,) = charts_of({"": ({"displacement": figure}, UNKNOWN)})
+    assert (chart["layout"]["xaxis"]["type"], chart["title"]) == (
+        "linear",
+        "Displacement over normal force on the upper body: Hertz",
     )
-    kinds = [(trace["mode"], trace["line"]["color"]) for trace in chart["data"]]
-    assert [mode for mode, _ in kinds] == ["markers", "markers", "lines", "lines"]
-    assert [colour for _, colour in kinds[:2]] == [colour for _, colour in kinds[2:]]
+    drawn = {kind: [trace for trace in chart["data"] if trace["mode"] == kind] for kind in ("markers", "lines")}
+    colours = {kind: {trace["line"]["color"] for trace in traces} for kind, traces in drawn.items()}
+    assert len(colours["markers"]) == 2
+    assert colours["markers"] <= colours["lines"]
+    first = next(trace for trace in drawn["lines"] if len(trace["x"]) > 10 * len(forces))
+    between = float(np.interp(30.0, first["x"], first["y"]))
+    assert between == pytest.approx((0.75 * 30.0 / 0.5 / radii[0] ** 0.5) ** (2.0 / 3.0), rel=1e-3)

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d.analysis.curve import TANGENTIAL_COLUMNS, Curve
+from contact1d.analysis.curve import Columns, profile_columns
 from contact1d.analysis.pressure import Profile
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene
-from tests.kept_runs import KeptBench, kept_paper, kept_runs, solved_once
+from tests.kept_runs import KeptBench, in_model_units, kept_paper, kept_runs, solved_once
 from validation.paper import STUDIES, fig9, tangential
 from validation.paper.scenes import barquins_reduced
 from validation.references.slide import Trace
@@ -86,7 +86,10 @@ WRONG = (1.4, 3.0)
 """Factors by which each number of each run is wrong, drawn from its name: the widest tolerance of a row is 10 %."""
 POINTS, SLIDE = 30, 400
 """Points of a curve, and of a slide."""
-COLUMNS = (*TANGENTIAL_COLUMNS, "drive", "friction")
+COLUMNS = (
+    "tangential_displacement", "tangential_force", "normal_force", "stick_radius", "stick_radius_uncertainty",
+    "dissipated_energy", "drive", "friction",
+)  # fmt: skip
 CLAIMED = 1e-6
 """Uncertainty that the wrong numbers claim, relative: below any tolerance, so that no row fails by it alone."""
 
@@ -114,15 +117,17 @@ class WrongRuns(dict[str, Run]):
         force = wrong(1.47) * barquins_reduced(a / 28.53)
         d = np.linspace(wrong(0.5), -0.5, POINTS)
         branch = np.array(["unloading"] * POINTS)
-        curve = Curve(d, force, a, np.full(POINTS, 0.3), branch, np.full(POINTS, 1e-3))
+        spread = np.full(POINTS, 1e-3)
+        columns = {"displacement": d, "force": force, "contact_radius": a, "contact_radius_uncertainty": spread}
+        curve = Columns(columns | {"branch": branch})
         rows = len(tangential.OUT) + len(tangential.LOOP) - 1
         friction = {
             name: wrong(2.0) + rng.uniform(0.0, 1.0, SLIDE if name in COLUMNS[-2:] else rows).cumsum()
             for name in COLUMNS
         }
-        self[name] = Run(
-            Path(name), document, kept_paper(), curve, {"zero_load": profile, "deepest": profile}, friction
-        )
+        profiles = Columns(profile_columns({"zero_load": profile, "deepest": profile}))
+        tables: Any = {"curve": curve, "profile": profiles, "friction": friction}
+        self[name] = in_model_units(Run(Path(name), document, kept_paper(), tables))
         return self[name]
 
 

@@ -77,7 +77,7 @@ def calibrated(folder: Path) -> Scene:
 def _identified(scene: Scene, target: Target, folder: Path) -> Scene | None:
     """The scene of a finished run in `folder` that is `scene` but for the interaction, and has its target."""
     try:
-        run = load_run(folder)
+        run = load_run(folder).model
         reached = [run.results[name].value for name in ("adhesion_force", "zero_load_radius")]
     except (FolderError, RunError, KeyError):
         return None

@@ -140,8 +140,7 @@ def run(
         assert finished.outcome is not None
         name, profile = next(iter(finished.outcome.profiles.items()))
         typer.echo(f"\nline load, {name.replace('_', ' ')} state:")
-        units = finished.document.get("units")
-        typer.echo("\n".join(pressure_plot(profile, finished.outcome.radii[name], units)))
+        typer.echo("\n".join(pressure_plot(profile, finished.outcome.radii[name], finished.scales)))
         typer.echo(f"\n{finished.folder}")
 
 

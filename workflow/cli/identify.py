@@ -150,13 +150,13 @@ def _scene_of_sphere(given: Mapping[str, float], tolerance: float, out: Path) ->
         else:
             target = Target(given["adhesion-force"], given["zero-load-radius"])
         found = search(*material_scene(modulus, radius, target, given.get("length-unit"), tolerance), out, progress)
-    from contact1d.workflow.cli.summary import in_si, quantities
+    from contact1d.workflow.cli.summary import quantities
+    from contact1d.workflow.units import prefixed
 
     lines = [f"identified in {found.runs} run{'s' if found.runs > 1 else ''}"]
     for (name, asked), unit in zip(vars(target).items(), ("N", "m"), strict=True):
-        said = in_si({"value": asked, "uncertainty": 0.0, "unit": unit})
         off = found.run.document[name]["si"]["value"] / asked - 1.0
-        lines.append(f"  {name.replace('_', ' ')}: wanted {said}, off by {off:+.1e}")
+        lines.append(f"  {name.replace('_', ' ')}: wanted {prefixed(asked, unit)}, off by {off:+.1e}")
     for name, term in found.scene.interaction or ():
         if name in ("repulsion", "attraction"):
             lines.append(f"  {name:<28} amplitude {term.amplitude:.6g} FU·LU, range {term.range:.6g} LU")

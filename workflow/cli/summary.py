@@ -11,7 +11,7 @@ import numpy as np
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import moved_centre
 from contact1d.workflow.body.theory import in_words
-from contact1d.workflow.units import prefixed, rounded, scale_of
+from contact1d.workflow.units import LENGTH, LINE_PRESSURE, UNKNOWN, Quantity, Scales, prefixed
 
 if TYPE_CHECKING:
     from contact1d.workflow.identify import MaterialRun
@@ -30,8 +30,6 @@ NAMES = {
     "separation_energy": "separation energy per length",
     "work_of_adhesion": "implied W = 2γ",
 }
-EXACTNESS = 1e-9
-"""A relative uncertainty below it, as of a unit that was given, is left out."""
 COLUMNS = 64
 ROWS = 9
 SHOWN_SHARE = 0.01
@@ -42,7 +40,7 @@ BLOCK, EMPTY, AXIS = "█", " ", "─"
 def quantities(results: Mapping[str, Any]) -> list[str]:
     """What the numbers are of, then a line for each: name, value ± uncertainty, unit, closed forms beside it.
 
-    In SI where the units are known, and then also what LU and FU are.
+    In SI where the units are known, and then also what LU and FU are where they are other than m and N.
     """
     lines = [f"  {'reduction':<31} {_whose(results)}"] if "reduction" in results else []
     for name, entry in results.items():
@@ -50,16 +48,10 @@ def quantities(results: Mapping[str, Any]) -> list[str]:
             label = NAMES.get(name, name.replace("_", " "))
             if state := entry.get("state"):
                 label += f", {state.replace('_', ' ')}"
-            if entry["value"] is None:
-                number = "not reported"
-            elif "si" in entry:
-                number = in_si(entry["si"])
-            else:
-                number = f"{rounded(entry['value'], entry['uncertainty'])} {entry['unit']}"
+            number = "not reported" if entry["value"] is None else str(Quantity.of(entry))
             lines.append(f"  {label:<31} {number:<32} {', '.join(in_words(results, name))}".rstrip())
-    if "units" in results:
-        lines += [f"  {'1 ' + unit:<31} {in_si(entry)}" for unit, entry in results["units"].items()]
-    return lines
+    units = {unit: Quantity(**entry) for unit, entry in results.get("units", {}).items()}
+    return lines + [f"  {'1 ' + unit:<31} {one}" for unit, one in units.items() if one.value != 1.0]
 
 
 def _whose(results: Mapping[str, Any]) -> str:
@@ -74,20 +66,8 @@ def _whose(results: Mapping[str, Any]) -> str:
     return f"{reduction}: the plane model of the paper; radii are those of its image"
 
 
-def in_si(entry: Mapping[str, Any]) -> str:
-    """Value ± uncertainty with a prefix: `39.028 ± 0.012 µN`."""
-    value, uncertainty = float(entry["value"]), float(entry["uncertainty"])
-    factor, unit = scale_of(value, entry["unit"])
-    spread = uncertainty * factor
-    exact = spread <= EXACTNESS * abs(value) * factor
-    return f"{value * factor:.5g} {unit}" if exact else f"{rounded(value * factor, spread)} {unit}"
-
-
-def pressure_plot(profile: Profile, radius: float, units: Mapping[str, Any] | None = None) -> list[str]:
-    """The pressure over x as bars in a terminal, compression up; the marks below it are at ±a.
-
-    In SI where `units`, those of results.json, say what LU and FU are.
-    """
+def pressure_plot(profile: Profile, radius: float, scales: Scales = UNKNOWN) -> list[str]:
+    """The line load over x as bars in a terminal, compression up; the marks below it are at ±a; in SI by `scales`."""
     largest = float(np.max(np.abs(profile.pressure), initial=0.0))
     if largest == 0.0:
         return ["  no pressure"]
@@ -96,7 +76,8 @@ def pressure_plot(profile: Profile, radius: float, units: Mapping[str, Any] | No
     pressure = np.interp(x, profile.x, profile.pressure, left=0.0, right=0.0)
     step = (pressure.max() - min(pressure.min(), 0.0)) / ROWS or 1.0
     top, bottom = math.ceil(max(pressure.max(), 0.0) / step), math.floor(min(pressure.min(), 0.0) / step)
-    load, load_unit, length, length_unit = _axes(float(np.max(np.abs(pressure))), half, units)
+    load, load_unit = scales.written(float(np.max(np.abs(pressure))), LINE_PRESSURE)
+    length, length_unit = scales.written(half, LENGTH)
     lines = []
     for level in range(top, bottom - 1, -1):
         beyond = (level - math.copysign(0.5, level)) * step
@@ -110,16 +91,6 @@ def pressure_plot(profile: Profile, radius: float, units: Mapping[str, Any] | No
         lines.append(f"{'':13}{marks}  ± a")
     extent = f"x from {-half * length:.1f} to {half * length:.1f} {length_unit}"
     return [*lines, f"{load_unit:>12} {extent.center(COLUMNS)}"]
-
-
-def _axes(load: float, half: float, units: Mapping[str, Any] | None) -> tuple[float, str, float, str]:
-    """Factor and unit of the line load and of x."""
-    if units is None:
-        return 1.0, "FU/LU", 1.0, "LU"
-    length, force = units["LU"]["value"], units["FU"]["value"]
-    load_factor, load_unit = scale_of(load * force / length, "N/m")
-    length_factor, length_unit = scale_of(half * length, "m")
-    return load_factor * force / length, load_unit, length_factor * length, length_unit
 
 
 THEORY = {"adhesion_force": "N", "zero_load_radius": "m", "critical_radius": "m", "loaded_radius": "m"}
@@ -164,20 +135,19 @@ def beside_theories(found: MaterialRun) -> Iterator[str]:
             continue
         own, deviation = _own(found, name), ""
         if own is not None and values["JKR"]:
-            deviation = f"{own['value'] / values['JKR'] - 1.0:+.2%}"
-        said = "—" if own is None else in_si(own)
+            deviation = f"{own.value / values['JKR'] - 1.0:+.2%}"
+        said = "—" if own is None else str(own)
         shown = "".join(f"{prefixed(value, unit) if value else '0':<{WIDTH}}" for value in values.values())
         yield f"  {LABELS[name]:<28} {said:<26}{shown}{deviation}"
     yield "  * holds at this μ"
 
 
-def _own(found: MaterialRun, name: str) -> Mapping[str, Any] | None:
-    """The run's own value in SI, as in results.json; the radius under the load is that of the last loading row."""
+def _own(found: MaterialRun, name: str) -> Quantity | None:
+    """The run's own value; the radius under the load is that of the last loading row."""
     if name != "loaded_radius":
-        entry: Mapping[str, Any] = found.run.document.get(name, {})
-        return entry.get("si")
-    curve, scales = found.run.curve, found.run.scales
+        return found.run.results.get(name)
+    curve = found.run.curve
     loading = np.flatnonzero(curve.branch == "loading")
-    if scales is None or not loading.size or not math.isfinite(radius := curve.contact_radius[loading[-1]]):
+    if not loading.size or not math.isfinite(radius := curve.contact_radius[loading[-1]]):
         return None
-    return scales.in_si(float(radius), float(curve.contact_radius_uncertainty[loading[-1]]), "LU")
+    return Quantity(float(radius), float(curve.contact_radius_uncertainty[loading[-1]]), "m")

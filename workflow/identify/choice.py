@@ -23,9 +23,7 @@ from contact1d.workflow.runs import advised
 from contact1d.workflow.runs.campaign import AnyPath
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.scene.quantities import places
 from contact1d.workflow.scene.read import plain_data
-from contact1d.workflow.units import Scales
 
 PRELOAD_SHARE = 0.7
 """Preload of a pull-off over JKR's F_A, where no load is given."""
@@ -87,21 +85,15 @@ def _on_plane(contact: AskedContact, radius: float, count: int) -> Scene:
 
     A pull-off where something holds, else the load.
     """
-    unit = radius / count
-    scales = Scales(unit, contact.contact_modulus * unit**2)
     data: dict[str, Any] = plain_data(contact.scene)
-    data["bodies"]["spacing"] = unit
+    data["bodies"]["spacing"] = radius / count
     if contact.is_rigid:
-        data["material"] = {"contact_modulus": contact.contact_modulus}
-    data["material"] |= {"length_unit": unit, "force_unit": scales.force}
+        data["material"] = {"contact_modulus": contact.contact_modulus, "length_unit": 1.0, "force_unit": 1.0}
     data.pop("adhesion", None)
     if contact.work_of_adhesion:
         data["adhesion"] = {"work_of_adhesion": contact.work_of_adhesion}
         load = contact.load or PRELOAD_SHARE * largest_tension(contact)
         data["experiment"] = {"kind": "pull_off", "preload": load}
-    for place in places(Scene, data):
-        if place.is_number and not place.absent and scales.know(place.unit.name):
-            place.put(data, place.value / scales.factor(place.unit.name))
     return scene_from_dict(data)
 
 

@@ -40,14 +40,6 @@ PLACES = {
 }
 """Keys that a scene has, too, and where."""
 KEYS = (*PLACES, "roughness", "model")
-IN_SI = {
-    "(FU/LU)": "(J/m²)",
-    "(LU)": "(m)",
-    "(FU)": "(N)",
-    "; 1 LU is 1 m, 1 FU is 1 N": "",
-    "1 LU is 1 m, 1 FU is 1 N": "",
-}
-"""Words of a scene's messages, where LU and FU are metre and newton."""
 
 
 @dataclass(frozen=True)
@@ -206,10 +198,7 @@ def _as_given(problem: Problem, data: Mapping[str, Any]) -> Problem:
     keys = [key for key in PLACES if key in data]
     own = next((key for key in keys if problem.path.startswith(PLACES[key])), problem.path)
     path = problem.path.replace(PLACES.get(own, own), own, 1)
-    message, hint = problem.message, problem.hint
-    for word, si in IN_SI.items():
-        message, hint = message.replace(word, si), hint.replace(word, si)
-    return Problem(path, message, problem.given, hint.removesuffix("; "))
+    return Problem(path, problem.message, problem.given, problem.hint)
 
 
 def _rank(problem: Problem, data: Mapping[str, Any]) -> int:

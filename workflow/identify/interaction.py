@@ -326,7 +326,7 @@ def identify(scene: Scene, target: Target, folder: Path, progress: Progress | No
     for count in range(1, MOST_RUNS + 1):
         trial = scaled(scene, at)
         finished = run(trial, folder, figures=False, progress=progress)
-        values = [finished.results[name].value for name in UNIT_FIXING_RESULTS]
+        values = [finished.model.results[name].value for name in UNIT_FIXING_RESULTS]
         reached = np.log(np.asarray(values) / (target.adhesion_force, target.zero_load_radius))
         found = Identified(trial, finished, (math.expm1(reached[0]), math.expm1(reached[1])), count)
         if np.abs(reached).max() < SEARCH_SHARE * scene.accuracy.tolerance:
@@ -352,7 +352,7 @@ def scales_of_run(folder: Path, contact_modulus: float, surface_energy: float) -
         IdentifyError: no such run, or one without these quantities.
     """
     try:
-        run = load_run(folder)
+        run = load_run(folder).model
     except (FolderError, RunError) as error:
         raise IdentifyError(str(error)) from None
     missing = [name for name in UNIT_FIXING_RESULTS if name not in run.results]

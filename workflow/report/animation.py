@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve import States, read_states
-from contact1d.analysis.plots import COMPRESSION, DPI, TENSION, describe, panels, plain_axes
+from contact1d.analysis.plots import COMPRESSION, DPI, TENSION, describe, in_si, panels, plain_axes
 from contact1d.files import whole, write_whole
 from contact1d.workflow.deck.steps import STATES
 from contact1d.workflow.errors import Contact1dError, FolderError
-from contact1d.workflow.report.charts import legs_of, main_curve, window
+from contact1d.workflow.report.charts import window
 from contact1d.workflow.runs.campaign import AnyPath
-from contact1d.workflow.runs.finished import Run, load_run
+from contact1d.workflow.runs.finished import Run, legs_of, load_run, main_curve
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -81,7 +81,7 @@ def _draw(run: Run, states: States, path: Path, frames_per_second: int) -> None:
 
     figure, (bodies, trace) = panels(2, HEIGHT, sharex=False, height_ratios=(2.0, 1.0))
     moves = _bodies(bodies, run, states), _trace(trace, run, states)
-    plain_axes(figure)
+    plain_axes(in_si(figure, run.scales))
 
     def show(frame: int) -> list[Any]:
         return [artist for move in moves for artist in move(frame)]
@@ -131,15 +131,15 @@ def _segments(x: NDArray[np.float32], z: NDArray[np.float32], length: float) -> 
 
 def _trace(axis: Axes, run: Run, states: States) -> Callable[[int], list[Any]]:
     """The main curve with a mark; returns what moves it."""
-    main = main_curve(run)
-    for _, rows in legs_of(run, main.x):
-        axis.plot(main.x[rows], main.y[rows], color=COMPRESSION, linewidth=1.2)
-    describe(axis, main.x_name, main.y_name)
+    (x_name, (x_unit, x)), (y_name, (y_unit, y)) = main_curve(run.model).items()
+    for _, rows in legs_of(run, x):
+        axis.plot(x[rows], y[rows], color=COMPRESSION, linewidth=1.2)
+    describe(axis, f"{x_name} ({x_unit})", f"{y_name} ({y_unit})")
     (mark,) = axis.plot([], [], "o", color=TENSION, markersize=8)
 
     def move(frame: int) -> list[Any]:
         row = states.rows[frame]
-        mark.set_data([main.x[row]], [main.y[row]])
+        mark.set_data([x[row]], [y[row]])
         return [mark]
 
     return move

@@ -7,9 +7,7 @@ from __future__ import annotations
 
 import csv
 import json
-import re
 from collections.abc import Iterator, Mapping, Sequence
-from html import escape
 from importlib.resources import files
 from itertools import islice
 from pathlib import Path
@@ -22,21 +20,21 @@ from contact1d.analysis.curve import read_states
 from contact1d.files import write_whole
 from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.errors import FolderError
-from contact1d.workflow.report.charts import Chart, curves, over_axes, pressures, way
+from contact1d.workflow.report.charts import Chart, charts_of, path_of, symbols
 from contact1d.workflow.runs.campaign import AnyPath
-from contact1d.workflow.runs.finished import Run, read_run
+from contact1d.workflow.runs.finished import Run, plain_drawings, read_run
+from contact1d.workflow.runs.report import results_in
 from contact1d.workflow.scene import Scene, Table, scene_to_toml
 from contact1d.workflow.scene.quantities import keys_of
+from contact1d.workflow.sweep.figures import label_in, sweep_figures, title_of
 from contact1d.workflow.sweep.table import RECORD, counts_in, read_record, read_table, units_in
+from contact1d.workflow.units import NUMBER, SI, UNKNOWN, Quantity, Scales
 
 PACKAGE = files("contact1d.workflow.report")
 MOST_ROWS = 500
 """Rows of a sweep's table that the page shows; results.csv has all."""
 MOST_RUNS = 24
 """Runs on one page: more make neither a table nor a figure that can be read; that is what a sweep is for."""
-INDEX = re.compile(r"(?<!\w)([^\W\d_][\u0303\u0304]?)_(\w{1,3})(?!\w)")
-TOGETHER = re.compile(r" ?= ?(?=[\d−-])|(?<=\d) (?=(?:LU|FU|nm|[µm]N|[MG]Pa)\b|%)")
-EXPONENT = re.compile(r"\^(?:\{([^{}]+)\}|([−-]?\d+(?:[./]\d+)?|[a-z](?!\w)))")
 
 
 def report(folders: Sequence[AnyPath], out: AnyPath = "report.html") -> Path:
@@ -72,23 +70,27 @@ def _of_runs(runs: Sequence[Run]) -> str:
     """Runs in words for somebody who has not seen their scenes; one that failed says why."""
     names = _names(runs)
     done = {name: run for name, run in zip(names, runs, strict=True) if run.status == "done"}
-    charts = [*curves(done), *filter(None, [pressures(done)])]
+    drawn = {
+        name: ({figure: make() for figure, make in plain_drawings(run.model).items()}, run.scales)
+        for name, run in done.items()
+    }
     moving = None
-    if len(runs) == 1 and done:
-        states = runs[0].folder / "states.npz"
-        if states.is_file() and len(runs[0].curve.displacement) > 1:
-            moving = way(runs[0], read_states(states))
-    quantities = list(dict.fromkeys(name for run in done.values() for name in run.results))
-    told = [
+    if len(runs) == 1 and done and (states := runs[0].folder / "states.npz").is_file():
+        moving = path_of(runs[0], read_states(states))
+    entries = {name: results_in(run.document) for name, run in done.items()}
+    reports = [
         {
             "name": run.folder.name, "anchor": f"run-{number}", "run": run, "facts": _facts(run),
             "error": "" if run.status == "done" else run.document["error"]["message"],
-            "scene": scene_in_words(run.scene), "toml": scene_to_toml(run.scene),
-            "deck": _text(run.folder / "in.lammps"),
+            "sentence": sentence(run.scene, run.scales), "scene": scene_in_words(run.scene, run.scales),
+            "toml": scene_to_toml(run.scene), "deck": _text(run.folder / "in.lammps"),
         }
         for number, run in enumerate(runs, 1)
     ]  # fmt: skip
-    return _page("runs.html", charts, moving, told=told, names=names, done=done, quantities=quantities, beside=in_words)
+    return _page(
+        "runs.html", charts_of(drawn), moving, reports=reports, names=names, done=done, entries=entries,
+        quantities=list(dict.fromkeys(name for one in entries.values() for name in one)), beside=in_words,
+    )  # fmt: skip
 
 
 def _text(path: Path) -> str:
@@ -119,8 +121,14 @@ def _names(runs: Sequence[Run]) -> list[str]:
 
 def _of_sweep(folder: Path) -> str:
     plan, units = read_record(folder), units_in(folder)
+    drawn = {"": (dict(sweep_figures(folder, plan, units)), UNKNOWN)}
+
+    def number(row: Mapping[str, str], name: str) -> str:
+        return str(Quantity(float(row[name]), float(row[f"{name}_uncertainty"]), units[name])) if row[name] else "—"
+
     return _page(
-        "sweep.html", over_axes(folder, plan, units), None, plan=plan, units=units, folder=folder,
+        "sweep.html", charts_of(drawn), None, plan=plan, units=units, folder=folder, number=number, label=label_in,
+        titles={axis.key: title_of(plan, axis, "") for axis in plan.axes},
         rows=list(islice(read_table(folder), MOST_ROWS)), counts=counts_in(folder),
         base=json.dumps(plan.base, indent=2, ensure_ascii=False),
     )  # fmt: skip
@@ -135,26 +143,30 @@ def _page(template: str, charts: Sequence[Chart], moving: Mapping[str, Any] | No
         loader=FunctionLoader(lambda name: PACKAGE.joinpath(name).read_text(encoding="utf-8")),
     )  # fmt: skip
     made.filters["symbols"] = symbols
-    data = json.dumps({"charts": charts, "way": moving}, ensure_ascii=False, allow_nan=False).replace("</", "<\\/")
+    data = json.dumps({"charts": charts, "path": moving}, ensure_ascii=False, allow_nan=False).replace("</", "<\\/")
     return made.get_template(template).render(values, plotly=get_plotlyjs(), data=data, charts=charts, moving=moving)
-
-
-def symbols(text: str) -> str:
-    """Return `text` as HTML, escaped: `F_A` has an index, `R^{2/3}` an exponent, no line ends inside `R = 1000 LU`."""
-    whole = TOGETHER.sub(lambda found: found[0].replace(" ", "\u00a0"), escape(text))
-    indexed = INDEX.sub(r"<i>\1</i><sub>\2</sub>", whole)
-    return EXPONENT.sub(lambda found: f"<sup>{found[1] or found[2]}</sup>", indexed)
 
 
 MOST_ITEMS = 6
 """Items of a list that are shown; of more, the ends."""
 
 
-def scene_in_words(scene: Scene) -> list[dict[str, Any]]:
+def sentence(scene: Scene, scales: Scales) -> str:
+    """The scene in a sentence: the body and what it is pressed on, the effects, the experiment."""
+    bodies, experiment = scene.bodies, scene.experiment
+    size = ", ".join(f"{name} {value}" for name, value in _values(bodies.profile, scales) if name != "kind")
+    lower = "a rigid plane" if bodies.lower == "rigid_plane" else "a lower body"
+    effects = f" with {', '.join(scene.effects)}" if scene.effects else ""
+    given = ", ".join(f"{name} {value}" for name, value in _values(experiment, scales) if name != "kind")
+    kind, what = bodies.profile.kind.replace("_", " "), experiment.kind.replace("_", " ")
+    return f"A {kind} ({size}) on {lower}{effects}. Experiment: {what}, {given}.".replace(" ()", "")
+
+
+def scene_in_words(scene: Scene, scales: Scales) -> list[dict[str, Any]]:
     """Every table that the scene has, in order: its name, what it stands for, what each value is, with its unit."""
     tables = {name: getattr(scene, name) for name in Scene.model_fields}
     return [
-        {"name": name.replace("_", " "), "meaning": _meaning(table), "values": list(_values(table))}
+        {"name": name.replace("_", " "), "meaning": _meaning(table), "values": list(_values(table, scales))}
         for name, table in tables.items()
         if isinstance(table, Table)
     ]
@@ -165,25 +177,24 @@ def _meaning(table: Table) -> str:
     return text[:1].upper() + text[1:]
 
 
-def _values(table: Table, within: str = "") -> Iterator[tuple[str, str]]:
+def _values(table: Table, scales: Scales, within: str = "") -> Iterator[tuple[str, str]]:
     for name, key in keys_of(type(table)).items():
-        value = getattr(table, key.field)
+        value, unit = getattr(table, key.field), key.allowed.unit
         label = name.replace("_", " ")
         if isinstance(value, Table):
-            yield from _values(value, f"{within}{label}: ")
-        elif value is not None:
-            unit = key.allowed.unit
-            named = unit is not None and unit.name != "1" and value != "auto"
-            yield within + label, _shown(value) + (f" {unit.name}" if unit and named else "")
+            yield from _values(value, scales, f"{within}{label}: ")
+        elif value is not None and not (unit and scales.known and unit.name in SI and not scales.know(unit.name)):
+            yield within + label, _shown(value, NUMBER if unit is None else unit.name, scales)
 
 
-def _shown(value: Any) -> str:
+def _shown(value: Any, unit: str, scales: Scales) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
-        return f"{value:.6g}"
+        factor, name = scales.written(value, unit)
+        return f"{value * factor:.6g} {name}".removesuffix(f" {NUMBER}")
     if isinstance(value, tuple | list):
-        items = [_shown(item) for item in value]
+        items = [_shown(item, unit, scales) for item in value]
         few = items if len(items) <= MOST_ITEMS else [*items[: MOST_ITEMS // 2], "…", *items[-MOST_ITEMS // 2 :]]
         return ", ".join(few) + (f" ({len(items)} in all)" if few != items else "")
     return str(value)

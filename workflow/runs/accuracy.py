@@ -11,15 +11,14 @@ from contact1d.workflow.continuation.outcome import LATTICE, MODEL, Outcome, Res
 from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.experiments.experiment import FINER_SPACING
-from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.units import FORCE, LENGTH, Scales
+from contact1d.workflow.units import FORCE, LENGTH
 
 UNKNOWN = 0.5
 """Uncertainty over a value above which the value is not reported."""
 
 
-def accuracy_warnings(scene: Scene, outcome: Outcome, scales: Scales | None) -> dict[str, str]:
+def accuracy_warnings(scene: Scene, outcome: Outcome) -> dict[str, str]:
     """By name: `unknown`, results that are not reported; `lattice` and `tolerance`, those that miss the tolerance.
 
     `lattice` has those whose discretisation error alone exceeds it. Noise has its own statistics.
@@ -31,7 +30,7 @@ def accuracy_warnings(scene: Scene, outcome: Outcome, scales: Scales | None) -> 
     by_lattice = _by_lattice(known, tolerance)
     others = {name: share for name, share in unmet(known, tolerance, (MODEL,)).items() if name not in by_lattice}
     if missing:
-        wide = ", ".join(f"{name} (± {_written(one, scales)})" for name, one in missing.items())
+        wide = ", ".join(f"{name} (± {float(f'{one.uncertainty:.2g}'):g} {one.unit})" for name, one in missing.items())
         warnings["unknown"] = (
             f"not reported, because the uncertainty is more than half of the value: {wide}. "
             f"{_advice(scene, outcome, missing)}"
@@ -81,7 +80,7 @@ def require_results(scene: Scene, outcome: Outcome) -> None:
     main = [name for name in kind_of(scene).main_results if name in outcome.results]
     main = [name for name in main if not outcome.results[name].prescribed and name != scene.experiment.load_key]
     if main and not set(main) - unknown(scene, outcome).keys():
-        raise UntrustedError(accuracy_warnings(scene, outcome, scales_of(scene, {}))["unknown"])
+        raise UntrustedError(accuracy_warnings(scene, outcome)["unknown"])
 
 
 def reported(scene: Scene, outcome: Outcome) -> Outcome:
@@ -95,15 +94,6 @@ def open_results(scene: Scene, outcome: Outcome) -> dict[str, float]:
     return (
         {} if scene.noise is not None else unmet(outcome.results, scene.accuracy.tolerance, (LATTICE, "input", MODEL))
     )
-
-
-def _written(one: Result, scales: Scales | None) -> str:
-    """The uncertainty, in SI where the units are known."""
-    if scales is None or not scales.know(one.unit):
-        factor, unit = 1.0, one.unit
-    else:
-        factor, unit = scales.written(one.uncertainty, one.unit)
-    return f"{float(f'{one.uncertainty * factor:.2g}'):g} {unit}"
 
 
 def _kind(name: str, one: Result) -> str:

@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import fcntl
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-
-from contact1d.analysis.curve import DETACHMENTS, Curve
 from contact1d.files import PART, write_whole
 from contact1d.workflow.body.derived import formulas, with_body, with_implied
 from contact1d.workflow.continuation.context import RunContext
@@ -27,7 +23,7 @@ from contact1d.workflow.engine.session import EngineError
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments import perform, planned
 from contact1d.workflow.experiments.spacing import with_spacing
-from contact1d.workflow.model.chain import MIX_UP, in_words, require_steps
+from contact1d.workflow.model.chain import MIX_UP, SettingsError, in_words, require_steps
 from contact1d.workflow.model.motion import require_way
 from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.runs.accuracy import reported, require_results
@@ -35,9 +31,10 @@ from contact1d.workflow.runs.finished import Run, draw
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.processors import cores, require_ranks
 from contact1d.workflow.runs.refinement import Refined, refined
-from contact1d.workflow.runs.report import FILES, FORMATS, curve_of, failure, results, write_results, write_tables
+from contact1d.workflow.runs.report import FILES, FORMATS, failure, results, tables_of, write_results, write_tables
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import AnyScene, Scene, read_scene, scene_to_toml
+from contact1d.workflow.units import UNKNOWN, Scales
 
 AnyPath = str | PathLike[str]
 LOCK = ".running"
@@ -78,11 +75,13 @@ def run(
     """
     started = time.perf_counter()
     asked, progress = _scene(scene), progress or Silent()
-    scene = with_spacing(asked)
-    if scene is not asked:
-        progress.note(f"bodies.spacing = {scene.bodies.spacing:.4g} LU for a tolerance of {scene.accuracy.tolerance:g}")
-    deck = Deck(scene, settings or settings_for(scene))
-    text = _planned_text(deck)
+    with _in_its_units(asked) as scales:
+        scene = with_spacing(asked)
+        if scene is not asked:
+            found = f"bodies.spacing = {scene.bodies.spacing:.4g} LU for a tolerance of {scene.accuracy.tolerance:g}"
+            progress.note(scales.in_words(found))
+        deck = Deck(scene, settings or settings_for(scene))
+        text = _planned_text(deck)
     require_ranks(deck, ranks)
     folder = prepare(Path(folder))
     with alone(folder):
@@ -93,9 +92,10 @@ def run(
 
 def _run(context: RunContext, started: float, figures: bool | str, refine: bool) -> Run:
     scene, settings, folder = context.deck.scene, context.deck.settings, context.folder
+    scales = scales_of(scene, {})
     if large := in_words(scene, settings.particles, settings.cutoff):
         context.progress.note(large)
-    for doubt in implausible(scene, scales_of(scene, {}), {}).values():
+    for doubt in implausible(scene, scales, {}).values():
         context.progress.note(doubt)
 
     def timing() -> dict[str, float]:
@@ -110,7 +110,7 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
         require_results(scene, last.outcome)
     except (EngineError, UntrustedError) as error:
         facts = {
-            "message": error.message if isinstance(error, EngineError) else str(error),
+            "message": (scales or UNKNOWN).in_words(error.message if isinstance(error, EngineError) else str(error)),
             "phase": context.phase,
             "step": context.timestep,
         }
@@ -122,38 +122,38 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
     outcome = with_implied(scene, last.deck.settings, last.outcome)
     outcome = with_body(scene, outcome)
     write_whole(folder / "in.lammps", last.deck.text(outcome.phases))
-    curve = curve_of(last.deck.scene, outcome)
-    write_tables(folder, scene, reported(scene, outcome), curve)
+    tables = tables_of(scene, reported(scene, outcome))
+    write_tables(folder, scene, outcome, tables)
     document = results(scene, outcome, timing()) | formulas(scene, outcome.quantities)
-    finished = _finished(folder, document, scene, curve, outcome)
+    finished = Run(folder, document, scene, tables, outcome)
     _draw(finished, figures)
     document["timing"] = timing()  # with the figures
     write_results(folder, document)
     return finished
 
 
+@contextmanager
+def _in_its_units(scene: Scene) -> Iterator[Scales]:
+    """The scales of a scene; an error of its numbers has these in SI where they are known."""
+    scales = scales_of(scene, {}) or UNKNOWN
+    try:
+        yield scales
+    except SettingsError as error:
+        raise SettingsError(scales.in_words(str(error)), changes=error.changes) from error
+
+
 def _write_what_is_left(outcome: Outcome, scene: Scene, folder: Path, figures: bool | str) -> None:
     """Tables and figures of a run that gives no numbers, to see why."""
-    left, curve = replace(outcome, results={}), curve_of(scene, outcome)
-    write_tables(folder, scene, left, curve)
-    _draw(_finished(folder, {}, scene, curve, left), figures)
-
-
-def _finished(folder: Path, document: Mapping[str, Any], scene: Scene, curve: Curve, outcome: Outcome) -> Run:
-    detachments = {name: np.asarray(column) for name, column in outcome.tables.get(DETACHMENTS, {}).items()}
-    return Run(folder, document, scene, curve, outcome.profiles, _friction(outcome), detachments, outcome)
+    left = replace(outcome, results={})
+    tables = tables_of(scene, left)
+    write_tables(folder, scene, left, tables)
+    _draw(Run(folder, {}, scene, tables, left), figures)
 
 
 def _draw(run: Run, figures: bool | str) -> None:
     """The figures of a run, in the format that `figures` names, if they are wanted."""
     if figures:
-        draw(run, figures if isinstance(figures, str) else FORMATS[0], scales_of(run.scene, run.results))
-
-
-def _friction(outcome: Outcome) -> dict[str, np.ndarray]:
-    """Columns of friction.csv, or of curve.csv beside the curve."""
-    columns = outcome.columns or outcome.tables.get("friction", {})
-    return {name: np.asarray(column) for name, column in columns.items()}
+        draw(run, figures if isinstance(figures, str) else FORMATS[0])
 
 
 def _scene(scene: AnyScene) -> Scene:
@@ -178,9 +178,11 @@ def write_deck(scene: AnyScene, folder: AnyPath) -> Path:
 
     Arguments and errors are those of `run`.
     """
-    scene = with_spacing(_scene(scene))
-    deck = Deck(scene, settings_for(scene))
-    text = _planned_text(deck)
+    asked = _scene(scene)
+    with _in_its_units(asked):
+        scene = with_spacing(asked)
+        deck = Deck(scene, settings_for(scene))
+        text = _planned_text(deck)
     folder = prepare(Path(folder))
     with alone(folder):
         _write(deck, text, folder)

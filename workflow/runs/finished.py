@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from functools import partial
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 from html import escape
 from math import nan, pi
 from os import PathLike
@@ -17,18 +17,7 @@ from numpy.typing import NDArray
 
 from contact1d.analysis import figures, plots
 from contact1d.analysis.atoms import atoms
-from contact1d.analysis.curve import (
-    DETACHMENT_COLUMNS,
-    DETACHMENTS,
-    FRICTION_COLUMNS,
-    SAMPLE_COLUMNS,
-    SAMPLE_TABLE,
-    TANGENTIAL_COLUMNS,
-    Curve,
-    read_columns,
-    read_curve,
-    read_profiles,
-)
+from contact1d.analysis.curve import DETACHMENTS, PROFILE_COLUMNS, SAMPLE_TABLE, Columns, by_state, read_columns
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.shear import stick_margin
 from contact1d.analysis.theory.indenters import PowerLaw
@@ -36,13 +25,14 @@ from contact1d.analysis.theory.mindlin import mindlin_path, sliding_displacement
 from contact1d.workflow.body.derived import REPORTED
 from contact1d.workflow.body.reading import IMAGE
 from contact1d.workflow.body.theory import Case, applying
-from contact1d.workflow.body.traction import BodyPressure, BodyShear, body_pressures, body_shears, row_of
+from contact1d.workflow.body.traction import body_pressures, body_shears, row_of
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.state import RadiusRule
 from contact1d.workflow.errors import FolderError, RunError
-from contact1d.workflow.runs.report import quantities_in, read_results
-from contact1d.workflow.scene import PullOff, Scene, SceneError, Slide, Tangential, scene_from_dict
-from contact1d.workflow.units import FORCE, LENGTH, MASS, Quantity, Scales, scale_of
+from contact1d.workflow.runs.report import FILES, in_units, quantities_in, read_results
+from contact1d.workflow.runs.scales import scales_of
+from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
+from contact1d.workflow.units import FORCE, LENGTH, MASS, UNKNOWN, Quantity, Scales
 
 if TYPE_CHECKING:
     from ase import Atoms
@@ -59,6 +49,8 @@ BETWEEN = 50
 """Points of a closed form for each step of a path."""
 LEAST, LARGEST = 0.05, 1.3
 """Radii over a₀ from and to which JKR is drawn; on a plane from where fixed grips part."""
+CURVE_COLUMNS = ("displacement", "force", "contact_radius", "branch")
+"""Without which a table is no curve."""
 SAME_LOAD = 1e-9
 """Change of a load over the load up to which it is one: round-off."""
 
@@ -83,32 +75,29 @@ class Results(dict[str, Quantity]):
 
     def __repr__(self) -> str:
         """One line for each quantity."""
-        return "\n".join(f"{name} = {_said(quantity)}" for name, quantity in self.items())
+        return "\n".join(f"{name} = {quantity}" for name, quantity in self.items())
 
 
 @dataclass(frozen=True, repr=False)
 class Run:
     """A finished run; `run` returns it, `load_run` reads it from its folder. Two are equal by folder and document.
 
+    What the scene gives in SI is in SI here, too, in base units; without units all is in those of the model.
+
     Attributes:
         folder: with every file of the run.
         document: what results.json holds.
         scene: what ran.
-        curve: the measured states, arrays by name; what curve.csv holds.
-        profiles: pressure and shear along x of the reported states, by name; what profile.csv holds.
-        friction: of a slide or a tangential, arrays by name; what friction.csv holds, or curve.csv beside the curve.
-        detachments: of a pull-off with [noise], arrays by name, an entry for each pull; what detachments.csv holds.
-        results: quantities by name, each with uncertainty and unit, and in SI where the scene has a [material].
-        outcome: what the experiment handed over; None for a run that was read from its folder, or made by `run_many`.
+        tables: what the CSV files hold, by their names without ending.
+        outcome: what the experiment handed over, in units of the model; None for a run that was read from its folder,
+            or made by `run_many`.
+        results: quantities by name, each with uncertainty and unit.
     """
 
     folder: Path
     document: Mapping[str, Any]
     scene: Scene = field(compare=False)
-    curve: Curve = field(compare=False)
-    profiles: Mapping[str, Profile] = field(compare=False)
-    friction: Mapping[str, NDArray[np.float64]] = field(compare=False)
-    detachments: Mapping[str, NDArray[np.float64]] = field(default_factory=dict, compare=False)
+    tables: Mapping[str, Columns] = field(compare=False)
     outcome: Outcome | None = field(default=None, compare=False)
     results: Results = field(init=False, compare=False)
 
@@ -133,25 +122,58 @@ class Run:
         return dict(self.document["timing"])
 
     @property
-    def scales(self) -> Scales | None:
-        """What LU, FU and, where it is known, MU stand for in SI; None where that is not known."""
+    def curve(self) -> Columns:
+        """The measured states: every column of curve.csv."""
+        return self.tables["curve"]
+
+    @property
+    def friction(self) -> Columns:
+        """Of a slide what friction.csv holds, of a tangential the curve; else nothing."""
+        return self.curve if self.scene.experiment.goes_along else self.tables.get("friction", Columns({}))
+
+    @property
+    def detachments(self) -> Columns:
+        """Of a pull-off with [noise], a row for each pull; what detachments.csv holds."""
+        return self.tables.get(DETACHMENTS, Columns({}))
+
+    @property
+    def profiles(self) -> dict[str, Profile]:
+        """Line load and shear along x of the reported states, by name; what profile.csv holds."""
+        return {
+            state: Profile(*(columns[name] for name in PROFILE_COLUMNS))
+            for state, columns in by_state(self.tables["profile"]).items()
+        }
+
+    @property
+    def body_pressures(self) -> dict[str, Columns]:
+        """p(r) of the body of three dimensions, by state; what pressure_3d.csv holds. Empty where there is none."""
+        return by_state(self.tables.get("pressure_3d", Columns({})))
+
+    @property
+    def body_shears(self) -> dict[str, Columns]:
+        """q(r) of the body of three dimensions, by state; what shear_3d.csv holds. Empty where there is none."""
+        return by_state(self.tables.get("shear_3d", Columns({})))
+
+    @property
+    def scales(self) -> Scales:
+        """What LU, FU and, where it is known, MU stand for in SI."""
         units = self.document.get("units")
         if units is None:
-            return None
+            return scales_of(self.scene, {}) or UNKNOWN
         entries = (units[unit] for unit in (LENGTH, FORCE))
         (length, off_length), (force, off_force) = ((entry["value"], entry["uncertainty"]) for entry in entries)
         mass = units.get(MASS)
         return Scales(length, force, off_length, off_force, None if mass is None else mass["value"])
 
-    @property
-    def body_pressures(self) -> dict[str, BodyPressure]:
-        """p(r) of the body of three dimensions, by state; what pressure_3d.csv holds. Empty where there is none."""
-        return body_pressures(self.scene, self.profiles)
-
-    @property
-    def body_shears(self) -> dict[str, BodyShear]:
-        """q(r) of the body of three dimensions, by state; what shear_3d.csv holds. Empty where there is none."""
-        return body_shears(self.scene, self.profiles, self.friction, self.curve.contact_radius)
+    @cached_property
+    def model(self) -> Run:
+        """The same run with its tables and results in units of the model."""
+        scales = self.scales
+        own = replace(self, tables={name: in_units(one, scales, name, True) for name, one in self.tables.items()})
+        entries = quantities_in(self.document).items()
+        numbers = {name: Quantity(entry["value"], entry["uncertainty"], entry["unit"]) for name, entry in entries}
+        vars(own).update(results=Results(numbers), model=own)
+        return own
 
     def plot(self, name: str | None = None) -> Figure:
         """Draw a figure, by default the experiment's main one; `.savefig(path)` keeps it.
@@ -176,12 +198,12 @@ class Run:
     def __repr__(self) -> str:
         """A few lines: title, status, folder, results, names of the warnings."""
         lines = [f"Run {self.scene.title!r}: {self.status}, {self.folder}"]
-        lines += [f"  {name:<18} {_said(quantity)}" for name, quantity in self.results.items()]
+        lines += [f"  {name:<18} {quantity}" for name, quantity in self.results.items()]
         return "\n".join(lines + [f"  warnings: {', '.join(self.warnings)}"] * bool(self.warnings))
 
     def _repr_html_(self) -> str:
         """The same as a table, for notebooks."""
-        cells = [(name.replace("_", " "), _said(quantity)) for name, quantity in self.results.items()]
+        cells = [(name.replace("_", " "), str(quantity)) for name, quantity in self.results.items()]
         cells += [(f"warning: {name}", message) for name, message in self.warnings.items()]
         rows = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in cells)
         caption = f"{escape(self.scene.title)}: {self.status}<br><code>{escape(str(self.folder))}</code>"
@@ -202,66 +224,81 @@ def load_run(folder: str | PathLike[str]) -> Run:
 
 
 def read_run(folder: Path) -> Run:
-    """As `load_run`, but a run that failed is returned, without results, curve and profiles."""
+    """As `load_run`, but a run that failed is returned, without results and tables."""
     document = read_results(folder)
     try:
         scene = scene_from_dict(document["scene"])
+        tables = {}
         if document["status"] == "done":
-            curve, profiles = read_curve(folder / "curve.csv"), read_profiles(folder / "profile.csv")
-            friction, detachments = {}, {}
-            if isinstance(scene.experiment, Slide):
-                friction = read_columns(folder / "friction.csv", FRICTION_COLUMNS)
-            elif isinstance(scene.experiment, Tangential):
-                friction = read_columns(folder / "curve.csv", TANGENTIAL_COLUMNS)
-            elif isinstance(scene.experiment, PullOff) and scene.noise is not None:
-                detachments = read_columns(folder / f"{DETACHMENTS}.csv", DETACHMENT_COLUMNS)
-        else:
-            curve, profiles, friction, detachments = Curve(*np.empty((6, 0))), {}, {}, {}
-        return Run(folder.resolve(), document, scene, curve, profiles, friction, detachments)
+            needed = {"curve.csv": CURVE_COLUMNS, "profile.csv": (*PROFILE_COLUMNS, "state")}
+            files = [name for name in FILES if name in needed or (name.endswith(".csv") and (folder / name).is_file())]
+            tables = {name[:-4]: read_columns(folder / name, needed.get(name, ())) for name in files}
+        return Run(folder.resolve(), document, scene, tables)
     except (ValueError, OSError, SceneError, csv.Error) as error:
         reason = str(error).partition("\n")[0]
         raise FolderError(f"{folder} holds no run that this version can read: {reason}. Run its scene again") from None
 
 
-def _said(quantity: Quantity) -> str:
-    if quantity.si is None:
-        return str(quantity)
-    factor, unit = scale_of(quantity.si.value, quantity.si.unit)
-    return f"{quantity} = {Quantity(quantity.si.value * factor, quantity.si.uncertainty * factor, unit)}"
-
-
-def drawings(run: Run, scales: Scales | None = None) -> Drawings:
-    """What draws each figure of a run, by the names of the files, the main one first.
-
-    Args:
-        run: finished, or as far as it came.
-        scales: in place of the run's own: where they are known the figures are in SI.
-    """
-    title, scales = f"{run.scene.title}\n(reduction {run.scene.bodies.reduction})", scales or run.scales
+def drawings(run: Run) -> Drawings:
+    """What draws each figure of a run, by the names of the files, the main one first; in SI where it is known."""
+    title, scales = f"{run.scene.title}\n(reduction {run.scene.bodies.reduction})", run.scales
 
     def dressed(draw: Callable[[], Figure]) -> Figure:
         figure = draw()
         figure.suptitle(title, fontsize=11)
-        return figure if scales is None else plots.in_si(figure, scales.written)
+        return plots.in_si(figure, scales)
 
-    plain = _drawings(run)
-    if (kept := run.folder / f"{SAMPLE_TABLE}.csv").is_file():
-        measured = np.isin(run.curve.branch, MEASURED)
-        traces = partial(
-            figures.samples_figure, read_columns(kept, SAMPLE_COLUMNS), measured, _values(run).get("displacement")
-        )
-        plain = plain | {SAMPLE_TABLE: traces} if DETACHMENTS in plain else {SAMPLE_TABLE: traces} | plain
-    return {name: partial(dressed, draw) for name, draw in plain.items()}
+    return {name: partial(dressed, draw) for name, draw in plain_drawings(run.model).items()}
 
 
-def draw(run: Run, form: str, scales: Scales | None = None) -> None:
+def draw(run: Run, form: str) -> None:
     """Save every figure of a run in its folder; `form`: png, svg or pdf."""
-    for name, figure in drawings(run, scales).items():
+    for name, figure in drawings(run).items():
         plots.save_figure(figure(), run.folder / f"{name}.{form}")
 
 
+def main_curve(run: Run) -> dict[str, tuple[str, Array]]:
+    """What the path of a run is drawn in, along x and y: name, and unit and column of a run in units of the model.
+
+    A row for each state: a slide begins with one under the load, before it is driven.
+    """
+    names, columns = ("displacement", "force"), run.curve
+    if run.scene.experiment.goes_along:
+        names = "tangential_displacement", "tangential_force"
+    elif run.friction:
+        names, columns = ("drive", "friction"), run.friction
+    missing = np.full(len(run.curve.force) - len(columns[names[0]]), nan)
+    filled = (np.append(missing, columns[name]) for name in names)
+    return {
+        name.replace("_", " "): (unit, column)
+        for name, unit, column in zip(names, (LENGTH, FORCE), filled, strict=True)
+    }
+
+
+def legs_of(run: Run, along: Array) -> list[tuple[str, NDArray[np.int64]]]:
+    """Name and rows of each leg of a prescribed path, which begins where the one before it ends.
+
+    Otherwise of each branch, in the order of the positions `along`: a search goes to and fro.
+    """
+    branch, kind = run.curve.branch, run.scene.experiment
+    if not (kind.way_is_given or kind.goes_along):
+        rows = [np.flatnonzero(branch == name) for name in dict.fromkeys(branch.tolist())]
+        return [(str(branch[part[0]]), part[np.argsort(along[part], kind="stable")]) for part in rows]
+    parts = np.split(np.arange(branch.size), np.flatnonzero(branch[1:] != branch[:-1]) + 1)
+    return [(str(branch[part[0]]), np.arange(max(part[0] - 1, 0), part[-1] + 1)) for part in parts]
+
+
+def plain_drawings(run: Run) -> Drawings:
+    """The figures of a run in units of the model, without title, by the names of the files, the main one first."""
+    found = _drawings(run)
+    if SAMPLE_TABLE in run.tables:
+        measured, mean = np.isin(run.curve.branch, MEASURED), _values(run).get("displacement")
+        traces = partial(figures.samples_figure, run.tables[SAMPLE_TABLE], measured, mean)
+        found = found | {SAMPLE_TABLE: traces} if DETACHMENTS in found else {SAMPLE_TABLE: traces} | found
+    return found
+
+
 def _drawings(run: Run) -> Drawings:
-    """The figures without title, in model units."""
     scene, curve, profiles = run.scene, run.curve, run.profiles
     pressure: Drawings = {}
     if all(profile.x.size > 1 for profile in profiles.values()):  # one particle has no pressure over x
@@ -278,7 +315,10 @@ def _drawings(run: Run) -> Drawings:
     values = _values(run)
     beside = _theory(scene, values, curve)
     over_d = None if beside is None else (beside[0], *beside[1][1:])
-    found: Drawings = {"force_displacement": partial(figures.force_displacement_figure, curve, values, over_d)}
+    tension = run.results.get("adhesion_force")
+    adhesion = (tension.value, tension.uncertainty) if tension and tension.value else None
+    legs = legs_of(run, curve.displacement)
+    found: Drawings = {"force_displacement": partial(figures.force_displacement_figure, curve, legs, adhesion, over_d)}
     if _adheres_over_a_width(values):
         marks = values["adhesion_force"], values["zero_load_radius"]
         found["force_radius"] = partial(figures.force_radius_figure, curve, *marks)
@@ -297,24 +337,24 @@ def _values(run: Run) -> dict[str, float]:
 def _sheared(run: Run) -> Drawings:
     """Force over displacement along x, the stick zone and q(r)."""
     theory = _mindlin(run.scene, run.curve, run.friction)
-    loop = partial(figures.tangential_figure, run.friction, run.curve.branch, theory)
+    loop = partial(figures.tangential_figure, run.friction, legs_of(run, run.curve.displacement), theory)
     found: Drawings = {"tangential": loop, "stick_slip": _stick_slip(run.scene, run.profiles, run.friction)}
-    if shears := run.body_shears:
-        lines = {name: (one.r, one.shear, one.edge, one.stick) for name, one in shears.items()}
+    if shears := body_shears(run.scene, run.profiles, run.friction, run.curve.contact_radius):
+        lines = {name: (one.r, one.shear, one.uncertainty, one.edge, one.stick) for name, one in shears.items()}
         found["shear_3d"] = partial(figures.body_shear_figure, lines)
     return found
 
 
 def _body_pressure(run: Run) -> Drawings:
     """p(r) of the body, where there is one, and the closed form beside it for the state that it speaks of."""
-    pressures, case = run.body_pressures, Case(run.scene, run.results)
+    pressures, case = body_pressures(run.scene, run.profiles), Case(run.scene, run.results)
     theories: dict[str, tuple[str, Array, Array]] = {}
     state = next((name for name in REPORTED if name in pressures), None)
     forms = [form for form in applying(case) if form.pressure is not None] if state is not None else []
     if state is not None and forms and (pressure := forms[0].pressure):
         r = pressures[state].contact_radius * np.sin(np.linspace(0.005, 0.4999 * np.pi, FINE))
         theories[state] = forms[0].name, r, pressure(case, r)
-    drawn = {name: (one.r, one.pressure, one.contact_radius) for name, one in pressures.items()}
+    drawn = {name: (one.r, one.pressure, one.uncertainty, one.contact_radius) for name, one in pressures.items()}
     return {"pressure_3d": partial(figures.body_pressure_figure, drawn, theories)} if drawn else {}
 
 
@@ -332,7 +372,7 @@ def _stick_slip(scene: Scene, profiles: Mapping[str, Profile], columns: Mapping[
     return partial(figures.stick_slip_figure, states, coefficient)
 
 
-def _mindlin(scene: Scene, curve: Curve, columns: Mapping[str, Array]) -> Array | None:
+def _mindlin(scene: Scene, curve: Columns, columns: Mapping[str, Array]) -> Array | None:
     """u and F_x of Cattaneo and Mindlin along the path of a parabola under one load, shape (2, n); else None."""
     places, loads = columns["tangential_displacement"], columns["normal_force"]
     if scene.bodies.plane_radius is None or scene.friction is None or not scene.friction.coefficient:
@@ -356,7 +396,7 @@ def _adheres_over_a_width(values: Mapping[str, float]) -> bool:
     return "adhesion_force" in values and values.get("zero_load_radius", 0.0) > 0.0
 
 
-def _theory(scene: Scene, values: Mapping[str, float], curve: Curve) -> tuple[str, Array] | None:
+def _theory(scene: Scene, values: Mapping[str, float], curve: Columns) -> tuple[str, Array] | None:
     """Name, and a, d, F of JKR: with the run's own F_A and a₀, on a plane with nothing fitted; or of Hertz; or none.
 
     The image x²/2R₁ on springs E* per length is the contact of R = 2R₁; its a₀ is twice that of the two spheres.

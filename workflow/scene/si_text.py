@@ -55,6 +55,7 @@ NAME = re.compile(r"[^\W\d_]+|°[CF]?|%|deg[CF]|delta_deg[CF]")
 POWER = re.compile(r"(\*\*|\^)?[-+⁻]?[\d⁰¹²³⁴⁵⁶⁷⁸⁹]+")
 LONGEST = 60
 """Characters of a text that may be a number with a unit."""
+MODEL_UNITS = "is in units of the model"
 LARGEST = 1e300
 """Numbers beyond it are none."""
 
@@ -104,7 +105,7 @@ def split(text: str) -> tuple[str, str]:
     if unit[0] in ".'_" or unit[0].isdigit():
         raise UnitTextError(f"has something behind the number {number} that is no unit")
     if re.fullmatch(r"(LU|FU|MU|TU)\b.*", unit):
-        raise UnitTextError(f"is in units of the model: write {number} without quotes and unit")
+        raise UnitTextError(f"{MODEL_UNITS}: write {number} without quotes and unit")
     return number, unit
 
 
@@ -139,6 +140,19 @@ def si_value(text: str, unit: str, *also: str) -> tuple[Fraction, str]:
         instead = f": its tangent is {math.tan(value):.6g}"
     what = "an angle" if found.angular else _named(found.dimension)
     raise UnitTextError(f"{wanted}; {_quoted(text)} is {what}{instead}")
+
+
+def si_base(text: str) -> tuple[float, str]:
+    """The number of a text in the unit of SI of its dimension, and that unit: 0.01 and m of "10 mm".
+
+    Of N/m and J/m², which are one, that which the text has; an angle keeps its unit. Raises UnitTextError.
+    """
+    number, given = split(text)
+    found = _unit(given)
+    names = [name for name in DIMENSIONS if found.dimension == _dimension(name)]
+    if found.angular or not names:
+        return float(number), given
+    return float(Fraction(number) * found.factor + found.zero), max(names, key=lambda name: name[0] in given)
 
 
 def _quoted(text: str) -> str:

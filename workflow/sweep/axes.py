@@ -21,7 +21,7 @@ import numpy as np
 from contact1d.workflow.scene import Problem, Scene, SceneError, read_tables, scene_from_dict
 from contact1d.workflow.scene.problems import nearest, shown
 from contact1d.workflow.scene.read import plain_data, set_values
-from contact1d.workflow.scene.si_text import UnitTextError, split
+from contact1d.workflow.scene.si_text import UnitTextError, si_base
 
 AnySweep = str | PathLike[str] | Mapping[str, Any]
 """What `read_sweep` makes a sweep of."""
@@ -41,21 +41,14 @@ class Axis:
     values: tuple[Any, ...]
 
     def numbers(self) -> tuple[tuple[float, ...], str]:
-        """The values as numbers, and the one unit that they have as texts; no numbers where some are words."""
+        """The values as numbers, of texts in SI, and the one unit of these; no numbers where some are words."""
         if all(map(_is_number, self.values)):
             return tuple(map(float, self.values)), ""
         try:
-            parts = [split(value) for value in self.values]
+            numbers, units = zip(*(si_base(value) for value in self.values), strict=True)
         except (UnitTextError, AttributeError):
             return (), ""
-        units = {unit for _, unit in parts}
-        return (tuple(float(number) for number, _ in parts), units.pop()) if len(units) == 1 else ((), "")
-
-    @property
-    def title(self) -> str:
-        """The key with its unit, for a figure."""
-        unit = self.numbers()[1]
-        return f"{self.key} ({unit})" if unit else self.key
+        return (numbers, units[0]) if len(set(units)) == 1 else ((), "")
 
 
 @dataclass(frozen=True)
@@ -193,7 +186,9 @@ def _span(table: Mapping[str, Any], where: str, problems: list[Problem]) -> tupl
     given, steps, scale = (table["from"], table["to"]), table["steps"], table.get("scale", "linear")
     ends, unit = Axis("", given).numbers()
     texts = all(isinstance(end, str) for end in given)
-    must = 'must have the same unit at both ends, such as "1 mm" and "5 mm"' if texts else "must be a finite number"
+    must = (
+        'must have the same dimension at both ends, such as "500 µm" and "5 mm"' if texts else "must be a finite number"
+    )
     whole = isinstance(steps, int) and not isinstance(steps, bool) and 1 <= steps < MOST_POINTS
     problems += _broken(
         [
@@ -211,8 +206,9 @@ def _span(table: Mapping[str, Any], where: str, problems: list[Problem]) -> tupl
     if scale == "linear" and isinstance(start, int) and isinstance(end, int) and (end - start) % steps == 0:
         return tuple(start + i * ((end - start) // steps) for i in range(steps + 1))
     inner = (np.linspace if scale == "linear" else np.geomspace)(start, end, steps + 1)[1:-1]
-    values = (float(start), *inner.tolist(), float(end))
-    return tuple(f"{value!r} {unit}" for value in values) if unit else values
+    if unit:
+        return given[0], *(f"{value!r} {unit}" for value in inner.tolist()), given[1]
+    return float(start), *inner.tolist(), float(end)
 
 
 def _is_number(value: object) -> bool:

@@ -17,6 +17,7 @@ from subprocess import CalledProcessError
 from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings, simplefilter
 
+from contact1d.analysis.curve import HEADER
 from contact1d.files import FULL_DISK, write_whole
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, FolderError
@@ -34,6 +35,8 @@ from contact1d.workflow.sweep.table import (
     TABLE,
     Answer,
     answer_in,
+    bare,
+    columns_of,
     counts_in,
     read_record,
     write_parquet,
@@ -61,19 +64,16 @@ class Sweep:
     quantities: Mapping[str, str]
 
     def table(self) -> DataFrame:
-        """Return results.csv as a pandas.DataFrame; axes whose texts have one unit are numbers.
+        """Return results.csv as a pandas.DataFrame of numbers, in base units of SI where these are known.
 
-        `.attrs["units"]` has the unit of each column that has one.
+        Its columns have no units in their names; `.attrs["units"]` has the unit of each column that has one.
         """
         import pandas
 
-        found, units = pandas.read_csv(self.folder / TABLE), dict(self.quantities)
-        units |= {f"{name}_uncertainty": unit for name, unit in self.quantities.items()}
-        for axis in read_record(self.folder).axes:
-            numbers, unit = axis.numbers()
-            if unit:
-                found[axis.key] = found[axis.key].map(dict(zip(axis.values, numbers, strict=True)))
-                units[axis.key] = unit
+        found = pandas.read_csv(self.folder / TABLE)
+        units = {name[1]: name[2] for header in found.columns if (name := HEADER.fullmatch(header))}
+        units |= {column: unit for name, unit in self.quantities.items() for column in columns_of(name)}
+        found.columns = found.columns.map(bare)
         found.attrs["units"] = units
         return found
 
@@ -270,7 +270,7 @@ def _finish(plan: SweepPlan, folder: Path, rows: Sequence[str | Answer], answers
             known = row if isinstance(row, Answer) else answer_in(folder, row) or answers.get(row, broken_off)
             yield values, known
 
-    units = write_table(folder, [axis.key for axis in plan.axes], answered)
+    units = write_table(folder, plan.axes, answered)
     if len(plan) >= MANY_ROWS:
         write_parquet(folder)
     return Sweep(folder, counts_in(folder), units)

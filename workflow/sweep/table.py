@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import csv
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from contact1d.analysis.curve import HEADER, headed
 from contact1d.files import whole
 from contact1d.workflow.errors import Contact1dError, FolderError
 from contact1d.workflow.runs.report import quantities_in, read_results
 from contact1d.workflow.scene import SceneError
 from contact1d.workflow.scene.problems import as_toml
-from contact1d.workflow.sweep.axes import SweepPlan, read_sweep
+from contact1d.workflow.sweep.axes import Axis, SweepPlan, read_sweep
+from contact1d.workflow.units import SI, Quantity
 
 RECORD = "sweep.toml"
 """The sweep, as it ran last."""
@@ -48,28 +50,46 @@ def answer_in(folder: Path, name: str) -> Answer | None:
 
 
 def write_table(
-    folder: Path, axes: Iterable[str], rows: Callable[[], Iterable[tuple[tuple[Any, ...], Answer]]]
+    folder: Path, axes: Sequence[Axis], rows: Callable[[], Iterable[tuple[tuple[Any, ...], Answer]]]
 ) -> dict[str, str]:
-    """Write results.csv. Two passes over the runs, one of them in memory at a time.
+    """Write results.csv, in SI where it is known. Two passes over the runs, one of them in memory at a time.
 
     Args:
         folder: of the sweep.
-        axes: their keys.
+        axes: with their values.
         rows: makes the rows, in order: values of the axes, and the answer.
 
     Returns:
         The quantities: names, and the unit of each.
     """
     units = _units(folder, (answer for _, answer in rows()))
-    numbers = [column for name in units for column in (name, f"{name}_uncertainty")]
+    headers = {axis.key: unit for axis in axes if (unit := axis.numbers()[1])}
+    headers |= {column: unit for name in units for column in columns_of(name) if (unit := units[name]) not in SI}
+    known = [dict(zip(axis.values, axis.numbers()[0], strict=False)) if axis.key in headers else {} for axis in axes]
     with whole(folder / TABLE) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([*axes, *FIXED, *numbers])
+        names = [*(axis.key for axis in axes), *FIXED, *(column for name in units for column in columns_of(name))]
+        writer.writerow(headed(names, headers))
         for values, answer in rows():
-            known = quantities_in(document_in(folder / answer.run))
-            cells = [known.get(name, {}).get(key) for name in units for key in ("value", "uncertainty")]
-            writer.writerow([*map(cell, values), answer.status, answer.reason, answer.run, *cells])
+            found = quantities_of(folder, answer.run)
+            own = (found[name] if name in found and found[name].unit == units[name] else None for name in units)
+            cells = [part for one in own for part in (("", "") if one is None else (one.value, one.uncertainty))]
+            places = (
+                cell(numbers.get(value, value)) if numbers else cell(value)
+                for value, numbers in zip(values, known, strict=True)
+            )
+            writer.writerow([*places, answer.status, answer.reason, answer.run, *cells])
     return units
+
+
+def columns_of(name: str) -> tuple[str, str]:
+    """The columns of a result."""
+    return name, f"{name}_uncertainty"
+
+
+def quantities_of(folder: Path, run: str) -> dict[str, Quantity]:
+    """The results of a run in a sweep's folder; none where it can't be read."""
+    return {name: Quantity.of(entry) for name, entry in quantities_in(document_in(folder / run)).items()}
 
 
 def cell(value: Any) -> Any:
@@ -112,8 +132,8 @@ def units_in(folder: Path) -> dict[str, str]:
 def _units(folder: Path, answers: Iterable[Answer]) -> dict[str, str]:
     units: dict[str, str] = {}
     for answer in answers:
-        for name, entry in quantities_in(document_in(folder / answer.run)).items():
-            units.setdefault(name, str(entry["unit"]))
+        for name, one in quantities_of(folder, answer.run).items():
+            units.setdefault(name, one.unit)
     return units
 
 
@@ -123,6 +143,13 @@ def counts_in(folder: Path) -> dict[str, int]:
 
 
 def read_table(folder: Path) -> Iterator[dict[str, str]]:
-    """The rows of results.csv, one by one, cells as text."""
+    """The rows of results.csv, one by one, by names without units, cells as text."""
     with (folder / TABLE).open(newline="", encoding="utf-8") as file:
-        yield from csv.DictReader(file)
+        rows = csv.reader(file)
+        names = [*map(bare, next(rows))]
+        yield from (dict(zip(names, row, strict=True)) for row in rows)
+
+
+def bare(header: str) -> str:
+    """The name of a column without its unit."""
+    return found[1] if (found := HEADER.fullmatch(header)) else header
