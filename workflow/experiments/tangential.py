@@ -205,15 +205,14 @@ def _require_history(trace: Trace, rows: Sequence[Drawn]) -> None:
 
 def _columns(rows: Sequence[Drawn]) -> dict[str, tuple[float, ...]]:
     """What curve.csv has beside the columns of every curve."""
-    columns = {
-        "tangential_displacement": [row.position for row in rows],
-        "tangential_force": [row.force for row in rows],
-        "normal_force": [float(row.trace.force[row.state]) for row in rows],
-        "stick_radius": [row.stick.value for row in rows],
-        "stick_radius_uncertainty": [row.stick.uncertainty for row in rows],
-        "dissipated_energy": [row.dissipated for row in rows],
+    return {
+        "tangential_displacement": tuple(row.position for row in rows),
+        "tangential_force": tuple(row.force for row in rows),
+        "normal_force": tuple(float(row.trace.force[row.state]) for row in rows),
+        "stick_radius": tuple(row.stick.value for row in rows),
+        "stick_radius_uncertainty": tuple(row.stick.uncertainty for row in rows),
+        "dissipated_energy": tuple(row.dissipated for row in rows),
     }
-    return {name: tuple(column) for name, column in columns.items()}
 
 
 def _chain(scene: Scene, settings: Settings) -> Sliders:
@@ -264,7 +263,7 @@ def _moved_too_far(scene: Scene, settings: Settings) -> float:
     assert isinstance(scene.experiment, Tangential)
     chain, most, error = _chain(scene, settings), _most(settings), 0.0
     for before, stop in pairwise(stops(scene.experiment, chain)):
-        touches = len(chain.touches(before[0], stop[0])) if before[0] != stop[0] else 0
+        touches = len(chain.touches(before[0], stop[0]))
         if touches > most:
             error += 2.0 * touches * chain.tangential * abs(stop[1] - before[1]) / most
     return error

@@ -177,9 +177,10 @@ def _plate(d: Draft) -> Rows:
 def _normal_loads(d: Draft) -> Rows:
     given = [key for key in ("experiment.normal_force", "experiment.normal_displacement") if key in d]
     points = d["experiment.cycles.points"] or 0
+    fewer = 4 * max(1, points // 4)
     yield ("experiment.cycles.points", points % 4,
            "must be a multiple of 4, so that a quarter of a cycle is a whole number of load steps",
-           f"the nearest are {4 * max(1, points // 4)} and {4 * max(1, points // 4) + 4}")
+           f"the nearest are {fewer} and {fewer + 4}")
     load = d[given[0]] if d.experiment.goes_along and len(given) == 1 and not points % 4 else None
     if load is None:
         return
