@@ -19,7 +19,12 @@ from typing import Any
 from contact1d.analysis.pressure import Array
 from contact1d.analysis.theory.adhesion import Dmt, MaugisDugdale, Theory, of_tabor, valid_theory
 from contact1d.analysis.theory.indenters import Contact, Ellipsoid, FlatPunch, PowerLaw
-from contact1d.analysis.theory.mindlin import mindlin_path, mindlin_stick_path, sliding_displacement
+from contact1d.analysis.theory.mindlin import (
+    mindlin_cycle_energy,
+    mindlin_path,
+    mindlin_stick_path,
+    sliding_displacement,
+)
 from contact1d.workflow.model.settings import interaction_law
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.scene.tables import SPHERES
@@ -328,10 +333,11 @@ def _dmt_values(case: Case) -> Values:
 
 
 # Drawn along: of a sphere under one load N, F_x and c on any path there and back, and a; at a displacement N as well.
+# Of closed cycles what one dissipates.
 
 
-def _drawn_along(case: Case) -> str:
-    """Where there are a sphere, a contact and one load."""
+def drawn_along(case: Case) -> str:
+    """Applies where there are a sphere, a contact and one load."""
     experiment: Any = case.scene.experiment
     friction = case.scene.friction
     if not experiment.goes_along or case.kind != "parabola" or friction is None or friction.coefficient == 0.0:
@@ -341,20 +347,28 @@ def _drawn_along(case: Case) -> str:
     return "a paraboloid under one load, displaced tangentially with friction" if one else ""
 
 
-def _mindlin_values(case: Case) -> Values:
+def sliding_contact(case: Case) -> tuple[float, float, float, float]:
+    """N [FU], μ, u* [LU] and a [LU] where `drawn_along` applies."""
     experiment: Any = case.scene.experiment
     scene, body, loads = case.scene, case.body, experiment.normal_forces()
     assert scene.friction is not None
     edge = body.contact_radius(loads[0]) if loads else body.radius_at(experiment.places()[0])
-    load, coefficient, places = body.force(edge), scene.friction.coefficient, experiment.along()
-    ratio = scene.tangential_stiffness / scene.bulk_stiffness
-    sliding = sliding_displacement(coefficient, ratio, body.displacement(edge))
+    coefficient, ratio = scene.friction.coefficient, scene.tangential_stiffness / scene.bulk_stiffness
+    return body.force(edge), coefficient, sliding_displacement(coefficient, ratio, body.displacement(edge)), edge
+
+
+def _mindlin_values(case: Case) -> Values:
+    """Of cycles one dissipates the same as any other; N is no prediction where it is given."""
+    experiment: Any = case.scene.experiment
+    *contact, edge = sliding_contact(case)
+    places = experiment.along()
     said = {
-        "tangential_force": mindlin_path(places, load, coefficient, sliding)[-1],
+        "tangential_force": mindlin_path(places, *contact)[-1],
         "contact_radius": edge,
-        "stick_radius": mindlin_stick_path(places, edge, sliding)[-1],
+        "stick_radius": mindlin_stick_path(places, edge, contact[-1])[-1],
+        "dissipated_energy_per_cycle": mindlin_cycle_energy(experiment.way, *contact),
     }
-    return said if loads else said | {"normal_force": load}
+    return said if experiment.normal_forces() else said | {"normal_force": contact[0]}
 
 
 SNEDDON = "I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47"
@@ -389,6 +403,6 @@ FORMS = (
     ClosedForm("DMT", "B. V. Derjaguin, V. M. Muller, Yu. P. Toporov, J. Colloid Interface Sci. 53 (1975) 314",
                _by_tabor(Theory.DMT), _dmt_values),
     ClosedForm("Cattaneo and Mindlin", "C. Cattaneo 1938; R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327",
-               _drawn_along, _mindlin_values),
+               drawn_along, _mindlin_values),
 )  # fmt: skip
 """Every closed form that a run is laid beside; which of them applies each says itself."""

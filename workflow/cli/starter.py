@@ -89,7 +89,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
     "experiment": {
         "method": "quasistatic", "normal_displacement": 1.0, "force": 3.0, "loading_rate": 1e-4,
         "velocity": 1e-3, "stiffness": 2.0,
-        "repeats": 20, "path": [[0.05, 6.0], [-0.05, 6.0]],
+        "repeats": 20, "path": [[0.05, 6.0], [-0.05, 6.0]], "cycles": {"amplitude": 0.2, "number": 3, "points": 40},
     },
 }  # fmt: skip
 """Values of keys that are not set and have no default."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import compress, pairwise
 from typing import Any
 
 import numpy as np
@@ -45,9 +45,14 @@ AS_PREDICTED = 1e-8
 
 
 class TangentialExperiment(Scripted):
-    """F_N, F_x, a, c and the dissipated energy Σ ∫ |s_i| dδ_i of the last row; a particle has slipped by δ_i."""
+    """F_N, F_x, a, c and the dissipated energy Σ ∫ |s_i| dδ_i of the last row; a particle has slipped by δ_i.
 
-    main_results = ("tangential_force", "contact_radius", "stick_radius", "dissipated_energy")
+    Of cycles also what the last one dissipates, ∮ F_x du where it is closed.
+    """
+
+    main_results = (
+        "tangential_force", "contact_radius", "stick_radius", "dissipated_energy", "dissipated_energy_per_cycle",
+    )  # fmt: skip
 
     def run(self, context: RunContext) -> Outcome:
         """Run the schedule; the forces must be those of the history of each particle."""
@@ -60,13 +65,12 @@ class TangentialExperiment(Scripted):
         trace = of_states(states, asked)
         rows = drawn(trace, scene)
         _require_history(trace, rows)
-        reported = [state for state, one in zip(states, asked, strict=True) if one]
-        kept = [row for row, one in zip(rows, asked, strict=True) if one]
-        farthest = reported[int(np.argmax([abs(row.position) for row in kept]))]
+        reported, kept = list(compress(states, asked)), list(compress(rows, asked))
         errors = force_errors(scene, settings, states, (states[-1],))
         results = budgeted(case, trace, errors)
         warnings = doubts(scene, settings, tuple(reported))
-        marked = {"farthest": farthest, "final": reported[-1]}
+        farthest = int(np.argmax([abs(row.position) for row in kept]))
+        marked = {"farthest": reported[farthest], "final": reported[-1]}
         return Outcome(results, tuple(reported), marked, phases, warnings, columns=_columns(kept))
 
     def script(self, branch: Any, scene: Scene) -> None:
@@ -79,25 +83,30 @@ class TangentialExperiment(Scripted):
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """What the last row has; forces are compared with Σ |s_i|, the energy with the work of that."""
         rows = drawn(trace, scene)
-        last, final = rows[-1], len(trace) - 1
+        last = rows[-1]
         strongest = max(row.carried for row in rows)
         error = ROUND_OFF * len(rows) * strongest + _moved_too_far(scene, settings)
-        work = sum(0.5 * (a.carried + b.carried) * abs(b.position - a.position) for a, b in pairwise(rows))
-        lost, force = error * scene.experiment.way, float(trace.force[final])
-        given = scene.experiment.compression is not None
-        radius = trace.radius(final) or 0.0
-        return {
-            "normal_force": Reading(force, FORCE, {"solver": ROUND_OFF * abs(force)}, prescribed=given),
+        lost, force = error * scene.experiment.way, float(trace.force[last.state])
+        radius = trace.radius(last.state) or 0.0
+        found = {
+            "normal_force": Reading(
+                force, FORCE, {"solver": ROUND_OFF * abs(force)}, prescribed=scene.experiment.compression is not None
+            ),
             "tangential_force": Reading(last.force, FORCE, {"solver": error}, scale=strongest),
             "contact_radius": Reading(radius, LENGTH, prescribed=radius == 0.0),
             "stick_radius": Reading(
-                last.stick.value + trace.shift_of(final) * last.stick.uncertainty, LENGTH,
+                last.stick.value + trace.shift_of(last.state) * last.stick.uncertainty, LENGTH,
                 prescribed=last.stick.value == last.stick.uncertainty == 0.0,
             ),
-            "dissipated_energy": Reading(
-                last.dissipated, ENERGY, {"solver": lost}, scale=work if abs(last.dissipated) <= lost else None
-            ),
+            "dissipated_energy": _energy(rows, lost),
         }  # fmt: skip
+        assert isinstance(scene.experiment, Tangential)
+        if scene.experiment.cycles:
+            start = max(
+                i for i, row in enumerate(rows[1:]) if row.direction < rows[i].direction
+            )  # of the last way back
+            found["dissipated_energy_per_cycle"] = _energy(rows[start:], 4.0 * lost)  # its path is 4 u_m
+        return found
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The load comes on in one row, then a phase for each stretch to the right ("forward") or to the left."""
@@ -172,6 +181,13 @@ def drawn(trace: Trace, scene: Scene) -> list[Drawn]:
     return rows
 
 
+def _energy(rows: Sequence[Drawn], lost: float) -> Reading:
+    """What is dissipated from the first of the rows to the last, compared with Σ ∫ |s_i| du; `lost`: error [FU·LU]."""
+    dissipated = rows[-1].dissipated - rows[0].dissipated
+    work = sum(0.5 * (a.carried + b.carried) * abs(b.position - a.position) for a, b in pairwise(rows))
+    return Reading(dissipated, ENERGY, {"solver": lost}, scale=work if abs(dissipated) <= lost else None)
+
+
 def _require_history(trace: Trace, rows: Sequence[Drawn]) -> None:
     """Refuse forces that are not the history's."""
     assert rows[0].scene.friction is not None
@@ -189,15 +205,14 @@ def _require_history(trace: Trace, rows: Sequence[Drawn]) -> None:
 
 def _columns(rows: Sequence[Drawn]) -> dict[str, tuple[float, ...]]:
     """What curve.csv has beside the columns of every curve."""
-    columns = {
-        "tangential_displacement": [row.position for row in rows],
-        "tangential_force": [row.force for row in rows],
-        "normal_force": [float(row.trace.force[row.state]) for row in rows],
-        "stick_radius": [row.stick.value for row in rows],
-        "stick_radius_uncertainty": [row.stick.uncertainty for row in rows],
-        "dissipated_energy": [row.dissipated for row in rows],
+    return {
+        "tangential_displacement": tuple(row.position for row in rows),
+        "tangential_force": tuple(row.force for row in rows),
+        "normal_force": tuple(float(row.trace.force[row.state]) for row in rows),
+        "stick_radius": tuple(row.stick.value for row in rows),
+        "stick_radius_uncertainty": tuple(row.stick.uncertainty for row in rows),
+        "dissipated_energy": tuple(row.dissipated for row in rows),
     }
-    return {name: tuple(column) for name, column in columns.items()}
 
 
 def _chain(scene: Scene, settings: Settings) -> Sliders:
@@ -248,7 +263,7 @@ def _moved_too_far(scene: Scene, settings: Settings) -> float:
     assert isinstance(scene.experiment, Tangential)
     chain, most, error = _chain(scene, settings), _most(settings), 0.0
     for before, stop in pairwise(stops(scene.experiment, chain)):
-        touches = len(chain.touches(before[0], stop[0])) if before[0] != stop[0] else 0
+        touches = len(chain.touches(before[0], stop[0]))
         if touches > most:
             error += 2.0 * touches * chain.tangential * abs(stop[1] - before[1]) / most
     return error

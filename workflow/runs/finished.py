@@ -21,10 +21,10 @@ from contact1d.analysis.curve import DETACHMENTS, PROFILE_COLUMNS, SAMPLE_TABLE,
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.shear import stick_margin
 from contact1d.analysis.theory.indenters import PowerLaw
-from contact1d.analysis.theory.mindlin import mindlin_path, sliding_displacement
+from contact1d.analysis.theory.mindlin import mindlin_path
 from contact1d.workflow.body.derived import REPORTED
 from contact1d.workflow.body.reading import IMAGE
-from contact1d.workflow.body.theory import Case, applying
+from contact1d.workflow.body.theory import Case, applying, drawn_along, sliding_contact
 from contact1d.workflow.body.traction import body_pressures, body_shears, row_of
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.state import RadiusRule
@@ -51,8 +51,6 @@ LEAST, LARGEST = 0.05, 1.3
 """Radii over a₀ from and to which JKR is drawn; on a plane from where fixed grips part."""
 CURVE_COLUMNS = ("displacement", "force", "contact_radius", "branch")
 """Without which a table is no curve."""
-SAME_LOAD = 1e-9
-"""Change of a load over the load up to which it is one: round-off."""
 
 
 class Results(dict[str, Quantity]):
@@ -336,9 +334,8 @@ def _values(run: Run) -> dict[str, float]:
 
 def _sheared(run: Run) -> Drawings:
     """Force over displacement along x, the stick zone and q(r)."""
-    theory = _mindlin(run.scene, run.curve, run.friction)
-    loop = partial(figures.tangential_figure, run.friction, legs_of(run, run.curve.displacement), theory)
-    found: Drawings = {"tangential": loop, "stick_slip": _stick_slip(run.scene, run.profiles, run.friction)}
+    loop = partial(figures.tangential_figure, run.friction, legs_of(run, run.curve.displacement), _mindlin(run))
+    found: Drawings = {"tangential": loop, "stick_slip": _stick_slip(run)}
     if shears := body_shears(run.scene, run.profiles, run.friction, run.curve.contact_radius):
         lines = {name: (one.r, one.shear, one.uncertainty, one.edge, one.stick) for name, one in shears.items()}
         found["shear_3d"] = partial(figures.body_shear_figure, lines)
@@ -358,32 +355,28 @@ def _body_pressure(run: Run) -> Drawings:
     return {"pressure_3d": partial(figures.body_pressure_figure, drawn, theories)} if drawn else {}
 
 
-def _stick_slip(scene: Scene, profiles: Mapping[str, Profile], columns: Mapping[str, Array]) -> Callable[[], Figure]:
+def _stick_slip(run: Run) -> Callable[[], Figure]:
     """The stick zone of each state, as the row at its place has it."""
-    assert scene.friction is not None
-    places, coefficient = columns["tangential_displacement"], scene.friction.coefficient
+    assert run.scene.friction is not None
+    places, coefficient = run.friction["tangential_displacement"], run.scene.friction.coefficient
     states = {}
-    for name, profile in profiles.items():
-        row = row_of(name, columns)
+    for name, profile in run.profiles.items():
+        row = row_of(name, run.friction)
         moves = np.diff(places[: row + 1], prepend=0.0)
         direction = int(np.sign(moves[moves != 0.0][-1])) if moves.any() else 0
         margin = stick_margin(profile, coefficient, direction)
-        states[name] = profile, margin, float(columns["stick_radius"][row]), float(places[row])
+        states[name] = profile, margin, float(run.friction["stick_radius"][row]), float(places[row])
     return partial(figures.stick_slip_figure, states, coefficient)
 
 
-def _mindlin(scene: Scene, curve: Columns, columns: Mapping[str, Array]) -> Array | None:
+def _mindlin(run: Run) -> Array | None:
     """u and F_x of Cattaneo and Mindlin along the path of a parabola under one load, shape (2, n); else None."""
-    places, loads = columns["tangential_displacement"], columns["normal_force"]
-    if scene.bodies.plane_radius is None or scene.friction is None or not scene.friction.coefficient:
+    case, places = Case(run.scene, run.results), run.friction["tangential_displacement"]
+    if not drawn_along(case):
         return None
-    if np.ptp(loads) > SAME_LOAD * loads.max():
-        return None
-    ratio, coefficient = scene.tangential_stiffness / scene.bulk_stiffness, scene.friction.coefficient
-    sliding = sliding_displacement(coefficient, ratio, float(curve.displacement[0]))
-    rows = np.arange(places.size)
-    dense = np.interp(np.linspace(0.0, rows[-1], 1 + BETWEEN * int(rows[-1])), rows, places)
-    return np.asarray([dense, mindlin_path(dense.tolist(), float(loads[0]), coefficient, sliding)])
+    steps = places.size - 1
+    dense = np.interp(np.linspace(0.0, steps, 1 + BETWEEN * steps), range(places.size), places)
+    return np.asarray([dense, mindlin_path(dense.tolist(), *sliding_contact(case)[:3])])
 
 
 def _radius(scene: Scene, profile: Profile) -> float:

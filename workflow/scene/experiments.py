@@ -7,7 +7,7 @@ A prescribed path from d₀ to d₁ in n steps holds d_i = (d₀ (n − i) + d�
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
@@ -16,6 +16,7 @@ from pydantic_core import PydanticCustomError
 from contact1d.workflow.scene.quantities import (
     Compression,
     CompressionOrNone,
+    CycleCount,
     Displacement,
     DriveVelocity,
     Duration,
@@ -73,9 +74,26 @@ Displacements = Annotated[
 ]
 
 
-def _values(listed: tuple[float, ...] | Span) -> list[float]:
-    """The displacements [LU] of a list or a span, in order."""
-    return listed.values() if isinstance(listed, Span) else list(listed)
+class Cycles(Table):
+    """Closed cycles between two displacements ±u_m in equal load steps, after the initial loading from 0 to u_m."""
+
+    amplitude: Length
+    """largest displacement u_m to either side"""
+    number: CycleCount
+    """whole cycles, each from u_m to −u_m and back"""
+    points: CycleCount
+    """load steps in one cycle, a multiple of 4: a quarter of them is the initial loading"""
+
+    def values(self) -> list[float]:
+        """Displacements [LU] in order: 0, points/4 steps to u_m, then `points` steps of each cycle; 0, ±u_m exactly."""
+        n = self.points // 4
+        steps = range(-n, self.number * self.points + 1)
+        return [self.amplitude * (abs(i % self.points / n - 2.0) - 1.0) for i in steps]
+
+
+def _values(listed: Sequence[float] | Span | Cycles) -> list[float]:
+    """The displacements [LU] of a list, a span or cycles, in order."""
+    return list(listed) if isinstance(listed, Sequence) else listed.values()
 
 
 def _for_each(given: tuple[float, ...] | float | None, count: int) -> list[float]:
@@ -273,6 +291,7 @@ class Tangential(Kind):
             ("normal_force", "normal_displacement"),
             "give a normal_force (FU) or a normal_displacement (LU), one for all points or one for each; not both",
         ),
+        (("displacements", "cycles"), "give displacements (LU), or cycles = { amplitude, number, points }; not both"),
     )
     only_method = "quasistatic"
     excludes: ClassVar[Mapping[str, str]] = {
@@ -296,8 +315,10 @@ class Tangential(Kind):
     """in place of the force: displacement in normal direction, compression positive; one, or one for each of the
     displacements
     """
-    displacements: Displacements
+    displacements: Displacements | None = None
     """displacements along x, from 0 on where the load comes on: a list or an even span"""
+    cycles: Cycles | None = None
+    """in place of displacements: closed cycles along x between two displacements ±u_m"""
 
     @property
     def compression(self) -> float | None:
@@ -310,7 +331,7 @@ class Tangential(Kind):
 
     def along(self) -> list[float]:
         """Displacements along x [LU] of the rows."""
-        return _values(self.displacements)
+        return _values(self.cycles or self.displacements or ())
 
     def normal_forces(self) -> list[float]:
         """Normal forces [FU] of the rows, none where displacements are given."""

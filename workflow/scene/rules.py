@@ -16,7 +16,7 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import Any
 
-from contact1d.workflow.scene.experiments import KINDS, Kind, Span
+from contact1d.workflow.scene.experiments import KINDS, Cycles, Kind, Span
 from contact1d.workflow.scene.problems import Problem, shown
 from contact1d.workflow.scene.quantities import Keys, keys_of
 from contact1d.workflow.scene.tables import ALIKE, EFFECT_TABLES, SPHERES, TIMED, WHOLE, default_method, wider_than_body
@@ -176,11 +176,17 @@ def _plate(d: Draft) -> Rows:
 
 def _normal_loads(d: Draft) -> Rows:
     given = [key for key in ("experiment.normal_force", "experiment.normal_displacement") if key in d]
-    load = d[given[0]] if d.experiment.goes_along and len(given) == 1 else None
+    points = d["experiment.cycles.points"] or 0
+    fewer = 4 * max(1, points // 4)
+    yield ("experiment.cycles.points", points % 4,
+           "must be a multiple of 4, so that a quarter of a cycle is a whole number of load steps",
+           f"the nearest are {fewer} and {fewer + 4}")
+    load = d[given[0]] if d.experiment.goes_along and len(given) == 1 and not points % 4 else None
     if load is None:
         return
-    loads, rows = load if isinstance(load, list) else [load], d["experiment.displacements"]
-    count = len(Span.model_validate(rows).values() if isinstance(rows, Mapping) else rows or loads)
+    loads, rows = load if isinstance(load, list) else [load], d["experiment.cycles"] or d["experiment.displacements"]
+    table = Cycles if "experiment.cycles" in d else Span
+    count = len(table.model_validate(rows).values() if isinstance(rows, Mapping) else rows or loads)
     yield (given[0], loads is load and len(loads) != count,
            f"must be one number or as many as there are displacements, {count}; these are {len(loads)}",
            "give one for each displacement, or one for all")
