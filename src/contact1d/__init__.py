@@ -14,8 +14,11 @@
     sweep = [(scene.with_({"bodies.profile.radius": R}), f"runs/R{R}") for R in (500, 1000, 2000)]
     contact1d.run_many(sweep)                   # several at a time
 
-Every error about a scene, a folder or a run is a `Contact1dError`. Units: LU length, FU force, MU mass,
-TU = √(MU·LU/FU); compression is positive.
+    ball = contact1d.sphere(radius="2 mm", upper="rubber", lower="glass", work_of_adhesion="80 mJ/m²")
+    ball.pull_off().results.adhesion_force      # also cone, punch, profile; .load, .path, .tangential
+
+Every error about a scene, a folder or a run is a `Contact1dError`. What a scene gives in SI is in SI here, in base
+units; without units LU length, FU force, MU mass, TU = √(MU·LU/FU). Compression is positive.
 """
 
 from __future__ import annotations
@@ -28,6 +31,7 @@ if TYPE_CHECKING:
     from contact1d.workflow.engine.failure import EngineError
     from contact1d.workflow.errors import Contact1dError, FolderError, RunError
     from contact1d.workflow.identify.choice import from_material
+    from contact1d.workflow.identify.shortcuts import Contact, cone, profile, punch, sphere
     from contact1d.workflow.model.chain import SettingsError
     from contact1d.workflow.runs.advised import run
     from contact1d.workflow.runs.campaign import write_deck
@@ -38,6 +42,7 @@ if TYPE_CHECKING:
     from contact1d.workflow.units import Quantity
 
 __all__ = [
+    "Contact",
     "Contact1dError",
     "EngineError",
     "FolderError",
@@ -49,11 +54,15 @@ __all__ = [
     "SettingsError",
     "Sweep",
     "atoms",
+    "cone",
     "from_material",
     "load_run",
+    "profile",
+    "punch",
     "read_scene",
     "run",
     "run_many",
+    "sphere",
     "sweep",
     "write_deck",
 ]
@@ -63,6 +72,7 @@ _HOMES = {
     "workflow.engine.failure": ("EngineError",),
     "workflow.errors": ("Contact1dError", "FolderError", "RunError"),
     "workflow.identify.choice": ("from_material",),
+    "workflow.identify.shortcuts": ("Contact", "cone", "profile", "punch", "sphere"),
     "workflow.runs.advised": ("run",),
     "workflow.runs.campaign": ("write_deck",),
     "workflow.runs.finished": ("Run", "load_run"),

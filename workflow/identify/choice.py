@@ -85,16 +85,22 @@ def _on_plane(contact: AskedContact, radius: float, count: int) -> Scene:
 
     A pull-off where something holds, else the load.
     """
+    experiment: dict[str, Any] = {"kind": "load", "force": contact.load}
+    if contact.work_of_adhesion:
+        experiment = {"kind": "pull_off", "preload": contact.load or PRELOAD_SHARE * largest_tension(contact)}
+    return on_plane(contact, experiment, radius / count)
+
+
+def on_plane(contact: AskedContact, experiment: Any, spacing: float | str = "auto", **tables: Any) -> Scene:
+    """The contact's scene with an experiment and further tables, on a rigid plane. Raises SceneError."""
     data: dict[str, Any] = plain_data(contact.scene)
-    data["bodies"]["spacing"] = radius / count
+    data["bodies"]["spacing"] = spacing
     if contact.is_rigid:
         data["material"] = {"contact_modulus": contact.contact_modulus, "length_unit": 1.0, "force_unit": 1.0}
     data.pop("adhesion", None)
     if contact.work_of_adhesion:
         data["adhesion"] = {"work_of_adhesion": contact.work_of_adhesion}
-        load = contact.load or PRELOAD_SHARE * largest_tension(contact)
-        data["experiment"] = {"kind": "pull_off", "preload": load}
-    return scene_from_dict(data)
+    return scene_from_dict(data | tables | {"experiment": experiment})
 
 
 def _particles(contact: AskedContact, theories: Theories | None, doubts: dict[str, str]) -> Choice:

@@ -99,8 +99,12 @@ class AskedContact:
         return "particles" if self.given.get("model") == "particles" else "plane"
 
 
-def read_contact(source: AnyContact) -> AskedContact:
+def read_contact(source: AnyContact, complete: bool = True) -> AskedContact:
     """The contact that a file or its tables describe, read as a scene with 1 LU = 1 m and 1 FU = 1 N.
+
+    Args:
+        source: a TOML file, by its path, or its tables.
+        complete: whether it must have a load or an adhesion: something to run.
 
     Raises:
         SceneError: with every problem at once.
@@ -109,7 +113,7 @@ def read_contact(source: AnyContact) -> AskedContact:
     data = dict(source) if isinstance(source, Mapping) else read_tables(source)
     if {"bodies", "experiment"} <= data.keys():
         raise SceneError([Problem("bodies", "this is a scene and no material", hint="run it with contact1d run")])
-    problems = [*_mistakes(data), *_without_unit(data, folder)]
+    problems = [*_mistakes(data, complete), *_without_unit(data, folder)]
     taken = {problem.path for problem in problems}
     scene = None
     try:
@@ -127,7 +131,7 @@ def _adheres(data: Mapping[str, Any]) -> bool:
     return bool(data.get("surface_energy") or data.get("work_of_adhesion"))
 
 
-def _mistakes(data: Mapping[str, Any]) -> Iterator[Problem]:
+def _mistakes(data: Mapping[str, Any], complete: bool) -> Iterator[Problem]:
     """What no scene would say of the keys and of having them together."""
     for key in (key for key in data if key not in KEYS):
         meant = nearest(key, KEYS)
@@ -154,7 +158,7 @@ def _mistakes(data: Mapping[str, Any]) -> Iterator[Problem]:
         yield Problem("surface_energy", "not together with work_of_adhesion", hint=hint)
     if data.get("model", "plane") not in MODELS:
         yield Problem("model", 'must be "plane" or "particles"', shown(data["model"]))
-    if "load" not in data and not _adheres(data):
+    if complete and "load" not in data and not _adheres(data):
         hint = "without attraction a load alone makes a contact; or give surface_energy or work_of_adhesion"
         yield Problem("load", "missing", hint=f'{hint}: load = "10 N"')
     if str(data.get("load", "")).lstrip().startswith("-"):

@@ -68,6 +68,10 @@ class Table(BaseModel):
     as_list: ClassVar[bool] = False
     one_of: ClassVar[tuple[tuple[tuple[str, ...], str], ...]] = ()
 
+    def __dir__(self) -> list[str]:
+        """Names for completion: keys and what can be asked, without those of pydantic."""
+        return [name for name in super().__dir__() if name[0] != "_" and name not in vars(BaseModel)]
+
 
 Length = Annotated[float, Gt(0), Unit("LU")]
 Height = Annotated[float, Unit("LU")]

@@ -1,0 +1,94 @@
+"""A contact in a line of Python: `contact1d.sphere(radius="2 mm", upper="rubber", lower="glass").load("1 N")`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from contact1d.workflow.identify.choice import PRELOAD_SHARE, on_plane
+from contact1d.workflow.identify.contact import AskedContact, read_contact
+from contact1d.workflow.identify.theories import largest_tension
+from contact1d.workflow.runs.advised import run
+from contact1d.workflow.runs.campaign import AnyPath
+from contact1d.workflow.runs.finished import Run
+from contact1d.workflow.scene import Scene
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A body on a flat one, which experiments are made with; `sphere`, `cone`, `punch` and `profile` make it.
+
+    Each experiment returns the finished run. Quantities are texts with units, or numbers in SI.
+
+    Attributes:
+        asked: what was given.
+    """
+
+    asked: AskedContact
+
+    def scene(self, kind: str, friction: float | None = None, **experiment: Any) -> Scene:
+        """The scene of an experiment with the keys of docs/scene.md, to run, to sweep or to print.
+
+        Raises:
+            SceneError: with every problem at once.
+        """
+        tables = {} if friction is None else {"friction": {"coefficient": friction}}
+        return on_plane(self.asked, experiment | {"kind": kind}, **tables)
+
+    def load(self, force: str | float, folder: AnyPath | None = None) -> Run:
+        """Press with a force; negative: pull. The folder is temporary where none is given."""
+        return run(self.scene("load", force=force), folder)
+
+    def pull_off(self, preload: str | float | None = None, folder: AnyPath | None = None) -> Run:
+        """Press with a preload, by default 0.7 of the theory's pull-off force, and pull until the bodies separate."""
+        preload = PRELOAD_SHARE * largest_tension(self.asked) if preload is None else preload
+        return run(self.scene("pull_off", preload=preload), folder)
+
+    def path(self, displacements: Any, folder: AnyPath | None = None) -> Run:
+        """Follow displacements: a list, or { from, to, steps, return }."""
+        return run(self.scene("path", displacements=displacements), folder)
+
+    def tangential(
+        self, normal_force: str | float, friction: float, folder: AnyPath | None = None, **experiment: Any
+    ) -> Run:
+        """Press with a normal force and displace tangentially, by `displacements` or `cycles`, with Coulomb's law."""
+        return run(self.scene("tangential", friction, normal_force=normal_force, **experiment), folder)
+
+
+def sphere(radius: str | float, counter_radius: str | float | None = None, **contact: Any) -> Contact:
+    """A sphere, as a paraboloid, on a flat body, or on another sphere of `counter_radius` (negative: in a cup).
+
+        contact1d.sphere(radius="2 mm", upper="rubber", lower="glass", work_of_adhesion="80 mJ/m²").pull_off()
+
+    Args:
+        radius: at the apex.
+        counter_radius: of the other body.
+        contact: `upper` and `lower` (names of materials, or tables with youngs_modulus and poisson_ratio), or
+            `contact_modulus`; `work_of_adhesion`, `tolerance`, `title` (docs/identify.md).
+
+    Raises:
+        SceneError: with every problem at once.
+    """
+    other = {} if counter_radius is None else {"counter_radius": counter_radius}
+    return _contact(contact, kind="parabola", radius=radius, **other)
+
+
+def cone(half_angle: str, **contact: Any) -> Contact:
+    """A cone of this angle between axis and flank, "80°"; further arguments as of `sphere`."""
+    return _contact(contact, kind="cone", half_angle=half_angle)
+
+
+def punch(radius: str | float, **contact: Any) -> Contact:
+    """A flat punch; further arguments as of `sphere`."""
+    return _contact(contact, kind="flat_punch", radius=radius)
+
+
+def profile(file: AnyPath | None = None, **contact: Any) -> Contact:
+    """A measured profile from a CSV file, or from the lists `r` and `z`; further arguments as of `sphere`."""
+    given = {"file": None if file is None else str(file)}
+    given |= {key: contact.pop(key) for key in ("r", "z", "scale") if key in contact}
+    return _contact(contact, kind="table", **{key: value for key, value in given.items() if value is not None})
+
+
+def _contact(contact: dict[str, Any], **profile: Any) -> Contact:
+    return Contact(read_contact({"profile": profile, **contact}, False))
