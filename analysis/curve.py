@@ -89,12 +89,12 @@ def read_columns(path: Path, needed: Iterable[str] = ()) -> Columns:
     """
     with path.open(newline="", encoding="utf-8") as file:
         header, *rows = [*csv.reader(file)] or [[]]
-    if not rows:
+    if needed and not rows:
         raise ValueError(f"{path}: no rows")
     parts = [found.groups() if (found := HEADER.fullmatch(name)) else (name, "") for name in header]
     if missing := sorted({*needed} - {name for name, _ in parts}):
         raise ValueError(f"{path}: no column {', '.join(missing)}")
-    columns = zip((name for name, _ in parts), zip(*rows, strict=True), strict=True)
+    columns = zip((name for name, _ in parts), zip(*rows, strict=True) if rows else [()] * len(header), strict=True)
     return Columns(
         {name: cells if name in WORDS else [float(cell or "nan") for cell in cells] for name, cells in columns},
         {name: unit for name, unit in parts if unit},

@@ -10,7 +10,6 @@ import shutil
 import subprocess
 import sys
 from collections import Counter
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -216,16 +215,12 @@ def test_a_run_read_from_its_folder_is_the_one_that_was_made(finished: Run) -> N
         for name in ("scene", "status", "results", "warnings", "timing"):
             assert getattr(loaded, name) == getattr(finished, name), name
         assert (repr(loaded), loaded._repr_html_()) == (repr(finished), finished._repr_html_())
+        assert loaded.tables.keys() == finished.tables.keys()
         assert list(loaded.profiles) == list(finished.profiles)
-        assert list(loaded.friction) == list(finished.friction)
-        pairs = zip(
-            (loaded.curve, *loaded.profiles.values()), (finished.curve, *finished.profiles.values()), strict=True
-        )
-        for one, other in pairs:
-            for field in fields(one):
-                np.testing.assert_array_equal(getattr(one, field.name), getattr(other, field.name))
-        for name, column in finished.friction.items():
-            np.testing.assert_array_equal(loaded.friction[name], column)
+        for table, columns in finished.tables.items():
+            assert list(loaded.tables[table]) == list(columns)
+            for name, column in columns.items():
+                np.testing.assert_array_equal(loaded.tables[table][name], column)
         assert [axis.get_title() for axis in loaded.plot().axes] == titles
 
 

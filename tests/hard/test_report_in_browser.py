@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import itertools
+import re
 import shutil
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
+import contact1d
 from contact1d import run
 from contact1d.workflow.report.report import report
 from tests.scenes import chains
 
 HERE = ("file:", "data:", "blob:")
 """Addresses that need no network."""
+THEORY = "#555555"
 PHONE = {"width": 390, "height": 844}
 
 
@@ -21,6 +25,16 @@ PHONE = {"width": 390, "height": 844}
 def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     folder = tmp_path_factory.mktemp("report")
     run(chains(400.0, experiment={"kind": "pull_off", "preload": 0.5}), folder / "run", figures=False)
+    return report([folder / "run"], folder / "report.html").as_uri()
+
+
+@pytest.fixture(scope="module")
+def loop(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Two cycles of a steel ball on glass, in SI."""
+    folder = tmp_path_factory.mktemp("loop")
+    ball = contact1d.sphere(radius="10 mm", contact_modulus="70 GPa", tolerance=1e-2)
+    cycles = {"amplitude": "0.5 µm", "number": 2, "points": 8}
+    ball.tangential("10 N", 0.3, folder / "run", cycles=cycles)
     return report([folder / "run"], folder / "report.html").as_uri()
 
 
@@ -50,10 +64,10 @@ def test_the_slider_moves_force_profile_and_words_by_mouse_and_keyboard(browser:
 
     def state() -> tuple[Any, ...]:
         return (
-            page.evaluate("document.getElementById('way-0').data[1].y[0]"),
-            page.evaluate("document.getElementById('way-1').data[0].y.join()"),
-            page.evaluate("document.getElementById('way-2').data[0].y.join()"),
-            page.locator("#told").inner_text(),
+            page.evaluate("document.getElementById('path-0').data[1].y[0]"),
+            page.evaluate("document.getElementById('path-1').data[0].y.join()"),
+            page.evaluate("document.getElementById('path-2').data[0].y.join()"),
+            page.locator("#words").inner_text(),
         )
 
     slider = page.locator("#state")
@@ -85,3 +99,29 @@ def test_on_paper_the_numbers_are_there_and_the_slider_is_not(browser: Any, addr
     page.emulate_media(media="print")
     assert not page.locator("#state").is_visible()
     assert page.get_by_text("adhesion force").first.is_visible()
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("width", [PHONE["width"], 1280])
+def test_a_loop_is_drawn_leg_by_leg_in_si_beside_mindlins_and_its_axes_change_by_keyboard(
+    browser: Any, loop: str, width: int
+) -> None:
+    page = browser.new_page(viewport=PHONE | {"width": width})
+    page.goto(loop)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    chart = page.evaluate("(({data, layout}) => ({data, layout}))(document.getElementById('chart-0'))")
+    legs = [trace for trace in chart["data"] if trace["line"]["color"] != THEORY]
+    assert len(legs) >= 4
+    for leg in legs:
+        steps = {after > before for before, after in itertools.pairwise(leg["x"])}
+        assert len(steps) == 1, "a leg goes one way"
+    assert "Cattaneo–Mindlin" in {trace["name"] for trace in chart["data"]}
+    assert chart["layout"]["xaxis"]["title"]["text"] == "tangential displacement (nm)"
+    assert chart["layout"]["yaxis"]["title"]["text"] == "tangential force (N)"
+    words = page.locator("body").inner_text()
+    assert not re.search(r"\b[LF]U\b", words), "the scene is in SI"
+    pressure = page.locator("figure", has_text="Pressure over distance").first.get_by_label("logarithmic y")
+    pressure.focus()
+    page.keyboard.press("Space")
+    drawn = page.evaluate("[...document.querySelectorAll('.chart')].map(one => one.layout?.yaxis.type)")
+    assert "log" in drawn

@@ -98,7 +98,7 @@ def test_every_row_is_the_sum_over_springs_with_sliders(run_tables: RunTables, c
     scene = tables(LOOPS, bodies)
     if material is not None:
         scene["material"] = material
-    run = run_tables(scene)
+    run = run_tables(scene).model
     forces, dissipated = exact(run)
     assert run.friction["tangential_force"] == pytest.approx(forces, abs=EXACT * MU * 40.0)
     assert run.friction["dissipated_energy"] == pytest.approx(dissipated, abs=AREA * dissipated[-1])
@@ -116,7 +116,7 @@ def test_the_materials_give_the_tangential_stiffness(run_tables: RunTables, case
     )
     assert run.scene.tangential_stiffness / run.scene.bulk_stiffness == pytest.approx(ratio, rel=1e-14)
     # F_x = k_t u of every touching particle, as long as none slips: so small a way moves the outermost one only.
-    small = run_tables(tables([1e-9], bodies) | {"material": material})
+    small = run_tables(tables([1e-9], bodies) | {"material": material}).model
     touching = int((small.profiles["final"].pressure > 0.0).sum())
     stiffness = small.results["tangential_force"].value / 1e-9
     assert stiffness == pytest.approx(touching * ratio * small.scene.bulk_stiffness, rel=1e-3)

@@ -80,8 +80,8 @@ def _chart(
     layout: Chart = {
         **{f"{key}axis": {"title": {"text": symbols(name.replace("$", ""))}, "type": kind, **axis}
            for key, name, kind in zip("xy", names, types, strict=True)},
-        "template": "none", "margin": {"l": 70, "r": 15, "t": 30, "b": 60}, "hovermode": "closest",
-        "legend": {"orientation": "h", "y": -0.25},
+        "template": "none", "margin": {"l": 70, "r": 15, "t": 30, "b": 55}, "hovermode": "closest",
+        "legend": {"orientation": "h", "x": 0, "y": 1.02, "yanchor": "bottom"},
     }  # fmt: skip
     for key, values in zip("xy", ends, strict=False):
         low, high = float(np.min(values)), float(np.max(values))
