@@ -101,7 +101,7 @@ def read_columns(path: Path, needed: Iterable[str] = ()) -> Columns:
     )
 
 
-def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Column]:
+def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Any]:
     """Return the columns of profile.csv: the profiles below each other, the state's name in the last column."""
     numbers = {
         name: np.concatenate([getattr(profile, name) for profile in profiles.values()]) for name in PROFILE_COLUMNS

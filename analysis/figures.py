@@ -134,8 +134,8 @@ def load_radius_figure(curve: Columns, theory: Theory | None = None) -> Figure:
     touching = curve.contact_radius > 0.0
     for branch in dict.fromkeys(curve.branch[touching].tolist()):
         chosen = touching & (curve.branch == branch)
-        columns = curve.contact_radius, curve.force, curve.contact_radius_uncertainty
-        _points(axis, *(column[chosen] for column in columns), branch, LOADING if branch == "loading" else UNLOADING)
+        radius, spread = curve.contact_radius[chosen], curve.contact_radius_uncertainty[chosen]
+        _points(axis, radius, curve.force[chosen], spread, branch, LOADING if branch == "loading" else UNLOADING)
     if theory is not None:
         beside(axis, theory, "-")
     describe(axis, "contact radius (LU)", "force (FU), compression positive")

@@ -89,7 +89,7 @@ def registry() -> Any:
     """Pint's units and those of the model, in which quantities calculate."""
     import pint
 
-    units = pint.UnitRegistry()
+    units: Any = pint.UnitRegistry()
     for definition in ("LU = [model_length]", "FU = [model_force]", "MU = [model_mass]", "TU = [model_time]"):
         units.define(definition)
     return units

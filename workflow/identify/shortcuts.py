@@ -32,7 +32,7 @@ class Contact:
         Raises:
             SceneError: with every problem at once.
         """
-        tables = {} if friction is None else {"friction": {"coefficient": friction}}
+        tables: dict[str, Any] = {} if friction is None else {"friction": {"coefficient": friction}}
         return on_plane(self.asked, experiment | {"kind": kind}, **tables)
 
     def load(self, force: str | float, folder: AnyPath | None = None) -> Run:

@@ -127,16 +127,17 @@ def _traces(axes: Axes, factors: Sequence[float], in_words: Callable[[str], str]
         if isinstance(one, LineCollection) and one.get_segments():
             yield trace(one, one.get_transform(), one.get_segments(), one.get_colors()[0])
         elif isinstance(one, PolyCollection) and one.get_paths():
-            colour = one.get_facecolors()[0]
+            colour = np.atleast_2d(one.get_facecolor())[0]
             fill = {"fillcolor": to_hex(colour), "opacity": one.get_alpha() or 1.0}
             yield trace(one, one.get_transform(), [path.vertices for path in one.get_paths()], colour) | filled | fill
     for line in axes.lines:
         mode = "+".join(
             ["lines"] * (line.get_linestyle() in DASHES) + ["markers"] * (line.get_marker() in ("o", ".", "x"))
         )
-        if mode and len(line.get_xdata()):
-            made = trace(line, line.get_transform(), [np.column_stack(line.get_data())], line.get_color(), mode=mode)
-            made["line"]["dash"] = DASHES.get(line.get_linestyle(), "solid")
+        points = np.column_stack(line.get_data())
+        if mode and points.size:
+            made = trace(line, line.get_transform(), [points], line.get_color(), mode=mode)
+            made["line"]["dash"] = DASHES.get(str(line.get_linestyle()), "solid")
             yield made | {"marker": {"size": 5}}
 
 
@@ -157,7 +158,7 @@ def _with_prefixes(made: Chart) -> Chart:
 def path_of(run: Run, states: States) -> dict[str, Any]:
     """What the slider moves through: for each kept state its place on the main curve, profile, bodies and words."""
 
-    def shown(unit: str, *arrays: Array) -> tuple[str, list[Array]]:
+    def shown(unit: str, *arrays: Any) -> tuple[str, list[Any]]:
         factor, name = run.scales.written(max(float(np.nanmax(np.abs(array))) for array in arrays), unit)
         return name, [array * factor for array in arrays]
 

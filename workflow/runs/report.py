@@ -218,7 +218,7 @@ def tables_of(scene: Scene, outcome: Outcome) -> dict[str, Columns]:
     states = outcome.states
     radii = [(math.nan, math.nan) if (r := state.radius) is None else (r.value, r.uncertainty) for state in states]
     contact_radius, uncertainty = np.transpose(radii)
-    curve: dict[str, Column] = {
+    curve: dict[str, Any] = {
         "displacement": [state.displacement for state in states],
         "force": [state.force for state in states],
         "contact_radius": contact_radius,
@@ -226,7 +226,11 @@ def tables_of(scene: Scene, outcome: Outcome) -> dict[str, Columns]:
         "branch": [kind_of(scene).branch(state.phase) for state in states],
         "contact_radius_uncertainty": uncertainty,
     }
-    tables = {"curve": curve | outcome.columns, "profile": profile_columns(outcome.profiles), **outcome.tables}
+    tables: dict[str, Mapping[str, Any]] = {
+        "curve": curve | dict(outcome.columns),
+        "profile": profile_columns(outcome.profiles),
+        **outcome.tables,
+    }
     if scene.experiment.goes_along:
         along = {name: np.asarray(column) for name, column in outcome.columns.items()}
         shears = body_shears(scene, outcome.profiles, along, contact_radius)
@@ -241,7 +245,7 @@ def tables_of(scene: Scene, outcome: Outcome) -> dict[str, Columns]:
 PRESSURE, SHEAR = (("r", name, f"{name}_uncertainty") for name in ("pressure", "shear_stress"))
 
 
-def below(states: Mapping[str, Sequence[Any]], names: Sequence[str]) -> dict[str, Column]:
+def below(states: Mapping[str, Sequence[Any]], names: Sequence[str]) -> dict[str, Any]:
     """The columns of several states below each other, the state's name in the last one; none of no state."""
     if not states:
         return {}

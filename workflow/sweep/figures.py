@@ -163,7 +163,7 @@ def _dense(x: Array, values: Array) -> tuple[Array, Array]:
     """A closed form between the points at which it is known: monotone cubics in powers, which powers are exactly."""
     if len(x) < 3 or min(x.min(), values.min()) <= 0.0:
         return x, values
-    places = np.linspace(*np.log(x[[0, -1]]), FINE)
+    places = np.linspace(math.log(x[0]), math.log(x[-1]), FINE)
     return np.exp(places), np.exp(PchipInterpolator(np.log(x), np.log(values))(places))
 
 
