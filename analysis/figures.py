@@ -46,8 +46,8 @@ BEFORE = "#bbbbbb"
 """Of what is not measured yet: a contact that forgets its start."""
 SEPARATION_SHARE = 1e-3
 """Largest pressure over that of the other states below which a state is not drawn: the bodies are apart."""
-FEW_ROWS, FEW_ALONG = 19, 25
-"""Up to so many rows a branch also shows where they are: a line through one row would be invisible."""
+FEW = 25
+"""Up to so many points a leg shows where they are: a line through one point would be invisible."""
 SHOWN_SHARE = 0.01
 """Pressure over the largest one that a figure still shows."""
 VIEW = 2.0
@@ -93,8 +93,8 @@ def force_displacement_figure(
     named: set[str] = set()
     for branch, rows in legs:
         colour, width = (LOADING, 3.2) if branch == "loading" else (UNLOADING, 1.4)
-        few = FEW_ROWS if theory is None else 0
-        _line(axis, displacement[rows], force[rows], few, color=colour, linewidth=width, label=_once(branch, named))
+        look = {"color": colour, "linewidth": width, "label": _once(branch, named)}
+        _line(axis, displacement[rows], force[rows], theory is None, **look)
     if theory is not None:
         name, d, f = theory
         shown = (d >= displacement.min()) & (f <= force.max() + 0.05 * np.ptp(force))
@@ -237,8 +237,7 @@ def tangential_figure(columns: Columns, legs: Legs, theory: Array | None = None)
     named: set[str] = set()
     for branch, rows in legs:
         colour = LOADING if branch == "forward" else TENSION
-        few = FEW_ALONG if theory is None else 0
-        _line(axis, u[rows], force[rows], few, color=colour, linewidth=2.6, label=_once(branch, named))
+        _line(axis, u[rows], force[rows], theory is None, color=colour, linewidth=2.6, label=_once(branch, named))
     if theory is not None:
         beside(axis, ("Cattaneo–Mindlin", *theory))
     describe(axis, y="tangential force (FU)")
@@ -280,7 +279,8 @@ def stick_slip_figure(states: Mapping[str, tuple[Profile, Array, float, float]],
             of the zone that sticks [LU], and the place of the body along x [LU].
         coefficient: μ.
     """
-    figure, axes = panels(len(states), 1.0 + 2.3 * len(states), sharex=False)
+    figure, axes = panels(len(states), 1.0 + 2.3 * len(states))
+    half = 0.0
     for axis, (name, (profile, sticking, radius, place)) in zip(axes, states.items(), strict=True):
         x, touched = profile.x, profile.pressure > 0.0
         limit = coefficient * np.maximum(profile.pressure, 0.0)
@@ -293,10 +293,9 @@ def stick_slip_figure(states: Mapping[str, tuple[Profile, Array, float, float]],
         describe(axis, y="shear (FU/LU)", title=f"{_state(name)}, u = {place:.4g} LU{marked}")
         if marked:
             axis.axvspan(-radius, radius, color=STICKS, alpha=0.08, linewidth=0.0)
-        half = float(np.abs(x[touched] if touched.any() else x).max())
-        half = max(half, float(x[1] - x[0]))
-        axis.set_xlim(-BEYOND * half, BEYOND * half)
+        half = max(half, float(np.abs(x[touched] if touched.any() else x).max()), float(x[1] - x[0]))
         legend(axis, "upper right", 8)
+    axes[-1].set_xlim(-BEYOND * half, BEYOND * half)
     axes[-1].set_xlabel("x from the body's middle (LU)")
     return figure
 
@@ -312,10 +311,10 @@ def _once(name: str, named: set[str]) -> str | None:
     return name if first else None
 
 
-def _line(axis: Axes, x: Array, y: Array, few: int, **look: Any) -> None:
-    """A line; only points where there are few, and always beside a theory: lines between them would be no result."""
-    points = len(x) <= few or (not few and len(x) <= FEW_ALONG)
-    axis.plot(x, y, marker="o" if points else "", markersize=4, linestyle="-" if few or not points else "none", **look)
+def _line(axis: Axes, x: Array, y: Array, joined: bool, **look: Any) -> None:
+    """A line; where the points are few these are drawn, and joined only if no theory shows what is between them."""
+    few = len(x) <= FEW
+    axis.plot(x, y, linestyle="-" if joined or not few else "none", marker="o" if few else "", markersize=4, **look)
 
 
 def _points(axis: Axes, x: Array, y: Array, spread: Array, label: str, colour: str) -> None:
