@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,7 @@ BARQUINS = 4.0 ** (4.0 / 3.0) / 3.0
 """2.1165: makes the minimum of BARQUINS (ã² − √ã), at ã = 4^(−2/3) = 0.397, equal to −1: the 2D
 cylinder of M. Barquins, J. Adhesion 26 (1988) 1."""
 Theory = tuple[str, Array, Array]
+State = TypeVar("State")
 Legs = Sequence[tuple[str, NDArray[np.int64]]]
 """Of a path: the name of each leg's branch, and its rows of the curve."""
 STICKS, SLIPS = COMPRESSION, TENSION
@@ -60,10 +61,7 @@ BEYOND = 1.15
 
 def pressure_figure(profiles: Mapping[str, Profile], radii: Mapping[str, float]) -> Figure:
     """Pressure over x of each state that has any, one panel below the other, with ±a marked (the paper's Fig. 4)."""
-    largest = {name: float(np.abs(profile.pressure).max(initial=0.0)) for name, profile in profiles.items()}
-    apart = SEPARATION_SHARE * max(largest.values())
-    touching = {name: profile for name, profile in profiles.items() if largest[name] > apart}
-    profiles = touching or dict(list(profiles.items())[:1])
+    profiles = _touching(profiles, {name: profile.pressure for name, profile in profiles.items()})
     figure, axes = panels(len(profiles), 1.0 + 2.3 * len(profiles))
     half = max(_half_width(profile) for profile in profiles.values())
     for axis, (name, profile) in zip(axes, profiles.items(), strict=True):
@@ -82,6 +80,13 @@ def pressure_figure(profiles: Mapping[str, Profile], radii: Mapping[str, float])
     axes[0].set_xlim(-half, half)
     axes[-1].set_xlabel("x (LU)")
     return figure
+
+
+def _touching(states: Mapping[str, State], pressures: Mapping[str, Array]) -> dict[str, State]:
+    """The states with a pressure that is more than round-off, or a trace of the others'; of none the first."""
+    largest = {name: float(np.abs(p[np.isfinite(p)]).max(initial=0.0)) for name, p in pressures.items()}
+    least = SEPARATION_SHARE * max(largest.values())
+    return {name: state for name, state in states.items() if largest[name] > least} or dict([*states.items()][:1])
 
 
 def force_displacement_figure(
@@ -202,6 +207,7 @@ def body_pressure_figure(
         pressures: r [LU], p and its uncertainty [FU/LU²], and the contact radius [LU] by state.
         theories: by state.
     """
+    pressures = _touching(pressures, {name: p for name, (_, p, *_) in pressures.items()})
     figure, axes = panels(len(pressures), 1.2 + 2.6 * len(pressures))
     for axis, (name, (r, p, spread, edge)) in zip(axes, pressures.items(), strict=True):
         shown = np.isfinite(p)

@@ -56,8 +56,10 @@ WITH_PREFIX = (*(own.si for own in SI.values() if own.si not in ("kg", "1")), "J
 """Units of SI that take a prefix."""
 EXACT = 1e-12
 """By which the logarithm of a power of ten may fall short of it."""
-PREFIXES = {-6: "a", -5: "f", -4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G", 4: "T"}
-"""Of SI units, by powers of 1000."""
+PREFIXES = "yzafpnµm kMGT"
+"""Of SI units, by powers of 1000 from the first on."""
+FIRST = -8
+"""The power of the first prefix."""
 IN_WORDS = re.compile(
     r"([-−]?\d[\d.]*(?:e[+-]?\d+)?) (\()?([LFM]U(?:[·/][LFMT]U²?)*|TU)(?(2)\))|\(([LFM]U(?:[·/][LFMT]U²?)*|TU)\)"
 )
@@ -74,8 +76,8 @@ def scale_of(value: float, unit: str) -> tuple[float, str]:
     Of a compound unit (N/m) the first has the prefix, as in mN/m.
     """
     power = math.floor(math.log10(abs(value)) / 3.0 + EXACT) if value and math.isfinite(value) else 0
-    power = power if power in PREFIXES and unit in WITH_PREFIX else 0
-    return 1000.0**-power, PREFIXES[power] + unit
+    power = power if 0 <= power - FIRST < len(PREFIXES) and unit in WITH_PREFIX else 0
+    return 1000.0**-power, PREFIXES[power - FIRST].strip() + unit
 
 
 def prefixed(value: float, unit: str) -> str:

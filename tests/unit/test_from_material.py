@@ -116,7 +116,7 @@ def test_steel_on_glass_has_thirty_particles_in_hertzs_radius() -> None:
     scene = choice.scene
     assert scene.material is not None
     assert (scene.material.length_unit, scene.material.force_unit) == (1.0, 1.0)
-    assert scene.bodies.spacing == pytest.approx(choice.contact_radius / 30.0, rel=ROUND_OFF)
+    assert scene.bodies.spacing == pytest.approx(choice.contact_radius / 30.0, rel=GRID)
     assert scene.bodies.profile.curvature_radius == pytest.approx(0.01, rel=ROUND_OFF)
     assert (scene.bodies.reduction, scene.bodies.lower, scene.effects) == ("mdr", "rigid_plane", ())
     assert scene.experiment.kind == "load"

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 from contact1d.workflow.engine.progress import Progress
-from contact1d.workflow.experiments.spacing import fine_enough
+from contact1d.workflow.experiments.spacing import with_spacing
 from contact1d.workflow.identify.contact import AnyContact, AskedContact, read_contact
 from contact1d.workflow.identify.interaction import IdentifyError, Target, identify, jkr_target, material_scene
 from contact1d.workflow.identify.theories import (
@@ -77,24 +76,15 @@ def chosen(contact: AskedContact) -> Choice:
         return _particles(contact, theories, doubts)
     radius = contact_radius(contact)
     require_size(contact, radius)
-    return Choice(contact, fine_enough(partial(_on_plane, contact, radius)), theories, None, doubts, radius)
-
-
-def _on_plane(contact: AskedContact, radius: float, count: int) -> Scene:
-    """The contact's scene with so many particles in the contact radius [m]: a whole number, as a punch needs.
-
-    A pull-off where something holds, else the load.
-    """
     experiment: dict[str, Any] = {"kind": "load", "force": contact.load}
     if contact.work_of_adhesion:
         experiment = {"kind": "pull_off", "preload": contact.load or PRELOAD_SHARE * largest_tension(contact)}
-    return on_plane(contact, experiment, radius / count)
+    return Choice(contact, with_spacing(on_plane(contact, experiment)), theories, None, doubts, radius)
 
 
-def on_plane(contact: AskedContact, experiment: Any, spacing: float | str = "auto", **tables: Any) -> Scene:
+def on_plane(contact: AskedContact, experiment: Any, **tables: Any) -> Scene:
     """The contact's scene with an experiment and further tables, on a rigid plane. Raises SceneError."""
     data: dict[str, Any] = plain_data(contact.scene)
-    data["bodies"]["spacing"] = spacing
     if contact.is_rigid:
         data["material"] = {"contact_modulus": contact.contact_modulus, "length_unit": 1.0, "force_unit": 1.0}
     data.pop("adhesion", None)

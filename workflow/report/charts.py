@@ -80,7 +80,7 @@ def _chart(
     layout: Chart = {
         **{f"{key}axis": {"title": {"text": symbols(name.replace("$", ""))}, "type": kind, **axis}
            for key, name, kind in zip("xy", names, types, strict=True)},
-        "template": "none", "margin": {"l": 70, "r": 15, "t": 30, "b": 55}, "hovermode": "closest",
+        "template": "none", "margin": {"l": 70, "r": 15, "t": 30, "b": 65}, "hovermode": "closest",
         "legend": {"orientation": "h", "x": 0, "y": 1.02, "yanchor": "bottom"},
     }  # fmt: skip
     for key, values in zip("xy", ends, strict=False):

@@ -32,6 +32,7 @@ from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.runs.report import FILES, in_units, quantities_in, read_results
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
+from contact1d.workflow.scene.tables import SPHERES
 from contact1d.workflow.units import FORCE, LENGTH, MASS, UNKNOWN, Quantity, Scales
 
 if TYPE_CHECKING:
@@ -317,7 +318,7 @@ def _drawings(run: Run) -> Drawings:
     adhesion = (tension.value, tension.uncertainty) if tension and tension.value else None
     legs = legs_of(run, curve.displacement)
     found: Drawings = {"force_displacement": partial(figures.force_displacement_figure, curve, legs, adhesion, over_d)}
-    if _adheres_over_a_width(values):
+    if _adheres_over_a_width(values) and scene.bodies.profile.kind in SPHERES:
         marks = values["adhesion_force"], values["zero_load_radius"]
         found["force_radius"] = partial(figures.force_radius_figure, curve, *marks)
     elif np.unique(curve.contact_radius[curve.contact_radius > 0.0]).size > 1:
