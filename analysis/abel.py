@@ -164,7 +164,7 @@ def line_load(
     inside = right <= end - (NEAR if ends_at_zero else WHOLE) * spacing
     right, mean = right[inside], mean[inside]
     if right.size < FEWEST:
-        raise ValueError(f"a pressure needs {FEWEST} places on each side of the axis, got {right.size}")
+        raise ValueError(f"a pressure needs {FEWEST} positions on each side of the axis, got {right.size}")
     if body is not None:
         mean = mean + body(right)
     elif ends_at_zero:
@@ -184,10 +184,10 @@ def of_both_sides(x: ArrayLike, load: ArrayLike) -> tuple[Array, Array, float]:
     """Places from the axis on, the mean load of both sides there, and the spacing; ValueError as of `line_load`."""
     places, values = np.asarray(x, dtype=np.float64), np.asarray(load, dtype=np.float64)
     if places.shape != values.shape or places.ndim != 1:
-        raise ValueError(f"places and loads must be 1-D and equally long, got {places.shape} and {values.shape}")
+        raise ValueError(f"positions and loads must be 1-D and equally long, got {places.shape} and {values.shape}")
     spacing = spacing_of(places)
     if not np.allclose(places, -places[::-1], rtol=0.0, atol=SAME * spacing):
-        raise ValueError("the places must be the same on both sides of 0")
+        raise ValueError("the positions must be the same on both sides of 0")
     half = places.size // 2
     return places[half:], 0.5 * (values + values[::-1])[half:], spacing
 

@@ -132,7 +132,7 @@ def shear_load(
     count = int(np.searchsorted(right, edge - near))
     right, mean = right[:count], mean[:count]
     if count < FEWEST:
-        raise ValueError(f"a shear needs {FEWEST} places on each side of the axis, got {count}")
+        raise ValueError(f"a shear traction needs {FEWEST} positions on each side of the axis, got {count}")
     borders = [(count, count, edge, 0.0)]  # first place that is not within, first one beyond, where, the height there
     for kink in sorted(kinks, reverse=True):
         within, beyond = (int(i) for i in np.searchsorted(right, [kink - near, kink + near]))

@@ -91,7 +91,7 @@ class DoubleExponential:
             ValueError: for a law without attraction, which is force-free nowhere.
         """
         if self.attraction is None:
-            raise ValueError("a law without attraction has no force-free distance")
+            raise ValueError("an interaction without attraction has no force-free distance")
         ratio = float(self.repulsion.force(0.0) / self.attraction.force(0.0))
         return math.log(ratio) / (1.0 / self.repulsion.range - 1.0 / self.attraction.range)
 

@@ -120,7 +120,7 @@ class TensionError(UntrustedError):
         """The force [FU] that was asked for, and what is held; they are the arguments for pickling."""
         suggested = float(f"{-self.HELD_SHARE * most:.3g}")
         super().__init__(
-            f"{force:.4g} FU is never reached: the largest tension is about {most:.4g} FU",
+            f"{force:.4g} FU is never reached: the pull-off force is about {most:.4g} FU",
             changes=[SceneEdit({"experiment.force": suggested})],
         )
         self.args = (force, most)

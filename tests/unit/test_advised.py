@@ -26,7 +26,7 @@ class Trials(Silent):
     count = 0
 
     def note(self, text: str) -> None:
-        self.count += text.startswith("trying what helps")
+        self.count += text.startswith("trying a suggested fix")
 
 
 def changed(scene: Scene, message: str) -> Scene:

@@ -62,7 +62,7 @@ def test_error_names_the_nearest_values_and_these_are_accepted() -> None:
     with pytest.raises(IdentifyError) as caught:
         require_reachable(scene, wanted)
     found = re.search(
-        r"an adhesion force of 12 FU with a zero-load radius of 20 LU is more than springs of this stiffness hold.*"
+        r"an adhesion force of 12 FU with a zero-load radius of 20 LU is not possible with springs of this stiffness.*"
         r"the same force with a radius of at least ([\d.e+-]+) LU, "
         r"or the same radius with a force of at most ([\d.e+-]+) FU",
         str(caught.value),

@@ -90,7 +90,7 @@ UNREADABLE = {
     "nan": ("0,0\n0.5,nan\n1,1\n", "line 2: z is nan"),
     "infinity": ("0,0\n0.5, -inf\n1,1\n", "line 2: z is -inf"),
     "text": ("r,z\n0,0\n0.5,hunter2\n1,1\n", "line 3: z is no number"),
-    "text behind names": ("r,z\nµm,N\n0,0\n1,1\n", "line 1: the unit in the names is no length"),
+    "text behind names": ("r,z\nµm,N\n0,0\n1,1\n", "line 1: the unit in the names is not a known length"),
     "line counted with comments": ("# one\n\n0,0\n# four\nx,1\n", "line 5: r is no number"),
     "one column": ("0\n0.5\n1\n", "line 1: has one column; r and z are needed"),
     "names of another table": ("a:hunter2,b,c\n0,0,0\n", "line 1: the names of its 3 columns are not known"),

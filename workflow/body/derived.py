@@ -47,11 +47,11 @@ EFFECTIVE = {"mdr": 1.0, "geike_popov": 0.5}
 TAIL, POINTS = 1e-10, 8000
 """Force at the last distance over that at the force-free one, and how many distances."""
 FORMULAS = {
-    "mdr": "W = w/(π s a), a the contact radius: where it shrinks by da, two lengths da of chain and the ring 2πa da "
-    "of the body's surface part (mdr). Uncertain by what F_A = (3/2)πWR has instead",
+    "mdr": "W = w/(π s a), a the contact radius: as it shrinks by da, two lengths da of chain and the ring 2πa da "
+    "of the body's surface separate (mdr). The uncertainty is the difference from F_A = (3/2)πWR",
     "geike_popov": "W = 4w/(π s a), a the image's half-width, twice the contact radius of the two equal spheres that "
-    "geike_popov stands for: where it shrinks by da, two lengths da of chain and the ring (π/2)a da of their surface "
-    "part. Uncertain by what F_A = (3/4)πWR has instead",
+    "geike_popov represents: as it shrinks by da, two lengths da of chain and the ring (π/2)a da of their surface "
+    "separate. The uncertainty is the difference from F_A = (3/4)πWR",
 }
 """How W is made, by reduction."""
 
@@ -101,8 +101,8 @@ def implied(scene: Scene, settings: Settings, found: Mapping[str, Quantity]) -> 
 def formulas(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, dict[str, str]]:
     """For results.json, `formulas`: in words, how a number was made that has more than one reading."""
     made = {
-        "separation_energy": "w/s: w = ∫ −f dr parts one particle from the opposite row, s is the spacing; energy per "
-        "length of chain",
+        "separation_energy": "w/s: w = ∫ −f dr separates one particle from the opposite chain, s the spacing; energy "
+        "per length of chain",
         "work_of_adhesion": FORMULAS[scene.bodies.reduction],
     }
     said = {name: text for name, text in made.items() if name in quantities}

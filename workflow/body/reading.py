@@ -67,7 +67,7 @@ def doubt_of_the_image(scene: Scene) -> dict[str, str]:
             "wide as their contact. "
         )
     else:
-        whose = f"it was derived for two equal spheres, and a {kind.replace('_', ' ')} as drawn stands for no body. "
+        whose = f"it was derived for two equal spheres, and a {kind.replace('_', ' ')} as given represents no body. "
     return {"reduction": f"geike_popov was chosen: {whose}For one body on a plane use mdr{one_body}"}
 
 

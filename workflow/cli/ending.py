@@ -111,7 +111,7 @@ def command(what: str, folder: Path | None = None, kept: str = "", quiet: bool =
         if sentence := _of_the_call(error, str(folder or "")):
             stop(sentence, CALL_IS_WRONG)
         if isinstance(error, ImportError) and not (error.name or "").startswith("contact1d"):
-            stop(f"this installation is not whole ({error}): `contact1d doctor` says what to do", FAILS)
+            stop(f"the installation is incomplete ({error}): check it with `contact1d doctor`", FAILS)
         if sentence := _of_the_run(error):
             stop(f"{what} failed: {sentence}", RUN_FAILED)
         if reason := _of_the_machine(error):
@@ -152,5 +152,5 @@ def _of_the_machine(error: BaseException) -> str:
         reason = FULL_DISK.get(error.errno or 0, error.strerror or str(error))
         return f"{reason} ({os.fsdecode(error.filename)})" if error.filename else reason
     if isinstance(error, BrokenProcessPool):
-        return "a process of it was killed, most often because the machine was out of memory"
+        return "one of its processes was killed, most often because the machine was out of memory"
     return "the machine is out of memory" if isinstance(error, MemoryError) else ""

@@ -66,11 +66,11 @@ def _whose(results: Mapping[str, Any]) -> str:
     """The reduction, and whose the radii and pressures are."""
     reduction = str(results["reduction"])
     if results.get("scene", {}).get("bodies", {}).get("profile", {}).get("kind") == "flat":
-        return f"{reduction}: a flat body is the same in each"
+        return f"{reduction}: the same for a flat body"
     if reduction == "mdr":
         return "mdr: radii and pressures are those of the body"
     if any(name.startswith("image_") for name in results):
-        return f"{reduction}: two equal spheres; what is called image is the plane model's"
+        return f"{reduction}: two equal spheres; image_… is of the one-dimensional image"
     return f"{reduction}: the plane model of the paper; radii are those of its image"
 
 
@@ -124,7 +124,7 @@ def _axes(load: float, half: float, units: Mapping[str, Any] | None) -> tuple[fl
 
 THEORY = {"adhesion_force": "N", "zero_load_radius": "m", "critical_radius": "m", "loaded_radius": "m"}
 """What the theories say, and its unit."""
-LABELS = {**NAMES, "loaded_radius": "radius under the load"}
+LABELS = {**NAMES, "loaded_radius": "radius under load"}
 WIDTH = 18
 
 
@@ -157,7 +157,7 @@ def beside_theories(found: MaterialRun) -> Iterator[str]:
         return
     yield ""
     columns = {name: f"{name}*" if name == theories.holding else name for name in theories.values}
-    yield f"  {'':<28} {'this run':<26}" + "".join(f"{shown:<{WIDTH}}" for shown in columns.values()) + "beside JKR"
+    yield f"  {'':<28} {'this run':<26}" + "".join(f"{shown:<{WIDTH}}" for shown in columns.values()) + "against JKR"
     for name, unit in THEORY.items():
         values = {theory: theories.values[theory].get(name) for theory in columns}
         if None in values.values():
@@ -168,7 +168,7 @@ def beside_theories(found: MaterialRun) -> Iterator[str]:
         said = "—" if own is None else in_si(own)
         shown = "".join(f"{prefixed(value, unit) if value else '0':<{WIDTH}}" for value in values.values())
         yield f"  {LABELS[name]:<28} {said:<26}{shown}{deviation}"
-    yield "  * holds at this μ"
+    yield "  * valid at this μ"
 
 
 def _own(found: MaterialRun, name: str) -> Mapping[str, Any] | None:

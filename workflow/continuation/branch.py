@@ -57,8 +57,8 @@ READ_SHARE = 0.5
 """Part of a radius's uncertainty below which it is looked at no closer: reading between particles limits it."""
 
 JUMPS = (
-    'the force jumps there, as particles snap or slip. Use kind = "path" to see it, or stiffer springs or a longer '
-    "range, with which particles do not snap"
+    'the force jumps there by an instability (snap-in, snap-out or slip). Use kind = "path" to see it, or stiffer '
+    "springs or a longer range, which avoid the instability"
 )
 
 
@@ -136,9 +136,9 @@ class Branch(ContactBranch):
             before = before or next((s for s in states[::-1] if direction * (s.carried - force) <= 0), None)
             if before is None:
                 raise UntrustedError(
-                    f"{force:.4g} FU cannot be approached: the force starts at {last.carried:.4g} FU, "
-                    f"{'below' if falls else 'above'} it already. Take a force beyond that, or "
-                    'kind = "path" to see the curve'
+                    f"{force:.4g} FU cannot be reached: the force starts at {last.carried:.4g} FU, already "
+                    f"{'below' if falls else 'above'} it. Give a force beyond that, or use "
+                    'kind = "path" for the full curve'
                 )
             self._require_within_reach(force, falls, before, beyond)
             step = self.settings.increment(math.inf if falls else last.smallest_distance)
@@ -155,9 +155,9 @@ class Branch(ContactBranch):
         if beyond is not None and abs(beyond.displacement - before.displacement) < SAME * self.scene.bodies.spacing:
             raise UntrustedError(
                 f"the force jumps past {force:.4g} FU at displacement {before.displacement:.6g} LU, from "
-                f"{before.carried:.4g} to {beyond.carried:.4g} FU: particles snap or slip there, and no state on this "
-                'way has the force. Take a force outside of the jump, kind = "path" to see all of it, or stiffer '
-                "springs or a longer range, with which particles do not snap"
+                f"{before.carried:.4g} to {beyond.carried:.4g} FU: an instability, and no state on this path has this "
+                'force. Give a force outside the jump, use kind = "path" for the full curve, or stiffer '
+                "springs or a longer range, which avoid the instability"
             )
         if falls and states[-1].smallest_distance > self.settings.cutoff:
             raise TensionError(force, max(-state.force for state in states))
@@ -165,7 +165,7 @@ class Branch(ContactBranch):
             raise UntrustedError(
                 f"{force:.4g} FU is not reached within {MOST_INCREMENTS} increments, at displacement "
                 f"{states[-1].displacement:.4g} LU and {states[-1].carried:.4g} FU: the ranges of the interaction are "
-                "short beside the way. Take a force that is nearer to 0, longer ranges or stiffer springs"
+                "short compared with the path. Use a force nearer to 0, longer ranges or stiffer springs"
             )
 
     # --- the largest tension
@@ -201,7 +201,7 @@ class Branch(ContactBranch):
             surprise = self._halve((found.position + beside, found.position - beside))
             expected = self.peak
             changed = max(surprise, abs(expected.smooth - found.smooth))
-        raise UntrustedError(f"the largest tension is not found near {expected.position:.6g} LU: {JUMPS}")
+        raise UntrustedError(f"no force maximum is found near {expected.position:.6g} LU: {JUMPS}")
 
     def open(self) -> None:
         """Pull the bodies apart.
@@ -216,8 +216,8 @@ class Branch(ContactBranch):
         after = self.peak
         if abs(after.smooth - before.smooth) > self.tolerance * after.smooth:
             raise SecondMaximumError(
-                f"the tension rises again to {after.tension:.6g} FU after its largest maximum was {before.smooth:.6g} "
-                'FU: use kind = "path" through all of it'
+                f"the tensile force rises again to {after.tension:.6g} FU after its maximum of {before.smooth:.6g} "
+                'FU: use kind = "path" over the full range'
             )
 
     def _pass_maximum(self) -> float:
@@ -235,7 +235,7 @@ class Branch(ContactBranch):
             rows.append(self._at(zero.displacement - len(rows) * step))
             self.falling.append(rows[-1])
             if len(rows) > MOST_INCREMENTS:
-                raise UntrustedError("the largest tension is never passed")
+                raise UntrustedError("the search does not pass the force maximum")
         return step
 
     def _halve(self, positions: tuple[float, float]) -> float:

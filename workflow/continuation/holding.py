@@ -156,12 +156,14 @@ def hold(
             row = replace(row, parted=_apart(settings))
         if state.displacement > row.through:
             require_trust(contact.scene, settings, state)
-            raise ThroughError(f"under {load:.4g} FU the plate went on to {state.displacement:.4g} LU")
+            raise ThroughError(
+                f"the bodies went through each other under {load:.4g} FU, at {state.displacement:.4g} LU"
+            )
         row = replace(row, start=int(Start.HERE), rest=row.rest * (CALMING_FACTOR if calm else 1.0))
     raise RestlessError(
-        f"the contact did not come to rest under {load:.4g} FU within {MOST_HOLDS * row.steps} timesteps "
-        f"(phase {state.phase}): {unbalance:.2g} FU are unbalanced",
-        "more [damping] or [plate] damping settles it sooner",
+        f"the contact did not reach equilibrium under {load:.4g} FU within {MOST_HOLDS * row.steps} timesteps "
+        f"(phase {state.phase}): the residual force is {unbalance:.2g} FU",
+        "use more [damping] or [plate] damping",
     )
 
 

@@ -150,7 +150,7 @@ class LoadBranch(ContactBranch):
             close = gentle >= held.load - LEAST_STEP * self.scale
             self._take(hold(self.contact, force if close else max(force, gentle), scale), self.falling)
         if not self._last.held:
-            raise UntrustedError(f"the contact cannot hold {self._last.load:.4g} FU: the bodies part")
+            raise UntrustedError(f"the contact does not sustain {self._last.load:.4g} FU: the bodies separate")
 
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
         """Hold a force [FU] for a time [TU]; a tension from F = 0 on."""
@@ -199,14 +199,14 @@ class LoadBranch(ContactBranch):
                 break
         else:
             raise UntrustedError(
-                f"the pull-off force was not bracketed within {MOST_LEVELS} tensions: it is above {search.best:.6g} FU"
+                f"the pull-off force was not bracketed within {MOST_LEVELS} loads: it is above {search.best:.6g} FU"
             )
         self.contact.begin("critical")
         critical = hold(self.contact, -search.best, search.guess, Start.BACK)
         if not critical.held:
             raise UntrustedError(
-                f"the contact held {search.best:.6g} FU once and not again: a plate that still swings decides there. "
-                'Leave [damping] coefficient and [plate] damping "auto" or give more of them, or take method = '
+                f"the contact sustained {search.best:.6g} FU in one trial and not in the next: the plate oscillates. "
+                'Use "auto" or larger values for [damping] coefficient and [plate] damping, or method = '
                 '"quasistatic"'
             )
         self.falling[-1] = critical.last

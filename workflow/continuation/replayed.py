@@ -71,9 +71,9 @@ class ReplayedBranch(Branch):
                 self._finished = True
                 return
         raise UntrustedError(
-            f"the pull-off force still changes from {before.tension:.6g} to {self.peak.tension:.6g} FU after "
-            f"{MOST_REPLAYS} refinements of the path, by more than a tolerance of {self.settings.tolerance:g} allows: "
-            "take a larger [accuracy] tolerance, or stiffer springs or a longer range, with which particles do not snap"
+            f"the pull-off force has not converged: {before.tension:.6g} and {self.peak.tension:.6g} FU after "
+            f"{MOST_REPLAYS} refinements differ by more than a tolerance of {self.settings.tolerance:g} allows. "
+            "Use a larger [accuracy] tolerance, or stiffer springs or a longer range, which avoid the instability"
         )
 
     def _replay(self, window: float, first: bool) -> None:
@@ -102,7 +102,7 @@ class ReplayedBranch(Branch):
         phases = [Phase("loading", displacements(loading))]
         phases += [Phase(name, displacements(rows), state=name != "separating") for name, rows in parts.items()]
         self._open.close()
-        purpose = "the whole path again, finer at the largest tension"
+        purpose = "repeating the path with smaller steps at the force maximum"
         self.contact = self._open.enter_context(self.context.contact(purpose))
         states = self.contact.replay(phases)
         self.loading, self.falling = states[: len(loading)], states[len(loading) :]

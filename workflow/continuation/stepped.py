@@ -68,9 +68,9 @@ class SteppedBranch(Branch):
         digits = self._last.residual * self.settings.particles
         if self.peak.smooth <= digits:
             raise DigitsError(
-                f"the largest tension, about {self.scale:.2g} FU, is nothing beside {digits:.2g} FU, which "
-                "the last digits of positions make of the contact's force",
-                "take a larger adhesion.work_of_adhesion, or a smaller preload",
+                f"the force maximum, about {self.scale:.2g} FU, is too small compared with {digits:.2g} FU, the "
+                "round-off error of the contact force",
+                "use a larger adhesion.work_of_adhesion, or a smaller preload",
             )
 
     def open(self) -> None:

@@ -178,7 +178,7 @@ def _tolerance(scene: Scene) -> Knob:
 
 def _cutoff(scene: Scene, own: Settings) -> Knob | str:
     if (law := own.law) is None or law.attraction is None:
-        physics = "without attraction displacements count from the cutoff, so it is physics"
+        physics = "without attraction displacements are measured from the cutoff"
         return "" if scene.interaction is None else physics
     cutoffs = (own.cutoff, *map(law.cutoff_for, CUTOFF_SHARES))
     free, reach = law.force_free_distance(), law.longest_range
@@ -193,7 +193,7 @@ def _rounded(value: float) -> float:
 
 def _chain(scene: Scene, own: Settings) -> Knob | str:
     if scene.bodies.profile.has_edge:
-        return "a flat punch is as long as it is wide"
+        return "its chain is as long as the flat punch is wide"
     automatic = settings_for(changed(scene, at_tolerance(scene, scene.accuracy.tolerance))).particles
     counts = (max(4, 2 * round(0.5 * factor * automatic)) for factor in CHAIN_FACTORS)
     # The tail of the pressure falls exponentially where a cutoff ends it, algebraically where springs carry it on.
@@ -217,9 +217,9 @@ def _increment(scene: Scene) -> Knob | str:
 
 def _method(scene: Scene) -> Knob | str:
     if scene.experiment.goes_along:
-        return "a row is one step, exact as it is"
+        return "a load step is one timestep, exact to round-off"
     if is_sampled(scene):
-        return "what is asked for exists in time only"
+        return "the experiment exists in time only"
     other = "dynamic" if scene.method == "quasistatic" else "quasistatic"
     keys = with_method(scene, other)
     others = (Level(math.nan, f"{other}, tolerance {t:g}", at_tolerance(scene, t) + keys) for t in OTHER_METHOD[other])
@@ -229,11 +229,11 @@ def _method(scene: Scene) -> Knob | str:
 
 def _spacing(scene: Scene) -> Knob | str:
     if scene.bodies.profile.has_edge:
-        return "a flat punch is as wide as its particles make it"
+        return "the particles define the width of a flat punch"
     if scene.noise is not None:
         return "thermal motion of a particle belongs to its spacing"
     if scene.interaction is not None:
-        return "the force of a row of opposite particles belongs to its spacing: no amplitudes keep it at another one"
+        return "the force of a chain of opposite particles depends on its spacing, whatever the amplitudes"
     values = (factor * scene.bodies.spacing for factor in SPACING_FACTORS)
     return _knob(
         scene, "bodies.spacing", values, unit=" LU", keys=lambda value: _at_spacing(scene, value), own_reference=True

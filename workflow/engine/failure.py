@@ -10,10 +10,10 @@ from pathlib import Path
 
 from contact1d.workflow.errors import Contact1dError
 
-TOO_WIDE = "the bodies reach much further than their forces"
-TOO_LONG = "a run is longer than can be counted"
+TOO_WIDE = "the bodies are much longer than the range of their forces"
+TOO_LONG = "a run has too many timesteps to count"
 NO_MEMORY = "there is not enough memory"
-NOT_FINITE = "a place or a force is no finite number any more"
+NOT_FINITE = "a position or a force is no longer finite"
 MEANINGS = {
     r"Too many neighbor bins|Domain too large for neighbor bins|Cannot use neighbor bins": TOO_WIDE,
     r"(Illegal|Invalid) run command|Too many (timesteps|iterations)": TOO_LONG,

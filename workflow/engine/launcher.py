@@ -94,6 +94,6 @@ def cause_among_ranks(ranks: int, words: str) -> str:
     if "EXIT CODE: 9" in words or "Killed" in words:
         return (
             f"one of its {ranks} ranks was killed (SIGKILL), most often because the machine was out of memory, and the "
-            "others were ended"
+            "others were stopped"
         )
     return ""

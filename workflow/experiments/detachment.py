@@ -199,24 +199,24 @@ def _pull(context: RunContext, stop: threading.Event) -> Detachment:
         require_trust(scene, settings, states[-1])
         if min(one.displacement for one in states) < settings.estimate.parted(GONE):
             raise UntrustedError(
-                "heat alone parts the bodies, before the pull begins: take a lower noise.temperature, or a stronger "
-                "interaction.attraction"
+                "thermal fluctuations separate the bodies before the load decreases: use a lower noise.temperature, "
+                "or a stronger interaction.attraction"
             )
         contact.begin("pulling", expected_steps=ramp.most * ramp.steps)
         settled = len(states)
         at_once = min(BATCH, max(1, WAITING_STEPS // ramp.steps))
         for first in range(1, ramp.most + 1, at_once):
             if stop.is_set():
-                raise UntrustedError("another pull failed")
+                raise UntrustedError("another repeat failed")
             numbers = range(first, min(first + at_once, ramp.most + 1))
             states += contact.rows([ramp.row(n) for n in numbers], trusted=False)
             if _has_parted(scene, settings, ramp, numbers[-1], states[-1]):
                 break
         else:
             raise UntrustedError(
-                f"the bodies did not part up to a tension of {ramp.tension(ramp.most, barrier):.4g} FU, more than "
-                f"{MOST_TENSION:g} times what holds them by the estimate: they were pulled faster than they move. Take "
-                f"a smaller experiment.{'velocity' if ramp.spring else 'loading_rate'}"
+                f"the bodies did not separate up to a tensile force of {ramp.tension(ramp.most, barrier):.4g} FU, more "
+                f"than {MOST_TENSION:g} times the predicted pull-off force: the load changes faster than they move. "
+                f"Use a smaller experiment.{'velocity' if ramp.spring else 'loading_rate'}"
             )
         contact.write_state()
         contact.finish()
@@ -298,9 +298,9 @@ def _lagging(scene: Scene, settings: Settings) -> dict[str, str]:
     given = scene.experiment.velocity or scene.experiment.loading_rate or 0.0
     return {
         "lagging": (
-            f"while the drag on the bodies lets them part, the load grows by {share:.2g} of what holds them: part of "
-            f"detachment_force is drag. Below an experiment.{key} of {given * LAGGING / share:.2g} {unit} it "
-            "is not"
+            f"viscous drag delays the separation, and the load meanwhile grows by {share:.2g} of the pull-off force: "
+            f"detachment_force contains drag. Use an experiment.{key} below {given * LAGGING / share:.2g} {unit} "
+            "to avoid it"
         )
     }
 

@@ -66,12 +66,10 @@ class Experiment(ABC):
     def advice(self, scene: Scene) -> str:
         """What makes the uncertainty of a result smaller."""
         if scene.method == "dynamic":
-            return 'What helps is method = "quasistatic"'
+            return 'Use method = "quasistatic"'
         if scene.interaction is None:
-            return f"What helps is {FINER_SPACING}"
-        return (
-            f'What helps is to leave interaction.cutoff and bodies.particles "auto"; for a radius {FINER_SPACING}, too'
-        )
+            return f"Use {FINER_SPACING}"
+        return f'Use "auto" for interaction.cutoff and bodies.particles; for a radius also {FINER_SPACING}'
 
     def branch(self, phase: str) -> str:
         """The branch of the curve that a phase belongs to."""
@@ -141,7 +139,7 @@ def in_smaller_steps(run: Callable[[RunContext], Outcome]) -> Callable[[RunConte
         try:
             return run(context)
         except SecondMaximumError:
-            context.progress.note("the tension rises again after its first maximum: once more, through all of it")
+            context.progress.note("the tensile force rises again after its first maximum: searching the full range")
             context.through = True
             return run(context)
 
@@ -155,7 +153,7 @@ def in_smaller_steps(run: Callable[[RunContext], Outcome]) -> Callable[[RunConte
                 raise
             latest = error
         for part in RETRY_SHARES:
-            context.progress.note(f"the bodies went through each other: again from the start in steps of {part:g}")
+            context.progress.note(f"the bodies went through each other: restarting with steps scaled by {part:g}")
             context.deck = Deck(deck.scene, deck.settings.in_smaller_steps(part))
             try:
                 return tried(context)

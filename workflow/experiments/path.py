@@ -92,7 +92,7 @@ class PathExperiment(Scripted):
 
     def advice(self, scene: Scene) -> str:
         """The rows are the scene's own."""
-        return f"What helps is more steps in experiment.displacements; for a radius {FINER_SPACING}, too"
+        return f"Use more steps in experiment.displacements; for a radius also {FINER_SPACING}"
 
     def _missing(self, results: Mapping[str, Result], scene: Scene, phases: Sequence[Phase]) -> dict[str, str]:
         """Warnings of results that the path does not reach."""
@@ -105,12 +105,12 @@ class PathExperiment(Scripted):
         warnings = {}
         if "adhesion_force" not in results:
             warnings["no_peak"] = (
-                "the largest tension lies at an end of the last unloading, so the path gives no adhesion_force: "
-                'go further back, or use kind = "pull_off"'
+                "the tensile force is largest at an end of the last unloading, so the path gives no adhesion_force: "
+                'extend the unloading, or use kind = "pull_off"'
             )
         if "zero_load_radius" not in results:
             warnings["no_zero_load"] = (
-                "the force does not pass 0 while the last unloading holds the contact, so there is no zero_load_radius"
+                "the force does not cross 0 before separation in the last unloading, so there is no zero_load_radius"
             )
         return warnings
 

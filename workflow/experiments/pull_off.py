@@ -98,7 +98,7 @@ class PullOffExperiment(Scripted):
 
     def advice(self, scene: Scene) -> str:
         """In time there is a reason of its own."""
-        since = ", since force control never sees the pull-off itself" if scene.method == "dynamic" else ""
+        since = ", since load control never reaches the pull-off itself" if scene.method == "dynamic" else ""
         return super().advice(scene) + since
 
 

@@ -43,7 +43,7 @@ STEADY = 0.1
 """Way of plate and drive after the run-in may differ by this share, or by one slip, where sliding counts as steady."""
 SETTINGS_SHARE = 0.3
 """Of the tolerance: what cutoff and timesteps leave open at most; against the integrator 0.05 was measured."""
-LONGER = "take a longer experiment.distance or a stiffer cantilever"
+LONGER = "use a longer experiment.distance or a stiffer cantilever"
 """What makes a steady slide of one that is none yet."""
 TEMPERATURE_BLOCKS = 20
 """Parts of the last leg whose spread gives the error of its temperature."""
@@ -106,7 +106,7 @@ class SlideExperiment(Experiment):
         assert isinstance(scene.experiment, Slide)
         way = "experiment.distance" if scene.experiment.path is None else "last leg of experiment.path that moves"
         return (
-            f"What helps is a longer {way}, of more whole periods of the spacing; not for static_friction, whose "
+            f"Use a longer {way}, with more whole periods of the spacing; this does not improve static_friction, whose "
             f"uncertainty is the change between two of {MOST_ROWS} points in a spacing"
         )
 
@@ -202,11 +202,11 @@ def is_steady(scene: Scene, settings: Settings, motion: Motion) -> str:
     if blocks.size < friction.DROPPED + friction.FEWEST_BLOCKS:
         periods = "1 whole period" if blocks.size == 1 else f"{blocks.size} whole periods"
         return (
-            f"no steady sliding yet: the drive's way of {motion.drive[-1]:.3g} LU has {periods} of "
+            f"no steady sliding yet: the drive distance of {motion.drive[-1]:.3g} LU has {periods} of "
             f"the spacing, and a mean needs {friction.DROPPED + friction.FEWEST_BLOCKS}"
         )
     if motion.place[-1] < spacing:
-        found = f"the plate moved by {motion.place[-1]:.3g} LU only, which is no sliding yet"
+        found = f"the plate moved by {motion.place[-1]:.3g} LU only, which is not yet sliding"
         return found + _swing(scene, settings, motion)
     start = motion.time[-1] - period * (blocks.size - friction.mean_of(blocks).first)
     while_ = motion.time[-1] - start
@@ -227,8 +227,8 @@ def _swing(scene: Scene, settings: Settings, motion: Motion) -> str:
     if swing < motion.time[-1]:
         return ""
     return (
-        f". On its cantilever the plate of {settings.plate_mass:.3g} MU swings once in {swing:.3g} TU, and the drive's "
-        f"way took {motion.time[-1]:.3g} TU: a lower cantilever.velocity or a lighter plate.mass gives it time, too"
+        f". The plate of {settings.plate_mass:.3g} MU on its cantilever has a period of {swing:.3g} TU, and the drive "
+        f"moved for {motion.time[-1]:.3g} TU: a lower cantilever.velocity or a lighter plate.mass helps, too"
     )
 
 
@@ -266,17 +266,17 @@ def _doubts(
     top = float(np.max(np.abs(motion.friction)))
     if drag * fastest > top:
         found["drag"] = (
-            f"the drag on what moves, {drag * fastest:.3g} FU at the drive's velocity, is more than the contact's own "
-            f"friction of up to {top:.3g} FU: it holds the plate to the drive's pace and keeps it from slipping. Take "
+            f"the viscous drag at the drive's velocity, {drag * fastest:.3g} FU, exceeds the friction of the contact, "
+            f"at most {top:.3g} FU, and suppresses slips of the plate. Use "
             "a lower cantilever.velocity, or less [damping] and [plate] damping"
         )
     energy = results["cantilever_work"].uncertainty
     largest = max(float(np.max(np.abs(values))) for values in (motion.work, motion.dissipated, motion.stored))
     if energy > CLOSED * largest:
         found["energy"] = (
-            f"{energy:.2g} FU·LU of the cantilever's work were neither dissipated nor stored, {energy / largest:.1g} "
-            "of the largest of the three: take an [accuracy] tolerance below "
-            f"{MOVING_TOLERANCE:g}, whose timesteps are shorter"
+            f"the residual of the energy balance is {energy:.2g} FU·LU, {energy / largest:.1g} "
+            "of its largest term: use an [accuracy] tolerance below "
+            f"{MOVING_TOLERANCE:g}, which shortens the timesteps"
         )
     return found
 
@@ -322,7 +322,7 @@ def loaded(contact: Contact, force: float) -> State:
     scale = abs(force) or settings.force_scale
     held = hold(contact, force, scale, settings=_calm(settings))
     if not held.held:
-        raise PartedError(f"the bodies do not hold a normal force of {force:.4g} FU: they part", "take a smaller pull")
+        raise PartedError(f"the contact does not sustain {force:.4g} FU: the bodies separate", "use a smaller tension")
     state = _settled_along(contact, force, scale, held.last)
     if settings.calm_damping == settings.damping:
         return state
@@ -346,9 +346,9 @@ def _settled_along(contact: Contact, force: float, scale: float, state: State) -
         state = contact.row(row)
     speed = state.motion["vcm(plate,x)"]
     raise RestlessError(
-        f"the plate did not come to rest along x under {force:.4g} FU within {MOST_HOLDS * row.steps} timesteps: it is "
-        f"left with {speed:.2g} LU/TU",
-        "more [damping] or a stiffer cantilever settles it sooner",
+        f"the plate did not come to rest along x under {force:.4g} FU within {MOST_HOLDS * row.steps} timesteps: it "
+        f"moves at {speed:.2g} LU/TU",
+        "use more [damping] or a stiffer cantilever",
     )
 
 
@@ -382,8 +382,8 @@ def _require_above(scene: Scene, settings: Settings, state: State) -> None:
     """
     if state.smallest_distance > settings.cutoff:
         raise PartedError(
-            f"the bodies parted on the way, with the plate at {state.plate_x:.4g} LU",
-            "take a larger normal_force, or less of a pull" + (", or a lower temperature" if scene.noise else ""),
+            f"the bodies separated while sliding, with the plate at {state.plate_x:.4g} LU",
+            "use a larger normal_force, or a smaller tensile one" + (", or a lower temperature" if scene.noise else ""),
         )
     if scene.bodies.periodic:
         return
@@ -392,7 +392,7 @@ def _require_above(scene: Scene, settings: Settings, state: State) -> None:
     half = contact_half_width(scene, settings)
     if place + half > end + scene.bodies.spacing:
         raise OffEndError(
-            f"the plate ran off the lower body: {place:.4g} LU from its middle it reaches {half:.4g} LU further, and "
-            f"that ends at {end:.4g} LU",
-            "take more bodies.particles, a shorter distance, or more [damping]",
+            f"the plate slid off the lower body: at {place:.4g} LU from the middle its half-width is {half:.4g} LU, "
+            f"and the lower body ends at {end:.4g} LU",
+            "use more bodies.particles, a shorter distance, or more [damping]",
         )

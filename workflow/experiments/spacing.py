@@ -53,10 +53,10 @@ def with_spacing(scene: Scene) -> Scene:
     chosen = fine_enough(partial(_spaced, scene, radius))
     left = left_by_lattice(chosen)
     if scene.accuracy.tolerance < left < math.inf:  # without bound the run says what appears
-        larger = "" if left > 0.9 * LARGEST else f"take an accuracy.tolerance of {_up(left)}, or "
+        larger = "" if left > 0.9 * LARGEST else f"use an accuracy.tolerance of {_up(left)}, or "
         raise SettingsError(
-            f"a tolerance of {scene.accuracy.tolerance:g} is not kept by {MOST} particles in the contact radius of "
-            f'{radius:.4g} LU, the most that bodies.spacing = "auto" takes: they leave {left:.1e}. '
+            f"a tolerance of {scene.accuracy.tolerance:g} is not reached by {MOST} particles in the contact radius of "
+            f'{radius:.4g} LU, the limit of bodies.spacing = "auto": their discretisation error is {left:.1e}. '
             f"{larger[:1].upper()}{larger[1:]}{'give' if larger else 'Give'} bodies.spacing"
         )
     return chosen
@@ -121,7 +121,7 @@ def _contact_radius(scene: Scene) -> float:
         if abs(size - before) <= SAME * size:
             return size
     raise SettingsError(
-        "nothing touches in this experiment, so that there is no contact to choose a spacing for: give bodies.spacing, "
+        "the bodies never touch in this experiment, so that no spacing can be chosen: give bodies.spacing, "
         "or a displacement above 0"
     )
 

@@ -136,10 +136,10 @@ def thermal_load(context: RunContext) -> Outcome:
     error = results["displacement"].uncertainty
     if error > goal:
         warnings["statistics"] = (
-            f"{MOST_SAMPLES} samples give the displacement within {error:.2g} LU only, not the {goal:.2g} LU asked for"
+            f"standard error of the displacement {error:.2g} LU after {MOST_SAMPLES} samples, above {goal:.2g} LU"
         )
     if "contact_radius" not in results:
-        warnings["no_radius"] = "the bodies do not touch over a width, so there is no contact radius"
+        warnings["no_radius"] = "the contact has no width, so there is no contact radius"
     states = (*settling, *samples)
     table = {SAMPLE_TABLE: sample_columns(states, [load] * len(states), settings)}
     return Outcome(results, states, {"final": mean_state(samples)}, phases, warnings, tables=table)
@@ -152,7 +152,7 @@ def _samples(contact: Contact, load: float, count: int) -> list[State]:
         state = contact.row(UnderLoad(load, chunk_steps(contact.settings)), trusted=False)
         if contact.settings.law is not None and state.smallest_distance > contact.settings.cutoff:
             raise UntrustedError(
-                "the bodies parted under the load and the noise: take a more compressive experiment.force or a lower "
+                "the bodies separated under the load and the noise: use a more compressive experiment.force or a lower "
                 "noise.temperature"
             )
         found.append(state)
@@ -166,7 +166,7 @@ def _load_results(context: RunContext, samples: list[State], load: float) -> dic
     mean_force, force_error = float(np.mean(forces)), standard_error(forces)
     if abs(mean_force - load) > BALANCE * force_error:
         raise UntrustedError(
-            f"not in equilibrium: the mean force {mean_force:.4g} FU misses the load {load:.4g} FU by "
+            f"not in equilibrium: the mean force {mean_force:.4g} FU differs from the load {load:.4g} FU by "
             f"{abs(mean_force - load) / force_error:.1f} standard errors"
         )
     found = {

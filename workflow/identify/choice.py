@@ -110,7 +110,7 @@ def _particles(contact: AskedContact, theories: Theories | None, doubts: dict[st
     if theories is None or contact.radius is None or contact.shape.kind != "parabola":
         raise IdentifyError(
             'model = "particles" is for an adhesive sphere, with a radius and a work_of_adhesion: leave it out, and a '
-            "chain on a rigid plane stands for the body"
+            "chain on a rigid plane represents the body"
         )
     wanted = jkr_target(contact.contact_modulus, 0.5 * contact.work_of_adhesion, contact.radius)
     tolerance = contact.scene.accuracy.tolerance
@@ -121,7 +121,7 @@ def _particles(contact: AskedContact, theories: Theories | None, doubts: dict[st
     if contact.load:
         changes["experiment.preload"] = contact.load / scene.material.force_unit
     image = (
-        "of two chains only F_A and a_0 are JKR's, since the interaction is searched for by them: displacement, "
+        "of two chains only F_A and a_0 are JKR's, since the interaction is fitted to these two: displacement, "
         'critical radius and work are those of the one-dimensional image. Without model = "particles" all of them are '
         "JKR's"
     )

@@ -85,8 +85,8 @@ def require_held(target: Target, layer: float, radius: float, units: tuple[str, 
     largest = REACHABLE_RATIO * layer * a_0**3 / radius / ROUNDING
     newton, metre = units
     raise IdentifyError(
-        f"an adhesion force of {force:.6g} {newton} with a zero-load radius of {a_0:.6g} {metre} is more than springs "
-        "of this stiffness hold, whatever the interaction. Nearest: the same force with a radius of at least "
+        f"an adhesion force of {force:.6g} {newton} with a zero-load radius of {a_0:.6g} {metre} is not possible with "
+        "springs of this stiffness. Nearest: the same force with a radius of at least "
         f"{smallest:.6g} {metre}, or the same radius with a force of at most {largest:.6g} {newton}"
     )
 
@@ -128,20 +128,20 @@ def material_scene(
     unit = target.zero_load_radius / RESOLUTION if length_unit is None else length_unit
     if unit > coarsest:
         raise IdentifyError(
-            f"a length unit of {unit:.4g} m leaves {target.zero_load_radius / unit:.2g} particles in the zero-load "
-            f"radius of {target.zero_load_radius:.4g} m: at most {coarsest:.4g} m leaves {FEWEST_IN_RADIUS:g}"
+            f"a length unit of {unit:.4g} m gives {target.zero_load_radius / unit:.2g} particles in the zero-load "
+            f"radius of {target.zero_load_radius:.4g} m: use at most {coarsest:.4g} m for {FEWEST_IN_RADIUS:g}"
         )
     if unit < target.zero_load_radius / MOST_IN_RADIUS:
         raise IdentifyError(
-            f"a length unit of {unit:.4g} m puts {target.zero_load_radius / unit:.2g} particles into the zero-load "
-            f"radius of {target.zero_load_radius:.4g} m: at least {target.zero_load_radius / MOST_IN_RADIUS:.4g} m "
-            f"leaves {MOST_IN_RADIUS:g}"
+            f"a length unit of {unit:.4g} m gives {target.zero_load_radius / unit:.2g} particles in the zero-load "
+            f"radius of {target.zero_load_radius:.4g} m: use at least {target.zero_load_radius / MOST_IN_RADIUS:.4g} m "
+            f"for {MOST_IN_RADIUS:g}"
         )
     if target.zero_load_radius > LARGEST_RADIUS_SHARE * radius:
         raise IdentifyError(
             f"the zero-load radius of {target.zero_load_radius:.4g} m is {target.zero_load_radius / radius:.2g} of the "
-            f"sphere's: JKR is for contacts small beside the sphere, here up to {LARGEST_RADIUS_SHARE:g} of it. A "
-            "larger radius, a larger contact modulus or a smaller surface energy has that"
+            f"sphere's: JKR is for a << R, here up to {LARGEST_RADIUS_SHARE:g}. Use a "
+            "larger radius, a larger contact modulus or a smaller surface energy"
         )
     force_unit = 2.0 * contact_modulus * unit**2
     wanted = Target(target.adhesion_force / force_unit, target.zero_load_radius / unit)
@@ -334,8 +334,8 @@ def identify(scene: Scene, target: Target, folder: Path, progress: Progress | No
         at = at - np.linalg.solve(slopes(scene, at), reached)
     assert found is not None
     raise IdentifyError(
-        f"the search did not come to its end in {MOST_RUNS} runs: adhesion force off by {found.deviations[0]:.1e}, "
-        f"zero-load radius by {found.deviations[1]:.1e}. A finer [accuracy] tolerance or more particles in a₀ may help"
+        f"the search did not converge in {MOST_RUNS} runs: deviation {found.deviations[0]:.1e} of the adhesion force, "
+        f"{found.deviations[1]:.1e} of a₀. Use a smaller [accuracy] tolerance or more particles in a₀"
     )
 
 

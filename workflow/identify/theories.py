@@ -104,25 +104,25 @@ def judged(contact: AskedContact, theories: Theories) -> dict[str, str]:
     if held["zero_load_radius"] < ATOM:
         raise IdentifyError(
             f"the contact is narrower than an atom: {theories.holding} has a zero-load radius of "
-            f"{prefixed(held['zero_load_radius'], 'm')}, and an atom's diameter is {prefixed(ATOM, 'm')}. No continuum "
-            "theory and no chain says anything of it; atoms do"
+            f"{prefixed(held['zero_load_radius'], 'm')}, and an atom's diameter is {prefixed(ATOM, 'm')}. Continuum "
+            "theory does not hold; use an atomistic model"
         )
     if theories.tabor < LEAST_TABOR:
         raise IdentifyError(_no_chain(theories))
     doubts = {}
     stretch, roughness = -_let_go(contact), contact.roughness or 0.0
-    beside = f"summits of {prefixed(roughness, 'm')} beside a stretch of {prefixed(stretch, 'm')}"
+    beside = f"asperities of {prefixed(roughness, 'm')} against an elastic stretch of {prefixed(stretch, 'm')}"
     if roughness > TOO_ROUGH_SHARE * stretch:
         raise IdentifyError(
-            f"the surfaces are too rough to hold as a smooth sphere does: {beside} at which even one as blunt as the "
-            "sphere lets go, so that most have parted when the last hold (Fuller and Tabor). Up to a roughness of "
-            f"{_down(TOO_ROUGH_SHARE * stretch)} m there is a scene"
+            f"the surfaces are too rough for the adhesion of a smooth sphere: {beside} at pull-off, even of an "
+            "asperity as blunt as the sphere, so that few asperities adhere at a time (Fuller and Tabor). A scene is "
+            f"offered up to a roughness of {_down(TOO_ROUGH_SHARE * stretch)} m"
         )
     if roughness > ROUGH_SHARE * stretch:
-        doubts["roughness"] = f"{beside} at which the contact parts: it holds less than a smooth sphere's"
+        doubts["roughness"] = f"{beside} at pull-off: the pull-off force is below that of a smooth sphere"
     if theories.holding != "JKR":
         doubts["tabor"] = (
-            f"the Tabor parameter {theories.verdict.reason}. The scene has JKR's law, whose pull-off force is "
+            f"the Tabor parameter {theories.verdict.reason}. The scene has JKR's theory, whose pull-off force is "
             f"{-theories.jkr_error:.1%} below that of {theories.holding} with this range"
         )
     return doubts
@@ -139,11 +139,11 @@ def _no_chain(theories: Theories) -> str:
         )
         between += "Maugis and Dugdale, between it and JKR"
     return (
-        f"DMT holds, and no chain stands for it: the Tabor parameter μ is {theories.tabor:.2g}, so that the attraction "
-        f"reaches farther than it stretches the bodies. F_A = 2πWR = {prefixed(dmt, 'N')}, a_0 = "
+        f"DMT holds, which a chain cannot represent: the Tabor parameter μ is {theories.tabor:.2g}, so that the range "
+        f"of the attraction exceeds the elastic stretch. F_A = 2πWR = {prefixed(dmt, 'N')}, a_0 = "
         f"{prefixed(theories.values['DMT']['zero_load_radius'], 'm')}{between}. A chain would have JKR's F_A, "
-        f"{prefixed(jkr, 'N')}, which is {-theories.jkr_error:.0%} too small here; from μ = {LEAST_TABOR:g} on there "
-        "is a scene"
+        f"{prefixed(jkr, 'N')}, which is {-theories.jkr_error:.0%} too small here; a scene is offered from "
+        f"μ = {LEAST_TABOR:g} on"
     )
 
 
@@ -169,8 +169,8 @@ def require_size(contact: AskedContact, radius: float) -> None:
     if contact.radius is not None and radius > LARGEST_RADIUS_SHARE * contact.radius:
         raise IdentifyError(
             f"the contact radius is {prefixed(radius, 'm')}, {radius / contact.radius:.2g} of the sphere's: the "
-            f"theory is for contacts small beside the sphere, here up to {LARGEST_RADIUS_SHARE:g} of it. A larger "
-            "radius, a larger contact modulus, a smaller load or less attraction has that"
+            f"theory is for a << R, here up to {LARGEST_RADIUS_SHARE:g}. Use a larger "
+            "radius, a larger contact modulus, a smaller load or less attraction"
         )
 
 

@@ -144,7 +144,7 @@ class AdhesiveEstimate(ContactEstimate):
         if (rising < -RISE * abs(float(h[least]))).any():
             at = float(x[least + int(np.argmax(rising < 0.0))])
             raise SettingsError(
-                f"the edge of this adhesive contact would jump at x = {at:.4g} LU, where the body is too flat for its "
+                f"the contact edge would jump at x = {at:.4g} LU, where the profile is too flat for this work of "
                 "adhesion: smooth the profile, or lower adhesion.work_of_adhesion"
             )
 
@@ -241,8 +241,8 @@ def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
         limit = min(profile.reach, bodies.profile.curvature_radius or math.inf)
         if widest > SPANNED * limit:
             raise SettingsError(
-                f"the adhesive contact would spread over the whole body, which ends at {limit:.6g} LU: JKR's theory is "
-                "of a contact that is small beside it. Lower adhesion.work_of_adhesion, the load or the displacement"
+                f"the adhesive contact would cover the body, which ends at {limit:.6g} LU: JKR's theory is for a "
+                "contact much smaller than the body. Lower adhesion.work_of_adhesion, the load or the displacement"
             )
     estimate.require_one_edge()
     return estimate

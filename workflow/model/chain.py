@@ -65,7 +65,7 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
         deepest = float(bodies.height(np.asarray([longest]))[0])
         if largest >= deepest:
             raise SettingsError(
-                f"the contact would spread over the whole profile, which ends at {bodies.reach:.6g} LU: the experiment "
+                f"the contact would cover the profile, which ends at {bodies.reach:.6g} LU: the experiment "
                 f"needs a displacement of about {largest:.4g} LU, at most {deepest:.4g} LU is possible"
             )
     places = np.linspace(0.0, half, 2001)
@@ -74,8 +74,8 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
     if falls.any():
         at = float(places[int(np.argmax(falls))])
         raise SettingsError(
-            f"the profile, as the reduction {bodies.reduction} has it, falls beyond x = {at:.4g} LU, so that the "
-            "contact would not be one piece: smooth it, or end it there"
+            f"the profile under the reduction {bodies.reduction} falls beyond x = {at:.4g} LU, so that the "
+            "contact would have several parts: smooth it, or end it there"
         )
 
 
@@ -180,8 +180,8 @@ def require_reach(scene: Scene, cutoff: float) -> None:
     spacing = scene.bodies.spacing
     if reaches_too_far(scene, cutoff):
         raise SettingsError(
-            f"with a cutoff of {cutoff:.4g} LU and a spacing of {spacing:.4g} LU a particle would feel "
-            f"{2.0 * cutoff / spacing:.2g} opposite ones, at most {MOST_PARTNERS} are possible: take shorter ranges in "
+            f"with a cutoff of {cutoff:.4g} LU and a spacing of {spacing:.4g} LU a particle would interact with "
+            f"{2.0 * cutoff / spacing:.2g} opposite ones, at most {MOST_PARTNERS} are possible: use shorter ranges in "
             f"[interaction], an interaction.cutoff below {0.5 * MOST_PARTNERS * spacing:.4g} LU, or a wider "
             f"bodies.spacing. {MIX_UP}"
         )
@@ -203,7 +203,7 @@ def require_apex(scene: Scene, particles: int, cutoff: float) -> None:
     if height > SHARPEST_RATIO * max(cutoff, scene.bodies.spacing):
         raise SettingsError(
             f"the body is too sharp for its chain: it rises by {height:.4g} LU from its apex to the nearest particles, "
-            f"{beside:.4g} LU beside it. Take a finer bodies.spacing, a blunter bodies.profile, or an odd number of "
+            f"{beside:.4g} LU from it. Use a finer bodies.spacing, a blunter bodies.profile, or an odd number of "
             f"bodies.particles, of which one is the apex. {MIX_UP}"
         )
 
@@ -217,8 +217,8 @@ def require_travel(scene: Scene, largest: float, cutoff: float) -> None:
     most = FARTHEST_RATIO * max(cutoff, scene.bodies.spacing)
     if abs(largest) > most:
         raise SettingsError(
-            f"the upper body would go as far as {largest:.3g} LU, at most {most:.3g} LU are possible at this reach of "
-            f"forces: take a larger bodies.bulk_stiffness, or a smaller load or displacement. {MIX_UP}"
+            f"the displacement would reach {largest:.3g} LU, at most {most:.3g} LU are possible with this range of "
+            f"forces: use a larger bodies.bulk_stiffness, or a smaller load or displacement. {MIX_UP}"
         )
 
 
@@ -263,9 +263,9 @@ def require_digits(scene: Scene, particles: int, deepest: float, force: float) -
     left, allowed = scene.bulk_stiffness * digit, DIGIT_SHARE * force
     if left > allowed:
         raise SettingsError(
-            f"a bodies.bulk_stiffness of {scene.bulk_stiffness:.3g} FU/LU is too stiff to compute with: the last digit "
-            f"of a place, {digit:.1g} LU, is a force of {left:.1g} FU, and the tolerance allows {allowed:.1g} FU. "
-            f"{float(f'{0.3 * allowed / digit:.1g}'):g} FU/LU are possible, and as good as rigid"
+            f"a bodies.bulk_stiffness of {scene.bulk_stiffness:.3g} FU/LU is too stiff to resolve: the round-off error "
+            f"of a position, {digit:.1g} LU, is a force of {left:.1g} FU, and the tolerance allows {allowed:.1g} FU. "
+            f"Use {float(f'{0.3 * allowed / digit:.1g}'):g} FU/LU, which is practically rigid"
         )
 
 
@@ -280,21 +280,21 @@ def require_rows(scene: Scene, longest_move: float, drive: Sequence[DriveLeg]) -
     experiment = scene.experiment
     if isinstance(experiment, Tangential) and len(experiment.along()) > MOST_ROWS:
         raise SettingsError(
-            f"the way along x would take {len(experiment.along()):.3g} rows, more than {MOST_ROWS:.0e}: take fewer "
-            "steps in experiment.displacements"
+            f"the tangential path would need {len(experiment.along()):.3g} load steps, more than {MOST_ROWS:.0e}: use "
+            "fewer steps in experiment.displacements"
         )
     if (driven := sum(leg.rows for leg in drive)) > MOST_ROWS:
         raise SettingsError(
-            f"the drive's way would take {driven:.3g} rows, more than {MOST_ROWS:.0e}: each spacing of it has some "
-            f"tens. Take a shorter experiment.distance, or shorter legs of experiment.path. {MIX_UP}"
+            f"the slide would need {driven:.3g} load steps, more than {MOST_ROWS:.0e}: each spacing has some tens. "
+            f"Use a shorter experiment.distance, or shorter legs of experiment.path. {MIX_UP}"
         )
     places = [0.0, *experiment.places()]
     way = sum(max(0.0, after - before) for before, after in pairwise(places))
     rows = len(places) + math.floor(way / longest_move)
     if rows > MOST_ROWS:
         raise SettingsError(
-            f"the path would take {rows:.3g} rows, more than {MOST_ROWS:.0e}: bodies move towards each other by "
-            f"{longest_move:.3g} LU at a time, as the interaction's ranges allow. Take nearer "
+            f"the path would need {rows:.3g} load steps, more than {MOST_ROWS:.0e}: the ranges of the interaction "
+            f"limit a step to {longest_move:.3g} LU. Use smaller "
             f"experiment.displacements or longer ranges. {MIX_UP}"
         )
 
@@ -308,9 +308,9 @@ def require_steps(steps: Iterable[int]) -> None:
     most = max(steps, default=0)
     if most > MOST_TIMESTEPS:
         raise SettingsError(
-            f"one row would take {most:.3g} timesteps, at most {MOST_TIMESTEPS} can be counted: the slowest motion is "
-            "too slow beside the fastest one. Bring masses ([bodies] and [plate]), stiffnesses and dampings nearer to "
-            'each other, or leave them to the program ("auto")'
+            f"a load step would need {most:.3g} timesteps, at most {MOST_TIMESTEPS} can be counted: the periods of the "
+            "slowest and the fastest motion differ too much. Use masses ([bodies] and [plate]), stiffnesses and "
+            'dampings of similar magnitude, or "auto"'
         )
 
 

@@ -171,7 +171,7 @@ class ContactEstimate:
             while (short := (outer < reach) & (self.profile.height(outer) < height)).any():
                 inner[short], outer[short] = outer[short], np.minimum(2 * outer[short], reach)
         if np.isinf(outer).any():
-            raise OverflowError("the body is endlessly wide beside its spacing")
+            raise OverflowError("the body is too wide compared with its spacing")
         column = np.arange(len(height))
         for _ in range(ROUNDS):
             places = np.linspace(inner, outer, EDGES)
@@ -306,7 +306,7 @@ class ContactEstimate:
 
     def _displacement_at(self, force: float) -> float:
         if self.spacing**2 == 0.0:
-            raise OverflowError("the spacing is nothing beside the body")
+            raise OverflowError("the spacing is too small compared with the body")
         low = self._largest_tension[0]  # where the force begins to rise
         high = max(self.spacing, 2 * self.rest)
         farthest = FARTHEST * max(self.spacing, self.rest)

@@ -382,14 +382,14 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
             chosen = _chosen(scene, tolerance or scene.accuracy.tolerance, calibration or CALIBRATION)
     except NotCarriedError as error:
         raise SettingsError(
-            f"a load of {scene.experiment.compression:.6g} FU is more than these bodies carry: their particles stand "
-            f"on each other from about {error.most:.4g} FU on. Lower the load, or take a stronger repulsion",
+            f"a load of {scene.experiment.compression:.6g} FU exceeds what the repulsion of these particles can carry, "
+            f"about {error.most:.4g} FU. Lower the load, or use a stronger repulsion",
             changes=less_compression(scene, error.most),
         ) from None
     except (OverflowError, FloatingPointError, ZeroDivisionError, MemoryError) as error:
         raise SettingsError(
-            f"the scene's numbers are too far apart to compute with ({error}): compare its lengths (spacing, ranges, "
-            "radius), its energies (amplitudes) and its stiffnesses with each other"
+            f"the magnitudes in this scene differ too much to compute with ({error}): compare its lengths (spacing, "
+            "ranges, radius), its energies (amplitudes) and its stiffnesses with each other"
         ) from None
     return chosen
 

@@ -115,9 +115,9 @@ def _advice(scene: Scene, outcome: Outcome, names: Iterable[str]) -> str:
     """What makes these results better, by what limits them."""
     tolerance, results = scene.accuracy.tolerance, outcome.results
     if all(MODEL in results[name].errors for name in names):
-        return "Two readings of one quantity (`formulas` in results.json) differ by so much"
+        return "Two evaluations of this quantity differ by that much (`formulas` in results.json)"
     if any(results[name].read > tolerance * results[name].size for name in names):
-        return f"A radius is known no better than the spacing lets it: take {FINER_SPACING}"
+        return f"The uncertainty of a radius is limited by the spacing: use {FINER_SPACING}"
     return kind_of(scene).advice(scene)
 
 
@@ -132,6 +132,6 @@ def _lattice_message(scene: Scene, shares: Mapping[str, float]) -> str:
     spacing = scene.bodies.spacing * np.sqrt(0.5 * scene.accuracy.tolerance / min(1.0, max(shares.values())))
     return (
         f"relative discretisation errors above the tolerance of {scene.accuracy.tolerance:g}: {in_words(shares)}. "
-        f"Take a smaller bodies.spacing, about {spacing:.2g} LU, at the same stiffness and energy per "
-        "length, or give bodies.particles where these very particles are meant"
+        f"Use a smaller bodies.spacing, about {spacing:.2g} LU, at the same stiffness and energy per "
+        "length, or give bodies.particles if this discrete chain is intended"
     )

@@ -104,11 +104,11 @@ def _tried(reader: Reader, error: Contact1dError, progress: Progress) -> str:
     if not edits:
         return ""
     (first, scene), *others = edits
-    progress.note(f"trying what helps: {in_words(first)}")
+    progress.note(f"trying a suggested fix: {in_words(first)}")
     try:
         _attempt(scene)
     except Contact1dError:
-        untried = f". Not tried: {', or '.join(in_words(edit) for edit, _ in others)} may help" if others else ""
+        untried = f". Not tried: {', or '.join(in_words(edit) for edit, _ in others)}" if others else ""
         return f"Tried without a result within {TRIAL:g} s: {in_words(first)}{untried}"
     return f"Tried: {in_words(first)} gives a result"
 

@@ -163,13 +163,13 @@ def _scene(scene: AnyScene) -> Scene:
 def _hint(message: str) -> str:
     """What to do about LAMMPS errors whose own words don't say it."""
     if "atoms" in message and ("missing" in message or "left the box" in message):
-        return ". Particles flew apart: bring stiffnesses, masses, damping and ranges nearer to each other"
+        return ". The motion is unstable: use stiffnesses, masses, damping and ranges of similar magnitude"
     if TOO_WIDE in message:
         return f". Compare spacing, radius, ranges and displacements with each other. {MIX_UP}"
     if TOO_LONG in message:
-        return ". Bring masses, stiffnesses and dampings nearer to each other"
+        return ". Use masses, stiffnesses and dampings of similar magnitude"
     if NO_MEMORY in message:
-        return ". Fewer particles need less: a wider bodies.spacing, a smaller radius or load, a shorter cutoff"
+        return ". Use fewer particles: a wider bodies.spacing, a smaller radius or load, a shorter cutoff"
     return ""
 
 
@@ -196,7 +196,7 @@ def prepare(folder: Path) -> Path:
     if folder.exists() and not folder.is_dir():
         raise FolderError(f"{folder} is a file; a run needs a folder")
     if folder.is_dir() and any(folder.iterdir()) and not any((folder / name).exists() for name in ("in.lammps", LOCK)):
-        raise FolderError(f"{folder} holds files that are not of a run; choose another folder")
+        raise FolderError(f"{folder} has files that do not belong to a run; choose another folder")
     try:
         folder.mkdir(parents=True, exist_ok=True)
         (folder / LOCK).touch()
@@ -206,7 +206,7 @@ def prepare(folder: Path) -> Path:
 
 
 @contextmanager
-def alone(folder: Path, busy: str = "another run is at work in") -> Iterator[None]:
+def alone(folder: Path, busy: str = "another run is active in") -> Iterator[None]:
     """Hold the folder against others; the system lets go of it whatever happens to this process."""
     with (folder / LOCK).open("w") as lock:
         try:

@@ -53,12 +53,12 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
         results = outcome.results
         left = {name: share for name, share in open_.items() if results[name].read <= wanted * abs(results[name].value)}
         if not left:
-            ended = "; ".join(filter(None, (ended, "the spacing alone leaves that open")))
+            ended = "; ".join(filter(None, (ended, "the spacing limits these")))
             break
         if count == MOST_REFINEMENTS:
-            ended = f"{_after(count)}, the most that are tried"
+            ended = f"{_after(count)}, the limit"
             break
-        context.progress.note(f"refining: {in_words(left)}, asked {scene.accuracy.tolerance:g}")
+        context.progress.note(f"refining: {in_words(left)}, tolerance {scene.accuracy.tolerance:g}")
         try:
             finer_deck, finer = _pass(context, tolerance / TOLERANCE_RATIO)
         except (EngineError, UntrustedError, SettingsError) as error:
@@ -68,7 +68,7 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
         before, deck, outcome = outcome, finer_deck, nested(outcome, finer)
         ended = _after(count)
         if _open(scene, outcome) and not _helped(left, before, outcome):
-            ended += ", the last of which did not help"
+            ended += ", the last without improvement"
             break
     # What a pass doubts by its own tolerance is no doubt of a run that was asked for less.
     stricter = doubts(deck.scene, deck.settings, outcome.states)

@@ -188,7 +188,7 @@ def _hint(place: Place) -> str:
     given, allowed, text = place.value, statement(place.allowed), text_of(place.allowed)
     if isinstance(given, str) and allowed.startswith(("a number", "a whole number")):
         if any(map(str.isdigit, given)):
-            return "a number stands without quotes" + (f", or with its unit: {as_toml(text)}" if text else " and unit")
+            return "write a number without quotes" + (f", or with its unit: {as_toml(text)}" if text else " and unit")
         if text and not place.allowed.words:
             return f"a number with its unit begins with a digit: {as_toml(text)}"
     if isinstance(given, float) and given.is_integer() and "whole number" in allowed:
@@ -268,7 +268,7 @@ class Conversion:
         try:
             number = float(value)
         except OverflowError:
-            self._report(place, "is larger than any number that a computer holds")
+            self._report(place, "exceeds the range of floating-point numbers")
             return
         if place.keys in LISTS:
             place.put(self.data, [number * item for item in self.data["bodies"]["profile"][place.keys[-1]]])
@@ -286,7 +286,7 @@ class Conversion:
             return None  # reported where tables are checked
         first, stiffness = texts[0], bodies.get("bulk_stiffness", "auto")
         if "surface_energy" in material:
-            message = "LU and FU follow from the run (material.surface_energy), so that units have no size before it"
+            message = "LU and FU follow from the run (material.surface_energy), so that units are not known before it"
             self._report(first, message, f"write a number in {first.unit.name}")
             return None
         needed = frozenset[str]().union(*(place.unit.bases for place in texts))

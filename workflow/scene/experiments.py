@@ -35,14 +35,14 @@ from contact1d.workflow.scene.quantities import (
 
 Method = Literal["quasistatic", "dynamic"]
 ANY_METHOD = (
-    '"quasistatic" (no time) or "dynamic" (as in the paper); absent: "dynamic" with [plate], [damping] or [noise], '
+    '"quasistatic" (equilibrium) or "dynamic" (in time); absent: "dynamic" with [plate], [damping] or [noise], '
     'else "quasistatic"'
 )
 AnyMethod = Annotated[Method | None, Field(description=ANY_METHOD)]
 
 
 class Span(Table):
-    """Evenly spaced displacements from one place to another, by default there and back."""
+    """Evenly spaced displacements from one value to another, by default there and back."""
 
     from_: Displacement = Field(alias="from")
     """displacement at the start"""
@@ -84,8 +84,8 @@ def _for_each(given: tuple[float, ...] | float | None, count: int) -> list[float
 
 
 UNPULLED = "only a slide is pulled through a spring"
-UNMOVED = "nothing moves along x in it, so that friction does nothing"
-TIMELESS = "its load steps follow each other without time, each in equilibrium"
+UNMOVED = "it has no tangential displacement, so that friction has no effect"
+TIMELESS = "it is quasi-static, each load step in equilibrium"
 """Why an experiment excludes an effect."""
 
 
@@ -176,7 +176,7 @@ class Path(Kind):
     displacements: Displacements
     """displacements, compression positive: a list or an even span"""
     start: Literal["approach", "contact"] = "approach"
-    """branch of the first point, where adhesion has two: bodies come from afar, or back from the largest displacement
+    """branch of the first point where adhesion has two: approach from afar, or unloading from the largest displacement
     """
     method: AnyMethod = None
 
@@ -186,24 +186,24 @@ class Path(Kind):
 
 
 class PullOff(Kind):
-    """Compression by a preload, then the largest tension that the contact holds."""
+    """Compression by a preload, then unloading up to pull-off."""
 
     only_with_noise = ("loading_rate", "velocity", "stiffness", "repeats")
     load_key = "preload"
     finds_pull_off = True
 
     kind: Literal["pull_off"]
-    """compress by the preload, then the largest tension held"""
+    """compress by the preload, then unload up to pull-off"""
     preload: Compression
     """compressive force F_D before the pull"""
     loading_rate: LoadingRate | None = None
-    """with [noise]: rate at which the load is drawn off until the bodies part"""
+    """with [noise]: rate at which the load decreases until the bodies separate"""
     velocity: Velocity | None = None
-    """with [noise], in place of loading_rate: velocity at which the far end of a spring draws the plate off"""
+    """with [noise], in place of loading_rate: velocity of the far end of a spring that retracts the plate"""
     stiffness: Stiffness | None = None
-    """with velocity: of that spring; absent: that of the contact without load"""
+    """with velocity: stiffness of that spring; absent: that of the contact at zero load"""
     repeats: RepeatCount | None = None
-    """with [noise]: how often, each time with the next seed; absent: once"""
+    """with [noise]: number of repeats, each with the next seed; absent: 1"""
     method: AnyMethod = None
 
     @property
@@ -225,7 +225,7 @@ class Leg(Table):
     velocity: DriveVelocity
     """velocity of the driven end; negative: back, 0: it rests"""
     distance: Length
-    """way of the driven end; where it rests, it does so as long as cantilever.velocity takes for that"""
+    """distance of the driven end; at velocity 0 the time that cantilever.velocity takes for it"""
 
 
 class Slide(Kind):
@@ -234,8 +234,8 @@ class Slide(Kind):
     one_of = ((("distance", "path"), "give a distance (LU), or a path = [[velocity, distance], …]; not both"),)
     only_method = "dynamic"
     excludes: ClassVar[Mapping[str, str]] = {
-        "adhesion": "it is that of a rigid plane, which drags nothing",
-        "friction": "its friction is that of the particles' own forces",
+        "adhesion": "it is that of a rigid plane, which cannot drag the upper body",
+        "friction": "its friction results from the interaction of the particles",
     }
     needs = ("horizontal", "damping", "plate", "cantilever")
     load_key = "normal_force"
@@ -245,9 +245,9 @@ class Slide(Kind):
     kind: Literal["slide"]
     """normal force and cantilever; always dynamic"""
     normal_force: Force
-    """force held while sliding, compression positive; 0 or a pull where bodies attract each other"""
+    """normal force during sliding, compression positive; 0 or tensile where bodies attract each other"""
     distance: Length | None = None
-    """way of the driven end of the cantilever at cantilever.velocity; absent with a path"""
+    """distance of the driven end of the cantilever at cantilever.velocity; absent with a path"""
     path: Listed[Leg] | None = None
     """legs [velocity, distance] of the driven end in place of one distance"""
 
@@ -266,7 +266,7 @@ class Slide(Kind):
 
 
 class Tangential(Kind):
-    """Normal load, then tangential displacement along x, with Coulomb's friction on a rigid plane."""
+    """Normal load, then tangential displacement, with Coulomb's friction on a rigid plane."""
 
     one_of = (
         (
@@ -278,10 +278,10 @@ class Tangential(Kind):
     excludes: ClassVar[Mapping[str, str]] = {
         "adhesion": "whether shear peels an adhesive edge or makes it slip is a criterion of its own (Savkoor and "
         "Briggs), which neither JKR nor Mindlin has",
-        "neighbours": "friction depends on the path, and a minimiser, which such springs need, has none",
+        "neighbours": "friction depends on the loading history, and a minimiser, which such springs need, has none",
         "damping": TIMELESS,
         "noise": TIMELESS,
-        "plate": f"{TIMELESS}; a plate with inertia would oscillate about each, and friction would remember how far",
+        "plate": f"{TIMELESS}; a plate with inertia would oscillate about it, and friction depends on this history",
         "cantilever": UNPULLED,
     }
     needs = ("friction",)
@@ -289,7 +289,7 @@ class Tangential(Kind):
     goes_along = True
 
     kind: Literal["tangential"]
-    """normal load, then displacement along x with friction"""
+    """normal load, then tangential displacement with friction"""
     normal_force: OneOrMore[Compression, CompressionOrNone] | None = None
     """compressive force: one, or one for each of the displacements"""
     normal_displacement: OneOrMore[Displacement, Displacement] | None = None
@@ -297,7 +297,7 @@ class Tangential(Kind):
     displacements
     """
     displacements: Displacements
-    """displacements along x, from 0 on where the load comes on: a list or an even span"""
+    """tangential displacements, 0 where the load is applied: a list or an even span"""
 
     @property
     def compression(self) -> float | None:

@@ -26,14 +26,14 @@ IN_MODEL_UNITS = re.compile(r"[1-9][-+.\de]* \((LU|FU)")
 """A number in them, in a message."""
 DEEPEST = 100
 """Levels of tables and lists in a scene."""
-TOO_DEEP = f"tables or lists are nested more than {DEEPEST} deep; look for a dot or a bracket too many"
+TOO_DEEP = f"tables or lists are nested more than {DEEPEST} deep; check for an extra dot or bracket"
 LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')\s*+\.\s*+){{{DEEPEST}}}""")
 """A dotted key that is deeper: tomllib takes minutes for it."""
 MEANING = {
     "Cannot overwrite a value": "this key is given twice",
     "Cannot declare": "this table is given twice",
-    "Invalid value": "this is no value",
-    "Expected newline or end of document": "there is something behind the value",
+    "Invalid value": "this is not a value",
+    "Expected newline or end of document": "unexpected text after the value",
     "Unclosed array": "a list is not closed",
     "Expected '=' after a key": "a key needs = and a value",
     "Invalid statement": "this is neither key = value nor a [table]",
@@ -47,9 +47,9 @@ MEANING = {
 """What the messages of tomllib, by their beginnings, mean to a person."""
 
 HINTS = {
-    "Invalid value": "text stands in quotes; a number has digits on both sides of its point; true and false are small",
+    "Invalid value": "write text in quotes, a number with digits around its point, true and false in lower case",
     "Expected newline or end of document": (
-        'one key = value on a line; a decimal point is no comma; a number with a unit stands in quotes, "10 mm"'
+        'write one key = value per line, decimals after a point, a number with a unit in quotes, "10 mm"'
     ),
 }
 
@@ -204,7 +204,7 @@ def _with_points(data: dict[str, Any], folder: FilePath) -> tuple[PointsFile | N
     if not isinstance(profile.get("file"), str):
         return None, []
     file, scale = profile.pop("file"), profile.pop("scale", None)
-    message, hint = "not together with the lists r and z", "give the one or the other"
+    message, hint = "not together with the lists r and z", "give one of the two"
     if not lists:
         try:
             points, units = read_profile(folder / file, scale)

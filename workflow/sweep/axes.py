@@ -156,7 +156,7 @@ def _shape(axes: Sequence[Axis], combine: str) -> Iterator[Rule]:
     yield uneven, "combine", f'"zip" needs axes of one length, they have {words} values', None, ""
     count, product = math.prod(lengths), " × ".join(map(str, lengths))
     many = combine == "product" and count > MOST_POINTS
-    yield many, "axes", f"{product} = {count} points are more than {MOST_POINTS}", None, "take coarser axes"
+    yield many, "axes", f"{product} = {count} points are more than {MOST_POINTS}", None, "use fewer values"
 
 
 def _axis(table: Any, where: str, problems: list[Problem]) -> Axis:
