@@ -31,7 +31,7 @@ def test_a_sphere_gets_a_scene_whose_run_is_jkrs(tmp_path: Path) -> None:
     ]  # fmt: skip
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr
-    assert "wanted 57.491 µN" in done.stdout
+    assert "target 57.491 µN" in done.stdout
     results = json.loads((tmp_path / "sphere" / "results.json").read_text(encoding="utf-8"))
     assert results["adhesion_force"]["si"]["value"] == pytest.approx(57.491e-6, rel=ROUGH)
     assert results["zero_load_radius"]["si"]["value"] == pytest.approx(173.9e-9, rel=ROUGH)

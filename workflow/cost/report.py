@@ -165,7 +165,7 @@ def summary(record: CostRecord) -> list[str]:
         "",
         *("  ".join(map(str.ljust, row, widths)).rstrip() for row in rows),
         "",
-        f"Errors are the largest of the main results, all else at reference accuracy; {record.limit:.2g} is enough.",
+        f"Errors are the largest of the main results, all else exact; at most {record.limit:.2g} suffices.",
         *(f"Not tried: {name}, because {reason}." for name, reason in record.left_out.items()),
     ]
 
