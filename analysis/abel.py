@@ -5,7 +5,7 @@ the body's pressure p(r) seen from the side, and so (Popov and Heß 2015, chapte
 
     q(x) = 2 ∫_x^∞ r p(r)/√(r² − x²) dr,     p(r) = −(1/π) ∫_r^∞ q′(x)/√(x² − r²) dx
 
-With q a polynomial between neighbouring places, q′ = c₀ + c₁ x + c₂ x², each piece has a closed form,
+With q a polynomial between neighbouring positions, q′ = c₀ + c₁ x + c₂ x², each piece has a closed form,
 
     ∫ q′/√(x² − r²) dx = (c₀ + c₂ r²/2) arcosh(x/r) + (c₁ + c₂ x/2) √(x² − r²)
 
@@ -36,26 +36,26 @@ WHOLE = 0.5 - 1e-6
 """The same where q jumps to 0 at the edge: a particle stands for so much to either side, and has less where the edge
 cuts that off."""
 SAME = 1e-6
-"""Of a spacing: places so alike on both sides of the axis are the same."""
+"""Of a spacing: positions so alike on both sides of the axis are the same."""
 AT_ONCE = 100
 """Distances from the axis that are worked out at once, to bound the memory."""
 HALVINGS, NODES = 40, 8
-"""Intervals of an integral that halve towards the axis, and Gauss's places in each."""
+"""Intervals of an integral that halve towards the axis, and Gauss's positions in each."""
 DIFFERENCE = 1e-5
-"""Of a place, up to which a slope is a difference: exact to some 1e-10."""
+"""Of a position, up to which a slope is a difference: exact to some 1e-10."""
 Body = Callable[[Array], Array]
 FEWEST = 3
-"""Places on one side from which a shape can be told."""
+"""Positions on one side that determine a shape."""
 
 
 @dataclass(frozen=True)
 class LineLoad:
-    """An even line load as cubics between places: q(x) for 0 ≤ x ≤ edge, nothing beyond.
+    """An even line load as cubics between positions: q(x) for 0 ≤ x ≤ edge, nothing beyond.
 
     Attributes:
         breaks: 0 = x₀ < x₁ < … < x_n = edge, shape (n + 1,) [length].
         coefficients: of q = Σ_k coefficients[k] x^k between them, shape (4, n); with a `body` of q + c h.
-        body: c h(x) of places x of any shape [force/length], where it is known.
+        body: c h(x) of positions x of any shape [force/length], where it is known.
         jump: q just inside the edge [force/length], where it is known; None: that of the polynomials.
         apex: whether the body's slope does not vanish on the axis.
     """
@@ -143,15 +143,15 @@ def line_load(
     apex: bool = False,
     body: Body | None = None,
 ) -> LineLoad:
-    """Return the even line load through values at places, a cubic through the four nearest; of both sides the mean.
+    """Return the even line load through values at positions, a cubic through the four nearest; of both sides the mean.
 
     Polynomials up to x³ on each side (Hertz, cone, flat punch) are met exactly, others with the third order of the
     spacing.
 
     Args:
-        x: places, rising and the same on both sides of 0, shape (n,) [length].
+        x: positions, rising and the same on both sides of 0, shape (n,) [length].
         load: q there, shape (n,) [force/length].
-        edge: a, where it ends [length]; None: it fades out, and ends at 0 at the last place.
+        edge: a, where it ends [length]; None: it fades out, and ends at 0 at the last position.
         ends_at_zero: whether q(a) = 0; else the last piece goes on to the edge, where q jumps to 0.
         apex: whether q has a kink on the axis, as under a cone; else it is smooth there, an even function.
         body: c h(x) of the body, where q = c (d − h) with nothing else.
@@ -181,7 +181,7 @@ def line_load(
 
 
 def of_both_sides(x: ArrayLike, load: ArrayLike) -> tuple[Array, Array, float]:
-    """Places from the axis on, the mean load of both sides there, and the spacing; ValueError as of `line_load`."""
+    """Positions from the axis on, the mean load of both sides there, and the spacing; ValueError as of `line_load`."""
     places, values = np.asarray(x, dtype=np.float64), np.asarray(load, dtype=np.float64)
     if places.shape != values.shape or places.ndim != 1:
         raise ValueError(f"positions and loads must be 1-D and equally long, got {places.shape} and {values.shape}")
@@ -193,7 +193,7 @@ def of_both_sides(x: ArrayLike, load: ArrayLike) -> tuple[Array, Array, float]:
 
 
 def _cubics(x: Array, q: Array, end: float) -> LineLoad:
-    """From 0 to the `end` the cubic through the four nearest of the places x, of fewer a parabola or a line."""
+    """From 0 to the `end` the cubic through the four nearest of the positions x, of fewer a parabola or a line."""
     count = min(4, x.size)
     right_of_axis = x[x > 1e-12 * end]
     inner = right_of_axis[right_of_axis < end * (1.0 - 1e-12)]
@@ -209,7 +209,7 @@ def _cubics(x: Array, q: Array, end: float) -> LineLoad:
 
 
 def in_powers(newton: Array, places: Array) -> Array:
-    """Coefficients in powers of x, shape (4, n), of Σ_k newton[k] Π_{j<k} (x − places[j]), k < 4 at most."""
+    """Coefficients in powers of x, shape (4, n), of Σ_k newton[k] Π_{j<k} (x − positions[j]), k < 4 at most."""
     powers = np.zeros((4, newton.shape[1]))
     for value, place in zip(newton[::-1], places[::-1], strict=True):
         powers[1:] = powers[:-1] - place * powers[1:]

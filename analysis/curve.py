@@ -44,20 +44,20 @@ PROFILE_COLUMNS = tuple(field.name for field in fields(Profile))
 FRICTION_COLUMNS = (
     "time", "drive", "plate_x", "plate_z", "friction", "normal_force", "cantilever_force", "cantilever_work",
 )  # fmt: skip
-"""Of a slide: times [TU], places [LU], forces [FU], work [FU·LU]."""
+"""Of a slide: times [TU], positions [LU], forces [FU], work [FU·LU]."""
 DETACHMENTS = "detachments"
 """Name of the table, and of the figure, of a thermal pull-off."""
 DETACHMENT_COLUMNS = ("seed", "force", "time")
 """Of it, one row for each pull: tension when the bodies part [FU], time since the pull began [TU]."""
 SAMPLE_TABLE = "samples"
-"""Name of the table, and of the figure, of a contact under heat."""
+"""Name of the table, and of the figure, of a contact with noise."""
 SAMPLE_COLUMNS = ("time", "load", "displacement", "force", "contact_radius")
-"""Of it, one row for each row of the curve: time since the start [TU], forces [FU], places [LU]."""
+"""Of it, one row for each row of the curve: time since the start [TU], forces [FU], positions [LU]."""
 TANGENTIAL_COLUMNS = (
     "tangential_displacement", "tangential_force", "normal_force", "stick_radius", "stick_radius_uncertainty",
     "dissipated_energy",
 )  # fmt: skip
-"""Of a tangential, in curve.csv: places [LU], forces [FU], the energy dissipated so far [FU·LU]."""
+"""Of a tangential, in curve.csv: positions [LU], forces [FU], the energy dissipated so far [FU·LU]."""
 
 
 def write_columns(path: Path, columns: Mapping[str, Column]) -> None:

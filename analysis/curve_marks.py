@@ -32,10 +32,10 @@ class Peak:
 
 
 LEAST_SEPARATION = 1e-5
-"""Distance of two places over that of the outermost ones below which no polynomial is put through them."""
+"""Distance of two positions over that of the outermost ones below which no polynomial is put through them."""
 AS_HIGH = 1e-3
-"""Distance from the highest sample over the width of the widest polynomial within which another one is left out: what
-a minimiser leaves of both, ε, would be a slope of ε over their distance, and that over the width 1000 ε at least."""
+"""Distance from the highest sample over the width of the widest polynomial within which another one is ignored: the
+residual of both, ε, would be a slope of ε over their distance, and that over the width 1000 ε at least."""
 WIDEST_REACH = 3
 """Samples on either side of the highest one under the widest polynomial."""
 JUMP_RATIO = 3.0
@@ -46,9 +46,9 @@ def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Pe
     """The largest −F of an unloading branch (displacements falling).
 
     Between samples a smooth curve exceeds the sampled maximum by what the polynomial through five points says; that
-    through three tells how far to believe it, and that through seven how far to believe its place. Where a particle
+    through three tells how far to believe it, and that through seven how far to believe its position. Where a particle
     snaps after the maximum, tension rises right up to the snap, no faster than before the sampled point: that is
-    then the place, and the rise up to the next point what is missed at most.
+    then the position, and the rise up to the next point what is missed at most.
     """
     d, tension = np.asarray(displacement), -np.asarray(force)
     i = int(np.argmax(tension))
@@ -91,7 +91,7 @@ def _about(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, A
 
 
 def _vertex(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, float]:
-    """Place and value of the maximum of the polynomial through the highest point and so many on either side of it.
+    """Position and value of the maximum of the polynomial through the highest point and so many on either side of it.
 
     It lies between the highest point's neighbours.
     """
@@ -121,9 +121,9 @@ def promised(displacement: Sequence[float], force: Sequence[float], places: Sequ
 
 
 def rivals(displacement: Sequence[float], force: Sequence[float], peak: Peak) -> dict[int, float]:
-    """The other teeth of a sawtooth, by their highest rows: how much each may be higher than the peak [FU], or lower.
+    """The other maxima of a sawtooth, by their highest rows: how much each may be higher than the peak [FU], or lower.
 
-    Beyond a tooth's highest row the tension rises no faster than it did up to there, and no further than to the next
+    Beyond its highest row the tension rises no faster than it did up to there, and no further than to the next
     row; between that row and the one before, no faster than up to the latter. Displacements fall.
     """
     d, tension = np.asarray(displacement), -np.asarray(force)

@@ -232,8 +232,8 @@ def _minimum(
 ) -> tuple[float, float]:
     """Position of the lowest minimum between low and high of the polynomial over samples, its shift per noise in y.
 
-    It goes through all of them unless its `degree` is less. Without a minimum there (NaN, NaN); where one is known to
-    be `near`, it is found from there.
+    It goes through all of them unless its `degree` is less. Without a minimum there (NaN, NaN); where one is
+    expected `near` a position, it is found from there.
     """
     points, values = x[under], y[under]
     origin, width, depth = float(points.sum()) / len(points), float(np.ptp(points)), float(np.abs(values).max())

@@ -32,7 +32,7 @@ MOST_PAIRED = 4
 FASTER = 2.0
 """Velocity of the plate over that of the drive above which it may slip."""
 BESIDE, EVEN = 2, 2.0
-"""Rows on each side of a smooth top, and the ratio of the largest to the smallest curvature of friction over place
+"""Rows on each side of a smooth top, and the ratio of the largest to the smallest curvature of friction over position
 about it: where a slip begins the rows lie so far apart that it is many times as large."""
 LONG = 0.45
 """Way over the spacing that it makes of it: at the threshold of stick-slip it passes a barrier as fast over 0.33."""
@@ -95,7 +95,7 @@ def mean_of(blocks: Array) -> Mean:
 def sampled_mean(time: Array, force: Array, period: float) -> Mean:
     """The mean of forces that are known at single times only, shape (n,), with many in a period.
 
-    Under heat the random kicks of a bath, ∫ ξ dt ~ √(2γkT t), are no part of the friction, but of the balance that
+    In a heat bath the random forces, ∫ ξ dt ~ √(2γkT t), are no part of the friction, but of the balance that
     gives its integral: samples may know it better. A slip between two is missed by half of the time between at most:
     slips at random times are in the scatter of the blocks, those that come at the same time in each are in their mean.
     Such a slip is larger than the step between two samples by what the friction rises by in the meantime.
@@ -141,7 +141,7 @@ def student(freedom: int) -> float:
 def slips(time: Array, place: Array, spacing: float, velocity: float) -> list[Slip]:
     """Where a plate goes on, FASTER than the drive, for a LONG way: over a barrier, or down from one into a hollow.
 
-    With much drag it slows down on the barrier itself, wherever that is: no place is asked for.
+    With much drag it slows down on the barrier itself, wherever that is: no position is asked for.
 
     Args:
         time, place: of the plate, shape (n,) [TU], [LU].

@@ -98,7 +98,7 @@ def smallest_distance(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike
     """Return min_ij |r_i - r_j| [LU] over upper particles i and lower particles j.
 
     x_upper, z_upper [LU], (n,); x_lower, z_lower [LU], (m,). Raises ValueError where a body has no particle or a
-    position is not finite. The lower particle next to the place above which each upper one stands gives a first
+    position is not finite. The lower particle next to the position above which each upper one stands gives a first
     distance, and no other pair is looked at but those that are within it along x: for chains a few.
     """
     (across, height), (x, z) = _sorted_by_x(x_upper, z_upper), _sorted_by_x(x_lower, z_lower)
@@ -135,7 +135,7 @@ def end_pressure_share(profile: Profile) -> float:
 
 
 def spacing_of(x: Array) -> float:
-    """The mean distance of neighbours [length], of rising places x, (n,), n >= 1; 0 for one."""
+    """The mean distance of neighbours [length], of rising positions x, (n,), n >= 1; 0 for one."""
     return float(np.ptp(x)) / max(x.size - 1, 1)
 
 

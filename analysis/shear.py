@@ -112,13 +112,13 @@ def kinks_of(stick: Sequence[float], contact: Sequence[float]) -> list[list[floa
 def shear_load(
     x: ArrayLike, shear: ArrayLike, edge: float, kinks: Sequence[float] = (), apex: bool = False
 ) -> LineLoad:
-    """Return the even line shear through values at places: a cubic spline in each zone between kinks, 0 at the edge.
+    """Return the even line shear through values at positions: a cubic spline in each zone between kinks, 0 at the edge.
 
     At a kink it is the mean of what the zones on both sides come to there. A kink is left out that would leave fewer
-    than FEWEST places on one side of it.
+    than FEWEST positions on one side of it.
 
     Args:
-        x: places, rising and the same on both sides of 0, shape (n,) [length].
+        x: positions, rising and the same on both sides of 0, shape (n,) [length].
         shear: there, shape (n,) [force/length].
         edge: a, beyond which there is none [length].
         kinks: inside of it [length].
@@ -149,7 +149,7 @@ def shear_load(
 
 
 def _height(x: Array, y: Array, within: int, beyond: int, kink: float) -> float:
-    """The mean of the parabolas through the FEWEST places before index `within`, and those from `beyond` on."""
+    """The mean of the parabolas through the FEWEST positions before index `within`, and those from `beyond` on."""
     sides = [slice(start, start + FEWEST) for start in (within - FEWEST, beyond)]
     return float(np.mean([np.polynomial.Polynomial.fit(x[side], y[side], FEWEST - 1)(kink) for side in sides]))
 

@@ -49,7 +49,7 @@ F/(pi W R) > 40, for JKR F/(pi W R) > 2520: its attraction grows with the contac
 class Dmt(Contact):
     """DMT: a stiff sphere that adheres to a flat, F(a) = 4 E* a^3/3R - 2 pi W R: Hertz, pressed by attraction outside.
 
-    Valid for a Tabor number below about 0.1. Source: B. V. Derjaguin, V. M. Muller, Yu. P. Toporov, J. Colloid
+    Valid for a Tabor parameter below about 0.1. Source: B. V. Derjaguin, V. M. Muller, Yu. P. Toporov, J. Colloid
     Interface Sci. 53 (1975) 314, in the form of D. Maugis, J. Colloid Interface Sci. 150 (1992) 243.
 
     Args:

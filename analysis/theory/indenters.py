@@ -7,7 +7,7 @@ A contact of radius a has, with the power-law profile z = c r^n and kappa_n = (s
 For n = 2, c = 1/2R that is Hertz and, with the work of adhesion W, JKR; for n = 1 Sneddon's cone, with W that of Maugis
 and Barquins. What W adds is a flat punch's tension at the same a. W = 2 gamma is the work of adhesion of two equal
 surfaces, gamma the surface energy of one of them; Geike and Popov (2007) call gamma the work of adhesion. Forces are
-positive in compression. Valid for small slopes, a frictionless half space and, with W, a Tabor number well above 1.
+positive in compression. Valid for small slopes, a frictionless half space and, with W, a Tabor parameter well above 1.
 Sources: I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47; L. A. Galin (1953); K. L. Johnson, K. Kendall, A. D. Roberts,
 Proc. R. Soc. A 324 (1971) 301; K. Kendall, J. Phys. D 4 (1971) 1186; D. Maugis, M. Barquins, J. Phys. Lett. 42 (1981)
 L95; V. L. Popov, M. Hess, Method of Dimensionality Reduction in Contact Mechanics and Friction (2015), section 4.4. Any

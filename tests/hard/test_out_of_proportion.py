@@ -28,9 +28,9 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     ),
     "an endless attraction": (
         chains(100.0, law=(0.18, 0.13, 0.09, 1e20), experiment=LOAD),
-        r"would feel .* at most 5000 .* another unit",
+        r"would interact with .* at most 5000 .* another unit",
     ),
-    "a spacing far below the ranges": (chains(100.0, bodies={"spacing": 1e-6}, experiment=LOAD), r"would feel"),
+    "a spacing far below the ranges": (chains(100.0, bodies={"spacing": 1e-6}, experiment=LOAD), r"would interact"),
     "a spacing far above the radius": (chains(100.0, bodies={"spacing": 1e6}, experiment=LOAD), r"too sharp"),
     "a load that a planet carries": (chains(100.0, experiment={"kind": "load", "force": 1e9}), r"particles per body"),
     "more pairs than any memory holds": (

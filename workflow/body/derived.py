@@ -7,8 +7,8 @@ da, and the ring 2πa da of the body's surface parts:
     mdr:           2 (w/s) da = W 2πa da                          W = w/(π s a)
     geike_popov:   two equal spheres, half as wide as the image   W = 4w/(π s a),   a the image's
 
-JKR's body has one W for every a, and the chain one w/s: they are alike at one radius only, that of the run. How far the
-two are apart is told by the force, F_A = (3/2) πWR_e, R_e = R with the MDR and R/2 for the two spheres.
+JKR's body has one W for every a, and the chain one w/s: they are alike at one radius only, that of the run. Their
+difference follows from the force, F_A = (3/2) πWR_e, R_e = R with the MDR and R/2 for the two spheres.
 
 Stiffness: springs E* per length that touch over 2a make dF/dd = 2E*a, which is Galin's and Sneddon's relation of any
 axisymmetric body.

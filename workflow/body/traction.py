@@ -149,7 +149,7 @@ def _pressure(scene: Scene, profile: Profile, radius: ContactRadius) -> BodyPres
 
 
 def _body(scene: Scene) -> Callable[[Array], Array] | None:
-    """c h(x) [FU/LU] of springs that are all that carries, on a plane; None of others, and of a table of places."""
+    """c h(x) [FU/LU] of springs that are all that carries, on a plane; None of others, and of a table of positions."""
     bodies = scene.bodies
     known = not (bodies.profile.has_edge or isinstance(bodies.profile, Measured))
     if bodies.lower != "rigid_plane" or scene.neighbours is not None or not known:

@@ -58,9 +58,9 @@ def say(lines: Iterable[str], warnings: Mapping[str, str], place: object = None)
 
 
 def read(path: Path, overrides: list[str] | None, without: list[str] | None, progress: Progress | None = None) -> Scene:
-    """The scene in a file as the options change it; with every problem told, the end of the command.
+    """The scene in a file as the options change it; with every problem reported, the end of the command.
 
-    With a `progress`, which is told of it, what would mend the scene is tried.
+    With a `progress`, which reports it, a suggested fix of the scene is tried.
     """
     from contact1d.workflow.scene import SceneError, read_scene
 
@@ -93,7 +93,7 @@ def command(what: str, folder: Path | None = None, kept: str = "", quiet: bool =
         what: is done, for "… failed".
         folder: where files are; named if it is there when the work breaks off.
         kept: what is left then, and what to do, as words.
-        quiet: whether nobody is told how far the work is.
+        quiet: whether no progress is shown.
     """
     from contact1d.workflow.engine.progress import Silent, choose_progress
 

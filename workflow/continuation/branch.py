@@ -46,13 +46,13 @@ SAME = 1e-12
 APPROACH_STEPS = 20
 """Timesteps of a move on the way to a displacement that is held for a time."""
 ROWS_BEYOND_PEAK = 3
-"""Rows beyond the largest tension that its polynomials need."""
+"""Load steps beyond the force maximum that its polynomials need."""
 HALVINGS_AT_PEAK = 2
 """Halvings of the increment beside the largest tension for the sake of the contact radius there."""
 PER_TOOTH, MOST_TEETH = 4.0, 400.0
-"""Rows to a tooth of the tension, and teeth that rows can tell apart; denser ones are a small part of it each."""
+"""Load steps to a maximum of the force, and maxima that they resolve; of more, each is a small part of the force."""
 MOST_RIVALS = 200
-"""Looks at teeth that may be higher than the highest row."""
+"""Examinations of maxima that may be higher than the highest load step."""
 READ_SHARE = 0.5
 """Part of a radius's uncertainty below which it is looked at no closer: reading between particles limits it."""
 
@@ -145,7 +145,7 @@ class Branch(ContactBranch):
             states.append(self._at(_secant(before, beyond, states, force, direction * step)))
 
     def _first_rows(self, force: float, direction: int) -> None:
-        """The first rows of a stretch towards a force [FU]: the place where it begins."""
+        """The first rows of a stretch towards a force [FU]: the position where it begins."""
         states, start = (self.loading, 0.0) if direction > 0 else (self.falling, self.loading[-1].displacement)
         states.append(self._at(start))
 
@@ -174,7 +174,7 @@ class Branch(ContactBranch):
         """Find the largest tension of the unloading; the last state is then at it.
 
         Rows past it, back to it, and at half the distance beside it until they change nothing. Just below snapping F(d)
-        has a tooth for each pair that is lost: every one that may be the highest is looked at.
+        has a maximum for each pair that separates: every one that may be the highest is examined.
 
         Raises:
             UntrustedError: see `require_trust`; it is not found.
@@ -221,7 +221,7 @@ class Branch(ContactBranch):
             )
 
     def _pass_maximum(self) -> float:
-        """Rows down until the largest tension is passed; where there are teeth, all that may exceed it.
+        """Unload until the force maximum is passed; where there are several, all that may exceed it.
 
         Returns the increment [LU].
         """
@@ -248,7 +248,7 @@ class Branch(ContactBranch):
         return surprise
 
     def _look_at_rivals(self, allowed: float) -> float:
-        """Visit positions beside teeth that may be higher than the highest row by more than `allowed` [FU].
+        """Visit positions near maxima that may be higher than the highest load step by more than `allowed` [FU].
 
         Returns by how much one still may [FU].
         """

@@ -1,12 +1,12 @@
-"""The error budget: how far each result may be off, by source, found by perturbing the one reader of the results.
+"""The error budget: the error of each result by source, found by perturbing the one reader of the results.
 
-    solver           the reader on forces ± ε, also tilted about the last mark: ε is what a minimiser or a motion
-                     leaves, and what table, cutoff or a plane that is not quite rigid change
-    sampling         what the reader's polynomials and the search leave; where the scene gives the steps, the reader on
+    solver           the reader on forces ± ε, also tilted about the last mark: ε is the residual of a minimiser or a
+    motion, and the error of table, cutoff and a plane of finite stiffness
+    sampling         error of the reader's polynomials and of the search; where the scene gives the steps, the reader on
                      the model with these steps beside the model with dense ones
     discretisation   the reader on the model with its apex elsewhere between particles, or on three spacings; and on
-                     radii changed by what reading between particles leaves
-    instability      what particles that are lost early, and other teeth of the force, may change (the reader's own)
+                     radii changed by the error of interpolation between particles
+    instability      premature detachment of particles, and other maxima of the force (the reader's own)
 
 Nothing here knows an experiment: whatever a script passes and a reader reads has all of these.
 """

@@ -27,7 +27,7 @@ class RunContext:
     Attributes:
         deck: what is run.
         folder: the run folder; system.data and the table are in it.
-        progress: told of phases and steps.
+        progress: informed of phases and steps.
         time_limit: for each contact [s].
         retries: whether a search in which bodies went through each other begins anew in smaller steps.
         workers: contacts that an experiment may have open at a time.
@@ -58,7 +58,7 @@ class RunContext:
 
     @contextmanager
     def contact(self, purpose: str = "", meanwhile: Callable[[], object] | None = None) -> Iterator[Contact]:
-        """A fresh contact at displacement 0, in a LAMMPS instance of its own; `purpose` is told to the user.
+        """A fresh contact at displacement 0, in a LAMMPS instance of its own; `purpose` is shown to the user.
 
         What `meanwhile` does costs no time: LAMMPS reads the bodies then.
         """

@@ -2,9 +2,9 @@
 
 LAMMPS itself looks every few timesteps whether the plate is at rest or out of reach, and stops there; only then a state
 is measured. With automatic damping each load has the drag that is critical for the contact's stiffness under it: the
-stiffness falls to zero towards the pull-off, and one drag for all makes the last tensions creep. Where pairs let go one
-by one, it does not fall: F(d) is a row of teeth, each as stiff as the pairs that still hold, and a plate that swings
-past one lets go of pairs that would have held.
+stiffness falls to zero towards the pull-off, and one drag for all makes the last tensions creep. Where pairs separate
+one by one, it does not fall: F(d) has a maximum for each, as stiff as the pairs in contact, and a plate that oscillates
+past one detaches pairs prematurely.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ CALMING_FACTOR = 0.5
 LOSS_SHARE = 0.7
 """Tension over what is pulled with, below which a plate that moves off counts as lost."""
 PARTING_SHARE = 0.6
-"""The same of the estimate's largest tension, where LAMMPS stops: the first place at which to look for it."""
+"""The same of the estimate's largest tension, where LAMMPS stops: the first position at which to look for it."""
 
 
 class Start(IntEnum):
@@ -44,7 +44,7 @@ class Start(IntEnum):
     """Where the load before began."""
     HERE = 0
     KEPT = 1
-    """Here, and the place is kept to come back to."""
+    """Here, and the position is kept to come back to."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class Held:
 
 
 def stiffness_under(settings: Settings, load: float) -> float:
-    """Contact stiffness [FU/LU] under a load [FU]; of a row of teeth, that of all that are stuck when deepest."""
+    """Contact stiffness [FU/LU] under a load [FU]; where pairs separate one by one, of all that ever touch."""
     if settings.is_toothed:
         return settings.estimate.stuck_stiffness(settings.largest_displacement)
     return settings.estimate.stiffness_under(load)
@@ -90,7 +90,7 @@ def damping_under(settings: Settings, load: float) -> float:
 
 
 def overshoot(settings: Settings, mass: float, load: float, next_load: float) -> float:
-    """How far a plate at rest under `load` shoots past its place under `next_load` at most, over the way there.
+    """How far a plate at rest under `load` shoots past its position under `next_load` at most, over the way there.
 
     exp(−πζ/√(1 − ζ²)) of a linear oscillator with the stiffness of the beginning, the largest one under tension.
     """

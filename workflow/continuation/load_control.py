@@ -39,7 +39,7 @@ SPREAD = 2.0
 STRIDE = 0.8
 """Rise of a tension over what is left to the expected pull-off force at most, so that the last states lie near it."""
 EDGES = 2
-"""Pairs that let go together, one at each edge of the contact: by so much the tension falls after a snap."""
+"""Pairs that separate together, one at each contact edge: by so much the tensile force falls after a snap-out."""
 GROWTH = 0.25
 """Rise of a tension over the one that held, where nothing better is known."""
 FIRST_RISE = 2.0
@@ -72,7 +72,7 @@ class Search:
 
     @property
     def best(self) -> float:
-        """The largest tension that held [FU]."""
+        """The largest tensile force sustained [FU]."""
         return -self.held[-1].load
 
     @property
@@ -164,7 +164,7 @@ class LoadBranch(ContactBranch):
         """Whether a tension that is larger by FIRST_RISE tolerances is held, too, tried with a contact of its own.
 
         A contact at rest balances its load within a share of the tolerance, and near the limit point it creeps: on
-        which side of it a load is can't be told nearer than that.
+        which side of it a load is cannot be resolved further.
         """
         if force > -DOUBTFUL_SHARE * self.scale:
             return True
@@ -216,7 +216,7 @@ class LoadBranch(ContactBranch):
         """Nothing: a tension that was not held has parted the bodies."""
 
     def missed_teeth(self) -> float:
-        """Tension [FU] that a plate may miss which swings past a tooth of it, where pairs are lost one by one."""
+        """Tension [FU] that a plate may miss which oscillates past a force maximum, where pairs are lost one by one."""
         settings = self.settings
         lost = (settings.estimate.snap[1] or settings.strongest[1]) if settings.is_toothed else 0.0
         assert self.search is not None

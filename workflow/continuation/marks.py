@@ -82,7 +82,7 @@ def _separation(branch: Trace, peak: Peak, scene: Scene, settings: Settings) -> 
 
 
 def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: float) -> Reading:
-    """a at the largest tension; where that may be another tooth by `missed` [FU], the radius may be the one there.
+    """a at the force maximum; where that may be another one by `missed` [FU], the radius may be the one there.
 
     A jump comes anywhere on the way to the next row, and may leave nothing to read a radius off.
     """

@@ -1,4 +1,4 @@
-"""The reduced model in the place of LAMMPS: the same script goes through it, the same reader reads it."""
+"""The reduced model in the position of LAMMPS: the same script goes through it, the same reader reads it."""
 
 from __future__ import annotations
 

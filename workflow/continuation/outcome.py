@@ -132,7 +132,7 @@ def in_words(shares: Mapping[str, float]) -> str:
 
 
 def unmet(results: Mapping[str, Result], tolerance: float, without: Iterable[str] = ()) -> dict[str, float]:
-    """Relative uncertainties of the results that are known less well than the tolerance, by name.
+    """Relative uncertainties of the results that exceed the tolerance, by name.
 
     Args:
         results: what the scene prescribes is none of them.

@@ -24,7 +24,7 @@ SAME = 1e-9
 """Distance of two rows over the way that are one."""
 WINDOW_ROWS, ZOOM_FACTOR, RIVAL_SHARE = 8, 0.25, 0.05
 """Of a schedule that is run again: rows on either side of the largest tension, width of that window over the one
-before, and teeth within this share of the largest that are all looked at in the first one."""
+before, and maxima within this share of the largest that are all examined in the first one."""
 
 
 class ReplayedBranch(Branch):
@@ -131,7 +131,7 @@ class ReplayedBranch(Branch):
         """Nothing: a schedule that was run again has parted the bodies."""
 
     def _growth(self, state: State, largest: float) -> float:
-        """They grow only where no tooth can be higher any more."""
+        """They grow only where no maximum can be higher any more."""
         return GROWTH if self._still_held(state) < largest else 1.0
 
 

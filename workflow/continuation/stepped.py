@@ -55,7 +55,7 @@ class SteppedBranch(Branch):
         """Rows from F = 0 to just before the limit point, then about the largest tension.
 
         Raises:
-            DigitsError: it is nothing beside the last digits of positions.
+            DigitsError: it is below the round-off error of positions.
         """
         zero, last = self._last.displacement, self.model.apart
         end = zero + (1.0 - LAST) * (last - zero)

@@ -156,7 +156,7 @@ def of_model(
     spacing: float,
     limit: float,
 ) -> Trace:
-    """The trace of what the reduced model followed, with particles that carry nothing beside the contact."""
+    """The trace of what the reduced model followed, with unloaded particles on both sides of the contact."""
     beside = spacing * np.arange(1, BESIDE + 1)
     x = np.concatenate([followed.x[0] - beside[::-1], followed.x, followed.x[-1] + beside])
     none = np.zeros_like(x)

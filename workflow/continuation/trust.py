@@ -33,7 +33,7 @@ COMPLIANCE_FACTOR = 2.0
 """Error of an equilibrium over that of the force on particles held in place: they follow it, and a table's error, here
 at the distances that happen to be there, is half of what it is between two entries on average."""
 SLOWNESS_RATIO = 10.0
-"""Timesteps to settle over those with automatic values from which on it is told: seconds become minutes."""
+"""Timesteps to settle over those with automatic values from which on it is reported: seconds become minutes."""
 
 
 def require_trust(scene: Scene, settings: Settings, state: State, moving: bool = False) -> None:
@@ -83,7 +83,7 @@ def _against_passing(scene: Scene) -> str:
 
 
 def _more_particles(scene: Scene, settings: Settings) -> str:
-    """Which number is to grow: of the upper chain, where it has its own."""
+    """Which number to increase: that of the upper chain, if given."""
     if scene.bodies.upper_particles is not None:
         return f"more bodies.upper_particles than {settings.particles}, or leave it out"
     return f'more bodies.particles than {settings.particles} (or "auto")'

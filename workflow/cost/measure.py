@@ -52,7 +52,7 @@ class Measured:
         steps: minimiser iterations or timesteps of a run.
         memory_mb: peak resident memory of the LAMMPS process, NaN where the system does not tell.
         failure: why there are no numbers, "" where there are.
-        warnings: names of what limits the results; "tolerance <result>" where one is known less well than asked for.
+        warnings: names of what limits the results; "tolerance <result>" where the uncertainty of one exceeds it.
     """
 
     quantities: Annotated[Mapping[str, Quantity], Field(exclude=True)] = field(default_factory=dict)
@@ -83,7 +83,7 @@ def measure(
         folder: for run folders.
         repeats: rounds; runs longer than LONG_RUN take part in the first one only.
         workers: runs at a time.
-        progress: is told of each run that ends.
+        progress: informed of each run that ends.
     """
     done: dict[str, Measured] = {}
     with pool(min(workers, len(variants))) as executor:

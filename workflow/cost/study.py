@@ -58,7 +58,7 @@ def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, p
         folder: where run folders may stand for a while; it exists.
         repeats: rounds of measurement.
         workers: runs at a time.
-        progress: is told what begins, and of each run that ends.
+        progress: informed of what begins, and of each run that ends.
 
     Raises:
         SettingsError: the scene leads to no computable system.

@@ -98,7 +98,7 @@ class Deck:
         return replace(row, **read)
 
     def in_one_run(self, rows: Sequence[Row], skips: Sequence[int] = ()) -> str:
-        """All rows, each a place of the plate, in one run; `skips`: of which the state is not kept, else of none."""
+        """All rows, each a position of the plate, in one run; `skips`: of which the state is not kept, else of none."""
         columns = zip(*(row.texts(self.units.to_deck) for row in rows), strict=True)
         # A column is one word on one line, as LAMMPS has it.
         given = {name: f"[{','.join(texts)}]" for name, texts in zip(rows[0].columns(), columns, strict=True)}
@@ -143,7 +143,7 @@ class Deck:
 
     @property
     def keeps(self) -> bool:
-        """Whether states of the whole way are kept."""
+        """Whether states of the whole loading history are kept."""
         return self.scene.output is not None
 
     @property

@@ -40,7 +40,7 @@ def standing(scene: Scene, settings: Settings) -> list[Contribution]:
 
 
 def moving(scene: Scene, settings: Settings) -> list[Contribution]:
-    """Bodies whose particles find their own places, each on the spring of its bulk."""
+    """Bodies whose particles find their own positions, each on the spring of its bulk."""
     softer = min(settings.bulk_stiffness, scene.tangential_stiffness)
     coefficient = softer if settings.far else settings.bulk_stiffness
     found = [

@@ -56,7 +56,7 @@ class Displace(Row):
 
 @dataclass(frozen=True)
 class Draw(Row):
-    """The plate is put to a displacement and a place along x [LU], in a straight line, its particles with it."""
+    """The plate is put to a displacement and a position along x [LU], in a straight line, its particles with it."""
 
     step: ClassVar[str] = "sweep_along"
     displacement: float
@@ -96,7 +96,7 @@ class Hold(Row):
     """A load [FU], compression positive, until the plate is at rest, parted or through.
 
     Attributes:
-        start: 1: the place is kept to come back to, -1: first go back there, 0: go on.
+        start: 1: the position is kept to come back to, -1: first go back there, 0: go on.
         load: on the plate [FU].
         damping: coefficient of a particle [FU·TU/LU].
         drag: of the moving bodies over their inertia's share [FU·TU/LU].
@@ -126,7 +126,7 @@ class Phase:
     Attributes:
         name: what happens, one word.
         rows: all of one kind.
-        state: whether every atom's place and force are written after the last row.
+        state: whether every atom's position and force are written after the last row.
         begin: fragments that come before the first row.
         kept: with `[output] states`, whether the state of each row is kept; None: of all.
     """

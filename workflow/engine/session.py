@@ -49,7 +49,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class Installation:
-    """The LAMMPS that runs: version as YYYYMMDD, its packages, the MPI library, and which asked-for styles it lacks."""
+    """The LAMMPS that runs: version as YYYYMMDD, its packages, the MPI library, and which required styles it lacks."""
 
     version: int
     packages: tuple[str, ...]

@@ -38,7 +38,7 @@ FEWEST_STEPS = 10
 MOST_TENSION = 10.0
 """Tension over that of the estimate at which the bodies must have parted."""
 BARRIER = 0.99
-"""Share of the largest tension that has its place beyond the barrier."""
+"""Share of the largest tension that has its position beyond the barrier."""
 GONE, SURELY = 0.01, 50.0
 """Share of the largest tension that counts as none, and the energy over k_BT that a plate would need to come back."""
 WAITING_STEPS = 800
@@ -46,7 +46,7 @@ WAITING_STEPS = 800
 FOLDER = ".pulls"
 """Of the pulls with other seeds than the scene's, in the run folder, while they run."""
 LAGGING = 0.1
-"""Tension that drag takes while the bodies part, over the largest one, from which on it is told."""
+"""Increase of the load while drag delays the separation, over F_A, from which on it is reported."""
 FARTHEST = 1.1
 """Tension over that of the estimate at which a planned pull ends."""
 
@@ -57,7 +57,7 @@ class Detachment:
 
     Attributes:
         seed: of its heat.
-        force: the tension [FU] when the plate last left the place of the largest one.
+        force: the tension [FU] when the plate last left the position of the largest one.
         time: since the pull began [TU].
         phases: the schedule.
         states: of all rows, none where only the numbers are kept.
@@ -236,7 +236,7 @@ def _has_parted(scene: Scene, settings: Settings, ramp: Ramp, number: int, state
 def _needed(scene: Scene, settings: Settings) -> float:
     """Work [FU·LU] that keeps a plate from coming back: SURELY kT, and more than attraction gives it on its way.
 
-    That is F_A (d_A − d_0) at most, d_0 the place beyond which there is none.
+    That is F_A (d_A − d_0) at most, d_0 the position beyond which there is none.
     """
     assert scene.noise is not None
     estimate = settings.estimate

@@ -1,4 +1,4 @@
-"""Pull-off: compress by F_D, then find the largest tension that the contact holds."""
+"""Pull-off: compress by F_D, then find the maximum tensile force."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ LONGER = "use a longer experiment.distance or a stiffer cantilever"
 TEMPERATURE_BLOCKS = 20
 """Parts of the last leg whose spread gives the error of its temperature."""
 CLOSED = 5e-3
-"""Work that is neither dissipated nor stored, over the largest of the three, from which on it is told."""
+"""Residual of the energy balance, over its largest term, from which on it is reported."""
 
 
 class SlideExperiment(Experiment):
@@ -222,7 +222,7 @@ def is_steady(scene: Scene, settings: Settings, motion: Motion) -> str:
 
 
 def _swing(scene: Scene, settings: Settings, motion: Motion) -> str:
-    """That the plate swings on its cantilever for longer than the whole way took; "" where it does not."""
+    """That the period of the plate on its cantilever is longer than the slide; "" where it is not."""
     swing = cantilever_swing(scene, settings)
     if swing < motion.time[-1]:
         return ""
@@ -378,7 +378,7 @@ def _require_above(scene: Scene, settings: Settings, state: State) -> None:
     """Refuse a plate that has left the lower body, along it or off it.
 
     Raises:
-        OffEndError, PartedError: where it is, and what helps.
+        OffEndError, PartedError: where it is, with a suggested fix.
     """
     if state.smallest_distance > settings.cutoff:
         raise PartedError(

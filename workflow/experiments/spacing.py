@@ -1,6 +1,6 @@
-"""How many particles stand in a contact on the plane, where nobody said: so many that the lattice keeps the tolerance.
+"""The automatic spacing of a contact on the plane: so small that the discretisation error meets the tolerance.
 
-What the lattice leaves open is known before a run, from the reduced model (`continuation.budget`). It falls with the
+The discretisation error follows before a run from the reduced model (`continuation.budget`). It falls with the
 square of the spacing.
 """
 

@@ -136,7 +136,7 @@ def from_material(source: AnyContact, folder: AnyPath, progress: Progress | None
     Args:
         source: a TOML file, by its path, or its tables; see docs/identify.md.
         folder: run folder.
-        progress: told of phases and steps.
+        progress: informed of phases and steps.
 
     Raises:
         SceneError: the description has mistakes; all of them.

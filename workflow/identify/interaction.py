@@ -314,7 +314,7 @@ def identify(scene: Scene, target: Target, folder: Path, progress: Progress | No
         scene: a pull_off with attraction; its interaction's shape is kept.
         target: wanted.
         folder: run folder; it holds the last run.
-        progress: told of phases and steps.
+        progress: informed of phases and steps.
 
     Raises:
         IdentifyError: no interaction of this shape has the target, or the search does not end.

@@ -88,10 +88,10 @@ class Theories:
 LEAST_TABOR = 0.5
 """Tabor parameter μ below which no chain is offered: JKR's F_A is there 10 % below that of Maugis and Dugdale."""
 ATOM = 0.3e-9
-"""Diameter of an atom [m]: a contact that is narrower is none of a continuum."""
+"""Diameter of an atom [m]: continuum theory does not hold for narrower contacts."""
 ROUGH_SHARE, TOO_ROUGH_SHARE = 0.1, 1.0
-"""Roughness over the stretch δ_c at which a summit as blunt as the sphere lets go. Fuller and Tabor (1975): what holds
-falls with it, to a third or so at 1 and to nothing at 3; summits that are sharper let go sooner."""
+"""Roughness over the stretch δ_c at which an asperity as blunt as the sphere separates. Fuller and Tabor (1975): the
+pull-off force falls with it, to about a third at 1 and to zero at 3; sharper asperities separate earlier."""
 
 
 def judged(contact: AskedContact, theories: Theories) -> dict[str, str]:
@@ -161,7 +161,7 @@ def _down(value: float) -> str:
 
 
 def require_size(contact: AskedContact, radius: float) -> None:
-    """Refuse a contact under an atom, and one that is wide beside its sphere."""
+    """Refuse a contact narrower than an atom, and one that is not small compared with its sphere."""
     if radius < ATOM:
         raise IdentifyError(
             f"the contact radius is {prefixed(radius, 'm')}, less than an atom's diameter: no theory holds"

@@ -153,7 +153,7 @@ MOST_PARTICLES = 10_000_000
 MOST_PARTNERS = 5_000
 """Opposite particles within reach of one."""
 MOST_ROWS = 1_000_000
-"""Rows of a prescribed path, those on the way between two places included."""
+"""Rows of a prescribed path, those on the way between two positions included."""
 PER_PARTICLE = 2_000.0
 """Memory for each particle of a body, its opposite and both anchors [bytes]: measured, 2 GB at 10⁶."""
 PER_PAIR = 8.0
@@ -167,7 +167,7 @@ SHARPEST_RATIO = 1e3
 FARTHEST_RATIO = 1e9
 """Way of a body over cutoff and spacing: LAMMPS divides the box into no more bins, and coordinates lose the digits."""
 DIGIT_SHARE = 0.1
-"""Force that the last digit of a place may be, over one particle's and the tolerance: that of a converged state."""
+"""Force that the last digit of a position may be, over one particle's and the tolerance: that of a converged state."""
 MIX_UP = "All lengths (spacing, radius, ranges) are in LU: are some of them in another unit?"
 
 
@@ -245,12 +245,12 @@ def require_memory(scene: Scene, particles: int, cutoff: float) -> None:
 
 
 def require_digits(scene: Scene, particles: int, deepest: float, force: float) -> None:
-    """Refuse springs so stiff that the last digit of a place is more force than a particle at rest may be left with.
+    """Refuse springs so stiff that the last digit of a position is more force than a particle at rest may be left with.
 
     Args:
         scene: whose particles are brought to rest without time.
         particles: per body.
-        deepest: length that a place has beside the height of the last particle [LU].
+        deepest: length that a position has beside the height of the last particle [LU].
         force: of one particle, times the tolerance [FU].
 
     Raises:

@@ -165,7 +165,7 @@ def _swinging_apart(plate: float, particles: float, rate: float) -> float:
 
 
 MOST_ROWS, FEWEST_ROWS = 50, 20
-"""Measured states per spacing of the drive's way."""
+"""Measured states per spacing of the drive distance."""
 USUAL_STEPS = 10
 """Timesteps of a row below which measuring takes longer than moving, so that there are fewer rows."""
 FEWEST_STEPS = 5

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 CLEAR = 1e-9
 """Gap over the body's height in which it stands clear of the plane."""
 Stop = tuple[float, float]
-"""Displacement and place along x [LU]."""
+"""Displacement and position along x [LU]."""
 
 
 @dataclass(frozen=True)
@@ -75,14 +75,14 @@ def without_rests(way: Sequence[Stop]) -> list[Stop]:
 
 
 def sliders_of(scene: Scene, x: Array) -> Sliders:
-    """The sliders of a scene with [friction], at places `x` [LU] from the apex."""
+    """The sliders of a scene with [friction], at positions `x` [LU] from the apex."""
     assert scene.friction is not None
     heights = np.asarray(scene.bodies.height(x), dtype=np.float64)
     return Sliders(x, heights, scene.bulk_stiffness, scene.tangential_stiffness, scene.friction.coefficient)
 
 
 def stops(experiment: Tangential, sliders: Sliders) -> list[Stop]:
-    """Where each row of an experiment ends; before the first one the load is brought on at the place 0."""
+    """Where each row of an experiment ends; before the first one the load is brought on at the position 0."""
     normal = experiment.places()
     if not normal:
         found: dict[float, float] = {}

@@ -1,7 +1,7 @@
 """A slide's inertia in LAMMPS, whether it stays on its lower chain, whether particles can follow its drive.
 
 LAMMPS evaluates the drag of a step with the velocity half a step before: m a = F − γ (v − a Δt/2). With m + γ Δt/2 in
-the place of m that is m a = F − γ v. Otherwise a slip is as much too light as its drag is strong, which at usual
+the position of m that is m a = F − γ v. Otherwise a slip is as much too light as its drag is strong, which at usual
 timesteps is percents of its time and tenths of percents of a mean friction. The first half step of a row has the right
 velocity by itself, and so its share of the row is left out.
 """

@@ -1,4 +1,4 @@
-"""What a contact will roughly look like, before LAMMPS runs: independent opposite pairs under the undeformed profile.
+"""A predictor of the contact before LAMMPS runs: independent opposite pairs under the undeformed profile.
 
 A particle on each side, each on its spring k, at the actual distance r have the undeformed gap
 
@@ -24,7 +24,7 @@ from contact1d.potentials import DoubleExponential
 
 Array = NDArray[np.float64]
 PLACES, NEAR = 1000, 0.01
-"""Places at which a profile is tabulated, and the first one beyond its apex over the spacing."""
+"""Positions at which a profile is tabulated, and the first one beyond its apex over the spacing."""
 
 
 def places_within(reach: float, spacing: float, phase: float) -> Array:
@@ -83,7 +83,7 @@ FARTHEST = 1e12
 """Displacement over spacing and force-free distance beyond which none is looked for: no deck holds it
 (`chain.require_travel`)."""
 CUTS, PARTS = 5, 17
-"""How often the bracket of a displacement is cut, and at how many places: then the force is straight in it to 1e-10.
+"""How often the bracket of a displacement is cut, and at how many positions: then the force is straight in it to 1e-10.
 `scipy.optimize.brentq` would do it too, but its import takes a quarter of the time of a whole small run."""
 DIFFERENCE = 1e-3
 """Difference of two displacements whose forces give a stiffness, over the way since the bodies feel each other."""
@@ -92,12 +92,12 @@ FLATNESS = 1e-6
 SOFTEST_SHARE = 0.998
 """Tension over the largest one at which a contact counts as softest: at the largest itself it has no stiffness left."""
 TEETH_POINTS, TOOTH = 2000, 1e-4
-"""Displacements at which the tension of a chain is summed, and the fall between two of its teeth over the largest."""
+"""Displacements at which the force of a chain is summed, and the fall between two of its maxima over the largest."""
 UNRELAXED = 20.0
-"""Force under which a pair lets go at rest over the norm at which a relaxation stops; measured: 17 and 18, at
+"""Force at which a relaxed pair separates over the norm at which a relaxation stops; measured: 17 and 18, at
 tolerances of 1e-2 and 1e-3."""
 ROUNDS, EDGES = 12, 33
-"""How often a bracket is cut, and at how many places: a bisection's step takes as long, and 60 give all digits."""
+"""How often a bracket is cut, and at how many positions: a bisection's step takes as long, and 60 give all digits."""
 
 
 class NotCarriedError(ValueError):
@@ -121,7 +121,7 @@ class ContactEstimate:
         spacing: [LU].
         stiffness: contact stiffness of one particle [FU/LU], both springs in series.
         snaps: whether pairs snap: G(r) falls somewhere, so that loading and unloading differ.
-        bend: |d²G/dr²| where a joined pair lets go [1/LU]; 0 where none snaps.
+        bend: |d²G/dr²| at the limit point of a joined pair [1/LU]; 0 where none snaps.
         outer: where pairs snap, the gap made monotone from outside [LU]: on it a pair comes near.
     """
 
@@ -202,9 +202,9 @@ class ContactEstimate:
 
     @cached_property
     def tooth(self) -> Callable[[int], float]:
-        """Least distance [LU] of two tops of the tension, between which it falls by TOOTH of the largest; inf for one.
+        """Least distance [LU] of two maxima of the force, between which it falls by TOOTH of the largest; inf for one.
 
-        Summed over the particles of a chain of so many: where they let go one by one, F(d) has a tooth for each.
+        Summed over the particles of a chain of so many: where they separate one by one, F(d) has a maximum for each.
         """
         return cache(self._tooth)
 
@@ -214,7 +214,7 @@ class ContactEstimate:
 
         Raises:
             NotCarriedError: the particles stand on each other before it does.
-            OverflowError: the spacing is too small beside the body.
+            OverflowError: the spacing is too small compared with the body.
         """
         return cache(self._displacement_at)
 
@@ -232,7 +232,7 @@ class ContactEstimate:
 
     @cached_property
     def snap(self) -> tuple[float, float]:
-        """(undeformed gap [LU] at which a pair lets go, tension [FU] that it loses then); the end, 0 if none does."""
+        """(undeformed gap [LU] at the snap-out of a pair, tension [FU] that it loses then); the end, 0 if none does."""
         rises = np.diff(self.gap)
         level = np.flatnonzero(rises < FLATNESS * rises.mean())
         if level.size == 0:
@@ -253,9 +253,9 @@ class ContactEstimate:
         return float(self.gap[-1])
 
     def let_go_early(self, move: float, force: float) -> float:
-        """How far [LU] before its time a pair lets go of a body that is drawn away by `move` [LU] at a time.
+        """Premature detachment [LU] of a pair under displacement increments `move` [LU].
 
-        A move h puts a joined pair h further apart before it relaxes. That is beyond the unstable place next to it,
+        A move h puts a joined pair h further apart before it relaxes. That is beyond the unstable position next to it,
         which is 2 √(2 e/|G″|) away at a gap e before the fold of G(r), up to e = h² |G″|/8. What a relaxation to a norm
         F of the forces [FU] leaves adds to h: it is lost at e = UNRELAXED · 2F/k itself.
         """
@@ -265,7 +265,7 @@ class ContactEstimate:
         return 0.125 * self.bend * (move + math.sqrt(8.0 * left / self.bend)) ** 2
 
     def stuck_stiffness(self, displacement: float) -> float:
-        """Contact stiffness [FU/LU] of all pairs together that have not let go at a displacement [LU]; one at least."""
+        """Contact stiffness [FU/LU] of all pairs that are in contact at a displacement [LU]; one at least."""
         lets_go = self.snap[0] if self.snaps else float(self.gap[self.force.argmin()])
         width = 2.0 * self.half_width(displacement, lets_go)
         return max(1.0, width / self.spacing) * self.stiffness

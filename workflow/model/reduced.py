@@ -36,9 +36,9 @@ FEWEST = 4.0
 """Least half-width up to which they are counted, over the spacing."""
 ROUNDS, POINTS, SNAPPING = 5, 24, 10
 """How often the bracket of a displacement is cut, and at how many positions: so many times more at first where pairs
-snap, and the force is a row of teeth."""
+snap, and the force has many maxima."""
 NEAREST = 1e-9
-"""Of the way from the limit point to the largest displacement, the nearest that is looked at."""
+"""Distance from the limit point, over that to the largest displacement, from which positions are examined."""
 TOUCH = 1e-9
 """Distance over the spacing at which bodies touch: round-off of a displacement of 0."""
 

@@ -85,7 +85,7 @@ Array = NDArray[np.float64]
 REACH = 40.0
 """Reach of the sums, and of the longest cutoff, over the law's longest range."""
 PLACES, HEIGHTS = 33, 400
-"""Places within half a spacing, and heights, that are looked at."""
+"""Positions within half a spacing, and heights, that are looked at."""
 LEFT_OUT = 0.1
 """Force of a pair at the cutoff over the largest force along x, per unit of tolerance: each pair that comes within
 reach, or leaves it, changes that by so much at once."""
@@ -212,7 +212,7 @@ table that is smoothed any earlier lets bodies through that the law still carrie
 ROWS_IN_TIME = 100
 """States of a motion that is followed for a given time."""
 FAR_SHARE = 10.0
-"""Length of a long bond over the spacing, per 1/tolerance: a sideways move u bends its force by u/2L."""
+"""Length of a long bond over the spacing, per 1/tolerance: a lateral move u turns its force by u/2L."""
 STAGGER_SHARE = 5e-4
 """Shift of a plate's anchors out of the plane, to and fro, over the chain's length.
 
@@ -310,7 +310,7 @@ class Settings:
 
     @cached_property
     def is_toothed(self) -> bool:
-        """Whether the tension falls between two of its tops: pairs let go one by one; they snap, or nearly so."""
+        """Whether the tensile force has several maxima: pairs separate one by one; they snap, or nearly so."""
         return self.snaps or (self.law is not None and self.estimate.tooth(self.particles) < math.inf)
 
     @property
@@ -344,7 +344,7 @@ class Settings:
         return rows, math.ceil(total / rows)
 
     def let_go_early(self, move: float) -> float:
-        """How far [LU] before its time a pair lets go of a body that is drawn away by `move` [LU] at a time."""
+        """Premature detachment [LU] of a pair under displacement increments `move` [LU]."""
         return self.estimate.let_go_early(move, self.force_tolerance)
 
     def in_smaller_steps(self, part: float) -> Settings:

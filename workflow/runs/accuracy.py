@@ -91,7 +91,7 @@ def reported(scene: Scene, outcome: Outcome) -> Outcome:
 
 
 def open_results(scene: Scene, outcome: Outcome) -> dict[str, float]:
-    """Results that are known less well than the tolerance on the very lattice that ran; under noise none is."""
+    """Results whose uncertainty exceeds the tolerance, without the discretisation error; with noise none."""
     return (
         {} if scene.noise is not None else unmet(outcome.results, scene.accuracy.tolerance, (LATTICE, "input", MODEL))
     )

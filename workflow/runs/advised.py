@@ -1,4 +1,4 @@
-"""A scene to a finished run folder, or to an error that says what helps: the first change that it carries is tried."""
+"""A scene to a finished run folder, or to an error with a suggested fix: the first change that it carries is tried."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
     Args:
         reader: gives the scene with an edit.
         error: the scene's, without.
-        progress: told of the trial.
+        progress: informed of the trial.
     """
     found = _tried(reader, error, progress)
     if not found:

@@ -62,7 +62,7 @@ def run(
         scene: a `Scene`, or what `read_scene` makes one of: a file, TOML text, tables.
         folder: made if it does not exist; an earlier run in it is replaced.
         figures: whether to draw, or the format: "png" (as True has it), "svg" or "pdf".
-        progress: told of phases and steps.
+        progress: informed of phases and steps.
         time_limit: wall time for LAMMPS [s].
         settings: in place of those that `settings_for` chooses and refines; for cost studies.
         retries: whether smaller steps are tried where the bodies went through each other; a trial does without.
@@ -207,7 +207,7 @@ def prepare(folder: Path) -> Path:
 
 @contextmanager
 def alone(folder: Path, busy: str = "another run is active in") -> Iterator[None]:
-    """Hold the folder against others; the system lets go of it whatever happens to this process."""
+    """Lock the folder; the system releases it whatever happens to this process."""
     with (folder / LOCK).open("w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

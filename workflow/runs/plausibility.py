@@ -1,6 +1,6 @@
 """Numbers of a scene and its results that no contact in a laboratory has: most often a unit that was forgotten.
 
-They are told, and nothing is refused: the model knows no atoms, and gives its numbers for any size.
+They are warnings, and nothing is refused: the model has no atoms, and gives its numbers for any size.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ ATOM = 1e-10
 
 @dataclass(frozen=True)
 class Usual:
-    """What a number usually is in SI, from `least` to `most`, and what one outside is told."""
+    """The usual range of a number in SI, from `least` to `most`, and the warning outside of it."""
 
     key: str
     name: str

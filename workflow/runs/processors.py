@@ -42,7 +42,7 @@ class _Pool(ProcessPoolExecutor):
     """
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
-        """As any executor's. A process starts here, if at all, and is told of what is `__main__` meanwhile."""
+        """As any executor's. A process starts here, if at all, and gets another `__main__` meanwhile."""
         main = sys.modules["__main__"]
         sys.modules["__main__"] = ModuleType("__main__")
         try:

@@ -78,7 +78,7 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
 
 
 def _open(scene: Scene, outcome: Outcome) -> dict[str, float]:
-    """Main results that are known less well than the tolerance on the very lattice that ran."""
+    """Main results whose uncertainty exceeds the tolerance, without the discretisation error."""
     main = {name: one for name, one in outcome.results.items() if name in kind_of(scene).main_results}
     return unmet(main, scene.accuracy.tolerance, (LATTICE,))
 

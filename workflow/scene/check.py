@@ -1,7 +1,7 @@
 """Each table of a scene by itself: every mistake, reported once and in the words of the scene file.
 
 A misspelt word that can only mean one thing is reported and then read as what was meant, so that the rest of its table
-and the rules across tables are checked in the same go.
+and the rules across tables are checked as well.
 
 Numbers with units in a scene, "10 mm", as numbers in the scene's own units LU, FU, MU, TU = √(MU·LU/FU).
 
@@ -345,7 +345,7 @@ class Conversion:
 
 
 def _positive(value: Any) -> Fraction | None:
-    """A number of [material] as the exact decimal that stands there; None for what is none, which is told elsewhere."""
+    """A number of [material] as the exact decimal given; None for what is none, which is reported elsewhere."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < math.inf:
         return None
     return Fraction(repr(value))

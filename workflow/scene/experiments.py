@@ -1,6 +1,6 @@
 """The experiments of a scene: load, path, pull_off, slide, tangential; and hold, which is not in `Experiment` yet.
 
-Each says beside its keys what it needs and what it excludes: the rules read no more of it than that.
+Each declares its keys, what it needs and what it excludes: the rules read nothing else of it.
 
 A prescribed path from d₀ to d₁ in n steps holds d_i = (d₀ (n − i) + d₁ i)/n for i = 0…n, and back in the same places.
 """
@@ -100,7 +100,7 @@ class Kind(Table):
         only_with_noise: keys that say how a thermal one is repeated.
         load_key: the key of its one normal force, which but for a preload may pull where the bodies attract each other.
         finds_pull_off: whether its results have F_A and a₀.
-        way_is_given: the scene prescribes the whole way, so that nothing is searched for and no state is ambiguous.
+        way_is_given: the scene prescribes the loading history, so that nothing is searched for and states are unique.
         motion_is_result: the motion itself is looked at, so that the scene exists in time only and its drag is its own.
         draws_off: the plate is drawn off through a spring along z.
         goes_along: the scene also prescribes places along x, on a plane, and has no other method.

@@ -201,7 +201,7 @@ class Bodies(Table):
     """
 
     def height(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Height [LU] of the upper chain above its apex at the places `x` [LU], as its reduction has it."""
+        """Height [LU] of the upper chain above its apex at the positions `x` [LU], as its reduction has it."""
         return self.profile.transformed(x) if self.reduction == "mdr" else self.profile.height(x)
 
     @property

@@ -1,6 +1,6 @@
 """A sweep: the points that are missing run, on this machine or as jobs of Slurm; the table and figures have them all.
 
-What is done is told by the run folders alone, so a sweep that was broken off at any moment goes on by the same command.
+The run folders alone record what is done, so the same command continues a sweep that was interrupted at any moment.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ def sweep(
         executor: "local", "slurm", or anything with the interface of `concurrent.futures`.
         workers: processes, or jobs of Slurm, at a time; None: as many as there are processors.
         figures: whether to draw, or the format: "png" (as True has it), "svg" or "pdf".
-        progress: told of each point.
+        progress: informed of each point.
         partition: of Slurm; None: its default.
 
     Raises:
