@@ -1,4 +1,4 @@
-"""The pressure under an axisymmetric body from the line load of its plane image: the inverse Abel transform, p(r).
+"""The pressure under an axisymmetric body from the line load of its image: the inverse Abel transform, p(r).
 
 The method of dimensionality reduction (MDR) keeps force, displacement and radius; its line load q(x) [force/length] is
 the body's pressure p(r) seen from the side, and so (Popov and Heß 2015, chapter 2; W. C. Hayes' form of Sneddon's)
@@ -31,7 +31,7 @@ from numpy.typing import ArrayLike
 from contact1d.analysis.pressure import Array, spacing_of
 
 NEAR = 0.3
-"""Of a spacing: a place nearer to the edge than that is left out, since a slope over so short a way is mostly noise."""
+"""Of a spacing: a place closer to the edge than that is left out, since a slope over so short a way is mostly noise."""
 WHOLE = 0.5 - 1e-6
 """The same where q jumps to 0 at the edge: a particle stands for so much to either side, and has less where the edge
 cuts that off."""

@@ -1,4 +1,4 @@
-"""Files of a run: curve.csv, profile.csv, friction.csv, states.npz; written whole or not at all, all digits kept."""
+"""Files of a run: curve.csv, profile.csv, friction.csv, states.npz; written atomically, with all digits."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ FRICTION_COLUMNS = (
 DETACHMENTS = "detachments"
 """Name of the table, and of the figure, of a thermal pull-off."""
 DETACHMENT_COLUMNS = ("seed", "force", "time")
-"""Of it, one row for each pull: tension when the bodies part [FU], time since the pull began [TU]."""
+"""Of it, one row for each pull: tension when the bodies separate [FU], time since the pull began [TU]."""
 SAMPLE_TABLE = "samples"
 """Name of the table, and of the figure, of a contact with noise."""
 SAMPLE_COLUMNS = ("time", "load", "displacement", "force", "contact_radius")

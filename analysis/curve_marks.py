@@ -1,4 +1,4 @@
-"""Reading marks off a curve F(d): where it crosses a force, where its tension is largest, the area of a closed one."""
+"""Marks of a curve F(d): its crossing of a force, its force maximum, the hysteresis of a closed one."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from contact1d.analysis.polynomial import Array, lowest_minimum, real_roots, thr
 
 @dataclass(frozen=True)
 class Peak:
-    """The largest tension of a sampled curve.
+    """The force maximum of a sampled curve.
 
     Attributes:
         index: of the sampled point.
@@ -218,7 +218,7 @@ class Work:
     Attributes:
         area: ∫ F dd [FU·LU], by the trapezoidal rule; of a closed path what it dissipates.
         uncertainty: of it, by the rows between which F is not known [FU·LU].
-        whole: ∫ |F| |dd| [FU·LU]: of all that is done on the way.
+        whole: ∫ |F| |dd| [FU·LU]: of all that is done on the path.
         length: ∫ |dd| [LU].
     """
 

@@ -26,7 +26,7 @@ expansion of the quantile: Abramowitz and Stegun 26.7.5)."""
 FEWEST_BLOCKS = 2
 """Periods that a mean needs after the run-in."""
 DROPPED = 1
-"""Periods that always belong to the run-in: they hold the way from the start to the first slip."""
+"""Periods that always belong to the run-in: they hold the path from the start to the first slip."""
 MOST_PAIRED = 4
 """Periods that may be one block, if that leaves so many blocks: slips may repeat after several periods only."""
 FASTER = 2.0

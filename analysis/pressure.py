@@ -99,7 +99,7 @@ def smallest_distance(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike
 
     x_upper, z_upper [LU], (n,); x_lower, z_lower [LU], (m,). Raises ValueError where a body has no particle or a
     position is not finite. The lower particle next to the position above which each upper one stands gives a first
-    distance, and no other pair is looked at but those that are within it along x: for chains a few.
+    distance, and no other pair is examined but those that are within it along x: for chains a few.
     """
     (across, height), (x, z) = _sorted_by_x(x_upper, z_upper), _sorted_by_x(x_lower, z_lower)
     if not (across.size and x.size):

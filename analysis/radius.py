@@ -38,7 +38,7 @@ Between them it is taken as a straight line. Over 6900 random contacts of indepe
 as sharp as two spacings, it covers at least 94 % of the errors of every size of contact; without, 85 to 90 %.
 """
 MIRROR_DISTANCE = 0.25
-"""Distance beyond the centre, over the spacing, from which on a largest tension is that of the other side."""
+"""Distance beyond the centre, over the spacing, from which on a force maximum is that of the other side."""
 TIE_DIFFERENCE = 1e-5
 """Difference of two pressures over the largest |p| that a minimiser leaves between mirror images."""
 SAME_PLACE = 1e-9
@@ -145,7 +145,7 @@ def _centre(x: Array, p: Array) -> float:
 
 
 def _edge(x: Array, p: Array, centre: float, outwards: float) -> Place:
-    """The largest tension on one side of the centre; outwards: the spacing, negative for the left side [LU].
+    """The force maximum on one side of the centre; outwards: the spacing, negative for the left side [LU].
 
     A particle just beyond the centre belongs to both sides, so that a single spot is found by both. Where it is no spot
     at the centre but ties with its mirror image, the mirror image counts.

@@ -1,7 +1,7 @@
-"""Shear under Coulomb's friction: who sticks and who slips, and the traction q(r) under an axisymmetric body.
+"""Shear with Coulomb's friction: stick and slip zones, and the traction q(r) under an axisymmetric body.
 
-With the tangential force s and the normal one f of a particle |s| ≤ μ f. It sticks where some of μ f is left in the
-direction in which its body was moved last, μ f − s to the right and μ f + s to the left; where none is left, it slips.
+The tangential force s and the normal force f of a particle obey |s| ≤ μ f. It slips where |s| = μ f in the direction of
+the last motion of its body, s = μ f to the right and s = −μ f to the left; otherwise it sticks.
 
 The line shear of the plane image has kinks. As the pressure (`analysis.abel`) it is the inverse Abel transform q(r) =
 -(1/pi) int_r^inf q'(x)/sqrt(x^2 - r^2) dx (Popov and Hess 2015, chapter 5). Where a zone that sticks and one that
@@ -25,7 +25,7 @@ from contact1d.analysis.radius import ContactRadius, compressive_radius
 ROUND_OFF = 1e-10
 """Remaining μ f over the largest μ f below which there is none: a history is a sum over all rows."""
 NEAR = 1e-6
-"""Of a spacing: a particle nearer to a kink than that belongs to it."""
+"""Of a spacing: a particle closer to a kink than that belongs to it."""
 
 
 def stick_margin(profile: Profile, coefficient: float, direction: int) -> Array:

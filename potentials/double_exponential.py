@@ -1,4 +1,4 @@
-"""The two-exponential law with a finite core, V(r) = A exp(−r/a) − B exp(−r/b) (Geike and Popov 2007, Section 3.1)."""
+"""A pair potential with a finite core, V(r) = A exp(−r/a) − B exp(−r/b) (Geike and Popov 2007, Section 3.1)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""LAMMPS `pair_style table` files of a central law, exact down to a particle standing on its opposite.
+"""LAMMPS `pair_style table` files of a central interaction, exact down to zero distance of opposite particles.
 
 LAMMPS interpolates g(s) = f(r)/r over s = r² on a uniform grid and stops where a pair comes closer than the first
 entry. The two bodies therefore lie in parallel planes a small offset ε apart (out of plane, with no motion there), and

@@ -1,6 +1,6 @@
 """Which theory of an adhesive sphere holds, and those of an attraction with a range: DMT, Maugis and Dugdale.
 
-The Tabor parameter mu = (R W^2/(E*^2 z_0^3))^(1/3) is the elastic stretch of the surfaces before they part over the
+The Tabor parameter mu = (R W^2/(E*^2 z_0^3))^(1/3) is the elastic stretch of the surfaces before they separate over the
 range z_0 of the attraction: JKR (`indenters`) holds for a large one, DMT for a small one, Maugis and Dugdale between
 the two. The map is that of K. L. Johnson, J. A. Greenwood, J. Colloid Interface Sci. 192 (1997) 326, after D. Tabor,
 ibid. 58 (1977) 2: the zones are theirs. Their figure was not at hand: each boundary is a criterion written out below,
@@ -24,7 +24,7 @@ import numpy as np
 from contact1d.analysis.theory.indenters import Contact, PowerLaw, require_positive
 
 LENNARD_JONES_STRESS = 16.0 / (9.0 * math.sqrt(3.0))
-"""1.026: the largest tension of the 9-3 surface law of Lennard-Jones over W/z_0; taken as sigma_0."""
+"""1.026: the force maximum of the 9-3 surface law of Lennard-Jones over W/z_0; taken as sigma_0."""
 LAMBDA_OVER_TABOR = 2.0 * LENNARD_JONES_STRESS * math.cbrt(9.0 / (16.0 * math.pi))
 """1.157: lambda over the Tabor parameter mu, for the sigma_0 of Lennard-Jones."""
 LARGEST_CRITICAL_RADIUS = 1.5
@@ -106,7 +106,7 @@ class MaugisDugdale(Dmt):
     Args:
         radius, contact_modulus, work_of_adhesion: as of `Dmt`.
         range_of_attraction: z_0, the force-free distance of two surfaces [length]; for another law than that of
-            Lennard-Jones a distance of the order of W over the largest tension, which moves mu by a factor near 1.
+            Lennard-Jones a distance of the order of W over the force maximum, which moves mu by a factor near 1.
             lambda was tried from 1e-6 to 1e4.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Rigid axisymmetric indenters on an elastic half space in closed form, with adhesion of no range or without.
+"""Rigid axisymmetric indenters on an elastic half space in closed form, with adhesion of zero range or without.
 
 A contact of radius a has, with the power-law profile z = c r^n and kappa_n = (sqrt(pi)/2) n Gamma(n/2)/Gamma((n+1)/2),
 
@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 RIM = 1.0 - 1e-12
-"""Of the radius of a whole sphere, up to which its contact is looked for: at the rim there is no bound."""
+"""Of the radius of a whole sphere, up to which its contact is sought: at the rim there is no bound."""
 CURVE = 400
 """Points of a curve."""
 POINTS = 200
@@ -74,7 +74,7 @@ class Contact(ABC):
         return 0.0
 
     def pull_off_force(self) -> float:
-        """Return F_A, the largest tension under a fixed load, a positive magnitude [force]."""
+        """Return F_A, the force maximum under a fixed load, a positive magnitude [force]."""
         return -self.force(self.critical_radius())
 
     def zero_load_radius(self) -> float:
@@ -96,11 +96,11 @@ class Contact(ABC):
         """Return the stable a with d(a) = `displacement` under fixed grips [length].
 
         Raises:
-            ValueError: if the bodies have parted before.
+            ValueError: if the bodies have separated before.
         """
         low = self.fixed_grips_radius()
         if displacement < self.displacement(low):
-            raise ValueError(f"the bodies part at the displacement {self.displacement(low)}")
+            raise ValueError(f"the bodies separate at the displacement {self.displacement(low)}")
         return self._where(self.displacement, displacement, low)
 
     def curve(self, least: float, largest: float) -> Floats:

@@ -1,4 +1,4 @@
-"""Cattaneo and Mindlin: two spheres pressed together by N and displaced along each other by u, with Coulomb's friction.
+"""Cattaneo and Mindlin: two spheres under a normal load N, displaced tangentially by u, with Coulomb's friction.
 
     F_x = mu N [1 - (1 - u/u*)^(3/2)],    c/a = (1 - u/u*)^(1/2),    u* = mu (E*/G*) d
 
@@ -24,7 +24,7 @@ def sliding_displacement(friction: float, ratio: float, displacement: float) -> 
 
 
 def _ways(places: Sequence[float]) -> list[list[float]]:
-    """Return at each position how far it is from the first remembered turn, and half of the way from each to the next.
+    """Return at each position how far it is from the first remembered turn, and half of the path from each to the next.
 
     A turn is forgotten where the way goes beyond the one before it, or of the first one beyond its mirror image.
     """

@@ -1,4 +1,4 @@
-"""Files that are whole or not there, written under a temporary name and renamed; text files of a user, read safely."""
+"""Atomic writing of files, under a temporary name that is renamed; safe reading of text files of a user."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ TERMS = {
     r"area of (a|the|its) loop": "hysteresis, dissipated energy",
     r"largest tension (that )?(it|they|a contact|the contact|held)": "pull-off force, force maximum",
     r"answers? to the hand": "interactive",
-    r"installation is (not )?whole": "installed correctly, complete",
+    r"installation (is (not )?)?whole": "installed correctly, complete",
     r"where it has it\b(?! )": "contact edge, cohesive zone",
     r"sums over arms|Prony's sums": "Prony series",
     r"go on for ?ever|endless(ly)?": "periodic; too large",

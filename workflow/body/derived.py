@@ -1,8 +1,8 @@
-"""Results that follow from others: the work of adhesion that an interaction implies, and what is the body's own.
+"""Results that follow from others: the work of adhesion that an interaction implies, and those of the body.
 
-One particle parts from the row of opposite ones, s apart, by the work w = ∫ −f dr from its force-free distance on, so
-that a length of chain holds w/s. Where the edge of a contact of radius a recedes by da, both ends of the chain part by
-da, and the ring 2πa da of the body's surface parts:
+w = ∫ −f dr from the force-free distance on separates a particle from the opposite chain of spacing s: w/s per length
+of chain. As the edge of a contact of radius a recedes by da, a length da of chain separates at both ends, and the ring
+2πa da of the body's surface:
 
     mdr:           2 (w/s) da = W 2πa da                          W = w/(π s a)
     geike_popov:   two equal spheres, half as wide as the image   W = 4w/(π s a),   a the image's

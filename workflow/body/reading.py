@@ -1,6 +1,6 @@
-"""Which body the numbers of a run are of: under the paper's reduction a length of the plane image is not the body's.
+"""Which body the results of a run describe: with the paper's reduction a length of the image is not that of the body.
 
-The reduction of Geike and Popov stands for two equal spheres R. Their force and displacement are the run's; their
+The reduction of Geike and Popov represents two equal spheres R. Their force and displacement are the run's; their
 contact radius is half of the image's half-width, and their mean pressure F/πa² four times that of the image. Where
 that reduction is the scene's own choice against the default, what the run calls
 `contact_radius` is reported as `image_contact_radius`, and `contact_radius` is that of the two spheres.

@@ -1,7 +1,7 @@
-"""The closed forms beside the results of a run: one table, each with when it applies and what it says of the results.
+"""The closed forms to compare a run with: one table, each with its conditions and its predictions of results.
 
-Pressed without adhesion: Hertz, Sneddon, Galin. Adhesive on a plane: JKR and its like for other profiles, Maugis and
-Dugdale with a range. A sphere that an interaction holds: JKR, Maugis and Dugdale or DMT by the Tabor parameter.
+Pressed without adhesion: Hertz, Sneddon, Galin. Adhesive on a plane: JKR and its extensions to other profiles, Maugis
+and Dugdale with a range. A sphere with an interaction: JKR, Maugis and Dugdale or DMT by the Tabor parameter.
 Tangential displacement with friction: Cattaneo and Mindlin.
 
 results.json has them as `theory`: a list of {"name", "source", "applies", "values"}; of each result in `values` the
@@ -391,4 +391,4 @@ FORMS = (
     ClosedForm("Cattaneo and Mindlin", "C. Cattaneo 1938; R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327",
                _drawn_along, _mindlin_values),
 )  # fmt: skip
-"""Every closed form that a run is laid beside; which of them applies each says itself."""
+"""Every closed form that a run may be compared with; each has its own conditions."""

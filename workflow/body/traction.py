@@ -28,7 +28,7 @@ MOST = 1000
 RADII = 100
 """Evenly from 0 to the contact radius, at which q is given, and at its kinks besides."""
 BETWEEN = 101
-"""Radii between two particles at which the largest pressure is looked for."""
+"""Radii between two particles at which the largest pressure is searched."""
 TIP, KNOWN_TIP, KINK = 1e-3, 1e-9, 0.5
 """A profile has an apex where so little of a spacing off the axis its slope is that share of the one to a spacing; the
 second where the body's own shape is taken, and not what particles make of it."""

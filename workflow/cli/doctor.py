@@ -1,4 +1,4 @@
-"""Is this installation whole? One check per thing that a run needs, each with what to do if it is not there.
+"""Check of the installation: one check for each requirement of a run, with a suggested fix.
 
 checks() ──▶ [Check(name, ok, detail, advice), …]
 """

@@ -1,4 +1,4 @@
-"""How every command ends: done, or in words on standard error and with an exit code. The one reader of scene files."""
+"""How every command ends: done, or with a message on standard error and an exit code. The one reader of scene files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a finished run says on a terminal: its numbers with uncertainty, the pressure profile, a material's regime."""
+"""Terminal output of a finished run: its results with uncertainty, the pressure profile, the regime of a material."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""A connected branch of states under displacement control: visit, reach a force, find the largest tension.
+"""A connected branch of states under displacement control: visit, reach a force, find the force maximum.
 
-Here a state does not depend on the path, so that a position is visited whenever it is wanted. Where that is not so
-(`replayed`), and where rows cost next to nothing (`stepped`), the same is done in another way.
+Here a state does not depend on the path, so that any position can be visited at any time. Subclasses are for states
+that depend on the path (`replayed`) and for load steps of negligible cost (`stepped`).
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from contact1d.workflow.deck.steps import Displace, DisplaceInTime, displacement
 
 Array = NDArray[np.float64]
 MOST_INCREMENTS = 10_000
-"""Rows of one stretch of a search; a search that needs more has no end in sight."""
+"""Load steps of one stretch of a search; a search that needs more has no end in sight."""
 MOST_ROUNDS = 60
-"""Refinements of a largest tension, each of which may halve the increment beside it: a sharp one needs some."""
+"""Refinements of a force maximum, each of which may halve the increment beside it: a sharp one needs some."""
 SEPARATION_ROWS = 1_000.0
-"""Rows in which an unloading comes from any displacement to where nothing is felt any more."""
+"""Load steps in which an unloading comes from any displacement to where nothing is felt any more."""
 FORCE_ACCURACY = 1e-3
 """How near to a wanted force a search must come, over the tolerance."""
 SEARCH_SHARE = 0.3
@@ -48,13 +48,13 @@ APPROACH_STEPS = 20
 ROWS_BEYOND_PEAK = 3
 """Load steps beyond the force maximum that its polynomials need."""
 HALVINGS_AT_PEAK = 2
-"""Halvings of the increment beside the largest tension for the sake of the contact radius there."""
+"""Halvings of the increment beside the force maximum for the sake of the contact radius there."""
 PER_TOOTH, MOST_TEETH = 4.0, 400.0
 """Load steps to a maximum of the force, and maxima that they resolve; of more, each is a small part of the force."""
 MOST_RIVALS = 200
 """Examinations of maxima that may be higher than the highest load step."""
 READ_SHARE = 0.5
-"""Part of a radius's uncertainty below which it is looked at no closer: reading between particles limits it."""
+"""Part of a radius's uncertainty below which it is examined no closer: reading between particles limits it."""
 
 JUMPS = (
     'the force jumps there by an instability (snap-in, snap-out or slip). Use kind = "path" to see it, or stiffer '
@@ -66,7 +66,7 @@ class Branch(ContactBranch):
     """States under displacement control.
 
     Attributes:
-        missed: how far the search may be off the largest tension [FU].
+        missed: how far the search may be off the force maximum [FU].
         on_the_way: how many of the first states nobody asks for.
     """
 
@@ -89,7 +89,7 @@ class Branch(ContactBranch):
 
     @property
     def peak(self) -> Peak:
-        """The largest tension of the states that were held while unloading."""
+        """The force maximum of the states that were held while unloading."""
         return peak_of(self.unloading)
 
     @property
@@ -97,7 +97,7 @@ class Branch(ContactBranch):
         return -math.inf
 
     def visit(self, positions: Sequence[float] | Array, phases: str = "falling") -> list[State]:
-        """Rows at displacements [LU] that are known beforehand."""
+        """Load steps at displacements [LU] that are known beforehand."""
         states = self.contact.rows(displacements([float(position) for position in positions]))
         (self.loading if phases == "loading" else self.falling).extend(states)
         return states
@@ -145,7 +145,7 @@ class Branch(ContactBranch):
             states.append(self._at(_secant(before, beyond, states, force, direction * step)))
 
     def _first_rows(self, force: float, direction: int) -> None:
-        """The first rows of a stretch towards a force [FU]: the position where it begins."""
+        """The first load steps of a stretch towards a force [FU]: the position where it begins."""
         states, start = (self.loading, 0.0) if direction > 0 else (self.falling, self.loading[-1].displacement)
         states.append(self._at(start))
 
@@ -171,7 +171,7 @@ class Branch(ContactBranch):
     # --- the largest tension
 
     def maximum(self) -> None:
-        """Find the largest tension of the unloading; the last state is then at it.
+        """Find the force maximum of the unloading; the last state is then at it.
 
         Rows past it, back to it, and at half the distance beside it until they change nothing. Just below snapping F(d)
         has a maximum for each pair that separates: every one that may be the highest is examined.
@@ -239,7 +239,7 @@ class Branch(ContactBranch):
         return step
 
     def _halve(self, positions: tuple[float, float]) -> float:
-        """Visit positions [LU] beside the largest tension; by how much they are not what was promised there [FU]."""
+        """Visit positions [LU] beside the force maximum; by how much they are not what was promised there [FU]."""
         expected = promised(*self.unloading.lists, positions)
         surprise = 0.0
         for position, tension in zip(positions, expected, strict=True):
@@ -329,7 +329,7 @@ class Branch(ContactBranch):
     def _still_held(self, state: State) -> float:
         """Tension [FU] that bodies which move apart can have at most from this state on.
 
-        A particle that has passed the largest tension of its law only loses what it has; any other, wherever it is, may
+        A particle that has passed the force maximum of its law only loses what it has; any other, wherever it is, may
         come to hold that.
         """
         profile, (distance, largest) = state.profile, self.settings.strongest
@@ -339,7 +339,7 @@ class Branch(ContactBranch):
 
 
 class SecondMaximumError(UntrustedError):
-    """The tension rises again after its first maximum: rows through all of it tell."""
+    """The tension rises again after its first maximum: load steps through all of it tell."""
 
 
 def _secant(before: State, beyond: State | None, states: Sequence[State], force: float, step: float) -> float:
@@ -356,7 +356,7 @@ def _secant(before: State, beyond: State | None, states: Sequence[State], force:
 
 
 def _is_passed(states: Sequence[State]) -> bool:
-    """Whether the last rows lie beyond a largest tension."""
+    """Whether the last load steps lie beyond a force maximum."""
     tension = [-s.force for s in states]
     largest = max(tension)
     return largest > 0.0 and tension.index(largest) < len(tension) - ROWS_BEYOND_PEAK

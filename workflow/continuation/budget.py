@@ -78,7 +78,7 @@ class Reduction:
 
     @property
     def converges(self) -> bool:
-        """Whether sums over particles come nearer to the body's own steadily: where cells share the edge.
+        """Whether sums over particles come closer to the body's own steadily: where cells share the edge.
 
         Whole particles touch or don't, and what they miss goes up and down with the spacing.
         """

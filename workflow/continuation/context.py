@@ -29,11 +29,11 @@ class RunContext:
         folder: the run folder; system.data and the table are in it.
         progress: informed of phases and steps.
         time_limit: for each contact [s].
-        retries: whether a search in which bodies went through each other begins anew in smaller steps.
+        retries: whether a search in which bodies went through each other restarts in smaller steps.
         workers: contacts that an experiment may have open at a time.
         ranks: of MPI, for each of them.
         lammps_seconds, lammps_cpu_seconds, steps: summed over all contacts so far.
-        rows_seconds: of the first, what rows took: without the deck's head and the files of states.
+        rows_seconds: of the first, what load steps took: without the deck's head and the files of states.
         phase, timestep: where the latest contact is or ended.
         through: whether a search goes through all of the tension: it rises again after its first maximum.
         left: what a run that failed had so far, if that is worth looking at; its quantities are no results.
@@ -129,7 +129,7 @@ class ContactBranch:
 
     @property
     def scale(self) -> float:
-        """The largest tension that is expected [FU]."""
+        """The force maximum that is expected [FU]."""
         return self.settings.estimate.pull_off_force()
 
     def begin(self, name: str) -> None:

@@ -1,6 +1,6 @@
-"""Load control in time, the paper's way: hold a load until all is at rest, or until the bodies part.
+"""Load control in time, as in the paper: hold a load until all is at rest, or until the bodies separate.
 
-LAMMPS itself looks every few timesteps whether the plate is at rest or out of reach, and stops there; only then a state
+LAMMPS itself checks every few timesteps whether the plate is at rest or separated, and stops there; only then a state
 is measured. With automatic damping each load has the drag that is critical for the contact's stiffness under it: the
 stiffness falls to zero towards the pull-off, and one drag for all makes the last tensions creep. Where pairs separate
 one by one, it does not fall: F(d) has a maximum for each, as stiff as the pairs in contact, and a plate that oscillates
@@ -24,9 +24,9 @@ from contact1d.workflow.scene import Scene
 
 FEWEST_STEPS = 20
 PATIENCE = 10.0
-"""Time of one row over the settling time, after which a state is measured in any case."""
+"""Time of one load step over the settling time, after which a state is measured in any case."""
 MOST_HOLDS = 50
-"""Rows under one load after which it counts as never coming to rest."""
+"""Load steps under one load after which it counts as never coming to rest."""
 REST_SHARE = 0.1
 """Unbalanced load over the load scale and the tolerance."""
 CALMING_FACTOR = 0.5
@@ -34,7 +34,7 @@ CALMING_FACTOR = 0.5
 LOSS_SHARE = 0.7
 """Tension over what is pulled with, below which a plate that moves off counts as lost."""
 PARTING_SHARE = 0.6
-"""The same of the estimate's largest tension, where LAMMPS stops: the first position at which to look for it."""
+"""The same of the predictor's force maximum, where LAMMPS stops: the first position at which to look for it."""
 
 
 class Start(IntEnum):
@@ -53,7 +53,7 @@ class Held:
 
     Attributes:
         load: compression positive [FU].
-        states: measured on the way.
+        states: measured on the path.
         held: whether the contact carries it at rest.
         unbalance: |carried − load| at the end, and what drag may still carry: particles lag behind the plate [FU].
     """
@@ -79,7 +79,7 @@ def stiffness_under(settings: Settings, load: float) -> float:
 def damping_under(settings: Settings, load: float) -> float:
     """Coefficient of a particle [FU·TU/LU]; an automatic one is critical for the contact's stiffness under the load.
 
-    In a search that begins anew, no particle that is pressed on swings either.
+    In a search that restarts, no particle that is pressed on oscillates either.
     """
     if settings.damped_stiffness == 0.0:
         return settings.damping
@@ -90,7 +90,7 @@ def damping_under(settings: Settings, load: float) -> float:
 
 
 def overshoot(settings: Settings, mass: float, load: float, next_load: float) -> float:
-    """How far a plate at rest under `load` shoots past its position under `next_load` at most, over the way there.
+    """How far a plate at rest under `load` shoots past its position under `next_load` at most, over the path there.
 
     exp(−πζ/√(1 − ζ²)) of a linear oscillator with the stiffness of the beginning, the largest one under tension.
     """

@@ -1,8 +1,8 @@
-"""A branch of states under load control, in time, as the paper has it: loads, each held until rest or separation.
+"""A branch of states under load control, in time, as in the paper: loads, each held until equilibrium or separation.
 
-A tension that breaks the contact is undone: the next one begins where it began. The first tensions are chosen by the
-model, which is mostly within a tolerance of the pull-off force; what counts is the bracket of a tension that held
-and one that did not. The rows of the search are the schedule: nothing is run twice.
+A tension that separates the bodies is undone: the next one starts from the state before. The reduced model, which
+is mostly within a tolerance of the pull-off force, chooses the first loads; the result is the bracket of a load that
+is sustained and one that is not. The load steps of the search are the schedule: nothing is run twice.
 """
 
 from __future__ import annotations
@@ -113,7 +113,7 @@ class LoadBranch(ContactBranch):
 
     Attributes:
         unbalance: force [FU] that the last state leaves unbalanced.
-        search: of the largest tension, once there was one.
+        search: of the force maximum, once there was one.
     """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
@@ -183,7 +183,7 @@ class LoadBranch(ContactBranch):
         """Try tensions until the bracket of the largest one is narrow enough, then hold the largest that was held.
 
         Raises:
-            UntrustedError: see `hold`; the largest tension is not bracketed, or not held again.
+            UntrustedError: see `hold`; the force maximum is not bracketed, or not held again.
         """
         zero = self._last
         past = partial(_overshoot, self)
@@ -213,7 +213,7 @@ class LoadBranch(ContactBranch):
         self._held, self.unbalance = critical, critical.unbalance
 
     def open(self) -> None:
-        """Nothing: a tension that was not held has parted the bodies."""
+        """Nothing: a tension that was not held has separated the bodies."""
 
     def missed_teeth(self) -> float:
         """Tension [FU] that a plate may miss which oscillates past a force maximum, where pairs are lost one by one."""
@@ -237,7 +237,7 @@ def _overshoot(branch: LoadBranch, tension: float) -> float:
 
 
 def top_of(displacement: Array, force: Array) -> tuple[float, float] | None:
-    """(displacement [LU], tension [FU]) of the largest tension of the polynomial through states at rest.
+    """(displacement [LU], tension [FU]) of the force maximum of the polynomial through states at rest.
 
     None where it has none within LONGEST_EXTRAPOLATION of the states. Their own forces count, not the loads that
     they balance within a threshold.

@@ -1,4 +1,4 @@
-"""What an experiment hands over: results with their error budgets, the curve, profiles, the schedule, and warnings."""
+"""The outcome of an experiment: results with their error budgets, the curve, profiles, the schedule, and warnings."""
 
 from __future__ import annotations
 

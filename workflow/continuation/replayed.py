@@ -1,6 +1,6 @@
-"""A branch of states that depend on the path, since pairs snap: the schedule is run again from the start.
+"""A branch of states that depend on the loading history, since pairs snap: the schedule is run again from the start.
 
-Each time it has the wanted positions in their order, more of them about the largest tension.
+Each time it has the required positions in their order, more of them near the force maximum.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ MOST_REPLAYS = 8
 GROWTH = 1.2
 """Of moves apart: longer ones lose particles early."""
 SAME = 1e-9
-"""Distance of two rows over the way that are one."""
+"""Distance of two load steps over the way that are one."""
 WINDOW_ROWS, ZOOM_FACTOR, RIVAL_SHARE = 8, 0.25, 0.05
-"""Of a schedule that is run again: rows on either side of the largest tension, width of that window over the one
+"""Of a schedule that is run again: load steps on either side of the force maximum, width of that window over the one
 before, and maxima within this share of the largest that are all examined in the first one."""
 
 
@@ -51,9 +51,9 @@ class ReplayedBranch(Branch):
             super().finish()
 
     def maximum(self) -> None:
-        """Pull the bodies apart, then run the schedule again and again, each time finer about the largest tension.
+        """Pull the bodies apart, then run the schedule again and again, each time finer about the force maximum.
 
-        The numbers are those of the last schedule, which holds the positions of F_D, F = 0 and the largest tension; it
+        The numbers are those of the last schedule, which holds the positions of F_D, F = 0 and the force maximum; it
         ends when two of them agree.
 
         Raises:
@@ -128,7 +128,7 @@ class ReplayedBranch(Branch):
         )
 
     def open(self) -> None:
-        """Nothing: a schedule that was run again has parted the bodies."""
+        """Nothing: a schedule that was run again has separated the bodies."""
 
     def _growth(self, state: State, largest: float) -> float:
         """They grow only where no maximum can be higher any more."""
@@ -136,7 +136,7 @@ class ReplayedBranch(Branch):
 
 
 def _displacement_of(states: Sequence[State], force: float) -> float:
-    """Displacement [LU] of a force [FU] on a rising branch, through its two nearest rows."""
+    """Displacement [LU] of a force [FU] on a rising branch, through its two nearest load steps."""
     near = sorted(states, key=lambda s: abs(s.force - force))[:2]
     if len(near) < 2 or near[0].force == near[1].force:
         return near[0].displacement

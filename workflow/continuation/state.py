@@ -1,4 +1,4 @@
-"""A measured state of a contact, and what its contact radius is."""
+"""A measured state of a contact, and its contact radius."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class RadiusRule:
     def or_spot(self, profile: Profile) -> ContactRadius:
         """The contact radius; 0 where no particle is in tension, as where F = 0 and the pairs at the apex just touch.
 
-        The largest tension is then nearer than the next particle, OUTSIDE spacings from the apex at most.
+        The force maximum is then nearer than the next particle, OUTSIDE spacings from the apex at most.
         """
         outside = OUTSIDE * self.scene.bodies.spacing
         return self.of(profile) or ContactRadius(0.0, outside, 0.0, 0.0, reaches_end=False)

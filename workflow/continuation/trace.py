@@ -1,4 +1,4 @@
-"""What a reader of results sees of a run: displacements, forces and radii along a path, measured or of the model."""
+"""The trace from which results are read: displacements, forces and radii along a path, measured or of the model."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Trace:
     Attributes:
         phase: name of each state's phase.
         displacement, force: [LU], [FU].
-        asked: whether the scene asks for the state; the others are on the way there.
+        asked: whether the scene asks for the state; the others are on the path there.
         along: position along x [LU].
         profile: pressure and shear of a state, by its number.
         contact: radius of a state as it is read off its profile; None where the bodies do not touch.
@@ -35,8 +35,8 @@ class Trace:
         radius_shift: by how many of its own uncertainties each radius is taken too large, (m,); 0 as it is read.
         radius_factor: by which radii are taken larger.
         limit: displacement [LU] below which no contact is held; −inf where none is known.
-        doubt: by source, how far the search may be off the largest tension [FU].
-        bracket: under load control, the largest tension that was held and the smallest that was not [FU].
+        doubt: by source, how far the search may be off the force maximum [FU].
+        bracket: under load control, the force maximum that was held and the smallest that was not [FU].
     """
 
     phase: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""Which states are no result, and what limits those that are."""
+"""Which states are accepted as results, and their limitations."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def is_converged(settings: Settings, state: State) -> bool:
 
 
 def require_no_contradiction(settings: Settings, tension: float, uncertainty: float, states: Iterable[State]) -> None:
-    """Refuse a largest tension [FU] that a state of the run's own curve exceeds by more than its uncertainty [FU].
+    """Refuse a force maximum [FU] that a state of the run's own curve exceeds by more than its uncertainty [FU].
 
     Raises:
         UntrustedError: names the state.
@@ -110,7 +110,7 @@ def require_no_contradiction(settings: Settings, tension: float, uncertainty: fl
 
 
 def _reaches_end(scene: Scene, profile: Profile) -> bool:
-    """Whether the contact's edge, the largest tension or else the last loaded particle, is a chain's last particle.
+    """Whether the contact's edge, the force maximum or else the last loaded particle, is a chain's last particle.
 
     That of a flat punch is meant to be.
     """
@@ -191,7 +191,7 @@ def _plane_share(scene: Scene, settings: Settings) -> float:
 
 
 def slowness(scene: Scene, settings: Settings) -> str:
-    """What makes the scene slow, in words; empty where nothing does, or where time is what is looked at (a slide)."""
+    """What makes the scene slow, in words; empty where nothing does, or where time is what is examined (a slide)."""
     if scene.method != "dynamic" or scene.damping is None or scene.experiment.motion_is_result:
         return ""
     plate = None if scene.plate is None else Plate(free=scene.plate.free)

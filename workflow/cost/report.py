@@ -1,4 +1,4 @@
-"""What a cost study leaves: cost.json, the table for a terminal and for pages, the work-precision figure."""
+"""The output of a cost study: cost.json, the table for a terminal and for pages, the work-precision figure."""
 
 from __future__ import annotations
 

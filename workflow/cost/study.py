@@ -1,6 +1,6 @@
 """A cost study: the reference, every setting changed from the base, effects left out; then errors and orders.
 
-What a tolerance chooses is good in every scene of a study of many (`workflow.model.settings`); one scene may
+The settings of a tolerance suffice for every scene of a study of many (`workflow.model.settings`); one scene may
 need less. Errors are those of the main results, relative to a reference of much higher accuracy; the largest stands for
 a variant.
 """

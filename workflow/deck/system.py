@@ -1,4 +1,4 @@
-"""What a deck reads, in files: system.data, and the table or what particles know of their cells if it has these.
+"""The input files of a deck: system.data, and the table or the cells of the particles if it has these.
 
 Atom types: 1 lower particles, 2 upper particles, 3 lower anchors, 4 upper anchors, 5 lower far anchors, 6 upper far
 anchors, 7 the driver, which pulls the plate by a spring.

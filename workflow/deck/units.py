@@ -1,4 +1,4 @@
-"""In which units a deck is written: the scene's own, or for very small and very large numbers units of its own.
+"""The units of a deck: those of the scene, or for very small and very large numbers units of its own.
 
 LAMMPS has lengths and energies built in: the step of `hftn`'s differences, 2e-6, the longest move of a minimiser, 0.1,
 bins and box. With the lengths of a scene in metres they are far off, so a deck whose lengths or forces are, is written
@@ -42,7 +42,7 @@ SETTINGS = {
     "time_step": "TU", "settle_time": "TU", "damping": "FU·TU/LU", "plate_damping": "FU·TU/LU",
     "calm_damping": "FU·TU/LU", "calm_step": "TU",
 }  # fmt: skip
-"""Units of the settings; the others have none, are masses, or are the law, its table and the estimate."""
+"""Units of the settings; the others have none, are masses, or are the law, its table and the predictor."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class DeckUnits:
         return Scene.model_validate(data)
 
     def settings(self, settings: Settings) -> Settings:
-        """The settings in deck units, but for the estimate, which no deck asks."""
+        """The settings in deck units, but for the predictor, which no deck asks."""
         if not self.are_own:
             return settings
         changed: dict[str, Any] = {name: self.to_deck(getattr(settings, name), unit) for name, unit in SETTINGS.items()}

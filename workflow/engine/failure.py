@@ -1,4 +1,4 @@
-"""A failed run in one sentence: LAMMPS's own words without their wrapping, the command, the phase, the step.
+"""A failed run in one sentence: the error message of LAMMPS, the command, the phase, the step.
 
 "ERROR on proc 0: … (src/run.cpp:1)\nLast input line: run 9" ──▶ "LAMMPS stopped: …, at: run 9"
 """

@@ -1,4 +1,4 @@
-"""How several MPI ranks are started and heard: the command before theirs, their call, and what they said at the end.
+"""Start several MPI ranks and connect to them: the launcher's command, the connection, and their last output.
 
 mpiexec -n 4 python …        srun --mpi=pmi2 -n 4 python …   inside a job of Slurm of several nodes
 """

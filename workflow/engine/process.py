@@ -1,4 +1,4 @@
-"""The parent's end of a worker: start it, ask it, notice its death, keep it for the next session.
+"""The parent's side of a worker: start it, send requests, detect its end, keep it for the next session.
 
 ask(request, deadline) ──▶ worker ──▶ answer, or `WorkerLostError` with the cause in one sentence
 """

@@ -1,4 +1,4 @@
-"""Who hears how far a run is: a bar on a terminal, a few plain lines elsewhere, or nobody.
+"""The progress of a run: a bar on a terminal, a few plain lines elsewhere, or nothing.
 
 phase(name, expected_steps) ──▶ advance(steps) … ──▶ close()
 """

@@ -1,6 +1,6 @@
-"""Pull-off under noise: the load is drawn off at a steady rate until the bodies part, once for each seed, side by side.
+"""Pull-off under noise: the load is retracted at a steady rate until the bodies part, once for each seed, side by side.
 
-The detachment force is the tension when the plate last leaves the position of the largest tension: it scatters, and
+The detachment force is the tension when the plate last leaves the position of the force maximum: it scatters, and
 grows with the rate, since a slow pull waits longer for a fluctuation that parts the bodies.
 """
 
@@ -33,22 +33,22 @@ from contact1d.workflow.scene import PullOff, Scene
 from contact1d.workflow.units import FORCE
 
 INCREMENTS = 400
-"""Rows on the way to the largest tension of the estimate: the load is a staircase of so many steps."""
+"""Load steps on the way to the force maximum of the predictor: the load is a staircase of so many steps."""
 FEWEST_STEPS = 10
 MOST_TENSION = 10.0
-"""Tension over that of the estimate at which the bodies must have parted."""
+"""Tension over that of the predictor at which the bodies must have separated."""
 BARRIER = 0.99
-"""Share of the largest tension that has its position beyond the barrier."""
+"""Share of the force maximum that has its position beyond the barrier."""
 GONE, SURELY = 0.01, 50.0
-"""Share of the largest tension that counts as none, and the energy over k_BT that a plate would need to come back."""
+"""Share of the force maximum that counts as none, and the energy over k_BT that a plate would need to come back."""
 WAITING_STEPS = 800
-"""Timesteps of rows that go to LAMMPS together: waking two processes takes as long as a hundred of them."""
+"""Timesteps of load steps that go to LAMMPS together: waking two processes takes as long as a hundred of them."""
 FOLDER = ".pulls"
 """Of the pulls with other seeds than the scene's, in the run folder, while they run."""
 LAGGING = 0.1
 """Increase of the load while drag delays the separation, over F_A, from which on it is reported."""
 FARTHEST = 1.1
-"""Tension over that of the estimate at which a planned pull ends."""
+"""Tension over that of the predictor at which a planned pull ends."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Detachment:
         force: the tension [FU] when the plate last left the position of the largest one.
         time: since the pull began [TU].
         phases: the schedule.
-        states: of all rows, none where only the numbers are kept.
+        states: of all load steps, none where only the numbers are kept.
         held: index of the last one that was held.
     """
 
@@ -74,7 +74,7 @@ class Detachment:
 
 @dataclass(frozen=True)
 class Ramp:
-    """How the plate is pulled: `steps` timesteps in each row, by `rise` [FU] more from row to row, to row `most`.
+    """How the plate is pulled: `steps` timesteps in each load step, by `rise` [FU] more from row to row, to row `most`.
 
     With a `spring` [FU/LU], slack at the displacement `slack` [LU], its far end goes on by rise/spring.
     """
@@ -92,11 +92,11 @@ class Ramp:
         return UnderLoad(-number * self.rise, self.steps)
 
     def tension(self, number: float, place: float) -> float:
-        """On a plate at a displacement [LU] after so many rows [FU]."""
+        """On a plate at a displacement [LU] after so many load steps [FU]."""
         return number * self.rise - (self.spring * (self.slack - place) if self.spring else 0.0)
 
     def until(self, tension: float, place: float) -> int:
-        """Rows after which it is as large [FU] on a plate at that displacement [LU]."""
+        """Load steps after which it is as large [FU] on a plate at that displacement [LU]."""
         return math.ceil((tension - self.tension(0.0, place)) / self.rise)
 
     def work(self, number: float, place: float, barrier: float) -> float:
@@ -105,7 +105,7 @@ class Ramp:
 
 
 def spring_of(scene: Scene, settings: Settings) -> float:
-    """Of the spring that draws the plate off [FU/LU]; 0 where a load does."""
+    """Of the spring that retracts the plate [FU/LU]; 0 where a load does."""
     assert isinstance(scene.experiment, PullOff)
     if scene.experiment.velocity is None:
         return 0.0
@@ -234,7 +234,7 @@ def _has_parted(scene: Scene, settings: Settings, ramp: Ramp, number: int, state
 
 
 def _needed(scene: Scene, settings: Settings) -> float:
-    """Work [FU·LU] that keeps a plate from coming back: SURELY kT, and more than attraction gives it on its way.
+    """Work [FU·LU] that keeps a plate from coming back: SURELY kT, and more than attraction gives it on its path.
 
     That is F_A (d_A − d_0) at most, d_0 the position beyond which there is none.
     """
@@ -279,7 +279,7 @@ def pull_off_thermal(context: RunContext) -> Outcome:
 
 
 def _load(row: Row, state: State) -> float:
-    """On the plate in a row [FU], compression positive: given, or the spring's at the row's end."""
+    """On the plate in a row [FU], compression positive: given, or the spring's at the load step's end."""
     if isinstance(row, DrawnOff):
         return -row.spring * (state.displacement - row.end)
     assert isinstance(row, UnderLoad)
@@ -306,7 +306,7 @@ def _lagging(scene: Scene, settings: Settings) -> dict[str, str]:
 
 
 def planned_detachment(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-    """The schedule up to a tension that the estimate does not hold."""
+    """The schedule up to a tension that the predictor does not hold."""
     experiment = scene.experiment
     assert isinstance(experiment, PullOff)
     ramp, look = ramp_of(scene, settings), chunk_steps(settings)

@@ -127,7 +127,7 @@ def branch_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | 
 
 
 def in_smaller_steps(run: Callable[[RunContext], Outcome]) -> Callable[[RunContext], Outcome]:
-    """The same run, which begins anew in smaller steps where the bodies went through each other.
+    """The same run, which restarts in smaller steps where the bodies went through each other.
 
     The context's deck is then the one with these steps: it is what in.lammps must hold.
 

@@ -46,7 +46,7 @@ class HoldExperiment(Scripted):
         return found
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The rows that run."""
+        """The load steps that run."""
         held = scene.experiment
         assert isinstance(held, Hold)
         count, steps = settings.rows_of(held.duration)

@@ -12,7 +12,7 @@ from contact1d.workflow.scene import Scene
 
 
 def planned_way(scene: Scene, phases: tuple[Phase, ...]) -> tuple[Phase, ...]:
-    """A planned schedule that keeps what the scene asks for, of all its rows."""
+    """A planned schedule that keeps what the scene asks for, of all its load steps."""
     if scene.output is None:
         return phases
     rows = range(sum(len(phase.rows) for phase in phases))

@@ -1,4 +1,4 @@
-"""Path: prescribed displacement, there and back; the curve F(d), its largest tension and its load-free radius."""
+"""Path: prescribed displacement, there and back; the curve F(d), its force maximum and its load-free radius."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ class PathExperiment(Scripted):
         return found | _lost(trace, scene, settings)
 
     def advice(self, scene: Scene) -> str:
-        """The rows are the scene's own."""
+        """The load steps are the scene's own."""
         return f"Use more steps in experiment.displacements; for a radius also {FINER_SPACING}"
 
     def _missing(self, results: Mapping[str, Result], scene: Scene, phases: Sequence[Phase]) -> dict[str, str]:

@@ -25,7 +25,7 @@ from contact1d.workflow.scene import PullOff, Scene
 from contact1d.workflow.units import FORCE, LENGTH
 
 UNLOADING_STEPS, TENSIONS = 80, 12
-"""Rows of a planned way back, and tensions of a planned pull, where a run would search."""
+"""Load steps of a planned way back, and tensions of a planned pull, where a run would search."""
 LARGEST_TENSION = 1.2
 """The last of these tensions over the expected pull-off force."""
 
@@ -37,11 +37,11 @@ class PullOffExperiment(Scripted):
     branches = {"pulling": "unloading", "separating": "unloading", "critical": "unloading"}  # noqa: RUF012
 
     def run(self, context: RunContext) -> Outcome:
-        """With noise a ramp until the bodies part, once for each seed."""
+        """With noise a ramp until the bodies separate, once for each seed."""
         return super().run(context) if context.deck.scene.noise is None else pull_off_thermal(context)
 
     def script(self, branch: Any, scene: Scene) -> None:
-        """Press, unload to F = 0, pull to the largest tension, part."""
+        """Press, unload to F = 0, pull to the force maximum, part."""
         assert isinstance(scene.experiment, PullOff)
         preload = scene.experiment.preload
         scale = max(preload, branch.scale)
@@ -141,7 +141,7 @@ def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float)
 
 
 def _extrapolated(rested: Trace) -> Reading:
-    """The radius as a parabola through the last three states, where a cubic through four has its largest tension.
+    """The radius as a parabola through the last three states, where a cubic through four has its force maximum.
 
     A parabola through three says how far both can be trusted.
     """

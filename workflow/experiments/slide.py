@@ -1,7 +1,7 @@
 """Slide: a normal force, and a cantilever that pulls the plate along x (Fig. 9 of the paper).
 
 It starts from rest under the normal force. A plate with little drag swings as it is loaded, past its equilibrium and
-through the other body: so the particles have a drag of their own on the way, critical for the contact, and at rest
+through the other body: so the particles have a drag of their own on the path, critical for the contact, and at rest
 that of the scene again. It counts as at rest where it is along both directions, the friction equal to the pull of
 the cantilever.
 """
@@ -282,7 +282,7 @@ def _doubts(
 
 
 def _columns(motion: Motion, states: list[State]) -> dict[str, tuple[float, ...]]:
-    """friction.csv: one line for each row."""
+    """friction.csv: one line for each load step."""
     return {
         "time": tuple(motion.time[1:].tolist()),
         "drive": tuple(motion.drive[1:].tolist()),
@@ -310,8 +310,8 @@ def loaded(contact: Contact, force: float) -> State:
     """At rest under the normal force; with noise, after it has forgotten its start.
 
     Raises:
-        PartedError: the bodies part under it.
-        UntrustedError: see `hold`; or the plate swings on along x.
+        PartedError: the bodies separate under it.
+        UntrustedError: see `hold`; or the plate oscillates on along x.
     """
     scene, settings = contact.scene, contact.settings
     if scene.noise is not None:
@@ -365,7 +365,7 @@ def leg_begin(scene: Scene, number: int) -> tuple[str, ...]:
 
 
 def _drive(contact: Contact, force: float, leg: DriveLeg, states: list[State]) -> None:
-    """Run the rows of a leg and append their states, as long as they are ones of a slide."""
+    """Run the load steps of a leg and append their states, as long as they are ones of a slide."""
     scene, settings = contact.scene, contact.settings
     for _ in range(leg.rows):
         state = contact.row(UnderLoad(force, leg.steps), trusted=False)

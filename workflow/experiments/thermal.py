@@ -111,7 +111,7 @@ def thermal_load(context: RunContext) -> Outcome:
     """d, F, a and F/(πa²) of a load under noise, as means.
 
     Raises:
-        UntrustedError: the bodies part, or the mean force misses the load; see `require_trust`.
+        UntrustedError: the bodies separate, or the mean force misses the load; see `require_trust`.
     """
     scene, settings = context.deck.scene, context.deck.settings
     assert isinstance(scene.experiment, Load)

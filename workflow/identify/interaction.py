@@ -98,7 +98,7 @@ FEWEST_IN_RADIUS = 8.0
 MOST_IN_RADIUS = 2000.0
 """Most particles in a₀."""
 LARGEST_RADIUS_SHARE = 0.6
-"""Largest a₀ over the radius of the sphere: beyond it neither a parabola nor a half space is meant."""
+"""Largest a₀ over the radius of the sphere: beyond it neither parabola nor half-space is valid."""
 PRELOAD_SHARE = 0.7
 """Preload of a scene for a material over its F_A."""
 SHAPE = {"amplitudes": 2.0, "ranges": 2.0}
@@ -177,15 +177,15 @@ def jkr_target(contact_modulus: float, surface_energy: float, radius: float) -> 
 
 Array = NDArray[np.float64]
 SLOPE_STEP = 0.03
-"""Step of the finite differences of the estimate, in both logarithms: well above the grain of its grid."""
+"""Step of the finite differences of the predictor, in both logarithms: well above the grain of its grid."""
 FIRST_STEP, FARTHEST = 0.25, 9.0
 """First and last step of a search for a bracket, in the logarithm of a factor."""
 START_ERROR = 1e-4
-"""Of both logarithms at the start: what the estimate itself is good for."""
+"""Of both logarithms at the start: what the predictor itself is good for."""
 TAIL = 1e-5
-"""Force at the estimate's cutoff over the law's own."""
+"""Force at the predictor's cutoff over the law's own."""
 POINTS = 1000
-"""Distances at which the estimate has the force of a row."""
+"""Distances at which the predictor has the force of a row."""
 
 
 def estimated(scene: Scene, target: Target) -> Scene:
@@ -232,7 +232,7 @@ class _NoRootError(ValueError):
 
 
 def _root(function: Callable[[float], float], start: float) -> float:
-    """The zero of a monotone function of a logarithm, looked for on both sides of `start`.
+    """The zero of a monotone function of a logarithm, searched on both sides of `start`.
 
     Raises:
         _NoRootError: there is none within a factor of exp(FARTHEST).
@@ -266,7 +266,7 @@ def scaled(scene: Scene, logarithms: Array) -> Scene:
 
 
 def _estimated(scene: Scene) -> Array:
-    """ln F_A and ln a₀ of independent pairs, by the estimate of every run's settings, on a coarser grid."""
+    """ln F_A and ln a₀ of independent pairs, by the predictor of every run's settings, on a coarser grid."""
     law = interaction_law(scene)
     assert law is not None
     cutoff, rest = law.cutoff_for(TAIL), law.force_free_distance()
@@ -276,7 +276,7 @@ def _estimated(scene: Scene) -> Array:
 
 
 def _largest_tension(estimate: ContactEstimate) -> float:
-    """The undeformed gap [LU] of the largest tension, between the points of the grid by a parabola."""
+    """The undeformed gap [LU] of the force maximum, between the points of the grid by a parabola."""
     force = estimate.force
     i = min(max(int(np.argmin(force)), 1), len(force) - 2)
     before, lowest, after = (float(f) for f in force[i - 1 : i + 2])

@@ -76,7 +76,7 @@ class Theories:
 
     @property
     def holding(self) -> str:
-        """The theory of `values` whose numbers to take: by μ, DMT below 0.1, JKR above 5, else Maugis and Dugdale."""
+        """The theory of `values` that holds: by μ, DMT below 0.1, JKR above 5, else Maugis and Dugdale."""
         return str(of_tabor(self.tabor))
 
     @property
@@ -175,7 +175,7 @@ def require_size(contact: AskedContact, radius: float) -> None:
 
 
 SHORTEST, LONGEST, PLACES = 1e-12, 1e4, 8000
-"""Radii [m] among which that of a contact is looked for, in a geometric row, and how many."""
+"""Radii [m] among which that of a contact is sought, in a geometric row, and how many."""
 INSIDE = 0.999999
 """Largest of them over the half-width of a body that ends: the transform of a circle has no bound there."""
 
@@ -214,7 +214,7 @@ def contact_radius(contact: AskedContact) -> float:
 
 
 def largest_tension(contact: AskedContact) -> float:
-    """The largest tension under a fixed load [N]."""
+    """The force maximum under a fixed load [N]."""
     radii, forces = curve(contact)
     if len(radii) > 1:
         return max(-float(forces.min()), 1e-300)

@@ -31,7 +31,7 @@ from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 PLACES = 4000
-"""Positions between which the estimate is straight."""
+"""Positions between which the predictor is straight."""
 FIRST = 1e-3
 """The first of them over the last."""
 BEYOND = 1.2
@@ -190,7 +190,7 @@ class AdhesiveEstimate(ContactEstimate):
 
     @cached_property
     def _rising(self) -> tuple[Array, Array]:
-        """Displacements [LU] and forces [FU] from the largest tension on."""
+        """Displacements [LU] and forces [FU] from the force maximum on."""
         _, h, force, least = self._grid
         top = least + int(np.argmin(force[least:]))
         return h[top:], force[top:]
@@ -200,7 +200,7 @@ class AdhesiveEstimate(ContactEstimate):
         return max(0.0, -float(self._rising[1][0]))
 
     def displacement_at(self, force: float) -> float:
-        """Displacement [LU] at which a contact carries a force [FU]; that of the largest tension if none does."""
+        """Displacement [LU] at which a contact carries a force [FU]; that of the force maximum if none does."""
         places, forces = self._rising
         return float(np.interp(force, forces, places))
 
@@ -219,7 +219,7 @@ class AdhesiveEstimate(ContactEstimate):
 
 
 def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
-    """The estimate of a scene on a rigid plane; that of one with [adhesion] is known as far as its experiment needs.
+    """The predictor of a scene on a rigid plane; that of one with [adhesion] is known as far as its experiment needs.
 
     Raises:
         SettingsError: the contact would be as wide as the body, or its edge would jump.

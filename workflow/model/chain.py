@@ -18,7 +18,7 @@ from contact1d.workflow.model.pairs import ContactEstimate
 from contact1d.workflow.scene import Bodies, Scene, Tangential
 
 CHAIN_MARGIN = 1.1
-"""Length of an automatic chain over what the estimate asks for."""
+"""Length of an automatic chain over what the predictor asks for."""
 FALL_SHARE = 1e-9
 """A profile counts as falling where it does by more than this share of its height."""
 ROUND_OFF = 1e-9
@@ -119,7 +119,7 @@ def chains_of(scene: Scene, estimate: ContactEstimate, largest: float, share: fl
 
 
 def _edge(estimate: ContactEstimate, largest: float) -> float:
-    """Half-width [LU] up to the largest tension, or without attraction up to where nothing is felt."""
+    """Half-width [LU] up to the force maximum, or without attraction up to where nothing is felt."""
     return estimate.half_width(max(largest, 0.0), float(estimate.gap[int(estimate.force.argmin())]))
 
 
@@ -212,7 +212,7 @@ def require_travel(scene: Scene, largest: float, cutoff: float) -> None:
     """Refuse a body that goes as far as `largest` [LU], beyond all proportion to the reach of its forces.
 
     Raises:
-        SettingsError: with the way.
+        SettingsError: with the path.
     """
     most = FARTHEST_RATIO * max(cutoff, scene.bodies.spacing)
     if abs(largest) > most:

@@ -25,7 +25,7 @@ SWING = 0.5
 DRAG_STEP = 0.2
 """Time step over the time m/γ in which drag stops a particle, or the plate: explicit integration needs it below 1."""
 CALM_STEP = 0.4
-"""The same on the way to rest, whose drag is no part of what is looked at."""
+"""The same on the way to rest, whose drag is no part of what is examined."""
 CREEPING = 10.0
 """Drag over the critical one from which on a plate takes too long to come to rest."""
 NOISE_BIAS = 0.4

@@ -51,7 +51,7 @@ class Profile(Protocol):
 class Tabulated:
     """A profile that was asked once for its `heights` [LU] at rising `places` [LU] from 0, with straight lines between.
 
-    For a measured one, whose transform takes long: an estimate asks thousands of times.
+    For a measured one, whose transform takes long: a predictor asks thousands of times.
     """
 
     places: Array
@@ -70,7 +70,7 @@ class Tabulated:
 def tabulated(profile: Profile, spacing: float) -> Tabulated:
     """The profile, which must have an end, at places in a geometric row: those of a parabola within 1e-4 of its height.
 
-    That holds for a reach of 0.1 to 1e10 spacings [LU]; nearer to the apex than NEAR spacings it is a line.
+    That holds for a reach of 0.1 to 1e10 spacings [LU]; closer to the apex than NEAR spacings it is a line.
     """
     places = np.concatenate([[0.0], np.geomspace(NEAR * spacing, profile.reach, PLACES)])
     return Tabulated(places, profile.height(places))
@@ -80,7 +80,7 @@ GRID = 4000
 CONTACT_POINTS = 401
 BRANCH_POINTS, COARSE_POINTS = 400, 40
 FARTHEST = 1e12
-"""Displacement over spacing and force-free distance beyond which none is looked for: no deck holds it
+"""Displacement over spacing and force-free distance beyond which none is sought: no deck holds it
 (`chain.require_travel`)."""
 CUTS, PARTS = 5, 17
 """How often the bracket of a displacement is cut, and at how many positions: then the force is straight in it to 1e-10.
@@ -186,11 +186,11 @@ class ContactEstimate:
         return float(ends[1] - ends[0]) / (2.0 * step)
 
     def pull_off_force(self) -> float:
-        """Largest tension of the estimate [FU]; 0 without attraction."""
+        """Largest tension of the predictor [FU]; 0 without attraction."""
         return max(0.0, self._largest_tension[1])
 
     def stiffness_under(self, force: float) -> float:
-        """Contact stiffness dF/dd [FU/LU] under a force [FU]; above SOFTEST_SHARE of the largest tension: there."""
+        """Contact stiffness dF/dd [FU/LU] under a force [FU]; above SOFTEST_SHARE of the force maximum: there."""
         if force > 0.0:
             deepest = self.displacement_at(force)
             step = DIFFERENCE * (deepest - self._apart)
@@ -271,7 +271,7 @@ class ContactEstimate:
         return max(1.0, width / self.spacing) * self.stiffness
 
     def parted(self, share: float) -> float:
-        """Displacement [LU] beyond the largest tension at which the tension has fallen to this share of it."""
+        """Displacement [LU] beyond the force maximum at which the tension has fallen to this share of it."""
         places, forces = self._tensions
         top = int(forces.argmin())
         gone = forces[:top] > share * forces[top]
@@ -289,7 +289,7 @@ class ContactEstimate:
 
     @cached_property
     def _largest_tension(self) -> tuple[float, float]:
-        """(displacement [LU], tension [FU]) where the tension is largest, looked for twice, the second time nearby."""
+        """(displacement [LU], tension [FU]) where the tension is largest, found in two passes."""
         low, high = self._apart, self.rest
         for _ in range(2):
             places, step = np.linspace(low, high, COARSE_POINTS, retstep=True)
@@ -342,7 +342,7 @@ def particles_estimate(
     chains: int = 2,
     row: float | None = None,
 ) -> ContactEstimate:
-    """The estimate for particles held by springs `stiffness` [FU/LU] each, in two chains or in the upper one alone.
+    """The predictor for particles held by springs `stiffness` [FU/LU] each, in two chains or in the upper one alone.
 
     `row`: spacing [LU] of the opposite row where it differs.
     """
@@ -369,7 +369,7 @@ def _row_over(law: DoubleExponential, spacing: float, cutoff: float, points: int
 
 @lru_cache(maxsize=16)  # as particles_estimate
 def plane_estimate(profile: Profile, spacing: float, stiffness: float) -> ContactEstimate:
-    """The estimate for one chain on a rigid plane: one-sided springs `stiffness` [FU/LU]."""
+    """The predictor for one chain on a rigid plane: one-sided springs `stiffness` [FU/LU]."""
     deepest = 1e6 * spacing
     gap = np.asarray([-deepest, 0.0])
     return ContactEstimate(gap, -stiffness * gap, 0.0, profile, spacing, stiffness)

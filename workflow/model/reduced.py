@@ -29,7 +29,7 @@ from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 OVERREACH = 0.1
-"""How far beyond the expected displacement a force is looked for, over that displacement and a spacing."""
+"""How far beyond the expected displacement a force is searched, over that displacement and a spacing."""
 MARGIN = 1.5
 """Depth up to which particles of springs are counted, over the expected one: few carry a load deeper than many."""
 FEWEST = 4.0
@@ -103,7 +103,7 @@ class Reduced(ABC):
         return float(self.x[-1]) + 0.5 * self.estimate.spacing
 
     def displacement_at(self, force: float) -> float:
-        """Largest displacement [LU] at which a force [FU] is carried; that of the largest tension if none is."""
+        """Largest displacement [LU] at which a force [FU] is carried; that of the force maximum if none is."""
         low, high = self.apart, self.deepest + OVERREACH * (abs(self.deepest) + self.estimate.spacing)
         points = POINTS * (SNAPPING if self.estimate.snaps else 1)
         # The attraction may end within a millionth of the way: what lies near the limit point is looked at by decades.

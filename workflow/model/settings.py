@@ -85,7 +85,7 @@ Array = NDArray[np.float64]
 REACH = 40.0
 """Reach of the sums, and of the longest cutoff, over the law's longest range."""
 PLACES, HEIGHTS = 33, 400
-"""Positions within half a spacing, and heights, that are looked at."""
+"""Positions within half a spacing, and heights, that are examined."""
 LEFT_OUT = 0.1
 """Force of a pair at the cutoff over the largest force along x, per unit of tolerance: each pair that comes within
 reach, or leaves it, changes that by so much at once."""
@@ -154,20 +154,20 @@ def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: fl
 
 
 def innermost_distance(estimate: ContactEstimate, cutoff: float, displacement: float) -> float:
-    """Distance [LU] of the estimate's innermost pair at a displacement [LU]; its grid ends at the cutoff [LU]."""
+    """Distance [LU] of the predictor's innermost pair at a displacement [LU]; its grid ends at the cutoff [LU]."""
     grid = cutoff / estimate.gap.size * np.arange(1, estimate.gap.size + 1)
     return float(np.interp(estimate.rest - displacement, estimate.gap, grid))
 
 
 def thermal_motion(scene: Scene) -> float:
-    """By how much noise brings two particles on their springs nearer to each other [LU]: THERMAL_SIGMAS √(2 k_BT/k)."""
+    """By how much noise brings two particles on their springs closer to each other [LU]: THERMAL_SIGMAS √(2 k_BT/k)."""
     return (
         0.0 if scene.noise is None else THERMAL_SIGMAS * math.sqrt(2.0 * scene.noise.temperature / scene.bulk_stiffness)
     )
 
 
 def force_scale_of(scene: Scene, law: DoubleExponential | None, largest: float) -> float:
-    """The largest tension of one pair, or without attraction the force of the deepest particle."""
+    """The force maximum of one pair, or without attraction the force of the deepest particle."""
     if law is not None and law.attraction is not None:
         r = law.force_free_distance() + law.longest_range * np.linspace(0.0, 5.0, 2001)
         return float(-law.force(r).min())
@@ -200,7 +200,7 @@ def plane_stiffness_of(scene: Scene, tolerance: float) -> float:
 
 TABLE_MARGIN = 0.8
 """Distance from which on a table is to follow the law, over the expected smallest one. Measured: the smallest distance
-is 0.93 to 1.004 of what the estimate of independent pairs says."""
+is 0.93 to 1.004 of what the predictor of independent pairs says."""
 CLOSEST_SHARE = 0.2
 """Smallest distance that is looked after over the force-free one (with attraction) or the repulsion's range."""
 MOVE_SHARE = 0.25
@@ -251,11 +251,11 @@ class Settings:
         longest_move: of a body between two states at rest [LU], inf on a rigid plane: a body that is moved by more than
             its particles' distance from the opposite ones is put behind them. A search may come nearer than `closest`,
             in moves down to NEAR_SHARE of this.
-        largest_displacement: what the estimate expects [LU].
+        largest_displacement: what the predictor expects [LU].
         calm_damping, calm_step: damping with which particles snap together and don't swing [FU·TU/LU], and the time
             step for it [TU]; the usual ones where the scene gives its damping. In a slide the one under which it is
             loaded, with which its plate does not swing.
-        part: of increments, moves and loads over the usual ones, of a search that begins anew in smaller steps.
+        part: of increments, moves and loads over the usual ones, of a search that restarts in smaller steps.
     """
 
     tolerance: float
@@ -300,7 +300,7 @@ class Settings:
 
     @property
     def gentle(self) -> bool:
-        """Whether a relaxation moves no particle by more than `longest_move` at a time, and none swings in time."""
+        """Whether a relaxation moves no particle by more than `longest_move` at a time, and none oscillates in time."""
         return self.part < 1.0
 
     @property
@@ -320,9 +320,9 @@ class Settings:
 
     @property
     def strongest(self) -> tuple[float, float]:
-        """(distance [LU], tension [FU]) where the force of a row of opposite particles on one is the largest tension.
+        """(distance [LU], tension [FU]) where the force of a row of opposite particles on one is the force maximum.
 
-        Of the estimate, whose grid of distances ends at the cutoff; (0, 0) on a rigid plane.
+        Of the predictor, whose grid of distances ends at the cutoff; (0, 0) on a rigid plane.
         """
         if self.law is None:
             return 0.0, 0.0

@@ -220,7 +220,7 @@ def alone(folder: Path, busy: str = "another run is active in") -> Iterator[None
 
 
 def _planned_text(deck: Deck) -> str:
-    """in.lammps with the planned schedule. Raises SettingsError where its way or one of its rows is too long."""
+    """in.lammps with the planned schedule. Raises SettingsError where its path or one of its rows is too long."""
     require_way(deck.scene, deck.settings)
     phases = planned(deck.scene, deck.settings)
     require_steps(getattr(row, "steps", 0) for phase in phases for row in phase.rows)

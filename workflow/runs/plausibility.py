@@ -1,4 +1,4 @@
-"""Numbers of a scene and its results that no contact in a laboratory has: most often a unit that was forgotten.
+"""Values of a scene and its results outside the usual range of real contacts: most often a missing unit.
 
 They are warnings, and nothing is refused: the model has no atoms, and gives its numbers for any size.
 """

@@ -1,7 +1,7 @@
-"""What was asked for and is not reached: the run again with finer settings, until it is, or until that helps no more.
+"""Refinement: the run is repeated with finer settings until the tolerance is met, or there is no improvement.
 
 A pass has the settings and the checks of a tolerance that is TOLERANCE_RATIO times smaller than that of the one before.
-Two nested passes are evidence of how exact they are: where they differ by more than both claim, the claim is raised.
+Where two nested passes differ by more than both uncertainties, these are increased.
 """
 
 from __future__ import annotations

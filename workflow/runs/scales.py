@@ -1,4 +1,4 @@
-"""What one LU and one FU of a finished run stand for in SI, where the scene has a [material].
+"""One LU and one FU of a finished run in SI, where the scene has a [material].
 
 With `length_unit`:      c LU² h χ / k = FU,  c the layer's stiffness per length, h the spacing, k the stiffness of a
                          bulk spring, χ = 2 chains in series, or 1 on a rigid plane.

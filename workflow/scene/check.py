@@ -1,4 +1,4 @@
-"""Each table of a scene by itself: every mistake, reported once and in the words of the scene file.
+"""Each table of a scene by itself: every error, reported once in the terms of the scene file.
 
 A misspelt word that can only mean one thing is reported and then read as what was meant, so that the rest of its table
 and the rules across tables are checked as well.

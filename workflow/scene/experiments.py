@@ -60,7 +60,7 @@ class Span(Table):
         return self
 
     def values(self) -> list[float]:
-        """Displacements [LU] in order: steps + 1 on the way there, then `steps` back; the turning point once."""
+        """Displacements [LU] in order: steps + 1 on the path there, then `steps` back; the turning point once."""
         n = self.steps
         between = [(self.from_ * (n - i) + self.to * i) / n for i in range(1, n)]
         there = [self.from_, *between, self.to]
@@ -101,8 +101,8 @@ class Kind(Table):
         load_key: the key of its one normal force, which but for a preload may pull where the bodies attract each other.
         finds_pull_off: whether its results have F_A and a₀.
         way_is_given: the scene prescribes the loading history, so that nothing is searched for and states are unique.
-        motion_is_result: the motion itself is looked at, so that the scene exists in time only and its drag is its own.
-        draws_off: the plate is drawn off through a spring along z.
+        motion_is_result: the motion itself is examined, so that the scene exists in time only and its drag is its own.
+        draws_off: the plate is retracted through a spring along z.
         goes_along: the scene also prescribes places along x, on a plane, and has no other method.
     """
 
@@ -129,7 +129,7 @@ class Kind(Table):
 
     @property
     def drawing_stiffness(self) -> float:
-        """Stiffness [FU/LU] of a spring that draws the plate off along z; 0 without one."""
+        """Stiffness [FU/LU] of a spring that retracts the plate along z; 0 without one."""
         return 0.0
 
     @property

@@ -1,4 +1,4 @@
-"""What is wrong with a scene: one line per mistake, in the words of the scene file."""
+"""Errors in a scene: one line for each, in the terms of the scene file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A measured profile from a CSV file: the columns r and z, as comma, semicolon, tab or blanks part them."""
+"""A measured profile from a CSV file: the columns r and z, separated by comma, semicolon, tab or blanks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Types of the values in a scene, each with its range and its unit in one name, and what can be read off them.
+"""Types of the values in a scene, each with its range and its unit in one name, and what follows from them.
 
 Model units: length LU (the spacing), force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT in FU·LU.
 

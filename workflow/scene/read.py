@@ -136,7 +136,7 @@ def scene_from_dict(
 ) -> Scene:
     """The scene that `data` (keys as in a scene file; None counts as absent) describes. `data` is left as it is.
 
-    A profile's file is looked for in `folder` and read into the scene, which then needs it no more. `overrides` are
+    A profile's file is looked up in `folder` and read into the scene, which then needs it no more. `overrides` are
     strings "table.key=value", applied in order, the value read as TOML or else as bare text; `without` has names of
     effects whose tables are then removed. Raises SceneError with every problem at once.
     """

@@ -1,4 +1,4 @@
-"""What fits together in a scene: tables of rules by subject, and one evaluation that reports every breach at once.
+"""Rules across the tables of a scene, by subject, and one evaluation that reports every violation at once.
 
 A rule is a row: the key that it speaks of, whether it is broken, what is wrong, what to do, and at times the changes by
 dotted keys that would each make a scene of it. What an experiment or an effect needs and excludes is declared beside

@@ -1,4 +1,4 @@
-"""What a key of a scene may hold, in words and as a JSON schema for editors, from the types of the tables alone.
+"""The allowed values of a key of a scene, as text and as a JSON schema for editors, from the types of the tables.
 
 The schema knows each table by itself; what tables need of each other is checked by the program alone. Written without
 references and in the words of draft 7, which editors of TOML read (taplo, and with it Even Better TOML in VS Code).

@@ -1,6 +1,6 @@
 """The typed scene: one frozen model per table of a scene file.
 
-What the model stands for: elasticity, the reduction to a plane model, and the metres and newtons behind LU and FU.
+The physical system: elasticity, the reduction to one dimension, and LU and FU in metres and newtons.
 
     1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂,        1/G* = (2 − ν₁)/4G₁ + (2 − ν₂)/4G₂
 

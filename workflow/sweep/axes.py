@@ -65,7 +65,7 @@ class SweepPlan:
     Attributes:
         title: of the sweep.
         base: tables of the base scene, unchecked: an axis may bring what it lacks.
-        folder: where files that the base scene names are looked for.
+        folder: where files that the base scene names are searched.
         axes: at least one.
         combine: "product": every value with every other, the last axis quickest; "zip": the first values together, the
             second ones, and so on.

@@ -1,4 +1,4 @@
-"""A sweep: the points that are missing run, on this machine or as jobs of Slurm; the table and figures have them all.
+"""A sweep: its missing points run on this machine or as Slurm jobs; the table and figures have all points.
 
 The run folders alone record what is done, so the same command continues a sweep that was interrupted at any moment.
 """
