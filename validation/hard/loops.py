@@ -116,7 +116,7 @@ def _snap_distance(d: Floats, pairs: FoldedPairs) -> Floats:
 LOOPS = Study(
     NAME,
     "Snap-in, snap-off and the dissipated energy",
-    "A path with rows as wide as the range steps over the places where particles snap: if they are left in the wrong "
-    "state, the force and the dissipated energy are wrong without any sign of it.",
+    "A path with load steps as wide as the range passes the instabilities: if particles are then in the wrong "
+    "state, the force and the dissipated energy are wrong without notice.",
     measure,
 )

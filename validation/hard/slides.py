@@ -191,7 +191,7 @@ def _ends(bench: Bench) -> Iterator[Row]:
 SLIDES = Study(
     NAME,
     "Slides back, at rest, too fast, smooth, unloaded, one by one, off the end",
-    "A drive that turns or rests, slips that fall into one row, an integrator that lags by half a step, or a plate "
-    "that leaves its chain gives a smooth trace and a wrong friction.",
+    "A drive that reverses or stops, several slips in one load step, an integrator that lags by half a step, or a "
+    "plate that leaves its chain gives a smooth trace and a wrong friction.",
     measure,
 )
