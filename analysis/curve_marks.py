@@ -106,7 +106,7 @@ def _vertex(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, 
 
 
 def promised(displacement: Sequence[float], force: Sequence[float], places: Sequence[float]) -> Array:
-    """Tension [FU] at `places` [LU] beside the largest one, by the polynomial through it and two rows on each side.
+    """Tension [FU] at `places` [LU] near the force maximum, by the polynomial through it and two points on each side.
 
     NaN where there are no such rows.
     """

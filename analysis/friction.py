@@ -49,7 +49,7 @@ class Mean:
 
 @dataclass(frozen=True)
 class Slip:
-    """A jump of the plate into another hollow: when it ends [TU], where it begins and how far it goes [LU]."""
+    """A jump of the plate into another potential minimum: its end [TU], its position and its size [LU]."""
 
     time: float
     place: float
@@ -80,7 +80,7 @@ def block_means(time: Array, integral: Array, period: float, rate: Array | None 
 
 
 def mean_of(blocks: Array) -> Mean:
-    """The mean after the run-in; that ends where what is left is known best, half of the blocks before at most.
+    """The mean after the run-in; the run-in minimises the standard error of the rest, at most half of the blocks.
 
     Raises:
         ValueError: fewer than DROPPED + FEWEST_BLOCKS blocks.
@@ -139,7 +139,7 @@ def student(freedom: int) -> float:
 
 
 def slips(time: Array, place: Array, spacing: float, velocity: float) -> list[Slip]:
-    """Where a plate goes on, FASTER than the drive, for a LONG way: over a barrier, or down from one into a hollow.
+    """Where a plate moves FASTER than the drive over a LONG distance: across a barrier, or from one into a minimum.
 
     With much drag it slows down on the barrier itself, wherever that is: no position is asked for.
 
@@ -155,7 +155,7 @@ def slips(time: Array, place: Array, spacing: float, velocity: float) -> list[Sl
 
 
 def largest_before(friction: Array, place: Array, spacing: float) -> tuple[float, float]:
-    """(largest friction [FU] until the plate has moved by one period, what a row may have missed of it [FU]).
+    """(largest friction [FU] until the plate has moved by one period, its sampling error [FU]).
 
     The friction rises smoothly up to where the plate slips: what is missed is less than what the row before rose by.
     Over the top of a barrier that the plate passes without a slip it is a smooth function of the place, and its largest

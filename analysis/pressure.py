@@ -70,7 +70,7 @@ def pressure_profile(
 
 
 def mean_pressure(profile: Profile, spacing: float, radius: float) -> float:
-    """Return F / (pi a^2), the mean pressure of the three-dimensional contact that the model stands for [FU/LU^2].
+    """Return F / (pi a^2), the mean pressure of the three-dimensional contact that the model represents [FU/LU^2].
 
     spacing of the particles [LU]; radius: contact radius a [LU]. F is the whole normal force, tension beyond a
     included, because that is the force of Eq. (8). This is the paper's mean pressure: for R = 1000, a = 35 and the row
@@ -144,7 +144,7 @@ TAIL_REACH = 5.0
 
 
 def left_out(law: DoubleExponential, table: Table, profile: Profile) -> float:
-    """Σ |F_table(r) - f(r)| |z|/r [FU]: what a table and its cutoff leave out of a law in a state.
+    """Σ |F_table(r) - f(r)| |z|/r [FU]: the truncation and table error of an interaction in a state.
 
     Summed offset by offset along the chain: memory for one row of pairs.
     """

@@ -55,7 +55,7 @@ def stick_radius(profile: Profile, coefficient: float, direction: int) -> Contac
 
 @dataclass(frozen=True)
 class Slip:
-    """What a row did to particles that were touched all the way: arrays (n,).
+    """Changes of particles in contact during a whole load step: arrays (n,).
 
     force: tangential force after it [FU]; way: by how much each slipped [LU]; work: that it took [FU·LU].
     """
@@ -66,7 +66,7 @@ class Slip:
 
 
 def slip(force: Array, pushed: Array, limit: Array, next_limit: Array, stiffness: float) -> Slip:
-    """Return what becomes of tangential springs whose ends are moved, while the limits of their forces change.
+    """Return the forces of tangential springs whose ends are moved, while the limits of their forces change.
 
         s₁ = clip(s₀ + k Δu, ±B₁)
 
@@ -90,7 +90,7 @@ def slip(force: Array, pushed: Array, limit: Array, next_limit: Array, stiffness
 
 
 def kinks_of(stick: Sequence[float], contact: Sequence[float]) -> list[list[float]]:
-    """Return the kinks that the line shear has after each row, inside of the edge, rising [length].
+    """Return the kinks of the line shear after each load step, inside the contact edge, ascending [length].
 
     The edge c of what sticks is one. Where c grows, at a turn or with the load, the old one stays behind, and so does
     the old edge of a contact that grows; where c comes back to a kink, that is gone.

@@ -33,7 +33,7 @@ class Exponential:
 
 @dataclass(frozen=True)
 class DoubleExponential:
-    """V(r) = repulsion − attraction; without an attraction the law only repels.
+    """V(r) = repulsion − attraction; without an attraction it is purely repulsive.
 
     Args:
         repulsion: the term A exp(−r/a).
@@ -81,7 +81,7 @@ class DoubleExponential:
 
     @property
     def longest_range(self) -> float:
-        """The range of the term that decides the law far away [LU]."""
+        """The range of the term that dominates at large distance [LU]."""
         return self.repulsion.range if self.attraction is None else self.attraction.range
 
     def force_free_distance(self) -> float:

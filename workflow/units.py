@@ -56,7 +56,7 @@ PREFIXES = {-6: "a", -5: "f", -4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k"
 
 
 def scale_of(value: float, unit: str) -> tuple[float, str]:
-    """The factor, and the unit with its prefix, by which a number of this size in an SI `unit` is written.
+    """The factor, and the unit with its prefix, for a number of this size in an SI `unit`.
 
     Of a compound unit (N/m) the first has the prefix, as in mN/m.
     """
@@ -114,7 +114,7 @@ def rounded(value: float, uncertainty: float) -> str:
 
 @dataclass(frozen=True)
 class Scales:
-    """What the model units stand for.
+    """The model units in SI.
 
     Attributes:
         length, force: one LU [m], one FU [N].

@@ -228,14 +228,14 @@ class Verdict:
 
 
 def of_tabor(tabor: float) -> Theory:
-    """The theory that goes with mu whatever the load: DMT below 0.1, JKR above 5, else Maugis and Dugdale's."""
+    """The theory for mu at any load: DMT below 0.1, JKR above 5, else Maugis and Dugdale's."""
     if tabor < DMT_TABOR:
         return Theory.DMT
     return Theory.JKR if tabor > JKR_TABOR else Theory.MAUGIS
 
 
 def valid_theory(tabor: float, reduced_load: float) -> Verdict:
-    """Return the simplest theory that holds; asked in the order apart, rigid, Hertz, JKR, DMT, Maugis and Dugdale.
+    """Return the simplest valid theory; tested in the order apart, rigid, Hertz, JKR, DMT, Maugis and Dugdale.
 
     With N = F/(pi W R): rigid where Hertz's compression under F + 2 pi W R, mu [(3 pi/4)(N + 2)]^(2/3) z_0, is small;
     Hertz where (A^3 - N)/N is, the load that attraction adds, by the theory that goes with mu.

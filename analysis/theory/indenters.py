@@ -47,7 +47,7 @@ def require_positive(**values: float) -> None:
 
 
 class Contact(ABC):
-    """One contact by a theory: force and displacement over the contact radius a, and what follows from the two.
+    """One contact by a theory: force and displacement over the contact radius a, and results derived from them.
 
     Under a fixed load it pulls off where F(a) is lowest, under fixed grips where d(a) is: beyond, both rise with a.
     """

@@ -63,7 +63,7 @@ def mindlin_path(places: Sequence[float], normal_force: float, friction: float, 
 
 
 def mindlin_stick_path(places: Sequence[float], contact_radius: float, sliding: float) -> list[float]:
-    """Return c [length] at each of the positions, as `mindlin_path` goes: after a turn all sticks again.
+    """Return c [length] at each of the positions, as `mindlin_path`: after a reversal all sticks again.
 
     Args:
         places: u [length].

@@ -22,14 +22,14 @@ FULL_DISK = {
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """Give the temporary path to write to; it takes the place of `path` in the end, and not after an error."""
+    """Give the temporary path to write to; it replaces `path` at the end, unless there is an error."""
     part = path.with_name(path.name + PART)
     yield part
     os.replace(part, path)
 
 
 class UnreadableError(ValueError):
-    """A file that can't be read as text; its arguments are the path, and why with what to do."""
+    """A file that can't be read as text; its arguments are the path, and the reason with what to do."""
 
     def __str__(self) -> str:
         """Return both."""

@@ -62,7 +62,7 @@ def first_of(found: Mapping[str, Quantity], *names: str) -> Quantity | None:
 
 
 def with_implied(scene: Scene, settings: Settings, outcome: Outcome) -> Outcome:
-    """The outcome of a run with what its interaction implies."""
+    """The outcome of a run with the results that its interaction implies."""
     return _with(outcome, implied(scene, settings, outcome.quantities))
 
 
@@ -99,7 +99,7 @@ def implied(scene: Scene, settings: Settings, found: Mapping[str, Quantity]) -> 
 
 
 def formulas(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, dict[str, str]]:
-    """For results.json, `formulas`: in words, how a number was made that has more than one reading."""
+    """For results.json, `formulas`: the formula of a result that has more than one definition."""
     made = {
         "separation_energy": "w/s: w = ∫ −f dr separates one particle from the opposite chain, s the spacing; energy "
         "per length of chain",
@@ -125,7 +125,7 @@ def _work(law: DoubleExponential, spacing: float) -> Quantity:
 
 
 def with_body(scene: Scene, outcome: Outcome) -> Outcome:
-    """The outcome with what is the body's own: p(0), the largest pressure, mean pressure, stiffness, adhesion energy.
+    """The outcome with the results of the body: p(0), the largest pressure, mean pressure, stiffness, adhesion energy.
 
     A pressure that has no bound is left out.
     """

@@ -27,12 +27,12 @@ def _is_image(scene: Scene) -> bool:
 
 
 def stands_for_spheres(scene: Scene) -> bool:
-    """Whether the numbers are those of the paper's two equal spheres, told apart from the image's."""
+    """Whether the results are those of the paper's two equal spheres, reported beside those of the image."""
     return _is_image(scene) and scene.bodies.profile.kind in SPHERES
 
 
 def of_the_body(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """The quantities of a run, by the names that say of what they are."""
+    """The quantities of a run, by names that state the body they belong to."""
     if not _is_image(scene):
         return dict(quantities)
     named: dict[str, Quantity] = {}
@@ -51,7 +51,7 @@ def of_the_body(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Q
 
 
 def doubt_of_the_image(scene: Scene) -> dict[str, str]:
-    """The warning `reduction`: for which body the numbers hold, and by which factors they are off for another."""
+    """The warning `reduction`: the body for which the results hold, and the factors for another one."""
     if not _is_image(scene):
         return {}
     kind = scene.bodies.profile.kind

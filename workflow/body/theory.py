@@ -180,7 +180,7 @@ def _entry(form: ClosedForm, case: Case, scales: Scales | None) -> dict[str, Any
 
 
 def in_words(results: Mapping[str, Any], name: str) -> Iterator[str]:
-    """What each closed form says of a result, and how far the result is from it: `Hertz 110.37 µm (+0.001 %)`."""
+    """The prediction of each closed form for a result, with the deviation: `Hertz 110.37 µm (+0.001 %)`."""
     for form in results.get("theory", ()):
         if said := form["values"].get(name):
             entry = said.get("si", said)

@@ -38,7 +38,7 @@ PRESSURES = ("central_pressure", "peak_pressure")
 
 @dataclass(frozen=True)
 class Check:
-    """A number of the contact beside its limit.
+    """A quantity of the contact and its limit.
 
     Attributes:
         name: of the warning.

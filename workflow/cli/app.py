@@ -228,7 +228,7 @@ def cost(
     repeats: Annotated[int, typer.Option(min=1, help="Runs of each variant; times are their medians.")] = 3,
     workers: Annotated[int | None, typer.Option(min=1, help="Runs in parallel.", show_default="processors")] = None,
 ) -> None:
-    """Measure what accuracy costs in time: for every numerical setting and effect of a scene, its error and CPU time.
+    """Measure the cost of accuracy: error and CPU time of every numerical setting and effect of a scene.
 
     Prints a row for each: its value, the value that is enough, errors, times, what to do. Leaves cost.json and
     cost.png, a work-precision figure. The scene itself is not changed.

@@ -34,16 +34,16 @@ BAD_PLACE = (
 
 
 class Commands(typer.core.TyperGroup):
-    """All commands: one that has nothing to add when it ends, and what another prints at last, ends in words here."""
+    """All commands, with the errors of their options reported in the same form as others."""
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command that was asked for."""
+        """Run the command."""
         with command(ctx.info_name, quiet=True):
             return super().invoke(ctx)
 
 
 def stop(message: str, code: int) -> NoReturn:
-    """Say what is wrong and end with this exit code."""
+    """Print the error and end with this exit code."""
     typer.secho(message, err=True, fg="red")
     raise SystemExit(code)
 
@@ -79,7 +79,7 @@ def read(path: Path, overrides: list[str] | None, without: list[str] | None, pro
 
 
 def problems_in(where: str, error: Exception) -> str:
-    """The problems of a file, each on a line of its own, under their number; another error in its own words."""
+    """The problems of a file, each on a line of its own, under their number; another error as it is."""
     count = len(getattr(error, "problems", ()))
     head = [f"{where}: {count} problem{'s' if count > 1 else ''}"] if count else []
     return "\n  ".join([*head, *str(error).split("\n")])
@@ -87,7 +87,7 @@ def problems_in(where: str, error: Exception) -> str:
 
 @contextmanager
 def command(what: str, folder: Path | None = None, kept: str = "", quiet: bool = False) -> Iterator[Progress]:
-    """Do the work of a command; what goes wrong in it ends it in words and with the exit code that belongs to it.
+    """Do the work of a command; an error in it ends it with a message and the exit code of that error.
 
     Args:
         what: is done, for "… failed".

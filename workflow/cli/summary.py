@@ -40,7 +40,7 @@ BLOCK, EMPTY, AXIS = "█", " ", "─"
 
 
 def quantities(results: Mapping[str, Any]) -> list[str]:
-    """What the numbers are of, then a line for each: name, value ± uncertainty, unit, closed forms beside it.
+    """The reduction, then a line for each result: name, value ± uncertainty, unit, closed forms.
 
     In SI where the units are known, and then also what LU and FU are.
     """
@@ -151,7 +151,7 @@ def regime(found: MaterialRun) -> Iterator[str]:
 
 
 def beside_theories(found: MaterialRun) -> Iterator[str]:
-    """A table: what the run has, and what each theory says, with the run's deviation from JKR."""
+    """A table: the results of the run, the predictions of each theory, and the deviation of the run from JKR."""
     theories = found.theories
     if theories is None:
         return

@@ -65,14 +65,14 @@ class Reduction:
         return _values(self.read(self.trace(model, dense, shift)))
 
     def trace(self, model: Reduced, dense: int = 1, shift: float = 0.0) -> Trace:
-        """What the script leaves of the model."""
+        """The driver of the reduced model, and its trace."""
         branch = ModelBranch(self.scene, self.settings, model, dense, shift)
         self.script(branch)
         return branch.trace()
 
     @property
     def on_lattice(self) -> bool:
-        """Whether the particles' positions are the program's choice, and not the body that was asked for."""
+        """Whether the positions of the particles are chosen by the program, and not part of the scene."""
         bodies = self.scene.bodies
         return bodies.particles == "auto" and not bodies.profile.has_edge
 
@@ -114,7 +114,7 @@ def _extrapolated(coarse: float, fine: float, finest: float) -> float:
 
 
 def sampling_errors(case: Reduction, trace: Trace) -> Values:
-    """By name of a result, what the steps that a scene gives miss of it, by the model with the same and dense steps."""
+    """Sampling error of each result by the steps of the scene, from the model with the same and with dense steps."""
     model, found = reduced(case.scene, case.settings), dict[str, float]()
     step = float(np.median(np.abs(np.diff(trace.displacement)))) if len(trace) > 1 else 0.0
     is_copy = case.scene.is_stepped

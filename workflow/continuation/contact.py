@@ -46,7 +46,7 @@ MOST_NUMBERS = 1_000_000
 
 
 class Contact:
-    """A deck that is being run. It keeps its schedule: `phases` is what in.lammps must hold to repeat it."""
+    """A running deck. It records its schedule: `phases` is the content of in.lammps that repeats it."""
 
     def __init__(self, deck: Deck, session: Session, meanwhile: Callable[[], object] | None = None) -> None:
         """Run the deck's head. What `meanwhile` does costs no time: LAMMPS reads the bodies then."""
@@ -117,13 +117,13 @@ class Contact:
         self._written = True
 
     def finish(self) -> None:
-        """Run what is left of the last load step; what its states were made of is not kept."""
+        """Run the remaining phases of the last load step, whose states are not kept."""
         self.session.execute(self._unfinished, phase=self._phases[-1].name)
         self._unfinished = ""
         (self.session.folder / FRAMES).unlink(missing_ok=True)
 
     def replay(self, phases: Sequence[Phase], relaxed: bool = False) -> list[State]:
-        """Run a whole schedule; one state for each row. `relaxed`: a row in time is repeated until it is at rest."""
+        """Run a whole schedule; one state for each load step. `relaxed`: one in time is repeated until at rest."""
         states: list[State] = []
         trusted = self.scene.noise is None
         for phase in phases:

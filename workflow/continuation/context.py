@@ -77,7 +77,7 @@ class RunContext:
                 self.phase, self.timestep = session.phase, session.timestep
 
     def add_time_of(self, other: RunContext) -> None:
-        """Add what a context beside this one, maybe in another thread, has used."""
+        """Add the time used by a parallel context, possibly in another thread."""
         with self._lock:
             self.lammps_seconds += other.lammps_seconds
             self.lammps_cpu_seconds += other.lammps_cpu_seconds
@@ -86,7 +86,7 @@ class RunContext:
 
 
 class ContactBranch:
-    """States of one contact, from its approach on; what a script moves.
+    """States of one contact, from its approach on; driven by a script.
 
     Attributes:
         context: where contacts are opened.

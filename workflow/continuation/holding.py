@@ -101,7 +101,7 @@ def overshoot(settings: Settings, mass: float, load: float, next_load: float) ->
 
 
 def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start: Start) -> Hold:
-    """A `hold` row, which ends where the contact's force is within `at_rest` of the load.
+    """A `hold` step, which ends where the contact force is within `at_rest` of the load.
 
     With M the plate's mass, N m that of the particles that move with it and c the drag on both, the contact's force
     misses the load by (M + N m) Z″ + c Z′; LAMMPS knows M Z″ and Z′.

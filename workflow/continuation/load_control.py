@@ -81,7 +81,7 @@ class Search:
         return self.broken - self.best <= BRACKET * self.tolerance * self.best
 
     def learn(self, result: Held) -> None:
-        """Take in what the latest tension led to."""
+        """Record the outcome of the latest tensile load."""
         if result.held:
             self.held.append(result)
             return
@@ -109,7 +109,7 @@ class Search:
 
 
 class LoadBranch(ContactBranch):
-    """States at rest under loads; what `Branch` does by displacement is done here by force.
+    """States at rest under loads; as `Branch`, but under load control.
 
     Attributes:
         unbalance: force [FU] that the last state leaves unbalanced.
@@ -161,7 +161,7 @@ class LoadBranch(ContactBranch):
         self.loading += self.contact.rows([UnderLoad(force, 1), *[UnderLoad(force, steps)] * count], moving=True)
 
     def holds_more(self, force: float) -> bool:
-        """Whether a tension that is larger by FIRST_RISE tolerances is held, too, tried with a contact of its own.
+        """Whether a tensile load larger by FIRST_RISE tolerances is sustained, too, tried with a contact of its own.
 
         A contact at rest balances its load within a share of the tolerance, and near the limit point it creeps: on
         which side of it a load is cannot be resolved further.

@@ -144,7 +144,7 @@ def _distance_from_limit(branch: Trace) -> float:
 
 
 def peak_of(trace: Trace) -> Peak:
-    """The force maximum by falling displacement; at the limit point, where a contact is lost at once, what it is."""
+    """The force maximum by falling displacement; at the limit point, where a contact is lost at once, its force."""
     found = largest_tension(*trace.lists)
     last = len(trace) - 1
     left = _distance_from_limit(trace)

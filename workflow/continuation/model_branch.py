@@ -31,7 +31,7 @@ UNSEEN = ""
 
 
 class ModelBranch:
-    """States of the model, with positions as dense as asked for; they are worked out together in the end.
+    """States of the model, with positions of the required density; they are computed together at the end.
 
     Attributes:
         model: the particles.

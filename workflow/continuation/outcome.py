@@ -19,7 +19,7 @@ MODEL = "model"
 
 @dataclass(frozen=True)
 class Reading:
-    """A value that was read, and what its reader knows of its errors, by source.
+    """A value with the errors that its reader determines, by source.
 
     Attributes:
         value: in `unit`.

@@ -17,7 +17,7 @@ OUTSIDE = 1.5
 
 @dataclass(frozen=True)
 class RadiusRule:
-    """What the contact radius of a scene is; `tolerance` says how exact a minimiser leaves a pressure."""
+    """The definition of the contact radius of a scene; `tolerance` limits the residual of a pressure."""
 
     scene: Scene
     tolerance: float
@@ -87,7 +87,7 @@ class State:
 
     @property
     def carried(self) -> float:
-        """The load that the state balances [FU]: what the contact carries and nothing else presses."""
+        """The load in equilibrium with the state [FU]: the contact force and other forces on the body."""
         return self.force - self.pushed
 
     @cached_property

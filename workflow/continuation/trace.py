@@ -60,7 +60,7 @@ class Trace:
 
     @property
     def lists(self) -> tuple[list[float], list[float]]:
-        """Displacements and forces, as the functions that read a curve take them."""
+        """Displacements and forces, as arguments of the functions that read a curve."""
         return self.displacement.tolist(), self.force.tolist()
 
     def radius(self, state: int) -> float | None:
@@ -115,7 +115,7 @@ class Trace:
     def perturbed(
         self, force: Array | float = 0.0, radius_shift: Array | float = 0.0, radius_factor: float = 1.0
     ) -> Trace:
-        """With forces changed [FU], and radii by so many of their own uncertainties and by a factor."""
+        """With forces changed [FU], and radii changed by a multiple of their uncertainties and by a factor."""
         changed = self.force + force
         bracket = self.bracket
         if bracket is not None:  # of tensions, that the last state is the largest of
@@ -156,7 +156,7 @@ def of_model(
     spacing: float,
     limit: float,
 ) -> Trace:
-    """The trace of what the reduced model followed, with unloaded particles on both sides of the contact."""
+    """The trace of the reduced model, with unloaded particles on both sides of the contact."""
     beside = spacing * np.arange(1, BESIDE + 1)
     x = np.concatenate([followed.x[0] - beside[::-1], followed.x, followed.x[-1] + beside])
     none = np.zeros_like(x)

@@ -191,7 +191,7 @@ def _plane_share(scene: Scene, settings: Settings) -> float:
 
 
 def slowness(scene: Scene, settings: Settings) -> str:
-    """What makes the scene slow, in words; empty where nothing does, or where time is what is examined (a slide)."""
+    """The reason why the scene is slow; empty where it is not, or where the motion itself is studied (a slide)."""
     if scene.method != "dynamic" or scene.damping is None or scene.experiment.motion_is_result:
         return ""
     plate = None if scene.plate is None else Plate(free=scene.plate.free)

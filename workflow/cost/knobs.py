@@ -51,7 +51,7 @@ def at_tolerance(scene: Scene, tolerance: float) -> Keys:
 
 
 def with_method(scene: Scene, method: str) -> Keys:
-    """The scene with the other method: what exists in time only goes, or comes as far as the experiment needs it."""
+    """The scene with the other method; keys of a dynamic scene are removed, or added as the experiment needs them."""
     if method == "quasistatic":
         return ("experiment.method=quasistatic", *(WITHOUT + name for name in TIMED if name in scene.effects))
     plate = () if scene.experiment.way_is_given else ("plate.mass=auto",)
@@ -87,7 +87,7 @@ SPACING_FACTORS = (1.0, 4.0, 2.0, 0.5, 0.125)
 
 
 class Level(NamedTuple):
-    """A value of a setting as text with its unit; `h` goes to zero as it gets finer, NaN where it is on no scale."""
+    """A value of a setting as text with its unit; `h` goes to zero as it gets finer, NaN without an order."""
 
     h: float
     value: str

@@ -50,7 +50,7 @@ Results = Mapping[str, Quantity]
 
 
 def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, progress: Progress) -> CostRecord:
-    """Measure what accuracy costs in a scene.
+    """Measure the cost of accuracy in a scene.
 
     Args:
         scene: to be studied.
@@ -146,7 +146,7 @@ def judged_by_group(ran: Sequence[Variant], knobs: Sequence[Knob], reference: Re
 
 
 def judged(one: Variant, reference: Results, noisy: bool, against: Results | None = None) -> Variant:
-    """A variant that ran with its errors; one that lacks a main result has failed.
+    """A variant with its errors; one that lacks a main result has failed.
 
     Args:
         one: with its quantities.
@@ -203,7 +203,7 @@ def fit_order(h: Sequence[float], errors: Sequence[float], floor: float = 0.0) -
 
 
 def choice(scene: Scene, settings: Settings) -> str:
-    """What the settings of a scene are, in words."""
+    """The settings of a scene as text."""
     words = []
     if settings.table is not None and scene.interaction is not None:
         words.append(f"table of {settings.table.points} points")

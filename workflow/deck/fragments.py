@@ -18,7 +18,7 @@ REDEFINES = "Redefines"
 
 
 class DeckError(RuntimeError):
-    """A deck that is not what its own headers say; a mistake in the program, never in a scene."""
+    """A deck that contradicts the headers of its fragments; an error in the program, never in a scene."""
 
 
 @dataclass(frozen=True)

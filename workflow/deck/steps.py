@@ -30,7 +30,7 @@ UNITS = (
 
 @dataclass(frozen=True)
 class Row:
-    """What one row of a schedule prescribes."""
+    """The values that one row of a schedule prescribes."""
 
     step: ClassVar[str]
     """The fragment in `lammps_inputs/fragments/steps`."""
@@ -41,7 +41,7 @@ class Row:
         return tuple(f"row_{field.name}" for field in fields(cls))
 
     def texts(self, to_deck: Callable[[float, str], float]) -> tuple[str, ...]:
-        """Their values as LAMMPS text; `to_deck` takes a value with its unit to that of the deck."""
+        """Their values as LAMMPS text; `to_deck` converts a value with its unit to that of the deck."""
         given = {field.name: getattr(self, field.name) for field in fields(self)}
         return tuple(str(v) if isinstance(v, int) else number(to_deck(v, UNITS[name])) for name, v in given.items())
 
@@ -65,7 +65,7 @@ class Draw(Row):
 
 @dataclass(frozen=True)
 class DisplaceInTime(Row):
-    """The plate is put to a displacement [LU] and the particles move for so many timesteps."""
+    """The plate is set to a displacement [LU] and the particles move for a number of timesteps."""
 
     step: ClassVar[str] = "displace_dynamic"
     displacement: float
@@ -74,7 +74,7 @@ class DisplaceInTime(Row):
 
 @dataclass(frozen=True)
 class UnderLoad(Row):
-    """Plate and particles move for so many timesteps under a load [FU], compression positive."""
+    """Plate and particles move for a number of timesteps under a load [FU], compression positive."""
 
     step: ClassVar[str] = "load"
     load: float

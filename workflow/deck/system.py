@@ -155,7 +155,7 @@ def _write_rows(file: TextIO, template: str, *columns: NDArray[np.float64] | Int
 
 
 def write_system(deck: Deck, folder: Path) -> None:
-    """Write what a deck reads: system.data, and interaction.table or adhesion.cells if it has one."""
+    """Write the input files of a deck: system.data, and interaction.table or adhesion.cells if it has one."""
     scene, settings = deck.written
     both = bodies(scene, settings)
     anchors = settings.particles

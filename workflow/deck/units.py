@@ -70,7 +70,7 @@ class DeckUnits:
         return value * self.of(unit) if self.are_own else value
 
     def scene(self, scene: Scene) -> Scene:
-        """The scene with its numbers in deck units, and what follows from a material given as numbers."""
+        """The scene with its numbers in deck units, and with the values that follow from a material."""
         if not self.are_own:
             return scene
         given = {"bulk_stiffness": scene.bulk_stiffness, "bulk_stiffness_tangential": scene.tangential_stiffness}

@@ -36,7 +36,7 @@ __all__ = ["Engine", "EngineError", "Installation", "Reading", "Session"]
 
 @dataclass(frozen=True)
 class Reading:
-    """What LAMMPS was asked for at one moment.
+    """Requested values of LAMMPS at one time.
 
     Attributes:
         values: one number per name, in the order of the names.
@@ -151,18 +151,18 @@ class Session:
         atoms: Sequence[str] = (),
         meanwhile: Callable[[], object] | None = None,
     ) -> list[Reading]:
-        """As `measure`, for several points of a curve in one round trip: the same is asked after each text."""
+        """As `measure`, for several points of a curve in one round trip, with the same request after each text."""
         self._commands = "".join(texts)
         found = self._ask("measure_rows", tuple(texts), tuple(values), tuple(atoms), meanwhile=meanwhile)
         return [Reading(tuple(numbers), arrays) for numbers, arrays in found]
 
     def about(self, styles: Sequence[tuple[str, str]] = ()) -> Installation:
-        """Return what this LAMMPS is, and which of the styles, pairs such as ("fix", "rigid"), it lacks."""
+        """Return version and packages of LAMMPS, and which of the styles, pairs such as ("fix", "rigid"), it lacks."""
         facts = self._ask("about", tuple(styles))
         return Installation(facts["version"], tuple(facts["packages"]), facts["mpi"], tuple(facts["missing"]))
 
     def close(self) -> None:
-        """Close the instance and leave the process to the next session, unless it failed. Use `Engine.session`."""
+        """Close the instance and keep the process for the next session, unless it failed. Use `Engine.session`."""
         if not self._over:
             self._deadline = max(self._deadline, time.monotonic() + CLOSING_SECONDS)
             self._ask("close")
@@ -217,7 +217,7 @@ class Session:
 
 
 class Engine:
-    """The way to LAMMPS. Worker processes are kept for later sessions and end with the program."""
+    """The interface to LAMMPS. Worker processes are kept for later sessions and end with the program."""
 
     @staticmethod
     @contextmanager

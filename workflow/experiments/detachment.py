@@ -74,7 +74,7 @@ class Detachment:
 
 @dataclass(frozen=True)
 class Ramp:
-    """How the plate is pulled: `steps` timesteps in each load step, by `rise` [FU] more from row to row, to row `most`.
+    """The load ramp: `steps` timesteps in each load step, an increment `rise` [FU], up to load step `most`.
 
     With a `spring` [FU/LU], slack at the displacement `slack` [LU], its far end goes on by rise/spring.
     """
@@ -86,13 +86,13 @@ class Ramp:
     slack: float = 0.0
 
     def row(self, number: int) -> Row:
-        """The row of that number, from 1 on."""
+        """The load step of that number, from 1 on."""
         if self.spring:
             return DrawnOff(self.spring, self.slack - number * self.rise / self.spring, self.steps)
         return UnderLoad(-number * self.rise, self.steps)
 
     def tension(self, number: float, place: float) -> float:
-        """On a plate at a displacement [LU] after so many load steps [FU]."""
+        """On a plate at a displacement [LU] after this number of load steps [FU]."""
         return number * self.rise - (self.spring * (self.slack - place) if self.spring else 0.0)
 
     def until(self, tension: float, place: float) -> int:
@@ -100,7 +100,7 @@ class Ramp:
         return math.ceil((tension - self.tension(0.0, place)) / self.rise)
 
     def work(self, number: float, place: float, barrier: float) -> float:
-        """What it takes to bring the plate from a displacement back to the barrier's, or does on that way [FU·LU]."""
+        """Work to move the plate from a displacement back to the barrier, or gained on that path [FU·LU]."""
         return 0.5 * (self.tension(number, barrier) + self.tension(number, place)) * (barrier - place)
 
 

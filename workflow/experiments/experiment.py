@@ -72,13 +72,13 @@ class Experiment(ABC):
         return f'Use "auto" for interaction.cutoff and bodies.particles; for a radius also {FINER_SPACING}'
 
     def branch(self, phase: str) -> str:
-        """The branch of the curve that a phase belongs to."""
+        """The branch name of a phase in curve.csv."""
         name = phase.partition("_")[0]
         return self.branches.get(name, name)
 
 
 class Scripted(Experiment):
-    """An experiment of states at rest: a script over a branch, and a reader of the trace that it leaves."""
+    """A quasi-static experiment: a script over a branch, and a reader of the resulting trace."""
 
     @abstractmethod
     def script(self, branch: Any, scene: Scene) -> None:
@@ -86,7 +86,7 @@ class Scripted(Experiment):
 
     @abstractmethod
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Results of what the script has passed."""
+        """Results of the states that the script has passed."""
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
         """What the experiment adds to its outcome, or refuses of it."""

@@ -17,7 +17,7 @@ from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
 
 class HoldExperiment(Scripted):
-    """d, F, a and F/(πa²) at the end, and by how much what is not held has changed since the beginning."""
+    """d, F, a and F/(πa²) at the end, and the change of the free variable since the beginning."""
 
     main_results = ("displacement", "force", "contact_radius")
 

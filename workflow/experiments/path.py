@@ -68,7 +68,7 @@ class PathExperiment(Scripted):
         return Outcome(results, tuple(reported), ends, phases, warnings, tables=tables)
 
     def script(self, branch: Any, scene: Scene) -> None:
-        """The approach, which no reader sees, and what the scene asks for; where pairs snap also what is between."""
+        """The approach, which is not evaluated, and the positions of the scene; where pairs snap also those between."""
         settings = branch.settings
         all_of_it = way(scene, settings)
         first = [asked for _, asked in all_of_it].index(True)

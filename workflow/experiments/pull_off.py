@@ -41,7 +41,7 @@ class PullOffExperiment(Scripted):
         return super().run(context) if context.deck.scene.noise is None else pull_off_thermal(context)
 
     def script(self, branch: Any, scene: Scene) -> None:
-        """Press, unload to F = 0, pull to the force maximum, part."""
+        """Compress, unload to F = 0, retract to the force maximum, separate."""
         assert isinstance(scene.experiment, PullOff)
         preload = scene.experiment.preload
         scale = max(preload, branch.scale)
@@ -91,13 +91,13 @@ class PullOffExperiment(Scripted):
         return (Phase("loading", down), Phase("unloading", back, state=True))
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Refuse what the run's own curve contradicts."""
+        """Refuse results that contradict the curve of the run."""
         found = outcome.results["adhesion_force"]
         require_no_contradiction(settings, found.value, found.uncertainty, outcome.states)
         return outcome
 
     def advice(self, scene: Scene) -> str:
-        """In time there is a reason of its own."""
+        """With the limitation of load control in time."""
         since = ", since load control never reaches the pull-off itself" if scene.method == "dynamic" else ""
         return super().advice(scene) + since
 

@@ -89,7 +89,7 @@ class SlideExperiment(Experiment):
         return outcome
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The schedule that runs, but for the way to rest under the normal force."""
+        """The schedule, without the relaxation under the normal force."""
         assert isinstance(scene.experiment, Slide)
         force, legs = scene.experiment.normal_force, settings.drive
         sliding = (
@@ -102,7 +102,7 @@ class SlideExperiment(Experiment):
         return loading_phase(scene, settings, force), *sliding
 
     def advice(self, scene: Scene) -> str:
-        """A mean is known by the length of what it is taken over."""
+        """The uncertainty of a mean depends on the averaging length."""
         assert isinstance(scene.experiment, Slide)
         way = "experiment.distance" if scene.experiment.path is None else "last leg of experiment.path that moves"
         return (
@@ -112,7 +112,7 @@ class SlideExperiment(Experiment):
 
 
 def outcome_of(deck: Deck, loaded: State, states: list[State], phases: tuple[Phase, ...]) -> Outcome:
-    """The result of a slide that is over, or of what there is of one that ended early."""
+    """The result of a finished slide, or of the part before a failure."""
     scene, settings = deck.scene, deck.settings
     motion = motion_of(scene, settings, loaded, states)
     found = slips_of(scene, motion)
@@ -173,7 +173,7 @@ def temperature(scene: Scene, settings: Settings, motion: Motion) -> dict[str, R
 
 
 def energies(motion: Motion) -> dict[str, Result]:
-    """Work of the cantilever, what the baths took of it and what is stored; what is missing is uncertain in each."""
+    """Work of the cantilever, dissipated and stored energy; the residual of the balance is the uncertainty of each."""
     ends = {
         "cantilever_work": float(motion.work[-1]),
         "dissipated_energy": float(motion.dissipated[-1]),
@@ -296,7 +296,7 @@ def _columns(motion: Motion, states: list[State]) -> dict[str, tuple[float, ...]
 
 
 def loading_phase(scene: Scene, settings: Settings, force: float) -> Phase:
-    """The planned way: that it takes no longer than usual."""
+    """The planned application of the normal force."""
     if scene.noise is not None:
         return sampled_phase("loading", settings, force, SETTLING_LOOKS)
     scale = abs(force) or settings.force_scale

@@ -75,7 +75,7 @@ def fine_enough(scene_of: Callable[[int], Scene]) -> Scene:
 
 
 def left_by_lattice(scene: Scene) -> float:
-    """The largest share of a result that its lattice leaves open; 0 where no contact can be estimated: the run says so.
+    """The largest relative discretisation error of a result; 0 where no contact can be predicted: the run reports it.
 
     A result that is 0 has no share; a radius that is 0 here and not elsewhere has one without bound.
     """

@@ -48,7 +48,7 @@ def chunk_steps(settings: Settings) -> int:
 
 
 def sampled_phase(name: str, settings: Settings, load: float, samples: int, state: bool = False) -> Phase:
-    """A planned phase of so many samples under a load [FU]."""
+    """A planned phase of samples under a load [FU]."""
     return Phase(name, (UnderLoad(load, chunk_steps(settings)),) * samples, state)
 
 
@@ -194,7 +194,7 @@ def _load_results(context: RunContext, samples: list[State], load: float) -> dic
 def thermal_rows(
     settings: Settings, decay: float, positions: Sequence[tuple[float, bool]]
 ) -> tuple[DisplaceInTime, ...]:
-    """The rows of a path: at each position all that forget, and where the state is asked for those that are averaged.
+    """The load steps of a path: at each position equilibration, and where the scene asks for the state also sampling.
 
     Args:
         settings: of the scene.
@@ -210,7 +210,7 @@ def thermal_rows(
 
 
 def averaged(states: Sequence[State], positions: Sequence[tuple[float, bool]]) -> list[State]:
-    """One state for each position of a path: the mean of its samples, or the last one on the way between two."""
+    """One state for each position of a path: the mean of its samples, or the last one between two positions."""
     found, first = [], 0
     for _, asked in positions:
         end = first + SETTLING_LOOKS + (SAMPLES if asked else 0)

@@ -54,13 +54,13 @@ class Choice:
 
 @dataclass(frozen=True)
 class MaterialRun(Choice):
-    """A contact with the run that stands for it; `scene` is the one that ran."""
+    """A contact with the run that represents it; `scene` is that of the run."""
 
     run: Run
 
 
 def theories_of(contact: AskedContact) -> Theories | None:
-    """What is said of an adhesive sphere; None of another body, or without attraction."""
+    """The theories of an adhesive sphere; None for another body, or without attraction."""
     if contact.radius is None or not contact.work_of_adhesion:
         return None
     return Theories(contact.radius, contact.contact_modulus, contact.work_of_adhesion, contact.range, contact.load)

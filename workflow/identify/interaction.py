@@ -53,7 +53,7 @@ class Target:
 
 
 def require_reachable(scene: Scene, target: Target) -> None:
-    """Refuse a target beyond what springs of the scene's stiffness can do.
+    """Refuse a target that springs of the scene's stiffness cannot reach.
 
     Raises:
         IdentifyError: with the nearest zero-load radius and the nearest adhesion force.

@@ -50,7 +50,7 @@ class Theories:
 
     @property
     def sphere(self) -> MaugisDugdale:
-        """The contact with its range, which knows its limits."""
+        """The contact with a range of the attraction, by Maugis and Dugdale."""
         return MaugisDugdale(self.radius, self.contact_modulus, self.work_of_adhesion, self.range_of_attraction)
 
     @cached_property
@@ -95,7 +95,7 @@ pull-off force falls with it, to about a third at 1 and to zero at 3; sharper as
 
 
 def judged(contact: AskedContact, theories: Theories) -> dict[str, str]:
-    """What limits a chain as a stand-in for an adhesive sphere.
+    """Limitations of a chain as a model of an adhesive sphere.
 
     Raises:
         IdentifyError: it cannot stand for it.

@@ -55,7 +55,7 @@ def elongation(x: Array, modulus: float, work: float) -> Array:
 
 @dataclass(frozen=True)
 class Cells:
-    """What each particle of a chain knows; arrays (n,) [LU], and `bend` without a unit.
+    """The cell of each particle of a chain; arrays (n,) [LU], and `bend` without a unit.
 
     Attributes:
         heights: g(x) of the particle.

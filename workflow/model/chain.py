@@ -26,7 +26,7 @@ ROUND_OFF = 1e-9
 
 
 class SettingsError(Contact1dError, ValueError):
-    """A scene whose numbers, each allowed, lead to no computable system; the message says which and what to change."""
+    """A scene whose numbers, each allowed, give no computable system; the message says which and what to change."""
 
 
 def require_room(bodies: Bodies) -> None:
@@ -85,7 +85,7 @@ def _most_particles(bodies: Bodies) -> int:
 
 
 def decay_length(scene: Scene) -> float:
-    """Length ℓ [LU] in which a chain that is pushed at one place comes back to rest beside it; 0 without neighbours.
+    """Decay length ℓ [LU] of the displacement of a chain beside a point load; 0 without neighbours.
 
     Beside the push, k u_i = k_n (u_{i+1} − 2 u_i + u_{i−1}) has the solutions exp(±x/ℓ), cosh(s/ℓ) = 1 + k/(2 k_n): for
     stiff neighbours ℓ = s √(k_n/k).
@@ -97,7 +97,7 @@ def decay_length(scene: Scene) -> float:
 
 
 def reflected(scene: Scene, estimate: ContactEstimate, largest: float, particles: int) -> float:
-    """Share of a contact's displacement that comes back to its edge from the chain's ends, exp(−2 L/ℓ), L apart."""
+    """Share of a displacement at the contact edge that the ends of the chain reflect, exp(−2 L/ℓ), L apart."""
     decay = decay_length(scene)
     beyond = 0.5 * particles * scene.bodies.spacing - _edge(estimate, largest)
     return math.exp(-2.0 * max(beyond, 0.0) / decay) if decay > 0.0 else 0.0
@@ -134,7 +134,7 @@ def felt_up_to(estimate: ContactEstimate, largest: float, share: float) -> float
 
 
 def chain_length(scene: Scene, estimate: ContactEstimate, largest: float, share: float) -> int:
-    """Particles of an automatic chain: out to where a force, and what a chain's end reflects, is this share at most.
+    """Particles of an automatic chain: up to where a force, and the reflection by the end, is at most this share.
 
     A flat punch has its own length; no chain is longer than its profile is wide.
     """
@@ -209,7 +209,7 @@ def require_apex(scene: Scene, particles: int, cutoff: float) -> None:
 
 
 def require_travel(scene: Scene, largest: float, cutoff: float) -> None:
-    """Refuse a body that goes as far as `largest` [LU], beyond all proportion to the reach of its forces.
+    """Refuse a displacement `largest` [LU] out of all proportion to the range of the forces.
 
     Raises:
         SettingsError: with the path.
@@ -300,7 +300,7 @@ def require_rows(scene: Scene, longest_move: float, drive: Sequence[DriveLeg]) -
 
 
 def require_steps(steps: Iterable[int]) -> None:
-    """Refuse a scene one of whose rows takes more `steps` than LAMMPS can count.
+    """Refuse a scene with a load step of more `steps` than LAMMPS can count.
 
     Raises:
         SettingsError: with the number of timesteps.

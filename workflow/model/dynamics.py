@@ -51,7 +51,7 @@ class Dynamics:
 
 
 def stiffest_of(scene: Scene, law: DoubleExponential | None, closest: float, plane: float) -> float:
-    """Largest stiffness [FU/LU] that a particle feels: its springs, the plane, and a row of opposite ones nearby."""
+    """Largest stiffness [FU/LU] acting on a particle: its springs, the plane, and a nearby chain of opposite ones."""
     stiffest = max(scene.bulk_stiffness, scene.tangential_stiffness) + plane
     if law is not None:
         rows = 1.0 + 2.0 * law.repulsion.range / scene.bodies.spacing
@@ -105,7 +105,7 @@ def dynamics_of(
 
 
 def time_step_limits(scene: Scene, product: float, stiffest: float, damping: float) -> dict[str, float]:
-    """Longest time steps [TU] that the particles allow, by what limits them; the smallest of all limits is taken."""
+    """Longest time steps [TU] that the particles allow, by limit; the smallest of all limits is used."""
     mass = scene.bodies.mass
     limits = {"stiffest spring of a particle": product / math.sqrt(stiffest / mass)}
     if damping > 0.0:
@@ -192,7 +192,7 @@ class DriveLeg:
 
     @property
     def row_time(self) -> float:
-        """Time of a row [TU]."""
+        """Duration of a load step [TU]."""
         return self.steps * self.time_step
 
 

@@ -63,7 +63,7 @@ class Sliders:
 
 
 def without_rests(way: Sequence[Stop]) -> list[Stop]:
-    """The way without stops from which it goes straight on under the same displacement: they change nothing."""
+    """The path without intermediate stops on a straight line at constant displacement, which have no effect."""
     kept = list(way[:2])
     for stop in way[2:]:
         (depth, start), (next_depth, place) = kept[-2:]
@@ -82,7 +82,7 @@ def sliders_of(scene: Scene, x: Array) -> Sliders:
 
 
 def stops(experiment: Tangential, sliders: Sliders) -> list[Stop]:
-    """Where each row of an experiment ends; before the first one the load is brought on at the position 0."""
+    """The end of each load step of an experiment; before the first one the load is applied at position 0."""
     normal = experiment.places()
     if not normal:
         found: dict[float, float] = {}

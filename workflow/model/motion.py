@@ -39,7 +39,7 @@ def contact_half_width(scene: Scene, settings: Settings) -> float:
 
 
 def require_way(scene: Scene, settings: Settings) -> None:
-    """Refuse a slide whose contact would leave the lower chain; one without an end is left nowhere.
+    """Refuse a slide whose contact would leave the lower chain; a periodic one has no end.
 
     Raises:
         SettingsError: with the particles that are needed.

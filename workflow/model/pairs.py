@@ -49,7 +49,7 @@ class Profile(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Tabulated:
-    """A profile that was asked once for its `heights` [LU] at rising `places` [LU] from 0, with straight lines between.
+    """A profile given by its `heights` [LU] at ascending `places` [LU] from 0, linear between them.
 
     For a measured one, whose transform takes long: a predictor asks thousands of times.
     """
@@ -68,7 +68,7 @@ class Tabulated:
 
 
 def tabulated(profile: Profile, spacing: float) -> Tabulated:
-    """The profile, which must have an end, at places in a geometric row: those of a parabola within 1e-4 of its height.
+    """The profile, which must be finite, at positions in geometric series: those of a parabola to 1e-4 of its height.
 
     That holds for a reach of 0.1 to 1e10 spacings [LU]; closer to the apex than NEAR spacings it is a line.
     """
@@ -101,7 +101,7 @@ ROUNDS, EDGES = 12, 33
 
 
 class NotCarriedError(ValueError):
-    """A load that no displacement carries; `most` is what some displacement does [FU]."""
+    """A load that exceeds the force at every displacement; `most` is the largest force [FU]."""
 
     def __init__(self, most: float) -> None:
         """Keep it."""
@@ -111,7 +111,7 @@ class NotCarriedError(ValueError):
 
 @dataclass(frozen=True, eq=False)
 class ContactEstimate:
-    """Independent pairs under a profile. Scenes one after the other share it, and what was found before with it.
+    """Independent pairs under a profile. Successive scenes share it with its cached results.
 
     Attributes:
         gap: undeformed gap G [LU] over a grid of distances, made monotone where pairs would snap.
@@ -241,7 +241,7 @@ class ContactEstimate:
 
     @property
     def joins(self) -> float:
-        """Undeformed gap [LU] below which a pair that comes near has snapped together; where none snaps, any gap."""
+        """Undeformed gap [LU] below which an approaching pair has snapped in; where none snaps, any gap."""
         if self.outer is None:
             return float(self.gap[-1])
         level = np.flatnonzero(np.diff(self.outer) < FLATNESS * np.diff(self.outer).mean())
@@ -323,7 +323,7 @@ class ContactEstimate:
 
 
 def row_force(law: DoubleExponential, r: Array, spacing: float, cutoff: float) -> Array:
-    """Force [FU] of a straight row of opposite particles on the one facing it, at distances r [LU], shape (n,)."""
+    """Force [FU] of a straight chain of opposite particles on the one facing it, at distances r [LU], shape (n,)."""
     offsets = spacing * np.arange(int(cutoff / spacing) + 1)
     distance = np.hypot(r[:, None], offsets[None, :])
     forces = np.where(distance <= cutoff, law.force(distance), 0.0) * r[:, None] / distance

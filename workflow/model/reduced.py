@@ -140,7 +140,7 @@ class Springs(Reduced):
         return self.estimate.rest - float(self.estimate.gap[-1])
 
     def held(self, displacements: Array) -> Array:
-        """As joined pairs have it [FU]."""
+        """On the branch of joined pairs [FU]."""
         heights, own = self.heights
         each = self._forces(heights - displacements[:, None], np.ones(heights.size, dtype=bool))
         return np.asarray(each @ np.bincount(own))

@@ -107,7 +107,7 @@ def slide_cutoff(law: DoubleExponential, spacing: float, load: float, share: flo
 
 
 def largest_holding_force(law: DoubleExponential, spacing: float, load: float) -> float:
-    """max_x F_x [FU] of a particle that a load [FU] presses onto a rigid row, at the height that it has in a hollow."""
+    """max_x F_x [FU] of a particle pressed by a load [FU] onto a rigid chain, at its height in a potential minimum."""
     reach = math.ceil(REACH * law.longest_range / spacing) + 1
     row: Array = np.asarray(spacing * np.arange(-reach, reach + 1), dtype=np.float64)
     heights: Array = np.asarray(law.longest_range * np.geomspace(1e-2, 10.0, HEIGHTS))
@@ -131,7 +131,7 @@ THERMAL_SIGMAS = 5.0
 
 
 def interaction_law(scene: Scene) -> DoubleExponential | None:
-    """The scene's law, or None on a rigid plane."""
+    """The pair interaction of the scene, or None on a rigid plane."""
     if scene.interaction is None:
         return None
     terms = scene.interaction
@@ -140,7 +140,7 @@ def interaction_law(scene: Scene) -> DoubleExponential | None:
 
 
 def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: float) -> float:
-    """The scene's cutoff [LU], or the one beyond which the force is below a share of the law's own.
+    """The scene's cutoff [LU], or the one beyond which the force is below a share of the force scale.
 
     In a slide also below what the tolerance leaves of the force along x.
     """
@@ -160,7 +160,7 @@ def innermost_distance(estimate: ContactEstimate, cutoff: float, displacement: f
 
 
 def thermal_motion(scene: Scene) -> float:
-    """By how much noise brings two particles on their springs closer to each other [LU]: THERMAL_SIGMAS √(2 k_BT/k)."""
+    """Thermal approach [LU] of two particles on their springs: THERMAL_SIGMAS √(2 k_BT/k)."""
     return (
         0.0 if scene.noise is None else THERMAL_SIGMAS * math.sqrt(2.0 * scene.noise.temperature / scene.bulk_stiffness)
     )
@@ -320,7 +320,7 @@ class Settings:
 
     @property
     def strongest(self) -> tuple[float, float]:
-        """(distance [LU], tension [FU]) where the force of a row of opposite particles on one is the force maximum.
+        """(distance [LU], tension [FU]) of the force maximum of a chain of opposite particles on one.
 
         Of the predictor, whose grid of distances ends at the cutoff; (0, 0) on a rigid plane.
         """
@@ -338,7 +338,7 @@ class Settings:
         return min(self.smooth_step, max(NEAR_SHARE * self.longest_move, MOVE_SHARE * smallest_distance))
 
     def rows_of(self, duration: float) -> tuple[int, int]:
-        """Rows of a motion that takes so long [TU], and timesteps of each."""
+        """Load steps of a motion of this duration [TU], and timesteps of each."""
         total = max(1, math.ceil(duration / self.time_step))
         rows = min(ROWS_IN_TIME, total)
         return rows, math.ceil(total / rows)
@@ -348,7 +348,7 @@ class Settings:
         return self.estimate.let_go_early(move, self.force_tolerance)
 
     def in_smaller_steps(self, part: float) -> Settings:
-        """The same, with increments and moves that are this part as long, also those of a relaxation.
+        """The same, with increments and moves, also those of a relaxation, scaled by this factor.
 
         In time a particle that comes to the opposite one is stopped by drag, not by its core, where the scene leaves
         the drag open; it needs timesteps of its own.

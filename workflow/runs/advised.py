@@ -68,7 +68,7 @@ def run(
 
 
 def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
-    """The error of a scene, and whether the first way to mend it gives a result.
+    """The error of a scene, and whether the first suggested fix gives a result.
 
     Args:
         reader: gives the scene with an edit.
@@ -83,7 +83,7 @@ def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
 
 
 def overrides(edit: SceneEdit) -> tuple[str, ...]:
-    """The values of an edit as `read_scene` and `--set` take them."""
+    """The values of an edit in the form of `read_scene` and `--set`."""
     return tuple(f"{key}={value if isinstance(value, str) else as_toml(value)}" for key, value in edit.values.items())
 
 

@@ -56,7 +56,7 @@ def run(
     workers: int | None = None,
     ranks: int = 1,
 ) -> Run:
-    """Run a scene in a folder and leave everything there.
+    """Run a scene in a folder.
 
     Args:
         scene: a `Scene`, or what `read_scene` makes one of: a file, TOML text, tables.

@@ -51,7 +51,7 @@ USUAL = (
 
 
 def implausible(scene: Scene, scales: Scales | None, quantities: Mapping[str, Quantity]) -> dict[str, str]:
-    """What looks wrong about the sizes of a scene and its results, by names of warnings.
+    """Implausible sizes of a scene and its results, by names of warnings.
 
     Args:
         scene: with or without a material.

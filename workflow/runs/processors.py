@@ -53,7 +53,7 @@ class _Pool(ProcessPoolExecutor):
 
 @contextmanager
 def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """An executor of `workers` processes. Where its block ends in an error, what they do is not finished first.
+    """An executor of `workers` processes. After an error in its block their work is not awaited.
 
     The parent holds one end of a pipe, and nobody else: when that closes, however the parent went, the workers end.
     """

@@ -84,7 +84,7 @@ def _open(scene: Scene, outcome: Outcome) -> dict[str, float]:
 
 
 def nested(coarse: Outcome, fine: Outcome) -> Outcome:
-    """The finer outcome; where |fine − coarse| exceeds what both claim, its claim is raised by the same factor."""
+    """The finer outcome; where |fine − coarse| exceeds both uncertainties, its own is increased by the same factor."""
     results = {}
     for name, one in fine.results.items():
         before = coarse.results.get(name, one)

@@ -19,7 +19,7 @@ UNIT_FIXING_RESULTS = ("adhesion_force", "zero_load_radius")
 
 
 def scales_of(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales | None:
-    """The scales of a run; None without a [material], and where `unfound` names what keeps them from being known."""
+    """The scales of a run; None without a [material], and where results that determine them (`unfound`) are missing."""
     material = scene.material
     if material is None or unfound(scene, quantities):
         return None

@@ -47,7 +47,7 @@ class Exponential(Table):
 
 
 class Effect(Table):
-    """A table that may be absent, and then adds nothing. Each says here what it needs and what it excludes.
+    """A table that may be absent, and then adds nothing. Each declares what it needs and what it excludes.
 
     Attributes:
         timed: it exists in time only, so never in a quasistatic run.

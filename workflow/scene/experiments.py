@@ -90,7 +90,7 @@ TIMELESS = "it is quasi-static, each load step in equilibrium"
 
 
 class Kind(Table):
-    """The experiment. Each kind says here what other rooms must know of it.
+    """The experiment. Each kind declares the properties that other modules use.
 
     Attributes:
         only_method: the one method that it has; None: the key `method` says it, or the effects do.
@@ -257,7 +257,7 @@ class Slide(Kind):
 
     @property
     def way(self) -> float:
-        """How far the driven end goes to one side at most."""
+        """Largest excursion of the driven end to one side."""
         place, farthest = 0.0, self.distance or 0.0
         for leg in self.path or ():
             place += leg.distance * ((leg.velocity > 0.0) - (leg.velocity < 0.0))

@@ -33,11 +33,11 @@ Row = tuple[int, list[str]]
 
 
 class ProfileFileError(ValueError):
-    """A file that is no profile; the message says in which line and what is wrong."""
+    """A file that is not a profile; the message has the line and the error."""
 
 
 class ScaleError(ValueError):
-    """A scale that is none for this file; the message says why."""
+    """A scale that is invalid for this file; the message says why."""
 
 
 def read_profile(path: Path, scale: object = None) -> tuple[dict[str, list[float]], dict[str, str | None]]:

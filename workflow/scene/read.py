@@ -230,7 +230,7 @@ def _with_legs(data: dict[str, Any]) -> None:
 
 
 def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Problem]:
-    """Set in `data` what each of `overrides` says, in order; returns the problems of those that say nothing.
+    """Set each of `overrides` in `data`, in order; returns the problems of invalid ones.
 
     A value is read as TOML, or as bare text where it is not TOML; tables on the way that are absent are made.
     """
@@ -247,7 +247,7 @@ def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Prob
 
 
 def set_values(data: dict[str, Any], values: Mapping[str, Any]) -> list[Problem]:
-    """Set in `data` the value of each dotted key; None takes the key away. Returns the problems."""
+    """Set the value of each dotted key in `data`; None removes the key. Returns the problems."""
     form = "write table.key, for example experiment.method"
     return [problem for path, value in values.items() for problem in _set(data, path, value, f"set {path}", form)]
 
@@ -296,7 +296,7 @@ def _listed(words: Iterable[str]) -> list[str]:
 
 
 def plain_data(value: Any, levels: int = DEEPEST) -> Any:
-    """A copy of `value` in dicts and lists, without keys that hold None. Raises SceneError below so many `levels`."""
+    """A copy of `value` in dicts and lists, without keys that are None. Raises SceneError below `levels`."""
     if not levels:
         raise SceneError([Problem("scene", TOO_DEEP)])
     if isinstance(value, Table):

@@ -57,7 +57,7 @@ class Draft:
         self.effects = tuple(name for name in EFFECT_TABLES if name in data)
 
     def written(self, path: str) -> Any:
-        """What stands at `path`, right or wrong; None if nothing does."""
+        """The value at `path`, right or wrong; None without one."""
         value: Any = self.data
         for key in path.split("."):
             value = value.get(key) if isinstance(value, Mapping) else None

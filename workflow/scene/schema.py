@@ -28,7 +28,7 @@ Node = dict[str, Any]
 
 
 def statement(allowed: Allowed) -> str:
-    """What a value must be, in words: "a number greater than 0 (LU), or "auto"", continues "must be"."""
+    """The allowed values as text: "a number greater than 0 (LU), or "auto"", continues "must be"."""
     if len(allowed.choices) > 1:
         if len(allowed.kinds) == len(allowed.choices):
             return f"a table with kind = {_either(tuple(allowed.kinds))}"

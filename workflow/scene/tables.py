@@ -201,7 +201,7 @@ class Bodies(Table):
     """
 
     def height(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Height [LU] of the upper chain above its apex at the positions `x` [LU], as its reduction has it."""
+        """Height [LU] of the upper chain above its apex at the positions `x` [LU], by its reduction."""
         return self.profile.transformed(x) if self.reduction == "mdr" else self.profile.height(x)
 
     @property
@@ -225,7 +225,7 @@ class Bodies(Table):
 
     @property
     def plane_radius(self) -> float | None:
-        """Radius R₁ [LU] of the plane parabola x²/2R₁ that stands for one of R, R or with the MDR R/2; else None."""
+        """Radius R₁ [LU] of the plane parabola x²/2R₁ that represents R, R or with the MDR R/2; else None."""
         return PARABOLA_SHARE[self.reduction] * self.profile.radius if isinstance(self.profile, Parabola) else None
 
 
@@ -349,12 +349,12 @@ class Tables(Table):
 
     @property
     def stands(self) -> bool:
-        """Whether particles stand still in the upper body, on a rigid plane that has their springs."""
+        """Whether particles are fixed in the upper body, on a rigid plane that has their springs."""
         return self.is_stepped or self.adhesion is not None
 
     @property
     def is_stepped(self) -> bool:
-        """Whether particles have no place to find: alone at rest on a rigid plane, they have what the plate's gives."""
+        """Whether particles need no relaxation: on a rigid plane without neighbour springs they follow the plate."""
         alone = self.bodies.lower == "rigid_plane" and self.neighbours is None
         return alone and self.method == "quasistatic"
 

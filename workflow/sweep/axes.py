@@ -35,7 +35,7 @@ MOST_POINTS = 1_000_000
 
 @dataclass(frozen=True)
 class Axis:
-    """A key of a scene, dotted, and the values that it takes, in order."""
+    """A key of a scene, dotted, and its values, in order."""
 
     key: str
     values: tuple[Any, ...]

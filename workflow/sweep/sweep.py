@@ -48,7 +48,7 @@ Task = tuple[Scene, Path]
 
 @dataclass(frozen=True)
 class Sweep:
-    """A sweep that has run, or ran as far as it got.
+    """A finished or interrupted sweep.
 
     Attributes:
         folder: with results.csv, figures, and a run folder for each point in runs/.
