@@ -33,7 +33,7 @@ from contact1d.analysis.pressure import Array, spacing_of
 NEAR = 0.3
 """Of a spacing: a place closer to the edge than that is left out, since a slope over so short a way is mostly noise."""
 WHOLE = 0.5 - 1e-6
-"""The same where q jumps to 0 at the edge: a particle stands for so much to either side, and has less where the edge
+"""The same where q jumps to 0 at the edge: a particle represents its cell on either side, and has less where the edge
 cuts that off."""
 SAME = 1e-6
 """Of a spacing: positions so alike on both sides of the axis are the same."""

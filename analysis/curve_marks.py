@@ -217,7 +217,7 @@ class Work:
 
     Attributes:
         area: ∫ F dd [FU·LU], by the trapezoidal rule; of a closed path what it dissipates.
-        uncertainty: of it, by the rows between which F is not known [FU·LU].
+        uncertainty: of it, by interpolation of F between load steps [FU·LU].
         whole: ∫ |F| |dd| [FU·LU]: of all that is done on the path.
         length: ∫ |dd| [LU].
     """

@@ -143,8 +143,8 @@ class ClosedForm:
         name: what it is called: "Hertz".
         source: where it is written down.
         applies: why it holds for a case, in a few words; "" where it does not.
-        values: what it says, by the names of results, in their model units; of those the run's are compared.
-        pressure: p(r) [FU/LU²] at r [LU] in the reported state, where it says that.
+        values: its predictions, by the names of results, in their model units, to compare the run with.
+        pressure: p(r) [FU/LU²] at r [LU] in the reported state, if it predicts that.
     """
 
     name: str

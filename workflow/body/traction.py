@@ -194,7 +194,7 @@ def _through(size: int, stride: int, load: Callable[[Array], LineLoad]) -> LineL
 
 
 def _spread(values: Array, coarse: LineLoad | None, r: Array) -> Array:
-    """|fine − coarse| at r; as much as the value itself where there is no coarser one."""
+    """|fine − coarse| at r; the value itself where there is no coarser one."""
     spread = np.abs(values) if coarse is None else np.abs(values - coarse.pressure(r))
     return np.where(np.isfinite(spread), spread, np.abs(values))
 

@@ -40,7 +40,7 @@ GROWTH = 1.6
 OVERSHOOT = 1.02
 """Secant steps aim a little beyond, so that a bracket forms instead of a slow approach from one side."""
 RETURN_SHARE = 0.5
-"""Move of a search that comes back to where the bodies have been, over their particles' smallest distance."""
+"""Move of a search back to a previous position, over the smallest distance of particles there."""
 SAME = 1e-12
 """Displacements nearer than this over the spacing are the same: a force that still differs has jumped."""
 APPROACH_STEPS = 20
@@ -67,7 +67,7 @@ class Branch(ContactBranch):
 
     Attributes:
         missed: how far the search may be off the force maximum [FU].
-        on_the_way: how many of the first states nobody asks for.
+        on_the_way: how many of the first states are intermediate ones.
     """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
@@ -150,7 +150,7 @@ class Branch(ContactBranch):
         states.append(self._at(start))
 
     def _require_within_reach(self, force: float, falls: bool, before: State, beyond: State | None) -> None:
-        """Refuse a force that the branch jumps past, never comes to, or comes to in no time."""
+        """Refuse a force that the branch jumps past, never reaches, or does not reach in a practicable time."""
         states = self.falling if falls else self.loading
         if beyond is not None and abs(beyond.displacement - before.displacement) < SAME * self.scene.bodies.spacing:
             raise UntrustedError(

@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 MARGIN = 1.25
 """Error over the change of the model with the lattice: it knows no neighbours. Measured on both parities: 1.01."""
 STEP_MARGIN, PATH_MARGIN = 1.25, 1.5
-"""The same of the steps of a path: dense ones have errors, too; the second where the model's maximum lies elsewhere."""
+"""The same of the steps of a path: dense ones have errors, too; the second if the model's maximum is elsewhere."""
 PHASES = (0.25, 0.0)
 """Positions of the apex between particles, over the spacing, that an even chain is compared with."""
 MORE_PHASES = (0.375, 0.25, 0.125, 0.0)

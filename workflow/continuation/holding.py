@@ -184,7 +184,7 @@ def press(contact: Contact, load: float, scale: float) -> Held:
 
 
 def _inertia(scene: Scene, settings: Settings) -> float:
-    """What moves over what LAMMPS counts as plate: the upper particles go with it, or are part of it."""
+    """Total moving mass over that of the plate in LAMMPS: the upper particles move with it, or are part of it."""
     return 1.0 if scene.stands else 1.0 + settings.particles * scene.bodies.mass / settings.plate_mass
 
 

@@ -47,7 +47,7 @@ FIRST_RISE = 2.0
 DOUBTFUL_SHARE = 0.9
 """Tension over the expected largest one from which on it may be the pull-off force."""
 LEAST_STEP = 1e-3
-"""Steps towards a tension, over the largest one that is expected, below which the tension itself is tried."""
+"""Distance to a tensile load, over the expected force maximum, below which the load itself is tried."""
 
 
 @dataclass

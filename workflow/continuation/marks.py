@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 BRANCH_DISTANCE = 0.02
 """Distance of two displacements over the whole path from which on a change is more than interpolation error."""
 LAST = 1e-6
-"""Distance from the limit point, over the path from F = 0 to there, within which the last load step stands for it."""
+"""Distance from the limit point, over the path from F = 0 to there, within which the last load step represents it."""
 SEPARATED = 0.02
 """Force over the force maximum below which bodies count as separated: the model has the rest."""
 NODES, MODEL_DIGITS = 128, 1e-6

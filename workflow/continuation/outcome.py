@@ -135,7 +135,7 @@ def unmet(results: Mapping[str, Result], tolerance: float, without: Iterable[str
     """Relative uncertainties of the results that exceed the tolerance, by name.
 
     Args:
-        results: what the scene prescribes is none of them.
+        results: without those that the scene prescribes.
         tolerance: relative.
         without: sources that are left out.
     """

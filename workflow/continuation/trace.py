@@ -87,7 +87,7 @@ class Trace:
         return float(np.broadcast_to(self.radius_shift, self.force.shape)[state])
 
     def own_force(self, state: int) -> float:
-        """Force of a state as it is, whatever was changed [FU]."""
+        """Force of an unperturbed state [FU]."""
         return float((self.force - self.shift)[state])
 
     def falling(self) -> Trace:

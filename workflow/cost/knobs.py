@@ -64,7 +64,7 @@ def is_sampled(scene: Scene) -> bool:
 
 
 def main_results(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """Those that have a relative error: present and not 0. With noise the force that a load holds is no result."""
+    """Results that have a relative error: present and not 0. With noise the force that a load holds is no result."""
     names = [name for name in kind_of(scene).main_results if scene.noise is None or name != "force"]
     found = {name: quantities.get(name) for name in names}
     return {name: one for name, one in found.items() if one and one.value != 0.0 and math.isfinite(one.value)}

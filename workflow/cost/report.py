@@ -135,7 +135,7 @@ def _saving(do: str, left: float) -> str:
 
 
 def _effects(record: CostRecord) -> Iterator[tuple[str, ...]]:
-    """An effect is on now; off is enough where that changes the results by no more than the limit."""
+    """An effect is on now; off suffices where this changes the results by at most the limit."""
     changes = {one.value: one for one in record.of(EFFECT)}
     for one in record.effect_costs:
         time, error, enough, advice = f"{one.with_us:.1f} µs a step", "", "on", "Keep it: the main results need it."

@@ -229,7 +229,7 @@ class Engine:
         Args:
             folder: an existing folder; LAMMPS writes `log.lammps` there.
             time_limit: wall time from now on after which LAMMPS is killed [s].
-            progress: who hears of phases and steps; nobody by default. It is not closed here.
+            progress: informed of phases and steps; none by default. It is not closed here.
             ranks: of MPI, that share the bodies in slices along x.
 
         Raises:

@@ -40,7 +40,7 @@ MOST_TENSION = 10.0
 BARRIER = 0.99
 """Share of the force maximum that has its position beyond the barrier."""
 GONE, SURELY = 0.01, 50.0
-"""Share of the force maximum that counts as none, and the energy over k_BT that a plate would need to come back."""
+"""Share of the force maximum that counts as zero, and the energy over k_BT that a plate would need to return."""
 WAITING_STEPS = 800
 """Timesteps of load steps that go to LAMMPS together: waking two processes takes as long as a hundred of them."""
 FOLDER = ".pulls"
@@ -227,7 +227,7 @@ def _pull(context: RunContext, stop: threading.Event) -> Detachment:
 
 
 def _has_parted(scene: Scene, settings: Settings, ramp: Ramp, number: int, state: State) -> bool:
-    """Whether the plate does not come back: nothing attracts it, and what pulls it is against its return."""
+    """Whether the plate cannot return: there is no attraction, and the load is tensile."""
     barrier, none = settings.estimate.parted(BARRIER), settings.estimate.parted(GONE)
     gone = state.displacement < none
     return gone and ramp.work(number, state.displacement, barrier) > _needed(scene, settings)

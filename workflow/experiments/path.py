@@ -134,7 +134,7 @@ def _largest(trace: Trace) -> dict[str, Reading]:
 
 
 def _adhesion(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
-    """Of the last phase in which the bodies are drawn apart; where a smooth curve has none, the last one says the same.
+    """Of the last phase of unloading; where a smooth curve has none, of the last phase.
 
     Where pairs snap, or an edge has no range, the tension while loading is that at which the bodies snap in.
     """
@@ -244,7 +244,7 @@ def way(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
 
 
 def _longest_drop(settings: Settings) -> float:
-    """Longest move [LU] by which bodies that part keep the particles that the interaction still holds; inf where
+    """Longest move [LU] of separating bodies without premature detachment of particles; inf where
     none snaps.
 
     A move h puts a joined pair h further apart before it relaxes. It is lost where that is beyond the unstable
@@ -267,6 +267,6 @@ def _rows(scene: Scene, settings: Settings, positions: Sequence[tuple[float, boo
 
 
 def _decay(scene: Scene, settings: Settings) -> float:
-    """Time constant [TU] with which a particle on its bulk spring comes to rest: 2m/γ, overdamped γ/k."""
+    """Relaxation time [TU] of a particle on its bulk spring: 2m/γ, overdamped γ/k."""
     mass, stiffness = scene.bodies.mass, scene.bulk_stiffness
     return max(2.0 * mass / settings.damping, settings.damping / stiffness)

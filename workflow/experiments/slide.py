@@ -334,7 +334,7 @@ def _calm(settings: Settings) -> Settings:
 
 
 def _settled_along(contact: Contact, force: float, scale: float, state: State) -> State:
-    """The state when the plate has come to rest along x, too."""
+    """The state when the plate is at rest along x as well."""
     scene, settings = contact.scene, _calm(contact.settings)
     row = replace(hold_row(scene, settings, force, scale, Start.HERE), rest=0.0)
     row = replace(row, steps=max(1, round(settings.settle_time / settings.time_step)))
@@ -365,7 +365,7 @@ def leg_begin(scene: Scene, number: int) -> tuple[str, ...]:
 
 
 def _drive(contact: Contact, force: float, leg: DriveLeg, states: list[State]) -> None:
-    """Run the load steps of a leg and append their states, as long as they are ones of a slide."""
+    """Run the load steps of a leg and append their states, until the bodies separate or the plate slides off."""
     scene, settings = contact.scene, contact.settings
     for _ in range(leg.rows):
         state = contact.row(UnderLoad(force, leg.steps), trusted=False)

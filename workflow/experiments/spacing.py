@@ -107,7 +107,7 @@ def _spaced(scene: Scene, radius: float, count: int) -> Scene:
 
 
 def _contact_radius(scene: Scene) -> float:
-    """The contact radius [LU] that particles are counted in: under the load, or at F = 0 where it is retracted.
+    """The contact radius [LU] that determines the spacing: under the load, or at F = 0 of an unloading.
 
     Raises:
         SettingsError: nothing touches.

@@ -41,7 +41,7 @@ class Choice:
         theories: what is said of an adhesive sphere; None of another body.
         target: what the interaction of two chains is to give, in units of the scene; None on the plane.
         doubts: by name, why the scene stands for the contact in part only.
-        contact_radius: that the spacing was chosen by [m].
+        contact_radius: that determines the spacing [m].
     """
 
     contact: AskedContact

@@ -103,7 +103,7 @@ class AskedContact:
 
     @property
     def model(self) -> Model:
-        """A chain on a rigid plane, or two chains with an interaction that is searched for."""
+        """A chain on a rigid plane, or two chains with a fitted interaction."""
         return "particles" if self.given.get("model") == "particles" else "plane"
 
 

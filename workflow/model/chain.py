@@ -165,7 +165,7 @@ LARGE, USUALLY_FELT = 20_000, 10.0
 SHARPEST_RATIO = 1e3
 """Height of the particles beside an apex over cutoff and spacing: so far even neighbour springs bring none."""
 FARTHEST_RATIO = 1e9
-"""Way of a body over cutoff and spacing: LAMMPS divides the box into no more bins, and coordinates lose the digits."""
+"""Displacement over cutoff and spacing: LAMMPS limits the number of bins, and coordinates lose digits."""
 DIGIT_SHARE = 0.1
 """Force that the last digit of a position may be, over one particle's and the tolerance: that of a converged state."""
 MIX_UP = "All lengths (spacing, radius, ranges) are in LU: are some of them in another unit?"
@@ -188,12 +188,12 @@ def require_reach(scene: Scene, cutoff: float) -> None:
 
 
 def reaches_too_far(scene: Scene, cutoff: float) -> bool:
-    """Whether a particle would feel more opposite ones within a cutoff [LU] than can be summed over."""
+    """Whether a particle would interact with more opposite ones within a cutoff [LU] than can be summed over."""
     return cutoff > 0.5 * MOST_PARTNERS * scene.bodies.spacing
 
 
 def require_apex(scene: Scene, particles: int, cutoff: float) -> None:
-    """Refuse a chain whose apex lies between two particles far beyond the reach of all forces (a cutoff [LU]).
+    """Refuse a chain whose particles beside the apex are far out of range of the interaction (a cutoff [LU]).
 
     Raises:
         SettingsError: with the particles' height.

@@ -27,7 +27,7 @@ DRAG_STEP = 0.2
 CALM_STEP = 0.4
 """The same on the way to rest, whose drag is no part of what is examined."""
 CREEPING = 10.0
-"""Drag over the critical one from which on a plate takes too long to come to rest."""
+"""Drag over the critical one from which on the relaxation of a plate is too slow."""
 NOISE_BIAS = 0.4
 """Relative error of ⟨u²⟩ over (ω Δt)² with `fix langevin` and `fix nve`, measured at ω Δt = 0.1: 0.4 %."""
 SOFTENING = 0.6
@@ -130,7 +130,7 @@ def _plate_limits(
 
 
 def _product(scene: Scene, tolerance: float, still_step: float) -> float:
-    """Largest ω Δt: of a motion that comes to rest, of one that is the result, with noise, or without time."""
+    """Largest ω Δt: of a relaxation, of a motion that is the result, with noise, or quasi-static."""
     if scene.experiment.motion_is_result:
         product = MOVING_STEP * math.sqrt(min(1.0, tolerance / MOVING_TOLERANCE))
     else:

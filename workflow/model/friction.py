@@ -1,4 +1,4 @@
-"""Friction on a rigid plane before LAMMPS runs: independent springs, each with a slider that gives at μ f.
+"""Friction on a rigid plane before LAMMPS runs: Jenkins elements, springs with a slider that slips at μ f.
 
     f_i = k_n max(0, d − h(x_i)),   s_i ← clip(s_i + k_t Δu, ±μ f_i)
 

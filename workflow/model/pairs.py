@@ -213,7 +213,7 @@ class ContactEstimate:
         """Displacement [LU] at which F(d) reaches a compressive force [FU] ≥ 0.
 
         Raises:
-            NotCarriedError: the particles stand on each other before it does.
+            NotCarriedError: the particles coincide before it does.
             OverflowError: the spacing is too small compared with the body.
         """
         return cache(self._displacement_at)
@@ -284,7 +284,7 @@ class ContactEstimate:
 
     @cached_property
     def _all_the_way(self) -> float:
-        """Displacement [LU] at which each particle of a body that ends stands on its opposite one."""
+        """Displacement [LU] at which each particle of a finite body coincides with its opposite one."""
         return self.rest - float(self.gap[0]) + float(self.profile.height(np.asarray([self.profile.reach]))[0])
 
     @cached_property

@@ -6,7 +6,7 @@
     springs with a slider       s ← clip(s + k_t Δu, ±μ f)
 
 It follows any path of displacements with the memory that its particles have, all positions at once. No result
-depends on it: it predicts, and it says how a result changes with the lattice (`shifted`, `resized`).
+depends on it: it is a predictor, and it gives the discretisation error (`shifted`, `resized`).
 """
 
 from __future__ import annotations

@@ -395,7 +395,7 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
 
 
 def _require_carried(scene: Scene) -> None:
-    """Refuse a load beyond N A/a, the repulsion of N pairs that stand on each other.
+    """Refuse a load beyond N A/a, the repulsion of N pairs at zero distance.
 
     Raises:
         NotCarriedError: with N A/a [FU].

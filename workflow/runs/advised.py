@@ -138,7 +138,7 @@ def _in_si(scene: Scene, edit: SceneEdit) -> SceneEdit:
 
 
 def _reported(error: RunError, cause: UntrustedError, found: str) -> RunError:
-    """The error with what the trial found, before advice that nobody tried; results.json says the same."""
+    """The error with the result of the trial, before advice that was not tried; the same in results.json."""
     document = read_results(error.folder)
     facts = document["error"]
     advice = f": {cause.advice}" if cause.advice and "gives a result" not in found else ""

@@ -73,7 +73,7 @@ def run(
         SceneError: it is no scene; nothing is written.
         RanksError: several ranks can't run it, or are no use; nothing is written.
         SettingsError: the scene's numbers lead to no computable system; nothing is written.
-        FolderError: the folder holds something else, or another run is at work in it.
+        FolderError: the folder holds something else, or another run is active in it.
         RunError: LAMMPS failed, or the result can't be trusted.
     """
     started = time.perf_counter()

@@ -100,7 +100,7 @@ def _numbers(scene: Scene, scales: Scales | None) -> Iterator[tuple[str, str]]:
 
 
 def _radii(scales: Scales | None, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
-    """Contacts smaller than an atom, where no continuum is."""
+    """Contacts smaller than an atom, where continuum theory does not hold."""
     if scales is None:
         return
     for name, quantity in quantities.items():

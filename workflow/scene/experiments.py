@@ -98,7 +98,7 @@ class Kind(Table):
         needs: effects that it cannot do without by any method.
         needs_in_time: effects that a dynamic one cannot do without.
         only_with_noise: keys that say how a thermal one is repeated.
-        load_key: the key of its one normal force, which but for a preload may pull where the bodies attract each other.
+        load_key: the key of its one normal force, which may be tensile (not a preload) if the bodies attract each other.
         finds_pull_off: whether its results have F_A and a₀.
         way_is_given: the scene prescribes the loading history, so that nothing is searched for and states are unique.
         motion_is_result: the motion itself is examined, so that the scene exists in time only and its drag is its own.

@@ -16,7 +16,7 @@ SHOWN_LENGTH = 60
 LONGEST = 1000
 """Characters of a path that a message shows."""
 MOST_PROBLEMS = 20
-"""Problems that are listed; of more, their number is."""
+"""Most problems that are listed; the number of the others is added."""
 
 
 @dataclass(frozen=True)

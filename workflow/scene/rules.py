@@ -156,7 +156,7 @@ def _attraction(d: Draft) -> Rows:
            'must be "mdr" with [adhesion], whose contact edge is that of a contact of three dimensions',
            'write reduction = "mdr"')
     yield ("damping", adheres and d.kind == "path" and "damping" in d,
-           "not with [adhesion] in a path: under displacement control nothing moves",
+           "not with [adhesion] in a path, which under displacement control has no dynamics",
            'remove it: method = "quasistatic" is the same without time')
 
 
@@ -433,7 +433,7 @@ RULES = (
 
 
 def check_fit(data: Mapping[str, Any], unsound: frozenset[Keys] = frozenset()) -> list[Problem]:
-    """Every breach of a rule across the tables of `data` that can be found in spite of the `unsound` values in it."""
+    """Every violation of a rule across the tables of `data` that does not depend on its `unsound` values."""
     draft, problems = Draft(data, unsound), []
     for key, broken, message, fix, *ways in (row for rows in RULES for row in rows(draft)):
         if broken:

@@ -246,7 +246,7 @@ def points(plan: SweepPlan) -> Iterator[Point]:
 
 
 def require_keys(plan: SweepPlan) -> None:
-    """See that each axis is a key of the scene. Raises SceneError; values that are wrong are a point's own matter."""
+    """Check that each axis is a key of the scene. Raises SceneError; wrong values are errors of their points."""
     try:
         _scene(plan, next(plan.values()))
     except SceneError as error:

@@ -131,7 +131,7 @@ def sweep(
 
 
 def _record(plan: SweepPlan) -> str:
-    """The sweep as it runs, in the form of a sweep file; values that are no numbers or words come as in a scene."""
+    """The sweep in the form of a sweep file; values other than numbers and text are written as in a scene."""
     head = f"title = {as_toml(plan.title)}\ncombine = {as_toml(plan.combine)}\n"
     axes = "".join(f"\n[[axes]]\nkey = {as_toml(a.key)}\nvalues = {as_toml(list(a.values))}\n" for a in plan.axes)
     base = "".join(f"{key} = {as_toml(value)}\n" for key, value in plan.base.items())
@@ -186,7 +186,7 @@ def _missing(plan: SweepPlan, folder: Path, rows: list[str | Answer], progress: 
 def _answered(tasks: Iterator[Task], workplace: Workplace) -> Iterator[tuple[str, Answer]]:
     """Run tasks, `workplace.window` chunks at a time; yields name and answer as they come.
 
-    A process that dies takes its executor along. Then what was under way runs again, one by one, so that one task alone
+    A process that dies breaks its executor. Then what was under way runs again, one by one, so that one task alone
     has to answer for the second death.
     """
     suspects: list[Task] = []
