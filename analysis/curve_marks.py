@@ -39,14 +39,14 @@ residual of both, ε, would be a slope of ε over their distance, and that over 
 WIDEST_REACH = 3
 """Samples on either side of the highest one under the widest polynomial."""
 JUMP_RATIO = 3.0
-"""A fall after the maximum over the rise before it, above which it is a jump and no curve."""
+"""A drop after the maximum over the rise before it, above which it is an instability."""
 
 
 def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Peak:
     """The largest −F of an unloading branch (displacements falling).
 
     Between samples a smooth curve exceeds the sampled maximum by what the polynomial through five points says; that
-    through three tells how far to believe it, and that through seven how far to believe its position. Where a particle
+    through three estimates its error, and that through seven the error of its position. Where a particle
     snaps after the maximum, tension rises right up to the snap, no faster than before the sampled point: that is
     then the position, and the rise up to the next point what is missed at most.
     """
@@ -91,7 +91,7 @@ def _about(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, A
 
 
 def _vertex(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, float]:
-    """Position and value of the maximum of the polynomial through the highest point and so many on either side of it.
+    """Position and value of the maximum of the polynomial through the highest point and its neighbours on either side.
 
     It lies between the highest point's neighbours.
     """

@@ -1,7 +1,7 @@
 """Contact radius from a pressure profile: with tension dp/dx = 0 at a, where p is least; without it p(a) = 0.
 
 A row of springs that are held up to an edge, where the pressure jumps to zero, is JKR's contact, reduced. The last
-particle that carries stands for the share φ of its cell, x ± s/2, that lies within the edge: with p(x) the pressure
+particle that carries represents the share φ of its cell, x ± s/2, that lies within the edge: with p(x) the pressure
 inside, continued to the middle of that share,
 
     p_last = φ p(x_last − (1 − φ) s/2),    a = x_last − s/2 + φ s

@@ -37,7 +37,7 @@ class Table:
     """A tabulated pair interaction.
 
     Attributes:
-        law: the law that it stands for.
+        law: the law that it represents.
         cutoff: r_c [LU]; the energy is V(r) − V(r_c), the force f(r) up to r_c and 0 beyond.
         points: number of grid points over r_L².
     """

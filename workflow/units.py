@@ -1,7 +1,7 @@
 """The one unit system: length LU, force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT in FU·LU.
 
 `SI` has every unit of the model with its powers, which all conversions use; a test compares them with pint's, whose
-registry reads the units in a scene's texts. `Scales` is what LU, FU and MU stand for in SI, where a scene says so.
+registry reads the units in a scene's texts. `Scales` is what LU, FU and MU represent in SI, where a scene says so.
 """
 
 from __future__ import annotations

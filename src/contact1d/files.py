@@ -17,7 +17,7 @@ FULL_DISK = {
     errno.EDQUOT: "the disk quota is used up",
     errno.EFBIG: "a file would be larger than is allowed (ulimit -f)",
 }
-"""Errors of the system by which no further file can be written, in words."""
+"""Errors of the system by which no further file can be written, as text."""
 
 
 @contextmanager

@@ -167,7 +167,7 @@ def _swing(load: LineLoad, r: Array, p: Array) -> Array:
 
 
 def _converges(levels: Sequence[float], noise: float) -> bool:
-    """Whether a value through every, every second and every fourth particle converges; fewer levels cannot tell."""
+    """Whether a value through every, every second and every fourth particle converges; fewer levels do not suffice."""
     if len(levels) < 3:
         return True
     first, second, fourth = levels

@@ -45,7 +45,7 @@ def contact1d(
 ) -> None:
     """Contact, adhesion and friction with the one-dimensional particle model of Geike and Popov, on LAMMPS.
 
-    A scene file says what the bodies are, which effects act and the experiment. `run` turns it into a LAMMPS
+    A scene file describes the bodies, the effects and the experiment. `run` turns it into a LAMMPS
     deck, runs it, and leaves a folder with numbers (results.json), tables (CSV), figures and the deck itself, which
     `lmp -in in.lammps` repeats. Start with `contact1d doctor`, `contact1d new my.toml`, `contact1d run my.toml`.
     """
@@ -200,7 +200,7 @@ def sweep(
     """Run a scene at each point of a sweep; one table, results.csv, has all results.
 
     The file names a base scene and [[axes]], each with a key of the scene and its values. Broken off at any moment, the
-    same command goes on with what is missing. Exit code 3: a point failed or can't be run; the table says why.
+    same command continues with the missing points. Exit code 3: a point failed or can't be run; the table says why.
     """
     folder = out if out is not None else Path("sweeps") / file.stem
     kept = f"finished runs are kept in {folder}, and the same command continues"

@@ -66,7 +66,7 @@ class Branch(ContactBranch):
     """States under displacement control.
 
     Attributes:
-        missed: how far the search may be off the force maximum [FU].
+        missed: error of the search for the force maximum [FU].
         on_the_way: how many of the first states are intermediate ones.
     """
 
@@ -339,7 +339,7 @@ class Branch(ContactBranch):
 
 
 class SecondMaximumError(UntrustedError):
-    """The tension rises again after its first maximum: load steps through all of it tell."""
+    """The tension rises again after its first maximum: further load steps are needed."""
 
 
 def _secant(before: State, beyond: State | None, states: Sequence[State], force: float, step: float) -> float:

@@ -8,7 +8,7 @@
                      radii changed by the error of interpolation between particles
     instability      premature detachment of particles, and other maxima of the force (the reader's own)
 
-Nothing here knows an experiment: whatever a script passes and a reader reads has all of these.
+Nothing here depends on the experiment: whatever a script passes and a reader reads has all of these.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 MARGIN = 1.25
-"""Error over the change of the model with the lattice: it knows no neighbours. Measured on both parities: 1.01."""
+"""Error over the change of the model with the lattice: it has no neighbour springs. Measured on both parities: 1.01."""
 STEP_MARGIN, PATH_MARGIN = 1.25, 1.5
 """The same of the steps of a path: dense ones have errors, too; the second if the model's maximum is elsewhere."""
 PHASES = (0.25, 0.0)
@@ -130,7 +130,7 @@ def sampling_errors(case: Reduction, trace: Trace) -> Values:
 
 @dataclass(frozen=True)
 class ForceErrors:
-    """How far the forces of states may be off, (m,) [FU].
+    """Errors of the forces of states, (m,) [FU].
 
     Attributes:
         common: alike at neighbouring states: what residual forces add up to at most, table, cutoff, a plane not rigid.

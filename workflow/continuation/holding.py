@@ -133,7 +133,7 @@ def hold(
     """Apply a load to a `hold` phase and run until it is held at rest, or lost.
 
     At rest means that what the contact carries balances the load within `at_rest(settings, scale)`, and that the
-    plate's motion keeps it there (see `hold_row`). `settings` stand for those of the contact, with a drag of their own.
+    plate's motion keeps it there (see `hold_row`). `settings` represent those of the contact, with a drag of their own.
 
     Raises:
         UntrustedError: the contact neither comes to rest nor is lost, or see `require_trust`.
@@ -168,7 +168,7 @@ def hold(
 
 
 def press(contact: Contact, load: float, scale: float) -> Held:
-    """Hold a load ≥ 0 at once, the paper's way; in as many steps as a search in smaller ones says. All states are kept.
+    """Hold a load ≥ 0 at once, as in the paper; in as many steps as a search in smaller ones says. All states are kept.
 
     Raises:
         UntrustedError: see `hold`.

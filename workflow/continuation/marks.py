@@ -104,7 +104,7 @@ def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: floa
 
 
 def _zero_load(branch: Trace) -> Reading | None:
-    """a where the force crosses 0, by a parabola; a straight line says how far to believe it.
+    """a where the force crosses 0, by a parabola; a straight line estimates its error.
 
     None where it never does, or only as the contact is lost.
     """

@@ -35,7 +35,7 @@ class Trace:
         radius_shift: by how many of its own uncertainties each radius is taken too large, (m,); 0 as it is read.
         radius_factor: by which radii are taken larger.
         limit: displacement [LU] below which no contact is held; −inf where none is known.
-        doubt: by source, how far the search may be off the force maximum [FU].
+        doubt: by source, error of the search for the force maximum [FU].
         bracket: under load control, the force maximum that was held and the smallest that was not [FU].
     """
 

@@ -77,7 +77,7 @@ TOLERANCE_FACTORS = (8.0, 4.0, 2.0, 0.5)
 OTHER_METHOD = {"dynamic": (1e-2, 3e-3), "quasistatic": (1e-1, 1e-2, 1e-3, 1e-4)}
 """Tolerances of the method that the scene does not have."""
 CUTOFF_SHARES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
-"""Force at the cutoff over the law's own, its h."""
+"""Force at the cutoff over the force scale, its h."""
 CHAIN_FACTORS = (0.6, 0.7, 0.8, 0.9)
 """Over the length that is automatic for the scene's tolerance."""
 INCREMENT_FACTORS = (1.0, 4.0, 2.0, 0.5)

@@ -50,9 +50,9 @@ class Measured:
         quantities: main results and all others, by name; the same in every run.
         cpu_runs: CPU time in LAMMPS of each run [s].
         steps: minimiser iterations or timesteps of a run.
-        memory_mb: peak resident memory of the LAMMPS process, NaN where the system does not tell.
+        memory_mb: peak resident memory of the LAMMPS process, NaN where the system does not report it.
         failure: why there are no numbers, "" where there are.
-        warnings: names of what limits the results; "tolerance <result>" where the uncertainty of one exceeds it.
+        warnings: names of limitations of the results; "tolerance <result>" where the uncertainty of one exceeds it.
     """
 
     quantities: Annotated[Mapping[str, Quantity], Field(exclude=True)] = field(default_factory=dict)

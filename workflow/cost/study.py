@@ -1,7 +1,7 @@
 """A cost study: the reference, every setting changed from the base, effects left out; then errors and orders.
 
 The settings of a tolerance suffice for every scene of a study of many (`workflow.model.settings`); one scene may
-need less. Errors are those of the main results, relative to a reference of much higher accuracy; the largest stands for
+need less. Errors are those of the main results, relative to a reference of much higher accuracy; the largest represents
 a variant.
 """
 
@@ -55,7 +55,7 @@ def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, p
     Args:
         scene: to be studied.
         name: of it, for the record.
-        folder: where run folders may stand for a while; it exists.
+        folder: where run folders may represent a while; it exists.
         repeats: rounds of measurement.
         workers: runs at a time.
         progress: informed of what begins, and of each run that ends.

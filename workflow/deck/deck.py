@@ -1,7 +1,7 @@
 """A scene and its schedule as one flat LAMMPS deck; pure text, nothing runs here.
 
 A deck is a head (bodies, effects, method) and a schedule: phases, each a loop over rows. A row moves or loads the plate
-and measures. Python runs the very same text, row by row, so that it can choose the next row by what it measured; the
+and measures. Python runs the same text, row by row, so that it can choose the next row by what it measured; the
 deck that it leaves behind holds the rows of the schedule that the search ended with.
 """
 
@@ -98,7 +98,7 @@ class Deck:
         return replace(row, **read)
 
     def in_one_run(self, rows: Sequence[Row], skips: Sequence[int] = ()) -> str:
-        """All rows, each a position of the plate, in one run; `skips`: of which the state is not kept, else of none."""
+        """All rows, each a position of the plate, in one run; `skips`: those whose state is not written, else none."""
         columns = zip(*(row.texts(self.units.to_deck) for row in rows), strict=True)
         # A column is one word on one line, as LAMMPS has it.
         given = {name: f"[{','.join(texts)}]" for name, texts in zip(rows[0].columns(), columns, strict=True)}

@@ -14,7 +14,7 @@ from importlib.resources import files
 VARIABLE_USE = re.compile(r"\$\{(\w+)\}|\bv_(\w+)")
 KEYS = ("Purpose", "Formula", "Needs", "Defines")
 REDEFINES = "Redefines"
-"""Optional in a header: names that an earlier fragment has defined, and that stand for something else from here on."""
+"""Optional in a header: names that an earlier fragment has defined, and that represent something else from here on."""
 
 
 class DeckError(RuntimeError):

@@ -62,7 +62,7 @@ class DeckUnits:
         return _factor(self.length, self.force, unit)
 
     def to_deck(self, value: float, unit: str) -> float:
-        """A number of the scene in deck units; the very same where they are the scene's."""
+        """A number of the scene in deck units; the same where they are the scene's."""
         return value / self.of(unit) if self.are_own else value
 
     def from_deck(self, value: Value, unit: str) -> Value:

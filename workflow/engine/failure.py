@@ -20,7 +20,7 @@ MEANINGS = {
     r"Failed to (re)?allocate|bad_alloc|Too many (total|local) atoms|Too many atom": NO_MEMORY,
     r"Non-numeric|nan|Out of range atoms|Invalid pair table|must be finite": NOT_FINITE,
 }
-"""What LAMMPS says of numbers out of all proportion, and what a person can understand by it."""
+"""Error messages of LAMMPS for extreme numbers, and their meaning."""
 
 
 class EngineError(Contact1dError, RuntimeError):
@@ -31,7 +31,7 @@ class EngineError(Contact1dError, RuntimeError):
         phase: the phase of the experiment, as given to `Session.execute`.
         step: the timestep that LAMMPS had reached (after a crash or a kill: up to a fifth of a second earlier).
         folder: the run folder, whose files are kept.
-        log_tail: the last lines of its log, and what the process said when it died.
+        log_tail: the last lines of its log, and the last output of the process.
     """
 
     exit_code = 3

@@ -1,7 +1,7 @@
 """Pull-off under noise: the load is retracted at a steady rate until the bodies part, once for each seed, side by side.
 
 The detachment force is the tension when the plate last leaves the position of the force maximum: it scatters, and
-grows with the rate, since a slow pull waits longer for a fluctuation that parts the bodies.
+grows with the rate, since a slow pull waits longer for a fluctuation that separates the bodies.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ Energy: the cantilever's far end does the work W = ∫ F_c v dt. The baths take 
 
     Q = ∫ (γ Σ v_i² + c V²) dt − v (N γ ΔX_p + c ΔX)    [with heat: what the thermostats say]
 
-with X and X_p the positions of the plate and of its particles on the mean, and what is stored is
+with X and X_p the positions of the plate and of its particles on average, and what is stored is
 E = E_pot + E_kin + F_c²/2k − F_N d, d the displacement: W = Q + ΔE.
 """
 

@@ -143,7 +143,7 @@ def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float)
 def _extrapolated(rested: Trace) -> Reading:
     """The radius as a parabola through the last three states, where a cubic through four has its force maximum.
 
-    A parabola through three says how far both can be trusted.
+    A parabola through three estimates the error of both.
     """
     count = min(FEWEST_HELD, len(rested))
     at = np.arange(len(rested) - count, len(rested))

@@ -1,4 +1,4 @@
-"""From a material to a finished run: which scene stands for a contact, a chain on a rigid plane or two, and its run."""
+"""From a material to a finished run: which scene represents a contact, a chain on a rigid plane or two, and its run."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ class Choice:
     Attributes:
         contact: what was asked for.
         scene: with every number chosen; of two chains, its interaction is still to be searched for.
-        theories: what is said of an adhesive sphere; None of another body.
+        theories: the theories of an adhesive sphere; None of another body.
         target: what the interaction of two chains is to give, in units of the scene; None on the plane.
-        doubts: by name, why the scene stands for the contact in part only.
+        doubts: by name, why the scene represents the contact in part only.
         contact_radius: that determines the spacing [m].
     """
 
@@ -70,7 +70,7 @@ def chosen(contact: AskedContact) -> Choice:
     """A scene for a contact.
 
     Raises:
-        IdentifyError: no chain can stand for it; the message says what holds.
+        IdentifyError: no chain can represent it; the message says what holds.
         SceneError: the profile is none.
     """
     theories = theories_of(contact)
@@ -140,7 +140,7 @@ def from_material(source: AnyContact, folder: AnyPath, progress: Progress | None
 
     Raises:
         SceneError: the description has mistakes; all of them.
-        IdentifyError: no chain can stand for this contact; the message says which theory holds, with its value.
+        IdentifyError: no chain can represent this contact; the message says which theory holds, with its value.
         SettingsError, RunError: see `workflow.runs.campaign.run`.
     """
     choice = chosen(read_contact(source))

@@ -1,4 +1,4 @@
-"""What a person knows of a real contact, from a TOML file or a table: shapes, materials, attraction, load, in SI."""
+"""Data of a real contact, from a TOML file or a table: shapes, materials, attraction, load, in SI."""
 
 from __future__ import annotations
 

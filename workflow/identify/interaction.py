@@ -183,7 +183,7 @@ FIRST_STEP, FARTHEST = 0.25, 9.0
 START_ERROR = 1e-4
 """Of both logarithms at the start: what the predictor itself is good for."""
 TAIL = 1e-5
-"""Force at the predictor's cutoff over the law's own."""
+"""Force at the predictor's cutoff over the force scale."""
 POINTS = 1000
 """Distances at which the predictor has the force of a row."""
 

@@ -1,4 +1,4 @@
-"""What theories say of a contact: JKR, DMT, Maugis and Dugdale, which of them holds, and whether a chain stands for it.
+"""Theories of a contact: JKR, DMT, Maugis and Dugdale, which of them holds, and whether a chain represents it.
 
 Radius and force of the body before any run, by the method of dimensionality reduction: with E* per
 length, g(x) = |x| ∫ f′/√(x² − r²) dr and Heß's rule at the edge, d = g(a) − √(2πaW/E*),
@@ -98,7 +98,7 @@ def judged(contact: AskedContact, theories: Theories) -> dict[str, str]:
     """Limitations of a chain as a model of an adhesive sphere.
 
     Raises:
-        IdentifyError: it cannot stand for it.
+        IdentifyError: it cannot represent it.
     """
     held = theories.values[theories.holding]
     if held["zero_load_radius"] < ATOM:

@@ -8,7 +8,7 @@ h falls to its minimum, the pull-off under fixed grips, and rises from there on.
 for d > H(x) = min h(y) over y ≥ x: the contact edge recedes from outside. H is a length for each position, so that each
 particle is in contact or not by its own height; only whether there is a contact at all is one state for all.
 
-A particle stands for its cell, x ± s/2, of which the edge leaves a share φ. With q = (d − H₋)/(H₊ − H₋) over the cell
+A particle represents its cell, x ± s/2, of which the edge leaves a share φ. With q = (d − H₋)/(H₊ − H₋) over the cell
 
     φ = q + κ q (1 − q),    f = k φ [d − g(x) + c (1 − φ)],    c = g(x) − g(x − s/2)
 

@@ -223,7 +223,7 @@ def require_travel(scene: Scene, largest: float, cutoff: float) -> None:
 
 
 def require_memory(scene: Scene, particles: int, cutoff: float) -> None:
-    """Refuse a system that this machine has no memory for.
+    """Refuse a system that exceeds the memory of this machine.
 
     Raises:
         SettingsError: with the number of particles or bytes.

@@ -245,7 +245,7 @@ def legs(displacements: Array) -> list[slice]:
 
 
 def reduced(scene: Scene, settings: Settings) -> Reduced:
-    """The model of the very particles that run, as far as the contact reaches."""
+    """The model of the particles that run, as far as the contact reaches."""
     estimate, spacing = settings.estimate, settings.estimate.spacing
     deepest = settings.largest_displacement
     phase = 0.5 if settings.particles % 2 == 0 else 0.0

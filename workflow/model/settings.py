@@ -9,7 +9,7 @@ The cutoff of a slide follows from how a particle is held along x by a straight 
 
     F_x(x, z) = Σ_j f(r_j) (x − j s)/r_j,    r_j = √((x − j s)² + z²)
 
-a small difference of large sums: at the spacing of the law's longest range b it is some 1e-2 of one pair's force.
+a small difference of large sums: at the spacing of the longest range b it is some 1e-2 of one pair's force.
 """
 
 from __future__ import annotations
@@ -83,12 +83,12 @@ CALIBRATION = calibration_of(json.loads(FILE.read_text(encoding="utf-8")))
 
 Array = NDArray[np.float64]
 REACH = 40.0
-"""Reach of the sums, and of the longest cutoff, over the law's longest range."""
+"""Reach of the sums, and of the longest cutoff, over the longest range."""
 PLACES, HEIGHTS = 33, 400
 """Positions within half a spacing, and heights, that are examined."""
 LEFT_OUT = 0.1
 """Force of a pair at the cutoff over the largest force along x, per unit of tolerance: each pair that comes within
-reach, or leaves it, changes that by so much at once."""
+reach, or leaves it, changes that by that much at once."""
 
 
 def slide_cutoff(law: DoubleExponential, spacing: float, load: float, share: float) -> float:
@@ -208,7 +208,7 @@ MOVE_SHARE = 0.25
 near 0."""
 NEAR_SHARE = 0.2
 """Least distance down to which a table follows the law and a search comes down in ever smaller moves, over `closest`: a
-table that is smoothed any earlier lets bodies through that the law still carries."""
+table that is smoothed any earlier lets bodies pass that the interaction still carries."""
 ROWS_IN_TIME = 100
 """States of a motion that is followed for a given time."""
 FAR_SHARE = 10.0
@@ -232,7 +232,7 @@ class Settings:
         beyond: how many more the lower body has, where it has any.
         rest: apex distance at displacement 0 [LU].
         law, cutoff, table, table_from: the interaction, its cutoff [LU], its table, and the distance [LU] from which on
-            the table was chosen to follow the law; None or 0 on a rigid plane.
+            the table was chosen to follow the interaction; None or 0 on a rigid plane.
         closest: smallest distance for which moves and time step are chosen [LU].
         bulk_stiffness: normal bond of a particle to its anchor [FU/LU]; on a rigid plane such that plane and bond in
             series have the scene's value.

@@ -112,7 +112,7 @@ def _kind(name: str, one: Result) -> str:
 
 
 def _advice(scene: Scene, outcome: Outcome, names: Iterable[str]) -> str:
-    """What makes these results better, by what limits them."""
+    """How to improve these results, by their dominant error."""
     tolerance, results = scene.accuracy.tolerance, outcome.results
     if all(MODEL in results[name].errors for name in names):
         return "Two evaluations of this quantity differ by that much (`formulas` in results.json)"
@@ -122,7 +122,7 @@ def _advice(scene: Scene, outcome: Outcome, names: Iterable[str]) -> str:
 
 
 def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, float]:
-    """Relative discretisation errors above the tolerance, without those of reading between particles, by name."""
+    """Relative discretisation errors above the tolerance, without those of interpolation between particles, by name."""
     left = {name: one.errors.get(LATTICE, 0.0) - one.read for name, one in results.items()}
     found = {name: replace(results[name], errors={LATTICE: error}, read=0.0) for name, error in left.items()}
     return unmet(found, tolerance)

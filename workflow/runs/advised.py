@@ -93,7 +93,7 @@ def in_words(edit: SceneEdit) -> str:
 
 
 def _tried(reader: Reader, error: Contact1dError, progress: Progress) -> str:
-    """What is said of the changes that an error carries, the first of which is tried; "" where it carries none."""
+    """The message on the changes that an error carries, the first of which is tried; "" where it carries none."""
     edits = []
     for edit in error.changes:
         try:

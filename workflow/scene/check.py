@@ -62,7 +62,7 @@ LISTS = ((*PROFILE, "r"), (*PROFILE, "z"))
 
 
 def mend_words(data: dict[str, Any], model: type[Tables]) -> list[Problem]:
-    """Report and mend, in `data` (a plain dict for this `model`), every word that is misspelt or unknown."""
+    """Report and correct, in `data` (a plain dict for this `model`), every word that is misspelt or unknown."""
     wrong = _validated(data, model)[1]
     return [problem for place in walk(WHOLE, data) for problem in _mended(data, place)] if wrong else []
 
@@ -70,7 +70,7 @@ def mend_words(data: dict[str, Any], model: type[Tables]) -> list[Problem]:
 def check_tables(
     data: dict[str, Any], model: type[AnyTables], reported: Collection[Keys] = ()
 ) -> tuple[AnyTables | None, list[Problem], frozenset[Keys]]:
-    """Check every table of `data`, a plain dict whose words were mended, for a `model` of a scene.
+    """Check every table of `data`, a plain dict whose words were corrected, for a `model` of a scene.
 
     Keys that were `reported` are not reported again. Returns the scene if all tables are right, what is wrong, and the
     keys at which a value is, which the rules cannot rely on.
@@ -100,7 +100,7 @@ def _keys(details: ErrorDetails, value: Any) -> Keys:
 
 
 def _mended(data: dict[str, Any], place: Place) -> Iterator[Problem]:
-    """Report and mend, in `data`, the words of a place: of a table its kind and its keys."""
+    """Report and correct, in `data`, the words of a place: of a table its kind and its keys."""
     value, kinds = place.value, place.allowed.kinds
     yield from _mended_word(data, place, place.allowed.words)
     if not isinstance(value, dict):

@@ -98,7 +98,7 @@ class Kind(Table):
         needs: effects that it cannot do without by any method.
         needs_in_time: effects that a dynamic one cannot do without.
         only_with_noise: keys that say how a thermal one is repeated.
-        load_key: the key of its one normal force, which may be tensile (not a preload) if the bodies attract each other.
+        load_key: the key of its one normal force, which may be tensile (not a preload) if the bodies attract.
         finds_pull_off: whether its results have F_A and a₀.
         way_is_given: the scene prescribes the loading history, so that nothing is searched for and states are unique.
         motion_is_result: the motion itself is examined, so that the scene exists in time only and its drag is its own.
@@ -305,15 +305,15 @@ class Tangential(Kind):
         return max(_for_each(self.normal_force, 1), default=None)
 
     def places(self) -> list[float]:
-        """Normal displacements [LU] of the rows, none where forces are given."""
+        """Normal displacements [LU] of the load steps, none where forces are given."""
         return _for_each(self.normal_displacement, len(self.along()))
 
     def along(self) -> list[float]:
-        """Displacements along x [LU] of the rows."""
+        """Displacements along x [LU] of the load steps."""
         return _values(self.displacements)
 
     def normal_forces(self) -> list[float]:
-        """Normal forces [FU] of the rows, none where displacements are given."""
+        """Normal forces [FU] of the load steps, none where displacements are given."""
         return _for_each(self.normal_force, len(self.along()))
 
     @property

@@ -148,7 +148,7 @@ def scene_from_dict(
 
 
 def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -> Scene:
-    """The scene of `plain`, which is mended on the way; `problems` are those found so far."""
+    """The scene of `plain`, which is corrected meanwhile; `problems` are those found so far."""
     problems += mend_words(plain, Scene)
     source, unread = _with_points(plain, folder)
     _with_legs(plain)

@@ -202,7 +202,7 @@ def _open_spacing(d: Draft) -> Rows:
            'must be "auto" with spacing = "auto": the stiffness of a particle is E* times the spacing',
            f"write it, and {ELASTICITY}; or {GIVE_SPACING}")
     yield ("bodies.bulk_stiffness_tangential", "bodies.bulk_stiffness_tangential" in d,
-           'not with spacing = "auto": it belongs to one particle',
+           'not with spacing = "auto": it is a property of one particle',
            f"remove it: it follows from ν of material.upper and lower; or {GIVE_SPACING}")
     yield ("bodies.spacing", d.profile == "flat",
            "must be a length (LU) of a flat body without an edge", f'{GIVE_SPACING}, or use kind = "flat_punch"')

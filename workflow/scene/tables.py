@@ -72,7 +72,7 @@ Reduction = Literal["geike_popov", "mdr"]
 LAYER_SHARE = {"geike_popov": 0.5, "mdr": 1.0}
 """Stiffness per length of the layer over E*."""
 PARABOLA_SHARE = {"geike_popov": 1.0, "mdr": 0.5}
-"""Radius of the plane parabola x²/2R₁ over that of the body that it stands for: the MDR takes x²/2R to x²/R."""
+"""Radius of the plane parabola x²/2R₁ over that of the body that it represents: the MDR takes x²/2R to x²/R."""
 
 SPHERES = ("parabola", "circle")
 """Profiles of which two make the pair of spheres of the paper."""
@@ -153,7 +153,7 @@ def wider_than_body(profile: Mapping[str, Any]) -> float | None:
         profile: with the keys of a scene file. Of a circle or an ellipsoid the factor is that of its parabola.
 
     Returns:
-        (2κ_n)^{1/(n+1)}; None where no closed form tells.
+        (2κ_n)^{1/(n+1)}; None where there is no closed form.
     """
     exponents = {"cone": 1.0, "parabola": 2.0, "circle": 2.0, "ellipsoid": 2.0, "power": profile.get("exponent")}
     n = exponents.get(str(profile.get("kind")))
