@@ -87,7 +87,7 @@ def penetration_depth(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike
     """Return how far the lowest of the upper particles is below the straight-line lower surface [LU]; 0 for none.
 
     x_upper, z_upper: upper particles [LU], (n,); x_lower, z_lower: lower particles in any order [LU], (m,), m >= 1.
-    Particles beyond the ends of the lower body are above or below nothing and don't count. The paper names
+    Particles beyond the ends of the lower body do not count. The paper names
     interpenetration as the limit of a model of one layer (Section 5).
     """
     surface = np.interp(np.asarray(x_upper), *_sorted_by_x(x_lower, z_lower), left=-np.inf, right=-np.inf)

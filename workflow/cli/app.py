@@ -15,7 +15,7 @@ from contact1d.workflow.cli.ending import CALL_IS_WRONG, FAILS, RUN_FAILED, Comm
 from contact1d.workflow.cli.identify import identify
 
 GARBAGE_THRESHOLD = 100_000
-"""New objects after which Python looks for garbage: at 700, a tenth of what the imports take goes into looking."""
+"""New objects between garbage collections: with 700, they take a tenth of the import time."""
 
 app = typer.Typer(
     cls=Commands,

@@ -112,7 +112,7 @@ def _factor(length: float, force: float, unit: str) -> float:
 
 
 def units_for(scene: Scene) -> DeckUnits:
-    """The scene's own units where LAMMPS's lengths and forces do; else powers of ten that make them ordinary."""
+    """The scene's own units where they suit LAMMPS; else powers of ten that give numbers near 1."""
     terms = scene.interaction
     lengths = scene.bodies.spacing if terms is None else terms.repulsion.range
     # The ranges of ordinary scenes are tenths of a LU, so a repulsion's is made one; a spacing is made a few LU.

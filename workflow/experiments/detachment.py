@@ -248,7 +248,7 @@ def pull_off_thermal(context: RunContext) -> Outcome:
     """Detachment force, mean and spread over the seeds, of a pull-off with [noise].
 
     Raises:
-        UntrustedError: bodies that do not part, or see `require_trust`.
+        UntrustedError: bodies that do not separate, or see `require_trust`.
     """
     scene, settings = context.deck.scene, context.deck.settings
     assert isinstance(scene.experiment, PullOff)

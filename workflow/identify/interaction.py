@@ -102,7 +102,7 @@ LARGEST_RADIUS_SHARE = 0.6
 PRELOAD_SHARE = 0.7
 """Preload of a scene for a material over its F_A."""
 SHAPE = {"amplitudes": 2.0, "ranges": 2.0}
-"""A over B and b over a of a scene for a material: those of the shipped pull_off scene."""
+"""A/B and b/a of the fitted interaction: those of the example scene pull_off.toml."""
 
 
 def material_scene(

@@ -125,7 +125,7 @@ def read_sweep(source: AnySweep) -> SweepPlan:
             (combine not in COMBINATIONS, "combine", 'must be "product" or "zip"', combine, ""),
             (given is None or given == [], "axes", "missing", None,
              'write [[axes]] with key = "bodies.profile.radius" and values'),
-            (given is not None and not listed, "axes", "must be written as [[axes]], in double brackets, once for each axis",
+            (given is not None and not listed, "axes", "must be written as [[axes]], in double brackets, one for each",
              given, ""),
             (scene is not None and base is not None, "scene", "not together with [base]", None,
              "give a scene file, or the scene's tables under [base]"),
