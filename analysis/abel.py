@@ -1,11 +1,11 @@
-"""The pressure under an axisymmetric body from the line load of its plane image: the inverse Abel transform, p(r).
+"""The pressure under an axisymmetric body from the line load of its image: the inverse Abel transform, p(r).
 
 The method of dimensionality reduction (MDR) keeps force, displacement and radius; its line load q(x) [force/length] is
 the body's pressure p(r) seen from the side, and so (Popov and Heß 2015, chapter 2; W. C. Hayes' form of Sneddon's)
 
     q(x) = 2 ∫_x^∞ r p(r)/√(r² − x²) dr,     p(r) = −(1/π) ∫_r^∞ q′(x)/√(x² − r²) dx
 
-With q a polynomial between neighbouring places, q′ = c₀ + c₁ x + c₂ x², each piece has a closed form,
+With q a polynomial between neighbouring positions, q′ = c₀ + c₁ x + c₂ x², each piece has a closed form,
 
     ∫ q′/√(x² − r²) dx = (c₀ + c₂ r²/2) arcosh(x/r) + (c₁ + c₂ x/2) √(x² − r²)
 
@@ -31,31 +31,31 @@ from numpy.typing import ArrayLike
 from contact1d.analysis.pressure import Array, spacing_of
 
 NEAR = 0.3
-"""Of a spacing: a place nearer to the edge than that is left out, since a slope over so short a way is mostly noise."""
+"""Of a spacing: a place closer to the edge than that is left out, since a slope over so short a way is mostly noise."""
 WHOLE = 0.5 - 1e-6
-"""The same where q jumps to 0 at the edge: a particle stands for so much to either side, and has less where the edge
+"""The same where q jumps to 0 at the edge: a particle represents its cell on either side, and has less where the edge
 cuts that off."""
 SAME = 1e-6
-"""Of a spacing: places so alike on both sides of the axis are the same."""
+"""Of a spacing: positions so alike on both sides of the axis are the same."""
 AT_ONCE = 100
 """Distances from the axis that are worked out at once, to bound the memory."""
 HALVINGS, NODES = 40, 8
-"""Intervals of an integral that halve towards the axis, and Gauss's places in each."""
+"""Intervals of an integral that halve towards the axis, and Gauss's positions in each."""
 DIFFERENCE = 1e-5
-"""Of a place, up to which a slope is a difference: exact to some 1e-10."""
+"""Of a position, up to which a slope is a difference: exact to some 1e-10."""
 Body = Callable[[Array], Array]
 FEWEST = 3
-"""Places on one side from which a shape can be told."""
+"""Positions on one side that determine a shape."""
 
 
 @dataclass(frozen=True)
 class LineLoad:
-    """An even line load as cubics between places: q(x) for 0 ≤ x ≤ edge, nothing beyond.
+    """An even line load as cubics between positions: q(x) for 0 ≤ x ≤ edge, nothing beyond.
 
     Attributes:
         breaks: 0 = x₀ < x₁ < … < x_n = edge, shape (n + 1,) [length].
         coefficients: of q = Σ_k coefficients[k] x^k between them, shape (4, n); with a `body` of q + c h.
-        body: c h(x) of places x of any shape [force/length], where it is known.
+        body: c h(x) of positions x of any shape [force/length], where it is known.
         jump: q just inside the edge [force/length], where it is known; None: that of the polynomials.
         apex: whether the body's slope does not vanish on the axis.
     """
@@ -143,15 +143,15 @@ def line_load(
     apex: bool = False,
     body: Body | None = None,
 ) -> LineLoad:
-    """Return the even line load through values at places, a cubic through the four nearest; of both sides the mean.
+    """Return the even line load through values at positions, a cubic through the four nearest; of both sides the mean.
 
     Polynomials up to x³ on each side (Hertz, cone, flat punch) are met exactly, others with the third order of the
     spacing.
 
     Args:
-        x: places, rising and the same on both sides of 0, shape (n,) [length].
+        x: positions, rising and the same on both sides of 0, shape (n,) [length].
         load: q there, shape (n,) [force/length].
-        edge: a, where it ends [length]; None: it fades out, and ends at 0 at the last place.
+        edge: a, where it ends [length]; None: it fades out, and ends at 0 at the last position.
         ends_at_zero: whether q(a) = 0; else the last piece goes on to the edge, where q jumps to 0.
         apex: whether q has a kink on the axis, as under a cone; else it is smooth there, an even function.
         body: c h(x) of the body, where q = c (d − h) with nothing else.
@@ -164,7 +164,7 @@ def line_load(
     inside = right <= end - (NEAR if ends_at_zero else WHOLE) * spacing
     right, mean = right[inside], mean[inside]
     if right.size < FEWEST:
-        raise ValueError(f"a pressure needs {FEWEST} places on each side of the axis, got {right.size}")
+        raise ValueError(f"a pressure needs {FEWEST} positions on each side of the axis, got {right.size}")
     if body is not None:
         mean = mean + body(right)
     elif ends_at_zero:
@@ -181,19 +181,19 @@ def line_load(
 
 
 def of_both_sides(x: ArrayLike, load: ArrayLike) -> tuple[Array, Array, float]:
-    """Places from the axis on, the mean load of both sides there, and the spacing; ValueError as of `line_load`."""
+    """Positions from the axis on, the mean load of both sides there, and the spacing; ValueError as of `line_load`."""
     places, values = np.asarray(x, dtype=np.float64), np.asarray(load, dtype=np.float64)
     if places.shape != values.shape or places.ndim != 1:
-        raise ValueError(f"places and loads must be 1-D and equally long, got {places.shape} and {values.shape}")
+        raise ValueError(f"positions and loads must be 1-D and equally long, got {places.shape} and {values.shape}")
     spacing = spacing_of(places)
     if not np.allclose(places, -places[::-1], rtol=0.0, atol=SAME * spacing):
-        raise ValueError("the places must be the same on both sides of 0")
+        raise ValueError("the positions must be the same on both sides of 0")
     half = places.size // 2
     return places[half:], 0.5 * (values + values[::-1])[half:], spacing
 
 
 def _cubics(x: Array, q: Array, end: float) -> LineLoad:
-    """From 0 to the `end` the cubic through the four nearest of the places x, of fewer a parabola or a line."""
+    """From 0 to the `end` the cubic through the four nearest of the positions x, of fewer a parabola or a line."""
     count = min(4, x.size)
     right_of_axis = x[x > 1e-12 * end]
     inner = right_of_axis[right_of_axis < end * (1.0 - 1e-12)]
@@ -209,7 +209,7 @@ def _cubics(x: Array, q: Array, end: float) -> LineLoad:
 
 
 def in_powers(newton: Array, places: Array) -> Array:
-    """Coefficients in powers of x, shape (4, n), of Σ_k newton[k] Π_{j<k} (x − places[j]), k < 4 at most."""
+    """Coefficients in powers of x, shape (4, n), of Σ_k newton[k] Π_{j<k} (x − positions[j]), k < 4 at most."""
     powers = np.zeros((4, newton.shape[1]))
     for value, place in zip(newton[::-1], places[::-1], strict=True):
         powers[1:] = powers[:-1] - place * powers[1:]

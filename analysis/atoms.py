@@ -1,4 +1,4 @@
-"""A finished run as ASE atoms: places [LU], bodies, and the force of the opposite body on every particle [FU]."""
+"""A finished run as ASE atoms: positions [LU], bodies, and the force of the opposite body on every particle [FU]."""
 
 from __future__ import annotations
 

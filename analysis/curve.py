@@ -1,4 +1,4 @@
-"""Files of a run: curve.csv, profile.csv, friction.csv, states.npz; written whole or not at all, all digits kept."""
+"""Files of a run: curve.csv, profile.csv, friction.csv, states.npz; written atomically, with all digits."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ PROFILE_COLUMNS = tuple(field.name for field in fields(Profile))
 DETACHMENTS = "detachments"
 """Name of the table, and of the figure, of a thermal pull-off."""
 SAMPLE_TABLE = "samples"
-"""Name of the table, and of the figure, of a contact under heat."""
+"""Name of the table, and of the figure, of a contact with noise."""
 HEADER = re.compile(r"(.+) \[(.+)\]")
 """Of a column with a unit: `force [N]`."""
 WORDS = ("branch", "state")

@@ -1,4 +1,4 @@
-"""Reading marks off a curve F(d): where it crosses a force, where its tension is largest, the area of a closed one."""
+"""Marks of a curve F(d): its crossing of a force, its force maximum, the hysteresis of a closed one."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from contact1d.analysis.polynomial import Array, lowest_minimum, real_roots, thr
 
 @dataclass(frozen=True)
 class Peak:
-    """The largest tension of a sampled curve.
+    """The force maximum of a sampled curve.
 
     Attributes:
         index: of the sampled point.
@@ -32,23 +32,23 @@ class Peak:
 
 
 LEAST_SEPARATION = 1e-5
-"""Distance of two places over that of the outermost ones below which no polynomial is put through them."""
+"""Distance of two positions over that of the outermost ones below which no polynomial is put through them."""
 AS_HIGH = 1e-3
-"""Distance from the highest sample over the width of the widest polynomial within which another one is left out: what
-a minimiser leaves of both, ε, would be a slope of ε over their distance, and that over the width 1000 ε at least."""
+"""Distance from the highest sample over the width of the widest polynomial within which another one is ignored: the
+residual of both, ε, would be a slope of ε over their distance, and that over the width 1000 ε at least."""
 WIDEST_REACH = 3
 """Samples on either side of the highest one under the widest polynomial."""
 JUMP_RATIO = 3.0
-"""A fall after the maximum over the rise before it, above which it is a jump and no curve."""
+"""A drop after the maximum over the rise before it, above which it is an instability."""
 
 
 def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Peak:
     """The largest −F of an unloading branch (displacements falling).
 
     Between samples a smooth curve exceeds the sampled maximum by what the polynomial through five points says; that
-    through three tells how far to believe it, and that through seven how far to believe its place. Where a particle
+    through three estimates its error, and that through seven the error of its position. Where a particle
     snaps after the maximum, tension rises right up to the snap, no faster than before the sampled point: that is
-    then the place, and the rise up to the next point what is missed at most.
+    then the position, and the rise up to the next point what is missed at most.
     """
     d, tension = np.asarray(displacement), -np.asarray(force)
     i = int(np.argmax(tension))
@@ -91,7 +91,7 @@ def _about(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, A
 
 
 def _vertex(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, float]:
-    """Place and value of the maximum of the polynomial through the highest point and so many on either side of it.
+    """Position and value of the maximum of the polynomial through the highest point and its neighbours on either side.
 
     It lies between the highest point's neighbours.
     """
@@ -106,7 +106,7 @@ def _vertex(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, 
 
 
 def promised(displacement: Sequence[float], force: Sequence[float], places: Sequence[float]) -> Array:
-    """Tension [FU] at `places` [LU] beside the largest one, by the polynomial through it and two rows on each side.
+    """Tension [FU] at `places` [LU] near the force maximum, by the polynomial through it and two points on each side.
 
     NaN where there are no such rows.
     """
@@ -121,9 +121,9 @@ def promised(displacement: Sequence[float], force: Sequence[float], places: Sequ
 
 
 def rivals(displacement: Sequence[float], force: Sequence[float], peak: Peak) -> dict[int, float]:
-    """The other teeth of a sawtooth, by their highest rows: how much each may be higher than the peak [FU], or lower.
+    """The other maxima of a sawtooth, by their highest rows: how much each may be higher than the peak [FU], or lower.
 
-    Beyond a tooth's highest row the tension rises no faster than it did up to there, and no further than to the next
+    Beyond its highest row the tension rises no faster than it did up to there, and no further than to the next
     row; between that row and the one before, no faster than up to the latter. Displacements fall.
     """
     d, tension = np.asarray(displacement), -np.asarray(force)
@@ -217,8 +217,8 @@ class Work:
 
     Attributes:
         area: ∫ F dd [FU·LU], by the trapezoidal rule; of a closed path what it dissipates.
-        uncertainty: of it, by the rows between which F is not known [FU·LU].
-        whole: ∫ |F| |dd| [FU·LU]: of all that is done on the way.
+        uncertainty: of it, by interpolation of F between load steps [FU·LU].
+        whole: ∫ |F| |dd| [FU·LU]: of all that is done on the path.
         length: ∫ |dd| [LU].
     """
 

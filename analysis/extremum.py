@@ -1,4 +1,4 @@
-"""Where sampled values are least between the samples: the minimum of a polynomial, dP/dx = 0, with its uncertainty.
+"""The minimum between samples: that of a polynomial, dP/dx = 0, with its uncertainty.
 
 Measured on the closed form of independent pairs, p(x) = f(r), x^2 / 2R + G_0 = r - 2 f(r) / k, f two exponentials, with
 R = 1000, ranges 0.2 … 2, radii to 80 and random lattice offsets (542 cases without, 578 with particles that snap; error
@@ -50,11 +50,11 @@ those nearly a spacing wide, with 0 61 %."""
 CANDIDATE_SIGMAS = 5.0
 """Samples within this many standard deviations of the lowest one may be the lowest one."""
 BRIDGED_SAMPLES = 5
-"""Up to this many samples that noise cannot tell apart are bridged by interpolation."""
+"""Up to this many samples that noise do not determine it apart are bridged by interpolation."""
 NOISE_REACH = 20
 """Samples on each side from which the noise is estimated."""
 NOISE_ORDER = 12
-"""Highest difference of samples that is looked at for noise: of a smooth function it is the least."""
+"""Highest difference of samples that is examined for noise: of a smooth function it is the least."""
 MEDIAN_TO_SIGMA = 0.6745
 """Median of |n| over the standard deviation of a normal n."""
 
@@ -117,7 +117,7 @@ def _median(values: Array) -> float:
 def _smoothest(x: Array, y: Array, index: int, size: int) -> list[slice]:
     """Slices of `size` samples around `index`, smoothest first: their highest divided difference is least.
 
-    Where y jumps, a polynomial across the jump swings (the choice of essentially non-oscillatory schemes).
+    Where y jumps, a polynomial across the jump oscillates (the choice of essentially non-oscillatory schemes).
     """
     lows = range(max(0, index - size + 1), min(index, len(x) - size) + 1)
     near = slice(lows[0], lows[-1] + size)
@@ -232,8 +232,8 @@ def _minimum(
 ) -> tuple[float, float]:
     """Position of the lowest minimum between low and high of the polynomial over samples, its shift per noise in y.
 
-    It goes through all of them unless its `degree` is less. Without a minimum there (NaN, NaN); where one is known to
-    be `near`, it is found from there.
+    It goes through all of them unless its `degree` is less. Without a minimum there (NaN, NaN); where one is
+    expected `near` a position, it is found from there.
     """
     points, values = x[under], y[under]
     origin, width, depth = float(points.sum()) / len(points), float(np.ptp(points)), float(np.abs(values).max())

@@ -26,13 +26,13 @@ expansion of the quantile: Abramowitz and Stegun 26.7.5)."""
 FEWEST_BLOCKS = 2
 """Periods that a mean needs after the run-in."""
 DROPPED = 1
-"""Periods that always belong to the run-in: they hold the way from the start to the first slip."""
+"""Periods that always belong to the run-in: they hold the path from the start to the first slip."""
 MOST_PAIRED = 4
 """Periods that may be one block, if that leaves so many blocks: slips may repeat after several periods only."""
 FASTER = 2.0
 """Velocity of the plate over that of the drive above which it may slip."""
 BESIDE, EVEN = 2, 2.0
-"""Rows on each side of a smooth top, and the ratio of the largest to the smallest curvature of friction over place
+"""Rows on each side of a smooth top, and the ratio of the largest to the smallest curvature of friction over position
 about it: where a slip begins the rows lie so far apart that it is many times as large."""
 LONG = 0.45
 """Way over the spacing that it makes of it: at the threshold of stick-slip it passes a barrier as fast over 0.33."""
@@ -49,7 +49,7 @@ class Mean:
 
 @dataclass(frozen=True)
 class Slip:
-    """A jump of the plate into another hollow: when it ends [TU], where it begins and how far it goes [LU]."""
+    """A jump of the plate into another potential minimum: its end [TU], its position and its size [LU]."""
 
     time: float
     place: float
@@ -80,7 +80,7 @@ def block_means(time: Array, integral: Array, period: float, rate: Array | None 
 
 
 def mean_of(blocks: Array) -> Mean:
-    """The mean after the run-in; that ends where what is left is known best, half of the blocks before at most.
+    """The mean after the run-in; the run-in minimises the standard error of the rest, at most half of the blocks.
 
     Raises:
         ValueError: fewer than DROPPED + FEWEST_BLOCKS blocks.
@@ -95,7 +95,7 @@ def mean_of(blocks: Array) -> Mean:
 def sampled_mean(time: Array, force: Array, period: float) -> Mean:
     """The mean of forces that are known at single times only, shape (n,), with many in a period.
 
-    Under heat the random kicks of a bath, ∫ ξ dt ~ √(2γkT t), are no part of the friction, but of the balance that
+    In a heat bath the random forces, ∫ ξ dt ~ √(2γkT t), are no part of the friction, but of the balance that
     gives its integral: samples may know it better. A slip between two is missed by half of the time between at most:
     slips at random times are in the scatter of the blocks, those that come at the same time in each are in their mean.
     Such a slip is larger than the step between two samples by what the friction rises by in the meantime.
@@ -139,9 +139,9 @@ def student(freedom: int) -> float:
 
 
 def slips(time: Array, place: Array, spacing: float, velocity: float) -> list[Slip]:
-    """Where a plate goes on, FASTER than the drive, for a LONG way: over a barrier, or down from one into a hollow.
+    """Where a plate moves FASTER than the drive over a LONG distance: across a barrier, or from one into a minimum.
 
-    With much drag it slows down on the barrier itself, wherever that is: no place is asked for.
+    With much drag it slows down on the barrier itself, wherever that is: no position is asked for.
 
     Args:
         time, place: of the plate, shape (n,) [TU], [LU].
@@ -155,7 +155,7 @@ def slips(time: Array, place: Array, spacing: float, velocity: float) -> list[Sl
 
 
 def largest_before(friction: Array, place: Array, spacing: float) -> tuple[float, float]:
-    """(largest friction [FU] until the plate has moved by one period, what a row may have missed of it [FU]).
+    """(largest friction [FU] until the plate has moved by one period, its sampling error [FU]).
 
     The friction rises smoothly up to where the plate slips: what is missed is less than what the row before rose by.
     Over the top of a barrier that the plate passes without a slip it is a smooth function of the place, and its largest

@@ -1,6 +1,6 @@
 """The polynomial P(t) = Σ cₖ tᵏ of a few samples: its coefficients, its real roots and its lowest minimum.
 
-Places t are of the order of 1 and counted from a sample, or the coefficients are those of round-off.
+Positions t are of the order of 1 and counted from a sample, or the coefficients are those of round-off.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ ROOT = 1e-12
 
 
 def fitting(t: Array, degree: int) -> Array:
-    """The matrix M, (degree + 1, n), that makes coefficients c = M y of values y at n different places t.
+    """The matrix M, (degree + 1, n), that makes coefficients c = M y of values y at n different positions t.
 
     P goes through all values where degree = n - 1; for a lower degree it is that of least squares.
     """
@@ -42,7 +42,7 @@ def _fitting(places: bytes, degree: int) -> Array:
 def _lagrange(t: Array) -> Array:
     """The inverse of the powers of t, whose column j has the coefficients of Πₖ (t − tₖ) / (tⱼ − tₖ), k ≠ j.
 
-    The products keep all digits of the coefficients; of 21 places an inverse by elimination keeps nine.
+    The products keep all digits of the coefficients; of 21 positions an inverse by elimination keeps nine.
     """
     c = np.zeros((len(t), len(t)))
     c[0] = 1.0
@@ -55,7 +55,7 @@ def _lagrange(t: Array) -> Array:
 
 
 def through(t: Array, y: Array) -> Array:
-    """Coefficients of degree n - 1 of the polynomial through n values y at different places t.
+    """Coefficients of degree n - 1 of the polynomial through n values y at different positions t.
 
     Of several sets of values, (n, m), the coefficients of each, (n, m). It has less round-off than `fitting`.
     """
@@ -68,7 +68,7 @@ def value(c: Array, t: float) -> float:
 
 
 def real_roots(c: Array, low: float, high: float) -> Array:
-    """Places between low and high where P is 0.
+    """Positions between low and high where P is 0.
 
     They are eigenvalues of the companion matrix; `numpy.polynomial` does the same in twice the time. Of the matrix as
     it stands in books a highest coefficient of mere round-off would take the roots of the others with it. Roots far
@@ -93,7 +93,7 @@ def real_roots(c: Array, low: float, high: float) -> Array:
 def lowest_minimum(c: Array, low: float, high: float, near: float | None = None) -> tuple[float, float]:
     """(t, P″(t)) of the lowest minimum of P between low and high, NaN where it has none.
 
-    A minimum that is known to be `near` some place is found from there, by Newton's method, where |t| < 1.
+    A minimum that is known to be `near` some position is found from there, by Newton's method, where |t| < 1.
     """
     powers = np.arange(len(c))
     first = c[1:] * powers[1:]

@@ -70,7 +70,7 @@ def pressure_profile(
 
 
 def mean_pressure(profile: Profile, spacing: float, radius: float) -> float:
-    """Return F / (pi a^2), the mean pressure of the three-dimensional contact that the model stands for [FU/LU^2].
+    """Return F / (pi a^2), the mean pressure of the three-dimensional contact that the model represents [FU/LU^2].
 
     spacing of the particles [LU]; radius: contact radius a [LU]. F is the whole normal force, tension beyond a
     included, because that is the force of Eq. (8). This is the paper's mean pressure: for R = 1000, a = 35 and the row
@@ -87,7 +87,7 @@ def penetration_depth(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike
     """Return how far the lowest of the upper particles is below the straight-line lower surface [LU]; 0 for none.
 
     x_upper, z_upper: upper particles [LU], (n,); x_lower, z_lower: lower particles in any order [LU], (m,), m >= 1.
-    Particles beyond the ends of the lower body are above or below nothing and don't count. The paper names
+    Particles beyond the ends of the lower body do not count. The paper names
     interpenetration as the limit of a model of one layer (Section 5).
     """
     surface = np.interp(np.asarray(x_upper), *_sorted_by_x(x_lower, z_lower), left=-np.inf, right=-np.inf)
@@ -98,8 +98,8 @@ def smallest_distance(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike
     """Return min_ij |r_i - r_j| [LU] over upper particles i and lower particles j.
 
     x_upper, z_upper [LU], (n,); x_lower, z_lower [LU], (m,). Raises ValueError where a body has no particle or a
-    position is not finite. The lower particle next to the place above which each upper one stands gives a first
-    distance, and no other pair is looked at but those that are within it along x: for chains a few.
+    position is not finite. The lower particle next to the position above which each upper one stands gives a first
+    distance, and no other pair is examined but those that are within it along x: for chains a few.
     """
     (across, height), (x, z) = _sorted_by_x(x_upper, z_upper), _sorted_by_x(x_lower, z_lower)
     if not (across.size and x.size):
@@ -135,7 +135,7 @@ def end_pressure_share(profile: Profile) -> float:
 
 
 def spacing_of(x: Array) -> float:
-    """The mean distance of neighbours [length], of rising places x, (n,), n >= 1; 0 for one."""
+    """The mean distance of neighbours [length], of rising positions x, (n,), n >= 1; 0 for one."""
     return float(np.ptp(x)) / max(x.size - 1, 1)
 
 
@@ -144,7 +144,7 @@ TAIL_REACH = 5.0
 
 
 def left_out(law: DoubleExponential, table: Table, profile: Profile) -> float:
-    """Σ |F_table(r) - f(r)| |z|/r [FU]: what a table and its cutoff leave out of a law in a state.
+    """Σ |F_table(r) - f(r)| |z|/r [FU]: the truncation and table error of an interaction in a state.
 
     Summed offset by offset along the chain: memory for one row of pairs.
     """

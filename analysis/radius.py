@@ -1,7 +1,7 @@
 """Contact radius from a pressure profile: with tension dp/dx = 0 at a, where p is least; without it p(a) = 0.
 
 A row of springs that are held up to an edge, where the pressure jumps to zero, is JKR's contact, reduced. The last
-particle that carries stands for the share φ of its cell, x ± s/2, that lies within the edge: with p(x) the pressure
+particle that carries represents the share φ of its cell, x ± s/2, that lies within the edge: with p(x) the pressure
 inside, continued to the middle of that share,
 
     p_last = φ p(x_last − (1 − φ) s/2),    a = x_last − s/2 + φ s
@@ -38,7 +38,7 @@ Between them it is taken as a straight line. Over 6900 random contacts of indepe
 as sharp as two spacings, it covers at least 94 % of the errors of every size of contact; without, 85 to 90 %.
 """
 MIRROR_DISTANCE = 0.25
-"""Distance beyond the centre, over the spacing, from which on a largest tension is that of the other side."""
+"""Distance beyond the centre, over the spacing, from which on a force maximum is that of the other side."""
 TIE_DIFFERENCE = 1e-5
 """Difference of two pressures over the largest |p| that a minimiser leaves between mirror images."""
 SAME_PLACE = 1e-9
@@ -145,7 +145,7 @@ def _centre(x: Array, p: Array) -> float:
 
 
 def _edge(x: Array, p: Array, centre: float, outwards: float) -> Place:
-    """The largest tension on one side of the centre; outwards: the spacing, negative for the left side [LU].
+    """The force maximum on one side of the centre; outwards: the spacing, negative for the left side [LU].
 
     A particle just beyond the centre belongs to both sides, so that a single spot is found by both. Where it is no spot
     at the centre but ties with its mirror image, the mirror image counts.

@@ -1,7 +1,7 @@
-"""Shear under Coulomb's friction: who sticks and who slips, and the traction q(r) under an axisymmetric body.
+"""Shear with Coulomb's friction: stick and slip zones, and the traction q(r) under an axisymmetric body.
 
-With the tangential force s and the normal one f of a particle |s| ≤ μ f. It sticks where some of μ f is left in the
-direction in which its body was moved last, μ f − s to the right and μ f + s to the left; where none is left, it slips.
+The tangential force s and the normal force f of a particle obey |s| ≤ μ f. It slips where |s| = μ f in the direction of
+the last motion of its body, s = μ f to the right and s = −μ f to the left; otherwise it sticks.
 
 The line shear of the plane image has kinks. As the pressure (`analysis.abel`) it is the inverse Abel transform q(r) =
 -(1/pi) int_r^inf q'(x)/sqrt(x^2 - r^2) dx (Popov and Hess 2015, chapter 5). Where a zone that sticks and one that
@@ -25,7 +25,7 @@ from contact1d.analysis.radius import ContactRadius, compressive_radius
 ROUND_OFF = 1e-10
 """Remaining μ f over the largest μ f below which there is none: a history is a sum over all rows."""
 NEAR = 1e-6
-"""Of a spacing: a particle nearer to a kink than that belongs to it."""
+"""Of a spacing: a particle closer to a kink than that belongs to it."""
 
 
 def stick_margin(profile: Profile, coefficient: float, direction: int) -> Array:
@@ -55,7 +55,7 @@ def stick_radius(profile: Profile, coefficient: float, direction: int) -> Contac
 
 @dataclass(frozen=True)
 class Slip:
-    """What a row did to particles that were touched all the way: arrays (n,).
+    """Changes of particles in contact during a whole load step: arrays (n,).
 
     force: tangential force after it [FU]; way: by how much each slipped [LU]; work: that it took [FU·LU].
     """
@@ -66,7 +66,7 @@ class Slip:
 
 
 def slip(force: Array, pushed: Array, limit: Array, next_limit: Array, stiffness: float) -> Slip:
-    """Return what becomes of tangential springs whose ends are moved, while the limits of their forces change.
+    """Return the forces of tangential springs whose ends are moved, while the limits of their forces change.
 
         s₁ = clip(s₀ + k Δu, ±B₁)
 
@@ -90,7 +90,7 @@ def slip(force: Array, pushed: Array, limit: Array, next_limit: Array, stiffness
 
 
 def kinks_of(stick: Sequence[float], contact: Sequence[float]) -> list[list[float]]:
-    """Return the kinks that the line shear has after each row, inside of the edge, rising [length].
+    """Return the kinks of the line shear after each load step, inside the contact edge, ascending [length].
 
     The edge c of what sticks is one. Where c grows, at a turn or with the load, the old one stays behind, and so does
     the old edge of a contact that grows; where c comes back to a kink, that is gone.
@@ -112,13 +112,13 @@ def kinks_of(stick: Sequence[float], contact: Sequence[float]) -> list[list[floa
 def shear_load(
     x: ArrayLike, shear: ArrayLike, edge: float, kinks: Sequence[float] = (), apex: bool = False
 ) -> LineLoad:
-    """Return the even line shear through values at places: a cubic spline in each zone between kinks, 0 at the edge.
+    """Return the even line shear through values at positions: a cubic spline in each zone between kinks, 0 at the edge.
 
     At a kink it is the mean of what the zones on both sides come to there. A kink is left out that would leave fewer
-    than FEWEST places on one side of it.
+    than FEWEST positions on one side of it.
 
     Args:
-        x: places, rising and the same on both sides of 0, shape (n,) [length].
+        x: positions, rising and the same on both sides of 0, shape (n,) [length].
         shear: there, shape (n,) [force/length].
         edge: a, beyond which there is none [length].
         kinks: inside of it [length].
@@ -132,7 +132,7 @@ def shear_load(
     count = int(np.searchsorted(right, edge - near))
     right, mean = right[:count], mean[:count]
     if count < FEWEST:
-        raise ValueError(f"a shear needs {FEWEST} places on each side of the axis, got {count}")
+        raise ValueError(f"a shear traction needs {FEWEST} positions on each side of the axis, got {count}")
     borders = [(count, count, edge, 0.0)]  # first place that is not within, first one beyond, where, the height there
     for kink in sorted(kinks, reverse=True):
         within, beyond = (int(i) for i in np.searchsorted(right, [kink - near, kink + near]))
@@ -149,7 +149,7 @@ def shear_load(
 
 
 def _height(x: Array, y: Array, within: int, beyond: int, kink: float) -> float:
-    """The mean of the parabolas through the FEWEST places before index `within`, and those from `beyond` on."""
+    """The mean of the parabolas through the FEWEST positions before index `within`, and those from `beyond` on."""
     sides = [slice(start, start + FEWEST) for start in (within - FEWEST, beyond)]
     return float(np.mean([np.polynomial.Polynomial.fit(x[side], y[side], FEWEST - 1)(kink) for side in sides]))
 

@@ -1,4 +1,4 @@
-"""The two-exponential law with a finite core, V(r) = A exp(−r/a) − B exp(−r/b) (Geike and Popov 2007, Section 3.1)."""
+"""A pair potential with a finite core, V(r) = A exp(−r/a) − B exp(−r/b) (Geike and Popov 2007, Section 3.1)."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Exponential:
 
 @dataclass(frozen=True)
 class DoubleExponential:
-    """V(r) = repulsion − attraction; without an attraction the law only repels.
+    """V(r) = repulsion − attraction; without an attraction it is purely repulsive.
 
     Args:
         repulsion: the term A exp(−r/a).
@@ -81,7 +81,7 @@ class DoubleExponential:
 
     @property
     def longest_range(self) -> float:
-        """The range of the term that decides the law far away [LU]."""
+        """The range of the term that dominates at large distance [LU]."""
         return self.repulsion.range if self.attraction is None else self.attraction.range
 
     def force_free_distance(self) -> float:
@@ -91,7 +91,7 @@ class DoubleExponential:
             ValueError: for a law without attraction, which is force-free nowhere.
         """
         if self.attraction is None:
-            raise ValueError("a law without attraction has no force-free distance")
+            raise ValueError("an interaction without attraction has no force-free distance")
         ratio = float(self.repulsion.force(0.0) / self.attraction.force(0.0))
         return math.log(ratio) / (1.0 / self.repulsion.range - 1.0 / self.attraction.range)
 

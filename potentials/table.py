@@ -1,4 +1,4 @@
-"""LAMMPS `pair_style table` files of a central law, exact down to a particle standing on its opposite.
+"""LAMMPS `pair_style table` files of a central interaction, exact down to zero distance of opposite particles.
 
 LAMMPS interpolates g(s) = f(r)/r over s = r² on a uniform grid and stops where a pair comes closer than the first
 entry. The two bodies therefore lie in parallel planes a small offset ε apart (out of plane, with no motion there), and
@@ -34,10 +34,10 @@ SPLINE_REACH = 28
 
 @dataclass(frozen=True)
 class Table:
-    """A tabulated law.
+    """A tabulated pair interaction.
 
     Attributes:
-        law: the law that it stands for.
+        law: the law that it represents.
         cutoff: r_c [LU]; the energy is V(r) − V(r_c), the force f(r) up to r_c and 0 beyond.
         points: number of grid points over r_L².
     """
@@ -58,7 +58,7 @@ class Table:
 
     @property
     def core(self) -> float:
-        """Distance [LU] below which the force is smoothed to 0 instead of following the law."""
+        """Distance [LU] below which the force is smoothed to 0."""
         return float(np.sqrt(self.cell))
 
     def grid(self) -> Array:
@@ -77,7 +77,7 @@ class Table:
         return distance, self.law.energy(r) - self.law.energy(self.cutoff) + held, slope * distance
 
     def force(self, r: Array) -> Array:
-        """The force in the plane [FU] that LAMMPS makes of this table at distances r ≤ r_c [LU].
+        """The force in the plane [FU] that LAMMPS interpolates from this table at distances r ≤ r_c [LU].
 
         It interpolates g = F_table/r_L by a cubic spline over s = r_L² with knots at the entries. Between two of them,
         at the share t of the cell h: (1 − t) g₀ + t g₁ − t (1 − t) [(2 − t) M₀ + (1 + t) M₁] h²/6, M = g″.
@@ -118,7 +118,7 @@ def _error_beyond(table: Table, r_min: float, samples: int) -> float:
 
 
 def table_for(law: DoubleExponential, cutoff: float, closest: float, error: float) -> Table:
-    """The smallest table whose force is within `error` [FU] of the law from `closest` [LU] up to the cutoff [LU].
+    """The smallest table whose force error is at most `error` [FU] from `closest` [LU] up to the cutoff [LU].
 
     The number of points doubles until the measured error (`Table.error_beyond`) is small enough, or MOST_POINTS is
     reached: what was reached stands in the file's header either way.
@@ -130,7 +130,7 @@ def table_for(law: DoubleExponential, cutoff: float, closest: float, error: floa
 
 
 def write_table(table: Table, closest: float, path: Path) -> None:
-    """Write the LAMMPS table file, whole or not at all; its header states the law and the measured error."""
+    """Write the LAMMPS table file atomically; its header states the interaction and the measured error."""
     write_whole(path, _text(table, closest))
 
 

@@ -21,11 +21,11 @@ SHARE_OF_PERCENT = 1e-4
 """A relative tolerance or deviation below it is not written in percent."""
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 EVIDENCE: dict[Evidence, str] = {
-    "closed form": "an equation that is evaluated without any part of this program",
+    "closed form": "an equation, evaluated independently of this program",
     "independent solver": "a solver in validation/references, which shares no code with the program",
-    "printed value": "a number that the paper prints, good to its digits; not whether the model is right",
-    "paper's words": "something that the paper says without a number for it, put into one",
-    "set bound": "a limit that was set beforehand where nobody gives a number",
+    "printed value": "a number in the paper, within its digits",
+    "paper's words": "a qualitative statement of the paper, expressed as a number",
+    "set bound": "a limit that was set in advance where there is no reference value",
 }
 """What a row is held against, the strongest evidence first."""
 TABLES = "validation/results/tables.md"
@@ -94,7 +94,7 @@ def outcome(rows: Sequence[Row]) -> str:
     apart = Counter(row.standing for row in rows if row.standing != "judged")
     said = [f"{apart['repeats']} repeat another"] if apart["repeats"] else []
     said += [f"{apart['by construction']} true by construction"] if apart["by construction"] else []
-    return ", ".join(parts) + (f"; counted apart: {', '.join(said)}" if said else "")
+    return ", ".join(parts) + (f"; counted separately: {', '.join(said)}" if said else "")
 
 
 def reference(row: Row) -> str:
@@ -165,9 +165,9 @@ def summary(paper: Record, hard: Record) -> str:
         "paper": outcome(paper.rows),
         "hard": agreement(hard.rows),
         "failing": _failing([*paper.answers, *hard.answers]),
-        "evidence": table(("held against", "which is", "rows", "pass", "differ"), counted),
+        "evidence": table(("reference", "meaning", "rows", "pass", "differ"), counted),
         "studies": studies_table(paper),
-        "classes": table(("class", "what goes wrong in a program that is not careful", "rows", "smallest margin"),
+        "classes": table(("class", "what is tested", "rows", "smallest margin"),
                          [_class(answer) for answer in hard.answers]),
         "made": f"Made with {made}; the hard cases in {duration(hard.wall_s)} on {hard.machine}.",
     }  # fmt: skip

@@ -95,7 +95,7 @@ class ChainEndError(UntrustedError):
 
 
 class UnsteadyError(UntrustedError):
-    """A slide without steady state: its distance is too short beside what the cantilever is drawn by."""
+    """A slide without steady state: its distance is too short compared with the deflection of the cantilever."""
 
 
 class OffEndError(UntrustedError):
@@ -103,7 +103,7 @@ class OffEndError(UntrustedError):
 
 
 class PartedError(UntrustedError):
-    """Bodies that do not hold the force that draws them apart."""
+    """Bodies that do not sustain a tensile force."""
 
 
 class RestlessError(UntrustedError):
@@ -111,16 +111,16 @@ class RestlessError(UntrustedError):
 
 
 class TensionError(UntrustedError):
-    """A tension that the contact does not hold; `most` is about what it holds [FU]."""
+    """A tensile force that the contact does not sustain; `most` is about its pull-off force [FU]."""
 
     HELD_SHARE = 0.9
-    """Tension that is suggested over the largest one."""
+    """Tensile force that is suggested, over the pull-off force."""
 
     def __init__(self, force: float, most: float) -> None:
-        """The force [FU] that was asked for, and what is held; they are the arguments for pickling."""
+        """The required force [FU] and the pull-off force; they are the arguments for pickling."""
         suggested = float(f"{-self.HELD_SHARE * most:.3g}")
         super().__init__(
-            f"{force:.4g} FU is never reached: the largest tension is about {most:.4g} FU",
+            f"{force:.4g} FU is never reached: the pull-off force is about {most:.4g} FU",
             changes=[SceneEdit({"experiment.force": suggested})],
         )
         self.args = (force, most)
@@ -128,4 +128,4 @@ class TensionError(UntrustedError):
 
 
 class DigitsError(UntrustedError):
-    """Forces that are nothing beside the last digits of positions."""
+    """Forces below the round-off error of positions."""

@@ -1,7 +1,7 @@
 """The one unit system: length LU, force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT in FU·LU.
 
 `SI` has every unit of the model with its powers, which all conversions use; a test compares them with pint's, whose
-registry reads the units in a scene's texts. `Scales` is what LU, FU and MU stand for in SI, where a scene says so.
+registry reads the units in a scene's texts. `Scales` is what LU, FU and MU represent in SI, where a scene says so.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ EXACTNESS = 1e-9
 
 
 def scale_of(value: float, unit: str) -> tuple[float, str]:
-    """The factor, and the unit with its prefix, by which a number of this size in an SI `unit` is written.
+    """The factor, and the unit with its prefix, for a number of this size in an SI `unit`.
 
     Of a compound unit (N/m) the first has the prefix, as in mN/m.
     """
@@ -204,7 +204,7 @@ def rounded(value: float, uncertainty: float) -> str:
 
 @dataclass(frozen=True)
 class Scales:
-    """What the model units stand for.
+    """The model units in SI.
 
     Attributes:
         length, force: one LU [m], one FU [N].

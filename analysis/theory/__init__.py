@@ -1,4 +1,4 @@
-"""Closed forms that users see beside the results: contact with adhesion, other shapes, friction, the map of adhesion.
+"""Closed forms for comparison with the results: contact with adhesion, other shapes, friction, the map of adhesion.
 
 `indenters` (Hertz, JKR and other shapes), `adhesion` (DMT, Maugis and Dugdale, which theory is valid), `mindlin`.
 """

@@ -1,6 +1,6 @@
 """Which theory of an adhesive sphere holds, and those of an attraction with a range: DMT, Maugis and Dugdale.
 
-The Tabor parameter mu = (R W^2/(E*^2 z_0^3))^(1/3) is the elastic stretch of the surfaces before they part over the
+The Tabor parameter mu = (R W^2/(E*^2 z_0^3))^(1/3) is the elastic stretch of the surfaces before they separate over the
 range z_0 of the attraction: JKR (`indenters`) holds for a large one, DMT for a small one, Maugis and Dugdale between
 the two. The map is that of K. L. Johnson, J. A. Greenwood, J. Colloid Interface Sci. 192 (1997) 326, after D. Tabor,
 ibid. 58 (1977) 2: the zones are theirs. Their figure was not at hand: each boundary is a criterion written out below,
@@ -24,7 +24,7 @@ import numpy as np
 from contact1d.analysis.theory.indenters import Contact, PowerLaw, require_positive
 
 LENNARD_JONES_STRESS = 16.0 / (9.0 * math.sqrt(3.0))
-"""1.026: the largest tension of the 9-3 surface law of Lennard-Jones over W/z_0; taken as sigma_0."""
+"""1.026: the force maximum of the 9-3 surface law of Lennard-Jones over W/z_0; taken as sigma_0."""
 LAMBDA_OVER_TABOR = 2.0 * LENNARD_JONES_STRESS * math.cbrt(9.0 / (16.0 * math.pi))
 """1.157: lambda over the Tabor parameter mu, for the sigma_0 of Lennard-Jones."""
 LARGEST_CRITICAL_RADIUS = 1.5
@@ -49,7 +49,7 @@ F/(pi W R) > 40, for JKR F/(pi W R) > 2520: its attraction grows with the contac
 class Dmt(Contact):
     """DMT: a stiff sphere that adheres to a flat, F(a) = 4 E* a^3/3R - 2 pi W R: Hertz, pressed by attraction outside.
 
-    Valid for a Tabor number below about 0.1. Source: B. V. Derjaguin, V. M. Muller, Yu. P. Toporov, J. Colloid
+    Valid for a Tabor parameter below about 0.1. Source: B. V. Derjaguin, V. M. Muller, Yu. P. Toporov, J. Colloid
     Interface Sci. 53 (1975) 314, in the form of D. Maugis, J. Colloid Interface Sci. 150 (1992) 243.
 
     Args:
@@ -106,7 +106,7 @@ class MaugisDugdale(Dmt):
     Args:
         radius, contact_modulus, work_of_adhesion: as of `Dmt`.
         range_of_attraction: z_0, the force-free distance of two surfaces [length]; for another law than that of
-            Lennard-Jones a distance of the order of W over the largest tension, which moves mu by a factor near 1.
+            Lennard-Jones a distance of the order of W over the force maximum, which moves mu by a factor near 1.
             lambda was tried from 1e-6 to 1e4.
 
     Raises:
@@ -228,14 +228,14 @@ class Verdict:
 
 
 def of_tabor(tabor: float) -> Theory:
-    """The theory that goes with mu whatever the load: DMT below 0.1, JKR above 5, else Maugis and Dugdale's."""
+    """The theory for mu at any load: DMT below 0.1, JKR above 5, else Maugis and Dugdale's."""
     if tabor < DMT_TABOR:
         return Theory.DMT
     return Theory.JKR if tabor > JKR_TABOR else Theory.MAUGIS
 
 
 def valid_theory(tabor: float, reduced_load: float) -> Verdict:
-    """Return the simplest theory that holds; asked in the order apart, rigid, Hertz, JKR, DMT, Maugis and Dugdale.
+    """Return the simplest valid theory; tested in the order apart, rigid, Hertz, JKR, DMT, Maugis and Dugdale.
 
     With N = F/(pi W R): rigid where Hertz's compression under F + 2 pi W R, mu [(3 pi/4)(N + 2)]^(2/3) z_0, is small;
     Hertz where (A^3 - N)/N is, the load that attraction adds, by the theory that goes with mu.

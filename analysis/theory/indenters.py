@@ -1,4 +1,4 @@
-"""Rigid axisymmetric indenters on an elastic half space in closed form, with adhesion of no range or without.
+"""Rigid axisymmetric indenters on an elastic half space in closed form, with adhesion of zero range or without.
 
 A contact of radius a has, with the power-law profile z = c r^n and kappa_n = (sqrt(pi)/2) n Gamma(n/2)/Gamma((n+1)/2),
 
@@ -7,7 +7,7 @@ A contact of radius a has, with the power-law profile z = c r^n and kappa_n = (s
 For n = 2, c = 1/2R that is Hertz and, with the work of adhesion W, JKR; for n = 1 Sneddon's cone, with W that of Maugis
 and Barquins. What W adds is a flat punch's tension at the same a. W = 2 gamma is the work of adhesion of two equal
 surfaces, gamma the surface energy of one of them; Geike and Popov (2007) call gamma the work of adhesion. Forces are
-positive in compression. Valid for small slopes, a frictionless half space and, with W, a Tabor number well above 1.
+positive in compression. Valid for small slopes, a frictionless half space and, with W, a Tabor parameter well above 1.
 Sources: I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47; L. A. Galin (1953); K. L. Johnson, K. Kendall, A. D. Roberts,
 Proc. R. Soc. A 324 (1971) 301; K. Kendall, J. Phys. D 4 (1971) 1186; D. Maugis, M. Barquins, J. Phys. Lett. 42 (1981)
 L95; V. L. Popov, M. Hess, Method of Dimensionality Reduction in Contact Mechanics and Friction (2015), section 4.4. Any
@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 RIM = 1.0 - 1e-12
-"""Of the radius of a whole sphere, up to which its contact is looked for: at the rim there is no bound."""
+"""Of the radius of a whole sphere, up to which its contact is sought: at the rim there is no bound."""
 CURVE = 400
 """Points of a curve."""
 POINTS = 200
@@ -47,7 +47,7 @@ def require_positive(**values: float) -> None:
 
 
 class Contact(ABC):
-    """One contact by a theory: force and displacement over the contact radius a, and what follows from the two.
+    """One contact by a theory: force and displacement over the contact radius a, and results derived from them.
 
     Under a fixed load it pulls off where F(a) is lowest, under fixed grips where d(a) is: beyond, both rise with a.
     """
@@ -74,7 +74,7 @@ class Contact(ABC):
         return 0.0
 
     def pull_off_force(self) -> float:
-        """Return F_A, the largest tension under a fixed load, a positive magnitude [force]."""
+        """Return F_A, the force maximum under a fixed load, a positive magnitude [force]."""
         return -self.force(self.critical_radius())
 
     def zero_load_radius(self) -> float:
@@ -96,11 +96,11 @@ class Contact(ABC):
         """Return the stable a with d(a) = `displacement` under fixed grips [length].
 
         Raises:
-            ValueError: if the bodies have parted before.
+            ValueError: if the bodies have separated before.
         """
         low = self.fixed_grips_radius()
         if displacement < self.displacement(low):
-            raise ValueError(f"the bodies part at the displacement {self.displacement(low)}")
+            raise ValueError(f"the bodies separate at the displacement {self.displacement(low)}")
         return self._where(self.displacement, displacement, low)
 
     def curve(self, least: float, largest: float) -> Floats:

@@ -1,4 +1,4 @@
-"""Cattaneo and Mindlin: two spheres pressed together by N and displaced along each other by u, with Coulomb's friction.
+"""Cattaneo and Mindlin: two spheres under a normal load N, displaced tangentially by u, with Coulomb's friction.
 
     F_x = mu N [1 - (1 - u/u*)^(3/2)],    c/a = (1 - u/u*)^(1/2),    u* = mu (E*/G*) d
 
@@ -24,7 +24,7 @@ def sliding_displacement(friction: float, ratio: float, displacement: float) -> 
 
 
 def _ways(places: Sequence[float]) -> list[list[float]]:
-    """Return at each place how far it is from the first remembered turn, and half of the way from each to the next.
+    """Return at each position how far it is from the first remembered turn, and half of the path from each to the next.
 
     A turn is forgotten where the way goes beyond the one before it, or of the first one beyond its mirror image.
     """
@@ -44,7 +44,7 @@ def _ways(places: Sequence[float]) -> list[list[float]]:
 
 
 def mindlin_path(places: Sequence[float], normal_force: float, friction: float, sliding: float) -> list[float]:
-    """Return F_x [force] at each of the places, reached one after the other from 0 under a constant load.
+    """Return F_x [force] at each of the positions, reached one after the other from 0 under a constant load.
 
     From turn to turn T(u_1) + 2 T((u_2 - u_1)/2) + ..., T the force of the first way out.
 
@@ -94,7 +94,7 @@ def mindlin_cycle_energy(amplitude: float, normal_force: float, friction: float,
 
 
 def mindlin_stick_path(places: Sequence[float], contact_radius: float, sliding: float) -> list[float]:
-    """Return c [length] at each of the places, as `mindlin_path` goes: after a turn all sticks again.
+    """Return c [length] at each of the positions, as `mindlin_path`: after a reversal all sticks again.
 
     Args:
         places: u [length].

@@ -1,4 +1,4 @@
-"""Files that are whole or not there, written under a temporary name and renamed; text files of a user, read safely."""
+"""Atomic writing of files, under a temporary name that is renamed; safe reading of text files of a user."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ FULL_DISK = {
     errno.EDQUOT: "the disk quota is used up",
     errno.EFBIG: "a file would be larger than is allowed (ulimit -f)",
 }
-"""Errors of the system by which no further file can be written, in words."""
+"""Errors of the system by which no further file can be written, as text."""
 
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """Give the temporary path to write to; it takes the place of `path` in the end, and not after an error."""
+    """Give the temporary path to write to; it replaces `path` at the end, unless there is an error."""
     part = path.with_name(path.name + PART)
     yield part
     os.replace(part, path)
 
 
 class UnreadableError(ValueError):
-    """A file that can't be read as text; its arguments are the path, and why with what to do."""
+    """A file that can't be read as text; its arguments are the path, and the reason with what to do."""
 
     def __str__(self) -> str:
         """Return both."""

@@ -13,5 +13,5 @@ from tests.scenes import chains
 @pytest.mark.parametrize("load", [{"kind": "load", "force": 1e4}, {"kind": "pull_off", "preload": 1e4}])
 def test_a_punch_says_how_much_it_carries(load: dict[str, object]) -> None:
     bodies = {"profile": {"kind": "flat_punch", "radius": 5.0}}
-    with pytest.raises(SettingsError, match="more than these bodies carry"):
+    with pytest.raises(SettingsError, match="exceeds what the repulsion"):
         settings_for(scene_from_dict(chains(100.0, bodies=bodies, experiment=load)))

@@ -190,7 +190,7 @@ def test_ranks_end_with_a_parent_that_is_killed(tmp_path: Path) -> None:
 
 
 REFUSED = {
-    "noise": (SCENES["load in time"] | {"noise": {"temperature": 0.001, "seed": 1}}, "random forces of its own"),
+    "noise": (SCENES["load in time"] | {"noise": {"temperature": 0.001, "seed": 1}}, "its own random forces"),
     "plane": (
         {**SCENES["load"], "interaction": None, "bodies": {**SCENES["load"]["bodies"], "lower": "rigid_plane"}},
         "on a rigid plane",

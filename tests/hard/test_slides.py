@@ -62,7 +62,7 @@ def failure(scene: Scene, folder: Path, tried: bool = False) -> str:
 
 
 def test_a_pull_that_nothing_holds_is_told(tmp_path: Path) -> None:
-    assert "do not hold a normal force of -50 FU" in failure(scene_of(experiment__normal_force=-50.0), tmp_path)
+    assert "does not sustain -50 FU" in failure(scene_of(experiment__normal_force=-50.0), tmp_path)
 
 
 def test_a_slide_that_is_none_yet_leaves_its_trace_and_figure(tmp_path: Path) -> None:
@@ -73,11 +73,11 @@ def test_a_slide_that_is_none_yet_leaves_its_trace_and_figure(tmp_path: Path) ->
 
 
 def test_a_chain_too_short_for_the_way_is_refused_before_the_run(tmp_path: Path) -> None:
-    with pytest.raises(SettingsError, match="too short for the way") as caught:
+    with pytest.raises(SettingsError, match="too short for the sliding distance") as caught:
         run(scene_of(bodies__particles=36), tmp_path / "run")
     assert not (tmp_path / "run").exists()
     words = str(caught.value)
-    enough = int(words.partition("Take at least ")[2].partition(" ")[0])
+    enough = int(words.partition("Use at least ")[2].partition(" ")[0])
     longer = scene_of(bodies__particles=enough, bodies__upper_particles=36)
     assert run(longer, tmp_path / "run", figures=False).status == "done"
 
@@ -104,7 +104,10 @@ def flat(**bodies: Any) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("bodies", "words"),
     [
-        ({"upper_particles": 34, "particles": 55, "upper_spacing": 1.6}, "the nearest that do: upper_spacing = 1.6176"),
+        (
+            {"upper_particles": 34, "particles": 55, "upper_spacing": 1.6},
+            "nearest equal lengths: upper_spacing = 1.6176",
+        ),
         ({"profile": {"kind": "parabola", "radius": 30.0}}, "not with a body that is not flat"),
         ({"periodic": False}, "needs bodies.periodic"),
         ({"bulk_stiffness_tangential": 2.0}, "must be at most bulk_stiffness"),

@@ -78,7 +78,7 @@ def test_points_of_a_job_that_was_cancelled_are_missing_and_run_next_time(
     assert first.counts["done"] + first.counts["missing"] == POINTS
     with (folder / TABLE).open(newline="") as file:
         reasons = {row["reason"] for row in csv.DictReader(file) if row["status"] == "missing"}
-    assert all(reason.startswith("its job ended before it was run") for reason in reasons)
+    assert all(reason.startswith("its job ended before it ran") for reason in reasons)
     stamps = {path: path.stat().st_mtime_ns for path in folder.glob("runs/*/results.json")}
     assert sweep(source, folder, "slurm", figures=False).counts == {"done": POINTS}
     assert all(path.stat().st_mtime_ns == stamp for path, stamp in stamps.items())

@@ -144,7 +144,7 @@ def test_residual_forces_move_the_pressure_by_as_little() -> None:
 @pytest.mark.parametrize(
     ("x", "q", "words"),
     [
-        (places(2 * FEWEST - 2), np.ones(2 * FEWEST - 2), "needs 3 places on each side"),
+        (places(2 * FEWEST - 2), np.ones(2 * FEWEST - 2), "needs 3 positions on each side"),
         (places(10) + 0.2, np.ones(10), "same on both sides"),
         (places(10), np.ones(9), "equally long"),
     ],

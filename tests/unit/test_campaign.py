@@ -54,7 +54,7 @@ def test_a_new_run_removes_what_an_earlier_one_left(plane: MakeScene, tmp_path: 
 
 def test_a_folder_of_other_things_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "thesis.tex").write_text("precious")
-    with pytest.raises(FolderError, match="not of a run"):
+    with pytest.raises(FolderError, match="do not belong to a run"):
         prepare(tmp_path)
     with pytest.raises(FolderError, match="is a file"):
         prepare(tmp_path / "thesis.tex")

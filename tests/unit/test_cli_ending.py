@@ -61,7 +61,7 @@ def full(place: str | None = None) -> OSError:
         (IdentifyError("out of reach"), 2, "out of reach\n"),
         (RunError("atoms flew apart", NOWHERE), 3, "the run failed: atoms flew apart\n"),
         (EngineError("it crashed", "loading", 7, NOWHERE, ""), 3, "the run failed: it crashed\n"),
-        (BrokenProcessPool("died"), 3, "the run failed: a process of it was killed, most often because the machine"),
+        (BrokenProcessPool("died"), 3, "the run failed: one of its processes was killed, most often because the"),
         (MemoryError(), 3, "the run failed: the machine is out of memory; go on\n"),
         (full(), 3, "the run failed: the disk is full; go on\n"),
         (full("big.png"), 3, "the run failed: the disk is full (big.png); go on\n"),

@@ -65,8 +65,8 @@ def test_every_key_of_every_table_is_there_with_its_meaning(kind: str) -> None:
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("there", "there.toml is there already"),
-        ("there.toml", "there.toml is there already"),
+        ("there", "there.toml exists and is not"),
+        ("there.toml", "there.toml exists and is not"),
         ("no/such/my", "there is no folder no/such; make it first: mkdir -p no/such"),
         (".", ". is a folder; give the file a name"),
         ("there.toml/my", "there.toml is a file; a folder is needed"),

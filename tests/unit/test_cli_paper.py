@@ -31,7 +31,7 @@ def test_a_sphere_gets_a_scene_whose_run_is_jkrs(tmp_path: Path) -> None:
     ]  # fmt: skip
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr
-    assert "wanted 57.49 µN" in done.stdout
+    assert "target 57.49 µN" in done.stdout
     results = json.loads((tmp_path / "sphere" / "results.json").read_text(encoding="utf-8"))
     assert results["adhesion_force"]["si"]["value"] == pytest.approx(57.491e-6, rel=ROUGH)
     assert results["zero_load_radius"]["si"]["value"] == pytest.approx(173.9e-9, rel=ROUGH)
@@ -60,7 +60,7 @@ def test_a_finished_run_gets_the_units_of_table_1(tmp_path: Path) -> None:
         (["--radius", "-1", "--surface-energy", "1"], "--radius must be greater than 0, not -1"),
         (["--radius", "nan", "--surface-energy", "1"], "--radius must be greater than 0, not nan"),
         (["--run", "nowhere", "--surface-energy", "1"], "give the folder of a finished run"),
-        (["--run", "nowhere", "--surface-energy", "1", "--length-unit", "1e-9"], "the rest is in the run"),
+        (["--run", "nowhere", "--surface-energy", "1", "--length-unit", "1e-9"], "the run has all other values"),
         (["--radius", "1e-6", "--surface-energy", "1", "--length-unit", "1e-6"], "at most 6.5"),
         (
             ["--radius", "6.1e-6", "--adhesion-force", "1e-4", "--zero-load-radius", "170e-9"],

@@ -72,7 +72,7 @@ def test_the_command_studies_a_scene_from_end_to_end(tmp_path: Path, monkeypatch
 
 
 def test_a_variant_that_its_run_refuses_is_a_row_with_the_reason(tmp_path: Path) -> None:
-    """A lower chain that is too short for the way is found as the run begins."""
+    """A lower chain that is too short for the sliding distance is found as the run begins."""
     scene = read_scene(SCENES / "slide.toml", ["bodies.particles=34"])
     done = measure({"short": (scene, settings_for(scene))}, tmp_path, 1, 1, Silent())
-    assert "too short for the way" in done["short"].failure
+    assert "too short for the sliding distance" in done["short"].failure

@@ -61,7 +61,7 @@ def test_a_scene_comes_from_a_path_text_tables_or_a_scene(plane: MakeScene, tmp_
         assert read_scene(source, ["experiment.force=0.25"]) == plane(force=0.25)
     for wrong, words in (
         ("nowhere.toml", "nowhere.toml: no such file"),
-        ("title = ", "scene, at its end: this is no value"),
+        ("title = ", "scene, at its end: this is not a value"),
         (7, "not int"),
         ({}, "title: missing"),
     ):

@@ -152,7 +152,7 @@ def test_measured_profile_is_read_from_beside_its_contact_and_by_its_units(tmp_p
         if good:
             assert chosen(read_contact(tmp_path / "tip.toml")).contact_radius == pytest.approx(radius, rel=GRID)
         else:
-            with pytest.raises(SceneError, match=r"profile\.scale: missing: the file says no unit; write scale"):
+            with pytest.raises(SceneError, match=r"profile\.scale: missing: the file has no unit; write scale"):
                 read_contact(tmp_path / "tip.toml")
 
 
@@ -191,19 +191,19 @@ def test_theories_are_those_of_the_closed_forms() -> None:
 def test_tip_of_an_atomic_force_microscope_is_told_that_dmt_holds_with_its_value() -> None:
     """R = 10 nm, E* = 37 GPa, γ = 0.03 J/m², z₀ = 0.3 nm: μ = 0.099 and 2πWR = 3.77 nN."""
     words = refused(**TIP)
-    assert words.startswith("DMT holds, and no chain stands for it: the Tabor parameter μ is 0.099")
+    assert words.startswith("DMT holds, which a chain cannot represent: the Tabor parameter μ is 0.099")
     assert "F_A = 2πWR = 3.77 nN, a_0 = 913.7 pm" in words
     assert "JKR's F_A, 2.827 nN, which is 25% too small here" in words
     between = refused(**TIP | {"surface_energy": 0.1})
-    assert between.startswith("DMT holds, and no chain stands for it: the Tabor parameter μ is 0.22")
+    assert between.startswith("DMT holds, which a chain cannot represent: the Tabor parameter μ is 0.22")
     assert "by Maugis and Dugdale, between it and JKR" in between
 
 
 def test_rough_surfaces_are_refused_with_the_roughness_that_is_not() -> None:
     smooth = TIP | {"radius": "5 um"}
     words = refused(**smooth, roughness="1 nm")
-    assert words.startswith("the surfaces are too rough to hold as a smooth sphere does: summits of 1 nm")
-    most = words.split("Up to a roughness of ")[1].split(" m there")[0]
+    assert words.startswith("the surfaces are too rough for the adhesion of a smooth sphere: asperities of 1 nm")
+    most = words.split("up to a roughness of ")[1].split(" m")[0]
     assert float(most) < 1e-9
     contact = read_contact(smooth | {"roughness": f"{most} m", "model": "particles"})
     assert "roughness" in chosen(contact).doubts
@@ -211,7 +211,7 @@ def test_rough_surfaces_are_refused_with_the_roughness_that_is_not() -> None:
 
 def test_contact_as_wide_as_its_sphere_is_refused() -> None:
     words = refused(**LOADED | {"load": "1 GN"})
-    assert "of the sphere's: the theory is for contacts small beside the sphere" in words
+    assert "of the sphere's: the theory is for a << R" in words
 
 
 # What is written about it.

@@ -46,7 +46,7 @@ def pairs(plane: MakeScene, folder: Path) -> list[tuple[Any, Path]]:
 def checked(entries: list[Run | RunError], folder: Path) -> None:
     """That `pairs` came back as they should."""
     words = [
-        "end of the chain", "too narrow", "bodies: missing", "no such file", "holds files that are not of a run",
+        "end of the chain", "too narrow", "bodies: missing", "no such file", "has files that do not belong to a run",
         "cannot be written", "must be a path",
     ]  # fmt: skip
     first, *failed, last = entries

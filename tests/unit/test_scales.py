@@ -177,7 +177,7 @@ def test_an_apex_may_stand_a_thousand_times_the_reach_of_all_forces_above_its_ne
                 found.append(True)
             except SettingsError as error:
                 assert f"{height:.4g} LU from its apex" in str(error)
-                assert f"{0.5 * SPACING:.4g} LU beside it" in str(error)
+                assert f"{0.5 * SPACING:.4g} LU from it" in str(error)
                 found.append(False)
         assert found == ([True, False] if even else [True, True])
     require_apex(sharp(40, (0.5 * SPACING) ** 2 / (2.0 * 700.0)), 40, 0.0)  # without forces, the spacing

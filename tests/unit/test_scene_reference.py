@@ -19,14 +19,13 @@ PAGE = Path(__file__).parents[2] / "docs" / "scene.md"
 HEAD = """# Every key of a scene
 
 Made from the tables of `workflow/scene`. Units: LU length, FU force, MU mass, TU = √(MU·LU/FU), k_BT in FU·LU.
-A table that is absent adds nothing to the deck; tables that do not fit together are reported with what to do.
+A table that is absent adds nothing to the deck; tables that contradict each other are reported with a suggested fix.
 Above the first table stands `title = "…"`, one line of text, required.
 
-A number of the model's units may as well be text with a unit of the same dimension: `radius = "10 mm"`, in lists, too,
-after `--set` and in `with_`. LU, FU and MU are then those of `[material]`: `length_unit`, `force_unit`, `mass_unit`.
-Where it gives none, and no plain number but 0 needs it, the unit of the model is that of SI: 1 m, 1 N, 1 kg, and TU is
-1 s; this is written into the scene that the run folder keeps, and the results have these units. A temperature may be
-in K or °C, and is kept as k_BT.
+Instead of a number in model units, any quantity may be text with a unit of the same dimension: `radius = "10 mm"`,
+also in lists, after `--set` and in `with_`. LU, FU and MU are then those of `[material]`: `length_unit`, `force_unit`,
+`mass_unit`. Where these are absent, and no number without a unit other than 0 needs them, they are 1 m, 1 N and 1 kg,
+and TU is 1 s; the scene in the run folder states them. A temperature may be in K or °C, and is stored as k_BT.
 
 | in model units | what | as text, for example |
 | --- | --- | --- |
@@ -43,17 +42,17 @@ names it. Beside:
 """
 BESIDE = {
     "`theory`": 'every closed form that applies, a list of `{"name", "source", "applies", "values"}`: its name (Hertz, '
-    "Sneddon, JKR …), where it is written down, why it holds here, and for each result that it speaks of "
+    "Sneddon, JKR …), its reference, why it holds here, and for each result that it predicts "
     '`{"value", "unit", "si", "deviation"}`, the deviation being the run\'s value over it minus 1',
-    "`validity`": 'numbers of the contact beside the limits of the theory, a list of `{"name", "quantity", "value", '
+    "`validity`": 'numbers of the contact and the limits of the theory, a list of `{"name", "quantity", "value", '
     '"limit", "holds"}`; one that does not hold has a warning of its name',
     "`units`": "one LU and one FU in SI, where they are known",
-    "`reduction`": "which one the numbers are of; `image_…` is a length of the plane image that is not the body's",
+    "`reduction`": "the reduction of the numbers; `image_…` is a length of the one-dimensional image, not of the body",
     "`scene`, `experiment`, `method`, `effects`": "what ran",
-    "`status`, `warnings`": '`done` or `failed`; what limits the trust in the numbers, each `{"name", "message"}`',
-    "`accuracy`": "the tolerance of the settings in the end, and how often it was lowered",
-    "`timing`, `versions`": "seconds (`total_s` of the run, `lammps_s` of it in LAMMPS, `rows_s` of that for the rows: "
-    "without the deck's head and the files of states) and steps; of what the numbers depend on",
+    "`status`, `warnings`": '`done` or `failed`; limitations of the numbers, each `{"name", "message"}`',
+    "`accuracy`": "the tolerance of the final settings, and how often it was lowered",
+    "`timing`, `versions`": "seconds (`total_s` of the run, `lammps_s` of it in LAMMPS, `rows_s` of that for the load "
+    "steps, without setup and files of states) and steps; versions of the software",
 }
 TABLES = {
     "bodies": scenes.Bodies,

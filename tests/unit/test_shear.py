@@ -64,7 +64,7 @@ def test_kinks_stay_where_the_zone_that_sticks_grows_and_go_where_it_comes_back(
 
 
 def test_too_few_places_or_places_that_differ_raise() -> None:
-    with pytest.raises(ValueError, match="3 places on each side"):
+    with pytest.raises(ValueError, match="3 positions on each side"):
         shear_load(lattice(10), np.ones(10), 1.2)
     with pytest.raises(ValueError, match="the same on both sides"):
         shear_load(lattice(10) + 0.1, np.ones(10), 4.0)

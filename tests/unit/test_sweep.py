@@ -87,7 +87,7 @@ def test_a_run_whose_results_are_broken_is_run_again_and_no_other(name: str, fin
     cut.write_text(BROKEN[name](json.loads(cut.read_text())))
     sweep(TWO, folder, again := Here(), figures=False, progress=(progress := Notes()))
     assert again.given == [cut.parent.name]
-    assert progress.notes == [f"{cut.parent.name}: its results.json is not that of a run, so it is run again"]
+    assert progress.notes == [f"{cut.parent.name}: its results.json is invalid, so it is run again"]
     assert (folder / TABLE).read_text() == (finished / TABLE).read_text()
 
 
@@ -113,7 +113,7 @@ def test_a_record_that_was_cut_short_is_replaced(kept: int, finished: Path, tmp_
     assert "sweep.toml is no record of a sweep: start the sweep again" in page.output
     sweep(TWO, folder, again := Here(), figures=False, progress=(progress := Notes()))
     assert again.given == []
-    assert progress.notes == [f"{folder / RECORD} is no record of a sweep and is replaced"]
+    assert progress.notes == [f"{folder / RECORD} is not the record of a sweep and is replaced"]
     assert (folder / RECORD).read_text() == whole
     assert (folder / TABLE).read_text() == (finished / TABLE).read_text()
 
@@ -147,7 +147,7 @@ def test_a_folder_of_another_sweep_or_of_other_things_is_left_alone(tmp_path: Pa
         sweep(plane(axis(RADIUS, 50.0)), tmp_path / "s", Here())
     (tmp_path / "thesis").mkdir()
     (tmp_path / "thesis" / "thesis.tex").write_text("precious")
-    with pytest.raises(FolderError, match="not of a sweep"):
+    with pytest.raises(FolderError, match="do not belong to a sweep"):
         sweep(plane(axis(RADIUS, 50.0)), tmp_path / "thesis", Here())
     assert [path.name for path in (tmp_path / "thesis").iterdir()] == ["thesis.tex"]
 
@@ -174,7 +174,7 @@ def test_a_full_disk_ends_the_sweep_and_the_same_command_goes_on(
 def test_a_point_that_kills_its_process_is_a_row_and_takes_no_other_along(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The process of a pool that sees a force of 0.75 dies, as for want of memory."""
+    """The process of a pool that sees a force of 0.75 dies, as by a lack of memory."""
     source = "import os, contact1d.workflow.sweep.sweep as s\nreal = s.run\n"
     source += "s.run = lambda scene, *a, **k: os._exit(1) if scene.experiment.force == 0.75 else real(scene, *a, **k)\n"
     (tmp_path / "sitecustomize.py").write_text(source)

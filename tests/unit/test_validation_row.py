@@ -46,7 +46,7 @@ def test_rows_are_counted_apart_from_their_repeats() -> None:
     row = at_most("half", 0.5, 1.0, "theory")
     assert row.margin == pytest.approx(2.0)
     again = replace(row, standing="repeats")
-    assert outcome([row, again, replace(row, value=2.0)]) == "1 of 2 rows pass; counted apart: 1 repeat another"
+    assert outcome([row, again, replace(row, value=2.0)]) == "1 of 2 rows pass; counted separately: 1 repeat another"
 
 
 @pytest.mark.parametrize(

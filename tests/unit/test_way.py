@@ -102,9 +102,9 @@ def test_a_way_that_is_said_to_be_possible_is_and_a_longer_one_is_not(offset: fl
         of = slide(distance, particles=60, upper_particles=12, upper_offset=offset)
         require_way(of, settings_for(of))
 
-    with pytest.raises(SettingsError, match="a way of at most") as caught:
+    with pytest.raises(SettingsError, match="a distance of at most") as caught:
         try_out(60.0)
-    told = re.search(r"a way of at most (\S+) LU", str(caught.value))
+    told = re.search(r"a distance of at most (\S+) LU", str(caught.value))
     assert told is not None
     room = float(told[1])
     try_out(room * (1.0 - 1e-3))
@@ -121,9 +121,9 @@ def test_a_way_too_short_for_a_mean_is_not_advised() -> None:
     rooms, silent = [], 0
     for particles in range(18, 42, 2):
         of = slide(60.0, particles=particles, upper_particles=12)
-        with pytest.raises(SettingsError, match="too short for the way") as caught:
+        with pytest.raises(SettingsError, match="too short for the sliding distance") as caught:
             require_way(of, settings_for(of))
-        told = re.search(r"a way of at most (\S+) LU", str(caught.value))
+        told = re.search(r"a distance of at most (\S+) LU", str(caught.value))
         silent += told is None
         rooms += [float(told[1])] if told else []
     assert silent > 0

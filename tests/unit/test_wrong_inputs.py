@@ -100,8 +100,8 @@ WRONG = [
     odd(R, "1e999 m", "1e999 m is larger than any number that a computer holds", "10 mm"),
     odd(R, "-10 mm", "must be greater than 0 (m)", "10 mm"),
     odd(H, "0 nm", 'must be greater than 0 (m), or "auto"', "4 µm"),
-    odd(F, '"10"', 'must be a number (N); a number stands without quotes, or with its unit: "10 N"', "10 N"),
-    odd("bodies.particles", "30 µm", 'must be a whole number from 3 to 10000000, or "auto"; a number stands without '
+    odd(F, '"10"', 'must be a number (N); write a number without quotes, or with its unit: "10 N"', "10 N"),
+    odd("bodies.particles", "30 µm", 'must be a whole number from 3 to 10000000, or "auto"; write a number without '
         "quotes and unit", "300"),
     # Numbers with units beside numbers without.
     odd(F, "10", f'is in FU, while {H} = "4 µm" has a unit, and nothing says what FU stands for; give it a unit as '
@@ -129,7 +129,7 @@ WRONG = [
     Odd(("material.length_unit=1 N",), f'material.length_unit = "1 N": {LENGTH}; 1 N is a force',
         ("material.length_unit=1 nm",)),
     Odd((f"{R}=10 µm", "material={ contact_modulus = '1 GPa', surface_energy = '50 mJ/m²' }"),
-        f'{R} = "10 µm": LU and FU follow from the run (material.surface_energy), so that units have no size before '
+        f'{R} = "10 µm": LU and FU follow from the run (material.surface_energy), so that units are not known before '
         "it; write a number in LU",
         (f"{R}=1000.0", "material={ contact_modulus = '1 GPa', surface_energy = '50 mJ/m²' }"), SHIPPED),
 ]  # fmt: skip
@@ -138,14 +138,14 @@ WRONG = [
 DOUBTFUL = [
     doubt(E, "210 Pa", "softer than any gel: was 210 GPa meant?", "210 GPa"),
     doubt(E, "210", "softer than any gel: was 210 GPa meant?", "210e9"),
-    doubt(NU, "-0.3", "few materials have one below 0: is its sign right?", "0.3"),
-    doubt(R, "50 m", "no ball of such a radius touches without roughness: is its unit right?", "50 mm"),
-    doubt(R, "10 pm", "less than two atoms are wide: is its unit right?", "10 µm"),
-    doubt("interaction.repulsion.range", "1 pm", "a tenth of an atom's radius: is its unit right?", "1 nm", *PARTICLES),
-    doubt("noise.temperature", "3e5 K", "at which nothing is solid: is its unit right?", "300 K",
+    doubt(NU, "-0.3", "few materials have one below 0: check its sign", "0.3"),
+    doubt(R, "50 m", "no ball of such a radius is smooth: check its unit", "50 mm"),
+    doubt(R, "10 pm", "less than the width of two atoms: check its unit", "10 µm"),
+    doubt("interaction.repulsion.range", "1 pm", "a tenth of an atom's radius: check its unit", "1 nm", *PARTICLES),
+    doubt("noise.temperature", "3e5 K", "above any melting point: check its unit", "300 K",
         *PARTICLES, "damping.coefficient=auto", "plate={}", "noise.seed=1"),
     Odd(("material={ contact_modulus = '1 GPa', surface_energy = 50 }",),
-        "where 0.02 to 3 are usual: is its unit right?",
+        "where 0.02 to 3 are usual: check its unit",
         ("material={ contact_modulus = '1 GPa', surface_energy = '50 mJ/m²' }",), SHIPPED),
 ]  # fmt: skip
 """Values that are allowed and look wrong."""
@@ -156,22 +156,22 @@ FILES = {
                       "r,z\n0,0\n1,1\n2,4\n3,9\n"),
     "a name that is not known": ("r,y\n0,0\n1,1\n2,4\n3,9\n", "the names of its 2 columns are not known",
                                  "0,0\n1,1\n2,4\n3,9\n"),
-    "two radii": ("r,radius,z\n0,0,0\n", "2 columns could be meant by r; name only one so",
+    "two radii": ("r,radius,z\n0,0,0\n", "2 columns match r; give this name to one of them",
                   "r,old,z\n0,0,0\n1,1,1\n2,2,4\n3,3,9\n"),
     "columns without names": ("0,0,7\n1,1,7\n2,4,7\n3,9,7\n", "has 3 columns without names; name the radius r",
                               "r,z,t\n0,0,7\n1,1,7\n2,4,7\n3,9,7\n"),
-    "swapped columns": ("r,z\n9,-3\n4,-2\n0,0\n4,2\n9,3\n", "as if the columns were swapped; name them r and z",
+    "swapped columns": ("r,z\n9,-3\n4,-2\n0,0\n4,2\n9,3\n", "the columns may be swapped; name them r and z",
                         "z,x\n9,-3\n4,-2\n1,-1\n0,0\n1,1\n4,2\n9,3\n"),
     "one unit": ("r [µm],z\n0,0\n1,1\n2,4\n3,9\n", "only one of radius and height has a unit",
                  "r [µm],z [nm]\n0,0\n1,1\n2,4\n3,9\n"),
-    "a unit of force": ("r [µm],z [µN]\n0,0\n1,1\n2,4\n3,9\n", "the unit in the names is no length that is known",
+    "a unit of force": ("r [µm],z [µN]\n0,0\n1,1\n2,4\n3,9\n", "the unit in the names is not a known length",
                         "r [µm],z [µm]\n0,0\n1,1\n2,4\n3,9\n"),
     "sides that differ": ("-2,8\n-1,2\n0,0\n1,1\n2,4\n", "these differ by 50% of its height", "0,0\n1,1\n2,4\n3,9\n"),
-    "an apex off the middle": ("-1,4\n0,1\n1,0\n2,1\n3,4\n", "its places left and right are not the same; shift it",
+    "an apex off the middle": ("-1,4\n0,1\n1,0\n2,1\n3,4\n", "and their positions differ; shift it",
                                "-3,9\n-2,4\n-1,1\n0,0\n1,1\n2,4\n3,9\n"),
     "upside down": ("0,0\n1,-1\n2,-4\n3,-9\n", "they count away from the plane; change their sign",
                     "0,0\n1,1\n2,4\n3,9\n"),
-    "decimal commas": ("r;z\n0;0\n0,5;0,25\n1;1\n2;4\n", "line 3: r is no number; write it with a decimal point",
+    "decimal commas": ("r;z\n0;0\n0,5;0,25\n1;1\n2;4\n", "line 3: r is not a number; write it with a decimal point",
                        "r;z\n0;0\n0.5;0.25\n1;1\n2;4\n"),
     "an empty cell": ("0,0\n1,\n2,4\n3,9\n4,16\n", "line 2: z is empty; leave out a line that has no value",
                       "0,0\n2,4\n3,9\n4,16\n"),
@@ -305,7 +305,7 @@ def test_what_is_nested_deeply_is_one_sentence(
     Path("sweep.toml").write_text(f'[[axes]]\nkey = "experiment.force"\nvalues = ["1 N"]\n[base]\n{text}\n')
     for command in ("run", "sweep"):
         _, line = ended(command, f"{'scene' if command == 'run' else command}.toml")
-        assert line.endswith("tables or lists are nested more than 100 deep; look for a dot or a bracket too many")
+        assert line.endswith("tables or lists are nested more than 100 deep; check for an extra dot or bracket")
 
 
 def test_tables_that_are_nested_deeply_are_refused_from_python_as_well() -> None:

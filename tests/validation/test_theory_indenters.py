@@ -82,7 +82,7 @@ def test_radius_inverts_force_and_displacement(pair: tuple[Contact, ReducedConta
     assert closed.force(closed.zero_load_radius()) == pytest.approx(0.0, abs=ROUND_OFF)
     with pytest.raises(ValueError, match="exceeds the pull-off force"):
         closed.contact_radius(-1.01 * closed.pull_off_force() - 1e-6)
-    with pytest.raises(ValueError, match="the bodies part at"):
+    with pytest.raises(ValueError, match="the bodies separate at"):
         closed.radius_at(closed.displacement(closed.fixed_grips_radius()) - 0.1)
 
 

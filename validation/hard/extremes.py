@@ -109,7 +109,7 @@ def _springs(bench: Bench, kind: str) -> Iterator[Row]:
 EXTREMES = Study(
     "extremes",
     "Stiffness ratios 1e-6 to 1e6, radii to 1e9, 1 to 10⁶ particles, plate masses 1e-3 to 1e9",
-    "Where numbers are far apart one of them is lost in the other's rounding, a time step is chosen for the wrong one, "
-    "or a minimiser stops too early.",
+    "With parameters of very different magnitude one may be lost in round-off, the time step may follow the wrong "
+    "one, or a minimiser may stop too early.",
     measure,
 )

@@ -150,6 +150,6 @@ def _second(scene: Path, bench: Bench) -> bool:
 FAULTS = Study(
     NAME,
     "Killed, disk full, two runs in one folder",
-    "A run that was cut off must not leave a number, or a folder in which the next run ends otherwise.",
+    "An interrupted run must not leave a result, or a folder that affects the next run.",
     measure,
 )

@@ -120,7 +120,7 @@ def _forces(contact: Contact) -> tuple[Floats, Floats, tuple[float, float]]:
 FORCES = Study(
     NAME,
     "Forces of a whole deck",
-    "Each fragment may be right alone and wrong together: a bond type taken for another, an excluded pair, an anchor "
-    "in the wrong place. The force on every particle of the whole deck is the slope of the whole deck's energy.",
+    "Fragments that are correct alone may be wrong together: a wrong bond type, an excluded pair, a wrong anchor. "
+    "The force on every particle of a complete deck is the gradient of its energy.",
     measure,
 )

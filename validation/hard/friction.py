@@ -191,8 +191,8 @@ def adhesive_checks(bench: Bench) -> list[Row]:
 FRICTION = Study(
     NAME,
     "Friction and adhesion on the rigid plane",
-    "A history is lost where a load goes and comes, drifts over many cycles, and is another one where a particle is on "
-    "an edge; an adhesive contact of a few particles has an edge that steps. Are forces those of each particle's own "
-    "spring and slider, and are claims such as closed forms bear out?",
+    "The loading history matters where a load is removed and reapplied, over many cycles, and where a particle is "
+    "at the contact edge; an adhesive contact of few particles has a stepwise edge. Are the forces those of "
+    "Jenkins elements, and do the uncertainties agree with closed forms?",
     measure,
 )

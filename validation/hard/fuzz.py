@@ -170,6 +170,6 @@ def _become(path: Path, folder: Path, go_on: bool) -> tuple[str, str]:
 FUZZ = Study(
     NAME,
     "Random edits of scenes",
-    "What nobody thought of.",
+    "Unexpected combinations of keys and values.",
     measure,
 )

@@ -110,7 +110,7 @@ def _above(bench: Bench, method: str, largest: float) -> list[Row]:
 LOADS = Study(
     NAME,
     "Loads of (1 ± 1e-5 … 1e-2) F_A",
-    "The stiffness of the contact goes to zero with the square root of what is left of F_A, so that a small error of "
-    "the force is a large one of the place, and a state that creeps looks like one at rest.",
+    "The contact stiffness vanishes with the square root of the distance from F_A, so that a small error of the "
+    "force is a large one of the displacement, and a creeping state looks like an equilibrium.",
     measure,
 )

@@ -84,7 +84,7 @@ def _rows(words: str, found: Run | Refused, pairs: FoldedPairs) -> list[Row]:
     rows = [
         at_most(f"force off over the largest, worst row, {words}", off, FORCE, source, "the tolerance asked for"),
         Row(
-            f"area of the loop, {words}",
+            f"dissipated energy, {words}",
             area,
             Reference(true, source + ", at the same rows"),
             absolute(
@@ -115,8 +115,8 @@ def _snap_distance(d: Floats, pairs: FoldedPairs) -> Floats:
 
 LOOPS = Study(
     NAME,
-    "Snap-in, snap-off and the area of the loop",
-    "A path with rows as wide as the range steps over the places where particles snap: if they are left in the wrong "
-    "state, the force and the area of the loop are wrong without any sign of it.",
+    "Snap-in, snap-off and the dissipated energy",
+    "A path with load steps as wide as the range passes the instabilities: if particles are then in the wrong "
+    "state, the force and the dissipated energy are wrong without notice.",
     measure,
 )

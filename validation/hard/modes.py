@@ -97,6 +97,6 @@ def _sampled(folder: Path, samples: int, drag: float | str) -> tuple[Floats, Flo
 EQUIPARTITION = Study(
     MODES,
     "Equipartition of every mode and of the plate",
-    "A thermostat may have the right mean temperature and the wrong share for one mode.",
+    "A thermostat may have the correct mean temperature and the wrong energy of a single mode.",
     measure_modes,
 )

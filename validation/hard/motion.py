@@ -192,7 +192,7 @@ def _time_step(more: dict[str, Any], words: str) -> Row:
 MOTION = Study(
     NAME,
     "Time steps from 0.1 to 1.01 of Verlet's limit, and energy without damping",
-    "Too long a time step makes heat from nothing, just below the limit so little that it is not noticed; a damping "
-    "that is left on, or a force that is not the slope of an energy, makes it drift.",
+    "A time step that is too long heats the particles, just below the limit by a small amount; a damping that "
+    "remains active, or a force that is not the gradient of an energy, makes the energy drift.",
     measure,
 )

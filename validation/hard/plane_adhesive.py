@@ -177,7 +177,7 @@ def _after_preloads(bench: Bench) -> list[Row]:
 ADHESIVE = Study(
     NAME,
     "Random adhesive contacts on the rigid plane",
-    "JKR's contact is a parabola's, pulled off from a moderate load. Are numbers within their uncertainties for any "
-    "profile, under tension, after a million times the pull-off force, and along paths with jumps?",
+    "JKR is for a paraboloid and moderate preloads. Are results within their uncertainties for any profile, under "
+    "tension, after a preload of a million times the pull-off force, and along paths with jumps?",
     measure,
 )

@@ -105,14 +105,13 @@ CLASSES = (
     Study(
         CORE_CLASS,
         "Compression up to and past the core",
-        "The core is finite: beyond its force one body goes through the other, and what comes then is no contact.",
+        "The repulsive core is finite: beyond its maximum force one body passes through the other.",
         measure_core,
     ),
     Study(
         BUCKLING,
         "Buckling of aligned chains",
-        "Opposite particles under load stand on their heads: exact symmetry keeps them there in a program that never "
-        "pushes, although they are unstable.",
+        "Aligned chains under load are in unstable equilibrium, which exact symmetry preserves without a perturbation.",
         measure_buckling,
     ),
 )

@@ -199,6 +199,6 @@ def _exact(scene: dict[str, Any], run: Run | Refused) -> dict[str, float]:
 RANDOM = Study(
     NAME,
     "Random scenes",
-    "Chosen cases are those that somebody thought of. Is every number of two hundred random scenes inside its claim?",
+    "Is every result of two hundred random scenes within its uncertainty?",
     measure,
 )

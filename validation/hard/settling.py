@@ -133,8 +133,8 @@ def _moved(pairs: FoldedPairs, places: Floats) -> Floats:
 
 SETTLING = Study(
     NAME,
-    "Times just below and just above F_A",
-    "Close to F_A a contact creeps: one that settles and one that parts look alike for a time that goes as the inverse "
-    "square root of the distance from it, and a run that stops too soon takes the one for the other.",
+    "Relaxation times just below and just above F_A",
+    "Close to F_A a contact creeps: loads just below and just above it are alike for a time that scales with the "
+    "inverse square root of the distance from F_A, and a run that stops too early confuses the two.",
     measure,
 )

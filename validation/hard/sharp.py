@@ -153,7 +153,7 @@ def _inverse(profile: dict[str, Any], height: float) -> float:
 SHARP = Study(
     NAME,
     "Random sharp scenes",
-    "Few particles and pairs about to snap: every search finds the wrong tooth in some of them, and a claim that holds "
-    "in chosen cases need not hold in others. Is every number of a hundred random scenes inside its claim?",
+    "With few particles and pairs about to snap a search may find the wrong force maximum. Is every result of a "
+    "hundred random scenes within its uncertainty?",
     measure,
 )

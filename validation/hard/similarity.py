@@ -67,7 +67,7 @@ def scaled(scene: dict[str, Any], s: float, e: float) -> dict[str, Any]:
 SIMILARITY = Study(
     NAME,
     "Similarity: lengths × 1e-9 … 1e6, energies × 1e-9 … 1e9",
-    "A program with an absolute threshold somewhere gives other reduced numbers for metres than for nanometres, or "
-    "takes all memory. The same numbers, or a sentence before anything runs.",
+    "An absolute threshold in a program gives different reduced results for metres and nanometres. The same "
+    "results, or an error before the run.",
     measure,
 )

@@ -168,7 +168,7 @@ def _special(name: str, found: Run, trace: Trace) -> Iterator[Row]:
 def _ends(bench: Bench) -> Iterator[Row]:
     """A chain that is too short for the way, and a plate that is thrown off a chain that is long enough for it."""
     short = bench.run("too_short", curved(bodies={"particles": 26}))
-    refused = isinstance(short, Refused) and short.before and "too short for the way" in short.words
+    refused = isinstance(short, Refused) and short.before and "too short for the sliding distance" in short.words
     yield so("a way off the end that is not refused beforehand", not refused)
     bodies = {"particles": 68, "upper_particles": 36, "bulk_stiffness": 2.0}
     thrown = bench.run(
@@ -182,7 +182,7 @@ def _ends(bench: Bench) -> Iterator[Row]:
             accuracy={"tolerance": 1e-2},
         ),
     )
-    told = isinstance(thrown, Refused) and not thrown.before and "ran off the lower body" in thrown.words
+    told = isinstance(thrown, Refused) and not thrown.before and "slid off the lower body" in thrown.words
     yield so("a plate thrown off the end that is not told", not told)
     left = all((bench.folder / "thrown_off" / name).is_file() for name in ("friction.csv", "curve.csv", "results.json"))
     yield so("a trace that is not left of it", not left)
@@ -191,7 +191,7 @@ def _ends(bench: Bench) -> Iterator[Row]:
 SLIDES = Study(
     NAME,
     "Slides back, at rest, too fast, smooth, unloaded, one by one, off the end",
-    "A drive that turns or rests, slips that fall into one row, an integrator that lags by half a step, or a plate "
-    "that leaves its chain gives a smooth trace and a wrong friction.",
+    "A drive that reverses or stops, several slips in one load step, an integrator that lags by half a step, or a "
+    "plate that leaves its chain gives a smooth trace and a wrong friction.",
     measure,
 )

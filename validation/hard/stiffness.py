@@ -153,8 +153,8 @@ def _relative(found: Run, exact: float) -> float:
 STIFFNESS = Study(
     NAME,
     "Stiffness ratio 0.3 to 100",
-    "Below 1 no pair snaps, and close to 1 the force has a kink that a coarse path steps over; above 1 the force is a "
-    "row of teeth, of which the highest counts. "
-    "Bodies sharp and blunt, 3 to 200 particles, tolerances 1e-2 to 1e-4, by both methods.",
+    "Below 1 no pair snaps, and close to 1 the force has a kink that a coarse path misses; above 1 the force has "
+    "many maxima, of which the highest is F_A. Sharp and blunt bodies, 3 to 200 particles, tolerances 1e-2 to "
+    "1e-4, both methods.",
     measure,
 )

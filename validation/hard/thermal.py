@@ -144,14 +144,14 @@ CLASSES = (
     Study(
         THERMAL,
         "Thermal averages against Boltzmann's integral",
-        "A thermal number can be right at 0 and wrong in what the noise adds: the part that is thermal has a row of "
-        "its own.",
+        "A thermal result may be correct at zero temperature and wrong in its thermal part, which has a row of its"
+        " own.",
         measure_boltzmann,
     ),
     Study(
         SEEDS,
-        "Scatter over seeds against the claim",
-        "A standard error that is too small is a wrong number; one that is too large hides one.",
+        "Scatter over seeds against the uncertainty",
+        "Is a standard error neither too small nor too large?",
         measure_seeds,
     ),
 )

@@ -1,4 +1,4 @@
-"""Detachment under heat: nine pairs pulled at a steady loading rate until they part, beside Smoluchowski's equation.
+"""Thermal detachment: nine pairs pulled at a steady loading rate until they part, beside Smoluchowski's equation.
 
 The pairs are too far apart to feel each other, so that the free energy of the plate is nine times that of a pair, by
 quadrature. The density of the plate is followed in time as the load grows, over three decades of its rate.
@@ -163,7 +163,7 @@ def _panel(runs: Runs) -> Panel:
 
 STUDY = Study(
     NAME,
-    "Detachment under heat",
+    "Thermal detachment",
     "The paper's model has stochastic forces on the particles (Section 3); its adhesion force is found without them. "
     "Under heat a contact lets go at a force that scatters, and that is the larger the faster it is pulled.",
     judge,

@@ -1,4 +1,4 @@
-"""Friction under heat: one particle on a rigid row, pulled by a spring, beside Smoluchowski's equation and an ensemble.
+"""Thermal friction: one particle on a rigid row, pulled by a spring, beside Smoluchowski's equation and an ensemble.
 
 Slow, the overdamped equation holds, by quadrature and finite volumes; fast, inertia and the particle's height matter,
 and the reference is an ensemble of the equations of motion. ⟨F⟩(T, v) spans three decades of v.
@@ -164,14 +164,14 @@ def judge(bench: Bench) -> Findings:
             uncertainty=sigma, on=["heat_plate"], despite=AT_REST)
     )  # fmt: skip
     figures = figure(
-        "Mean friction over velocity under heat: runs, references, and the (ln v)^(2/3) law", *_panels(runs)
+        "Mean friction with thermal noise over velocity: runs, references, and the (ln v)^(2/3) law", *_panels(runs)
     )
     slowest = min(DRIVES)
     top = WELLS.largest_force
     laws = [number(_textbook(share, slowest) / top, 2) for share in SHARES]
     means = [number(smoluchowski(share, slowest) / top, 2) for share in SHARES]
     finding = (
-        f"Over three decades of velocity the mean friction of one particle under heat is that of the references, "
+        f"Over three decades of velocity the mean thermal friction of one particle is that of the references, "
         f"{agreement(rows[:-2])}: Smoluchowski's equation up to {SLOW:g} LU/TU, an ensemble of the equations of motion "
         "beyond. Without heat it would go to one value for slow drives; with it a slow drive waits for fluctuations. "
         f"The textbook's (ln v)^(2/3) is an expansion about a vanishing barrier: at {number(slowest)} LU/TU it "
@@ -225,7 +225,7 @@ def _panels(runs: Runs) -> list[Panel]:
 
 STUDY = Study(
     NAME,
-    "Friction under heat",
+    "Thermal friction",
     "The paper's model has stochastic forces on the particles and a cantilever that pulls the plate (Section 3), and "
     "gives no result with either. What a single particle does under both is known.",
     judge,

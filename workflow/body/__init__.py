@@ -1,1 +1,1 @@
-"""What a run says of the body that its chain stands for: p(r), q(r), the implied work of adhesion, closed forms."""
+"""Results of the body that a chain represents: p(r), q(r), the implied work of adhesion, closed forms."""

@@ -1,14 +1,14 @@
-"""Results that follow from others: the work of adhesion that an interaction implies, and what is the body's own.
+"""Results that follow from others: the work of adhesion that an interaction implies, and those of the body.
 
-One particle parts from the row of opposite ones, s apart, by the work w = ∫ −f dr from its force-free distance on, so
-that a length of chain holds w/s. Where the edge of a contact of radius a recedes by da, both ends of the chain part by
-da, and the ring 2πa da of the body's surface parts:
+w = ∫ −f dr from the force-free distance on separates a particle from the opposite chain of spacing s: w/s per length
+of chain. As the edge of a contact of radius a recedes by da, a length da of chain separates at both ends, and the ring
+2πa da of the body's surface:
 
     mdr:           2 (w/s) da = W 2πa da                          W = w/(π s a)
     geike_popov:   two equal spheres, half as wide as the image   W = 4w/(π s a),   a the image's
 
-JKR's body has one W for every a, and the chain one w/s: they are alike at one radius only, that of the run. How far the
-two are apart is told by the force, F_A = (3/2) πWR_e, R_e = R with the MDR and R/2 for the two spheres.
+JKR's body has one W for every a, and the chain one w/s: they are alike at one radius only, that of the run. Their
+difference follows from the force, F_A = (3/2) πWR_e, R_e = R with the MDR and R/2 for the two spheres.
 
 Stiffness: springs E* per length that touch over 2a make dF/dd = 2E*a, which is Galin's and Sneddon's relation of any
 axisymmetric body.
@@ -47,11 +47,11 @@ EFFECTIVE = {"mdr": 1.0, "geike_popov": 0.5}
 TAIL, POINTS = 1e-10, 8000
 """Force at the last distance over that at the force-free one, and how many distances."""
 FORMULAS = {
-    "mdr": "W = w/(π s a), a the contact radius: where it shrinks by da, two lengths da of chain and the ring 2πa da "
-    "of the body's surface part (mdr). Uncertain by what F_A = (3/2)πWR has instead",
+    "mdr": "W = w/(π s a), a the contact radius: as it shrinks by da, two lengths da of chain and the ring 2πa da "
+    "of the body's surface separate (mdr). The uncertainty is the difference from F_A = (3/2)πWR",
     "geike_popov": "W = 4w/(π s a), a the image's half-width, twice the contact radius of the two equal spheres that "
-    "geike_popov stands for: where it shrinks by da, two lengths da of chain and the ring (π/2)a da of their surface "
-    "part. Uncertain by what F_A = (3/4)πWR has instead",
+    "geike_popov represents: as it shrinks by da, two lengths da of chain and the ring (π/2)a da of their surface "
+    "separate. The uncertainty is the difference from F_A = (3/4)πWR",
 }
 """How W is made, by reduction."""
 
@@ -62,7 +62,7 @@ def first_of(found: Mapping[str, Quantity], *names: str) -> Quantity | None:
 
 
 def with_implied(scene: Scene, settings: Settings, outcome: Outcome) -> Outcome:
-    """The outcome of a run with what its interaction implies."""
+    """The outcome of a run with the results that its interaction implies."""
     return _with(outcome, implied(scene, settings, outcome.quantities))
 
 
@@ -99,10 +99,10 @@ def implied(scene: Scene, settings: Settings, found: Mapping[str, Quantity]) -> 
 
 
 def formulas(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, dict[str, str]]:
-    """For results.json, `formulas`: in words, how a number was made that has more than one reading."""
+    """For results.json, `formulas`: the formula of a result that has more than one definition."""
     made = {
-        "separation_energy": "w/s: w = ∫ −f dr parts one particle from the opposite row, s is the spacing; energy per "
-        "length of chain",
+        "separation_energy": "w/s: w = ∫ −f dr separates one particle from the opposite chain, s the spacing; energy "
+        "per length of chain",
         "work_of_adhesion": FORMULAS[scene.bodies.reduction],
     }
     said = {name: text for name, text in made.items() if name in quantities}
@@ -125,7 +125,7 @@ def _work(law: DoubleExponential, spacing: float) -> Quantity:
 
 
 def with_body(scene: Scene, outcome: Outcome) -> Outcome:
-    """The outcome with what is the body's own: p(0), the largest pressure, mean pressure, stiffness, adhesion energy.
+    """The outcome with the results of the body: p(0), the largest pressure, mean pressure, stiffness, adhesion energy.
 
     A pressure that has no bound is left out.
     """

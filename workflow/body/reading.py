@@ -1,6 +1,6 @@
-"""Which body the numbers of a run are of: under the paper's reduction a length of the plane image is not the body's.
+"""Which body the results of a run describe: with the paper's reduction a length of the image is not that of the body.
 
-The reduction of Geike and Popov stands for two equal spheres R. Their force and displacement are the run's; their
+The reduction of Geike and Popov represents two equal spheres R. Their force and displacement are the run's; their
 contact radius is half of the image's half-width, and their mean pressure F/πa² four times that of the image. Where
 that reduction is the scene's own choice against the default, what the run calls
 `contact_radius` is reported as `image_contact_radius`, and `contact_radius` is that of the two spheres.
@@ -27,12 +27,12 @@ def _is_image(scene: Scene) -> bool:
 
 
 def stands_for_spheres(scene: Scene) -> bool:
-    """Whether the numbers are those of the paper's two equal spheres, told apart from the image's."""
+    """Whether the results are those of the paper's two equal spheres, reported beside those of the image."""
     return _is_image(scene) and scene.bodies.profile.kind in SPHERES
 
 
 def of_the_body(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """The quantities of a run, by the names that say of what they are."""
+    """The quantities of a run, by names that state the body they belong to."""
     if not _is_image(scene):
         return dict(quantities)
     named: dict[str, Quantity] = {}
@@ -51,7 +51,7 @@ def of_the_body(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Q
 
 
 def doubt_of_the_image(scene: Scene) -> dict[str, str]:
-    """The warning `reduction`: for which body the numbers hold, and by which factors they are off for another."""
+    """The warning `reduction`: the body for which the results hold, and the factors for another one."""
     if not _is_image(scene):
         return {}
     kind = scene.bodies.profile.kind
@@ -67,7 +67,7 @@ def doubt_of_the_image(scene: Scene) -> dict[str, str]:
             "wide as their contact. "
         )
     else:
-        whose = f"it was derived for two equal spheres, and a {kind.replace('_', ' ')} as drawn stands for no body. "
+        whose = f"it was derived for two equal spheres, and a {kind.replace('_', ' ')} as given represents no body. "
     return {"reduction": f"geike_popov was chosen: {whose}For one body on a plane use mdr{one_body}"}
 
 

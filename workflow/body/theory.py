@@ -1,7 +1,7 @@
-"""The closed forms beside the results of a run: one table, each with when it applies and what it says of the results.
+"""The closed forms to compare a run with: one table, each with its conditions and its predictions of results.
 
-Pressed without adhesion: Hertz, Sneddon, Galin. Adhesive on a plane: JKR and its like for other profiles, Maugis and
-Dugdale with a range. A sphere that an interaction holds: JKR, Maugis and Dugdale or DMT by the Tabor parameter.
+Pressed without adhesion: Hertz, Sneddon, Galin. Adhesive on a plane: JKR and its extensions to other profiles, Maugis
+and Dugdale with a range. A sphere with an interaction: JKR, Maugis and Dugdale or DMT by the Tabor parameter.
 Tangential displacement with friction: Cattaneo and Mindlin.
 
 results.json has them as `theory`: a list of {"name", "source", "applies", "values"}; of each result in `values` the
@@ -148,8 +148,8 @@ class ClosedForm:
         name: what it is called: "Hertz".
         source: where it is written down.
         applies: why it holds for a case, in a few words; "" where it does not.
-        values: what it says, by the names of results, in their model units; of those the run's are compared.
-        pressure: p(r) [FU/LU²] at r [LU] in the reported state, where it says that.
+        values: its predictions, by the names of results, in their model units, to compare the run with.
+        pressure: p(r) [FU/LU²] at r [LU] in the reported state, if it predicts that.
     """
 
     name: str
@@ -185,7 +185,7 @@ def _entry(form: ClosedForm, case: Case, scales: Scales | None) -> dict[str, Any
 
 
 def in_words(results: Mapping[str, Any], name: str) -> Iterator[str]:
-    """What each closed form says of a result, and how far the result is from it: `Hertz 110.37 µm (+0.001 %)`."""
+    """The prediction of each closed form for a result, with the deviation: `Hertz 110.37 µm (+0.001 %)`."""
     for form in results.get("theory", ()):
         if said := form["values"].get(name):
             entry = said.get("si", said)
@@ -405,4 +405,4 @@ FORMS = (
     ClosedForm("Cattaneo and Mindlin", "C. Cattaneo 1938; R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327",
                drawn_along, _mindlin_values),
 )  # fmt: skip
-"""Every closed form that a run is laid beside; which of them applies each says itself."""
+"""Every closed form that a run may be compared with; each has its own conditions."""

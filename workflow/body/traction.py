@@ -28,7 +28,7 @@ MOST = 1000
 RADII = 100
 """Evenly from 0 to the contact radius, at which q is given, and at its kinks besides."""
 BETWEEN = 101
-"""Radii between two particles at which the largest pressure is looked for."""
+"""Radii between two particles at which the largest pressure is searched."""
 TIP, KNOWN_TIP, KINK = 1e-3, 1e-9, 0.5
 """A profile has an apex where so little of a spacing off the axis its slope is that share of the one to a spacing; the
 second where the body's own shape is taken, and not what particles make of it."""
@@ -149,7 +149,7 @@ def _pressure(scene: Scene, profile: Profile, radius: ContactRadius) -> BodyPres
 
 
 def _body(scene: Scene) -> Callable[[Array], Array] | None:
-    """c h(x) [FU/LU] of springs that are all that carries, on a plane; None of others, and of a table of places."""
+    """c h(x) [FU/LU] of springs that are all that carries, on a plane; None of others, and of a table of positions."""
     bodies = scene.bodies
     known = not (bodies.profile.has_edge or isinstance(bodies.profile, Measured))
     if bodies.lower != "rigid_plane" or scene.neighbours is not None or not known:
@@ -167,7 +167,7 @@ def _swing(load: LineLoad, r: Array, p: Array) -> Array:
 
 
 def _converges(levels: Sequence[float], noise: float) -> bool:
-    """Whether a value through every, every second and every fourth particle converges; fewer levels cannot tell."""
+    """Whether a value through every, every second and every fourth particle converges; fewer levels do not suffice."""
     if len(levels) < 3:
         return True
     first, second, fourth = levels
@@ -194,7 +194,7 @@ def _through(size: int, stride: int, load: Callable[[Array], LineLoad]) -> LineL
 
 
 def _spread(values: Array, coarse: LineLoad | None, r: Array) -> Array:
-    """|fine − coarse| at r; as much as the value itself where there is no coarser one."""
+    """|fine − coarse| at r; the value itself where there is no coarser one."""
     spread = np.abs(values) if coarse is None else np.abs(values - coarse.pressure(r))
     return np.where(np.isfinite(spread), spread, np.abs(values))
 

@@ -1,4 +1,4 @@
-"""Whether the theory that a run stands for holds: numbers of a contact beside the limits of half-space elasticity.
+"""Whether the theory behind a run holds: quantities of a contact against the limits of half-space elasticity.
 
 Slope of the profile at the contact edge: the half-space theory is for small slopes (K. L. Johnson, Contact Mechanics,
 1985, section 4.1), and a paraboloid is a ball for a << R only. Tabor parameter: JKR has no range of the attraction
@@ -23,7 +23,7 @@ from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import MEAN_PRESSURE, Quantity, Scales, prefixed
 
 SLOPE, HALF_WIDTH = 0.1, 0.5
-"""Conventions: largest slope at the edge, and contact radius over the half-width of a body, without a warning."""
+"""Conventions: largest slope at the contact edge, and contact radius over half-width of a body, without a warning."""
 YIELD = 1.6
 """Pressure on the axis over the yield strength at which a ball begins to yield below the surface."""
 RANGE = 0.3e-9
@@ -38,7 +38,7 @@ PRESSURES = ("central_pressure", "peak_pressure")
 
 @dataclass(frozen=True)
 class Check:
-    """A number of the contact beside its limit.
+    """A quantity of the contact and its limit.
 
     Attributes:
         name: of the warning.

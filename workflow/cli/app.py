@@ -15,7 +15,7 @@ from contact1d.workflow.cli.ending import CALL_IS_WRONG, FAILS, RUN_FAILED, Comm
 from contact1d.workflow.cli.identify import identify
 
 GARBAGE_THRESHOLD = 100_000
-"""New objects after which Python looks for garbage: at 700, a tenth of what the imports take goes into looking."""
+"""New objects between garbage collections: with 700, they take a tenth of the import time."""
 
 app = typer.Typer(
     cls=Commands,
@@ -23,7 +23,7 @@ app = typer.Typer(
     rich_markup_mode="markdown",
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="Exit codes: 0 done; 1 a check of `doctor` fails; 2 the scene or the call is wrong; "
+    epilog="Exit codes: 0 done; 1 a check of `doctor` failed; 2 the scene or the call is wrong; "
     "3 the run failed or its result can't be trusted, files are kept; 130 interrupted. "
     "Units: LU length, FU force, MU mass, TU = sqrt(MU LU/FU); compression is positive.",
 )
@@ -45,7 +45,7 @@ def contact1d(
 ) -> None:
     """Contact, adhesion and friction with the one-dimensional particle model of Geike and Popov, on LAMMPS.
 
-    A scene file says what the bodies are, which effects act and the experiment. `run` turns it into a LAMMPS
+    A scene file describes the bodies, the effects and the experiment. `run` turns it into a LAMMPS
     deck, runs it, and leaves a folder with numbers (results.json), tables (CSV), figures and the deck itself, which
     `lmp -in in.lammps` repeats. Start with `contact1d doctor`, `contact1d new my.toml`, `contact1d run my.toml`.
     """
@@ -100,7 +100,7 @@ Without = Annotated[
     ),
 ]
 Figures = Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures.")]
-FigureFormat = Annotated[Format, typer.Option("--format", help="Of the figures.")]
+FigureFormat = Annotated[Format, typer.Option("--format", help="File format of the figures.")]
 
 
 def run(
@@ -115,7 +115,7 @@ def run(
     format_: FigureFormat = Format.PNG,
     time_limit: Annotated[float, typer.Option(min=0.1, help="Seconds of wall time for LAMMPS, per pass.")] = 3600.0,
     workers: Annotated[
-        int | None, typer.Option(min=1, help="Repeats of a thermal pull-off at a time.", show_default="processors")
+        int | None, typer.Option(min=1, help="Repeats of a thermal pull-off in parallel.", show_default="processors")
     ] = None,
     ranks: Annotated[int, typer.Option(min=1, help="MPI ranks (processors) that share one large contact.")] = 1,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the numbers only.")] = False,
@@ -164,7 +164,7 @@ def deck(
 
 
 def doctor() -> None:
-    """Check whether this installation is whole: packages, MPI library, LAMMPS and what it must be able to do."""
+    """Check the installation: packages, MPI library, LAMMPS and its styles."""
     from contact1d.workflow.cli.doctor import checks
 
     bad = 0
@@ -184,25 +184,25 @@ def sweep(
     ],
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder of the sweep; what is done there is kept.", show_default="sweeps/<name of the file>"),
+        typer.Option(help="Folder of the sweep; points done there are kept.", show_default="sweeps/<name of the file>"),
     ] = None,
     executor: Annotated[str, typer.Option(help="`local`: processes here; `slurm`: jobs of a cluster.")] = "local",
     workers: Annotated[
-        int | None, typer.Option(min=1, help="Processes, or jobs, at a time.", show_default="processors")
+        int | None, typer.Option(min=1, help="Processes or jobs in parallel.", show_default="processors")
     ] = None,
-    partition: Annotated[str | None, typer.Option(help="Of Slurm.", show_default="its default")] = None,
+    partition: Annotated[str | None, typer.Option(help="Partition of Slurm.", show_default="its default")] = None,
     figures: Figures = True,
     format_: FigureFormat = Format.PNG,
     parquet: Annotated[bool, typer.Option("--parquet", help="Write the table as Parquet as well.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the end only.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the summary only.")] = False,
 ) -> None:
     """Run a scene at each point of a sweep; one table, results.csv, has all results.
 
     The file names a base scene and [[axes]], each with a key of the scene and its values. Broken off at any moment, the
-    same command goes on with what is missing. Exit code 3: a point failed or can't be run; the table says why.
+    same command continues with the missing points. Exit code 3: a point failed or can't be run; the table says why.
     """
     folder = out if out is not None else Path("sweeps") / file.stem
-    kept = f"finished runs are kept in {folder}, and the same command goes on"
+    kept = f"finished runs are kept in {folder}, and the same command continues"
     with command("the sweep", kept=kept, quiet=quiet) as progress:
         from contact1d.workflow.sweep.sweep import sweep as do
         from contact1d.workflow.sweep.table import TABLE, write_parquet
@@ -225,15 +225,15 @@ def cost(
     set_: Set = None,
     without: Without = None,
     repeats: Annotated[int, typer.Option(min=1, help="Runs of each variant; times are their medians.")] = 3,
-    workers: Annotated[int | None, typer.Option(min=1, help="Runs at a time.", show_default="processors")] = None,
+    workers: Annotated[int | None, typer.Option(min=1, help="Runs in parallel.", show_default="processors")] = None,
 ) -> None:
-    """Measure what accuracy costs in time: for every numerical setting and effect of a scene, its error and CPU time.
+    """Measure the cost of accuracy: error and CPU time of every numerical setting and effect of a scene.
 
     Prints a row for each: its value, the value that is enough, errors, times, what to do. Leaves cost.json and
     cost.png, a work-precision figure. The scene itself is not changed.
     """
     folder = out if out is not None else Path("costs") / scene.stem
-    with command("the study", kept="it begins anew next time") as progress:
+    with command("the study", kept="run it again from the start") as progress:
         asked = read(scene, set_, without)
         from contact1d.workflow.cost.report import summary, write_report
         from contact1d.workflow.cost.study import cost_of
@@ -252,9 +252,9 @@ def cost(
 def report(
     folders: Annotated[
         list[Path],
-        typer.Argument(metavar="DIR…", help="Run folders, which are overlaid; or one sweep's.", show_default=False),
+        typer.Argument(metavar="DIR…", help="Run folders, shown together, or one sweep folder.", show_default=False),
     ],
-    out: Annotated[Path, typer.Option(help="The page.")] = Path("report.html"),
+    out: Annotated[Path, typer.Option(help="HTML file to write.")] = Path("report.html"),
 ) -> None:
     """Write a page of runs or of a sweep, with interactive figures; it needs no network and no other file."""
     with command("the report", quiet=True):
@@ -267,14 +267,12 @@ def report(
 def animate(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a finished run.", show_default=False)],
     out: Annotated[
-        Path | None, typer.Option(help="The file, .gif or .mp4.", show_default="way.gif in the folder")
+        Path | None, typer.Option(help="File to write, .gif or .mp4.", show_default="way.gif in the folder")
     ] = None,
-    speed: Annotated[int, typer.Option(min=1, max=50, help="States a second.")] = 10,
-    ovito: Annotated[
-        bool, typer.Option("--ovito", help="In place of pictures a script in the folder, by which OVITO shows the way.")
-    ] = False,
+    speed: Annotated[int, typer.Option(min=1, max=50, help="States per second.")] = 10,
+    ovito: Annotated[bool, typer.Option("--ovito", help="Write a script for OVITO into the folder instead.")] = False,
 ) -> None:
-    """Write the way of a run as moving pictures: bodies and springs, particles coloured by pressure, the force.
+    """Write an animation of the loading history of a run: bodies and springs, particles coloured by pressure, force.
 
     It has the states that the run kept: those of its curve, thinned where they are many; or, in states.lammpstrj, too,
     all of them with `[output] states = "all"` in the scene.
@@ -292,10 +290,10 @@ Kind = StrEnum("Kind", ["PULL_OFF", "LOAD", "PATH", "HOLD", "SLIDE", "TANGENTIAL
 
 
 def new(
-    name: Annotated[Path, typer.Argument(metavar="NAME", help="The file; .toml is added if need be.")],
+    name: Annotated[Path, typer.Argument(metavar="NAME", help="File to write; .toml is added if absent.")],
     kind: Annotated[Kind, typer.Option(help="The experiment.")] = Kind.PULL_OFF,
 ) -> None:
-    """Write a scene file to start from: it runs as it stands, and says of every key what it is and may be."""
+    """Write a scene file to start from: it runs as it is, with every key explained and its allowed values."""
     if name.name in ("", ".."):
         stop(f"{name} is a folder; give the file a name", CALL_IS_WRONG)
     path = name if name.suffix == ".toml" else name.with_name(name.name + ".toml")
@@ -332,7 +330,7 @@ def _write(path: Path, text: str, instead: str) -> None:
         with path.open("x", encoding="utf-8") as file:
             file.write(text)
     except FileExistsError:
-        stop(f"{path} is there already and stays as it is; {instead}", CALL_IS_WRONG)
+        stop(f"{path} exists and is not overwritten; {instead}", CALL_IS_WRONG)
     except OSError:
         path.unlink(missing_ok=True)  # whole or not at all
         raise

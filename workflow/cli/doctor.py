@@ -1,4 +1,4 @@
-"""Is this installation whole? One check per thing that a run needs, each with what to do if it is not there.
+"""Check of the installation: one check for each requirement of a run, with a suggested fix.
 
 checks() ──▶ [Check(name, ok, detail, advice), …]
 """
@@ -86,7 +86,7 @@ def checks() -> list[Check]:
         with tempfile.TemporaryDirectory() as folder, Engine.session(Path(folder), time_limit=60.0) as session:
             found += _lammps(session)
     except ImportError as error:
-        found.append(Check("LAMMPS runs", False, str(error), "install contact1d anew: pip install -e . in its folder"))
+        found.append(Check("LAMMPS runs", False, str(error), "reinstall contact1d: pip install -e . in its folder"))
     except (EngineError, OSError) as error:
         found.append(Check("LAMMPS runs", False, getattr(error, "message", str(error)), REINSTALL))
     return found
@@ -147,10 +147,10 @@ def _machine() -> Iterator[Check]:
                 file.write(b"0")
             yield Check(name, True, f"{folder} can be written to")
         except OSError as error:
-            yield Check(name, False, f"{folder}: {error.strerror}", "choose a folder that you may write to")
+            yield Check(name, False, f"{folder}: {error.strerror}", "choose a folder with write permission")
     from contact1d.workflow.runs.processors import cores
 
-    yield Check("processor cores", True, f"{cores()} to use; a run uses one")
+    yield Check("processor cores", True, f"{cores()} available; a run uses one")
 
 
 def _lammps(session: Session) -> Iterator[Check]:
@@ -171,6 +171,6 @@ def _lammps(session: Session) -> Iterator[Check]:
         addresses = listening_sockets(session.pid)
         detail = f"LAMMPS listens at {', '.join(addresses)}" if addresses else "LAMMPS accepts no connections"
     except OSError:
-        addresses, detail = [], "cannot be seen on this system"
+        addresses, detail = [], "cannot be checked on this system"
     advice = "unset UCX_TLS, or set it to self,sm: then MPI uses memory only"
     yield _check("no network listener", not addresses, detail, advice)

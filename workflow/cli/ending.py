@@ -1,4 +1,4 @@
-"""How every command ends: done, or in words on standard error and with an exit code. The one reader of scene files."""
+"""How every command ends: done, or with a message on standard error and an exit code. The one reader of scene files."""
 
 from __future__ import annotations
 
@@ -34,16 +34,16 @@ BAD_PLACE = (
 
 
 class Commands(typer.core.TyperGroup):
-    """All commands: one that has nothing to add when it ends, and what another prints at last, ends in words here."""
+    """All commands, with the errors of their options reported in the same form as others."""
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command that was asked for."""
+        """Run the command."""
         with command(ctx.info_name, quiet=True):
             return super().invoke(ctx)
 
 
 def stop(message: str, code: int) -> NoReturn:
-    """Say what is wrong and end with this exit code."""
+    """Print the error and end with this exit code."""
     typer.secho(message, err=True, fg="red")
     raise SystemExit(code)
 
@@ -58,9 +58,9 @@ def say(lines: Iterable[str], warnings: Mapping[str, str], place: object = None)
 
 
 def read(path: Path, overrides: list[str] | None, without: list[str] | None, progress: Progress | None = None) -> Scene:
-    """The scene in a file as the options change it; with every problem told, the end of the command.
+    """The scene in a file as the options change it; with every problem reported, the end of the command.
 
-    With a `progress`, which is told of it, what would mend the scene is tried.
+    With a `progress`, which reports it, a suggested fix of the scene is tried.
     """
     from contact1d.workflow.scene import SceneError, read_scene
 
@@ -79,7 +79,7 @@ def read(path: Path, overrides: list[str] | None, without: list[str] | None, pro
 
 
 def problems_in(where: str, error: Exception) -> str:
-    """The problems of a file, each on a line of its own, under their number; another error in its own words."""
+    """The problems of a file, each on a line of its own, under their number; another error as it is."""
     count = len(getattr(error, "problems", ()))
     head = [f"{where}: {count} problem{'s' if count > 1 else ''}"] if count else []
     return "\n  ".join([*head, *str(error).split("\n")])
@@ -87,13 +87,13 @@ def problems_in(where: str, error: Exception) -> str:
 
 @contextmanager
 def command(what: str, folder: Path | None = None, kept: str = "", quiet: bool = False) -> Iterator[Progress]:
-    """Do the work of a command; what goes wrong in it ends it in words and with the exit code that belongs to it.
+    """Do the work of a command; an error in it ends it with a message and the exit code of that error.
 
     Args:
         what: is done, for "… failed".
         folder: where files are; named if it is there when the work breaks off.
         kept: what is left then, and what to do, as words.
-        quiet: whether nobody is told how far the work is.
+        quiet: whether no progress is shown.
     """
     from contact1d.workflow.engine.progress import Silent, choose_progress
 
@@ -111,7 +111,7 @@ def command(what: str, folder: Path | None = None, kept: str = "", quiet: bool =
         if sentence := _of_the_call(error, str(folder or "")):
             stop(sentence, CALL_IS_WRONG)
         if isinstance(error, ImportError) and not (error.name or "").startswith("contact1d"):
-            stop(f"this installation is not whole ({error}): `contact1d doctor` says what to do", FAILS)
+            stop(f"the installation is incomplete ({error}): check it with `contact1d doctor`", FAILS)
         if sentence := _of_the_run(error):
             stop(f"{what} failed: {sentence}", RUN_FAILED)
         if reason := _of_the_machine(error):
@@ -152,5 +152,5 @@ def _of_the_machine(error: BaseException) -> str:
         reason = FULL_DISK.get(error.errno or 0, error.strerror or str(error))
         return f"{reason} ({os.fsdecode(error.filename)})" if error.filename else reason
     if isinstance(error, BrokenProcessPool):
-        return "a process of it was killed, most often because the machine was out of memory"
+        return "one of its processes was killed, most often because the machine was out of memory"
     return "the machine is out of memory" if isinstance(error, MemoryError) else ""

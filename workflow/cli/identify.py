@@ -1,4 +1,4 @@
-"""The command `identify`: from a material to a scene, and the paper's Section 4, both ways."""
+"""The command `identify`: from a material to a scene, and both methods of the paper's Section 4."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ def identify(
     ] = None,
     run: Annotated[
         Path | None,
-        typer.Option(metavar="FOLDER", help="A finished pull_off: what are its LU and FU?", show_default=False),
+        typer.Option(metavar="FOLDER", help="A finished pull_off, to find its LU and FU.", show_default=False),
     ] = None,
     radius: Annotated[
         float | None,
-        typer.Option(metavar="M", help="R of a sphere, effective: which interaction is its?", show_default=False),
+        typer.Option(metavar="M", help="Effective R of a sphere, to find its interaction.", show_default=False),
     ] = None,
     adhesion_force: Annotated[
         float | None, typer.Option(metavar="N", help="Measured F_A, in place of γ.", show_default=False)
@@ -40,9 +40,9 @@ def identify(
         float | None, typer.Option(metavar="M", help="Measured a_0, together with F_A.", show_default=False)
     ] = None,
     length_unit: Annotated[
-        float | None, typer.Option(metavar="M", help="One LU; else a_0 gets some 28 particles.", show_default=False)
+        float | None, typer.Option(metavar="M", help="One LU; default: about 28 particles in a_0.", show_default=False)
     ] = None,
-    tolerance: Annotated[float, typer.Option(min=1e-5, max=0.1, help="Of the scene, relative.")] = 1e-3,
+    tolerance: Annotated[float, typer.Option(min=1e-5, max=0.1, help="Relative tolerance of the scene.")] = 1e-3,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -61,7 +61,7 @@ def identify(
         range = "0.3 nm"
 
     (docs/identify.md has every key): a scene with everything chosen, its run, with JKR, DMT and Maugis-Dugdale beside
-    it; or which theory holds, with its value, where no chain can stand for the contact.
+    it; or the theory that holds, with its value, where no chain can represent the contact.
 
     With `--run`: the length and force unit, in metres and newtons, with which a finished pull_off is JKR's contact of
     the material (Eq. 9, Table 1). With `--radius`: a scene whose interaction has JKR's F_A and a_0 of that sphere, or
@@ -86,7 +86,7 @@ def _mistakes(given: Mapping[str, Any], material: Path | None) -> list[str]:
     """What is wrong with the options `given`, or with having them together."""
     if material is not None:
         others = ", ".join(f"--{name}" for name in given)
-        return [f"{others}: with MATERIAL everything is in the file"] if others else []
+        return [f"{others}: not with MATERIAL: give it in the file"] if others else []
     problems = [
         f"--{name} must be greater than 0, not {value:g}"
         for name, value in given.items()
@@ -94,18 +94,18 @@ def _mistakes(given: Mapping[str, Any], material: Path | None) -> list[str]:
     ]
     if ("run" in given) == ("radius" in given):
         problems.append(
-            "give MATERIAL, a file that describes a contact; or either --run (a model looks for its material) or "
-            "--radius (a material for its model)"
+            "give MATERIAL, a file that describes a contact; or either --run (to find LU and FU of a run) or "
+            "--radius (to find the interaction of a sphere)"
         )
     if "contact-modulus" not in given and problems == []:
-        problems.append("--contact-modulus is missing: E* of the pair of bodies [Pa]")
+        problems.append("--contact-modulus is missing: give E* of the pair of bodies [Pa]")
     measured = {"adhesion-force", "zero-load-radius"} & given.keys()
     if len(measured) == 1:
         problems.append("--adhesion-force and --zero-load-radius go together")
     elif bool(measured) == ("surface-energy" in given):
         problems.append("give --surface-energy, or --adhesion-force together with --zero-load-radius")
     elif "run" in given and (measured or "length-unit" in given):
-        problems.append("with --run only --contact-modulus and --surface-energy have a meaning: the rest is in the run")
+        problems.append("with --run give only --contact-modulus and --surface-energy: the run has all other values")
     return problems
 
 
@@ -156,7 +156,7 @@ def _scene_of_sphere(given: Mapping[str, float], tolerance: float, out: Path) ->
     lines = [f"identified in {found.runs} run{'s' if found.runs > 1 else ''}"]
     for (name, asked), unit in zip(vars(target).items(), ("N", "m"), strict=True):
         off = found.run.document[name]["si"]["value"] / asked - 1.0
-        lines.append(f"  {name.replace('_', ' ')}: wanted {prefixed(asked, unit)}, off by {off:+.1e}")
+        lines.append(f"  {name.replace('_', ' ')}: target {prefixed(asked, unit)}, deviation {off:+.1e}")
     for name, term in found.scene.interaction or ():
         if name in ("repulsion", "attraction"):
             lines.append(f"  {name:<28} amplitude {term.amplitude:.6g} FU·LU, range {term.range:.6g} LU")

@@ -1,4 +1,4 @@
-"""What a finished run says on a terminal: its numbers with uncertainty, the pressure profile, a material's regime."""
+"""Terminal output of a finished run: its results with uncertainty, the pressure profile, the regime of a material."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ BLOCK, EMPTY, AXIS = "█", " ", "─"
 
 
 def quantities(results: Mapping[str, Any]) -> list[str]:
-    """What the numbers are of, then a line for each: name, value ± uncertainty, unit, closed forms beside it.
+    """The reduction, then a line for each result: name, value ± uncertainty, unit, closed forms.
 
     In SI where the units are known, and then also what LU and FU are where they are other than m and N.
     """
@@ -58,11 +58,11 @@ def _whose(results: Mapping[str, Any]) -> str:
     """The reduction, and whose the radii and pressures are."""
     reduction = str(results["reduction"])
     if results.get("scene", {}).get("bodies", {}).get("profile", {}).get("kind") == "flat":
-        return f"{reduction}: a flat body is the same in each"
+        return f"{reduction}: the same for a flat body"
     if reduction == "mdr":
         return "mdr: radii and pressures are those of the body"
     if any(name.startswith("image_") for name in results):
-        return f"{reduction}: two equal spheres; what is called image is the plane model's"
+        return f"{reduction}: two equal spheres; image_… is of the one-dimensional image"
     return f"{reduction}: the plane model of the paper; radii are those of its image"
 
 
@@ -95,7 +95,7 @@ def pressure_plot(profile: Profile, radius: float, scales: Scales = UNKNOWN) -> 
 
 THEORY = {"adhesion_force": "N", "zero_load_radius": "m", "critical_radius": "m", "loaded_radius": "m"}
 """What the theories say, and its unit."""
-LABELS = {**NAMES, "loaded_radius": "radius under the load"}
+LABELS = {**NAMES, "loaded_radius": "radius under load"}
 WIDTH = 18
 
 
@@ -122,13 +122,13 @@ def regime(found: MaterialRun) -> Iterator[str]:
 
 
 def beside_theories(found: MaterialRun) -> Iterator[str]:
-    """A table: what the run has, and what each theory says, with the run's deviation from JKR."""
+    """A table: the results of the run, the predictions of each theory, and the deviation of the run from JKR."""
     theories = found.theories
     if theories is None:
         return
     yield ""
     columns = {name: f"{name}*" if name == theories.holding else name for name in theories.values}
-    yield f"  {'':<28} {'this run':<26}" + "".join(f"{shown:<{WIDTH}}" for shown in columns.values()) + "beside JKR"
+    yield f"  {'':<28} {'this run':<26}" + "".join(f"{shown:<{WIDTH}}" for shown in columns.values()) + "against JKR"
     for name, unit in THEORY.items():
         values = {theory: theories.values[theory].get(name) for theory in columns}
         if None in values.values():
@@ -139,7 +139,7 @@ def beside_theories(found: MaterialRun) -> Iterator[str]:
         said = "—" if own is None else str(own)
         shown = "".join(f"{prefixed(value, unit) if value else '0':<{WIDTH}}" for value in values.values())
         yield f"  {LABELS[name]:<28} {said:<26}{shown}{deviation}"
-    yield "  * holds at this μ"
+    yield "  * valid at this μ"
 
 
 def _own(found: MaterialRun, name: str) -> Quantity | None:

@@ -1,7 +1,7 @@
-"""A connected branch of states under displacement control: visit, reach a force, find the largest tension.
+"""A connected branch of states under displacement control: visit, reach a force, find the force maximum.
 
-Here a state does not depend on the path, so that a position is visited whenever it is wanted. Where that is not so
-(`replayed`), and where rows cost next to nothing (`stepped`), the same is done in another way.
+Here a state does not depend on the path, so that any position can be visited at any time. Subclasses are for states
+that depend on the path (`replayed`) and for load steps of negligible cost (`stepped`).
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from contact1d.workflow.deck.steps import Displace, DisplaceInTime, displacement
 
 Array = NDArray[np.float64]
 MOST_INCREMENTS = 10_000
-"""Rows of one stretch of a search; a search that needs more has no end in sight."""
+"""Load steps of one stretch of a search; a search that needs more has no end in sight."""
 MOST_ROUNDS = 60
-"""Refinements of a largest tension, each of which may halve the increment beside it: a sharp one needs some."""
+"""Refinements of a force maximum, each of which may halve the increment beside it: a sharp one needs some."""
 SEPARATION_ROWS = 1_000.0
-"""Rows in which an unloading comes from any displacement to where nothing is felt any more."""
+"""Load steps in which an unloading comes from any displacement to where nothing is felt any more."""
 FORCE_ACCURACY = 1e-3
 """How near to a wanted force a search must come, over the tolerance."""
 SEARCH_SHARE = 0.3
@@ -40,25 +40,25 @@ GROWTH = 1.6
 OVERSHOOT = 1.02
 """Secant steps aim a little beyond, so that a bracket forms instead of a slow approach from one side."""
 RETURN_SHARE = 0.5
-"""Move of a search that comes back to where the bodies have been, over their particles' smallest distance."""
+"""Move of a search back to a previous position, over the smallest distance of particles there."""
 SAME = 1e-12
 """Displacements nearer than this over the spacing are the same: a force that still differs has jumped."""
 APPROACH_STEPS = 20
 """Timesteps of a move on the way to a displacement that is held for a time."""
 ROWS_BEYOND_PEAK = 3
-"""Rows beyond the largest tension that its polynomials need."""
+"""Load steps beyond the force maximum that its polynomials need."""
 HALVINGS_AT_PEAK = 2
-"""Halvings of the increment beside the largest tension for the sake of the contact radius there."""
+"""Halvings of the increment beside the force maximum for the sake of the contact radius there."""
 PER_TOOTH, MOST_TEETH = 4.0, 400.0
-"""Rows to a tooth of the tension, and teeth that rows can tell apart; denser ones are a small part of it each."""
+"""Load steps to a maximum of the force, and maxima that they resolve; of more, each is a small part of the force."""
 MOST_RIVALS = 200
-"""Looks at teeth that may be higher than the highest row."""
+"""Examinations of maxima that may be higher than the highest load step."""
 READ_SHARE = 0.5
-"""Part of a radius's uncertainty below which it is looked at no closer: reading between particles limits it."""
+"""Part of a radius's uncertainty below which it is examined no closer: reading between particles limits it."""
 
 JUMPS = (
-    'the force jumps there, as particles snap or slip. Use kind = "path" to see it, or stiffer springs or a longer '
-    "range, with which particles do not snap"
+    'the force jumps there by an instability (snap-in, snap-out or slip). Use kind = "path" to see it, or stiffer '
+    "springs or a longer range, which avoid the instability"
 )
 
 
@@ -66,8 +66,8 @@ class Branch(ContactBranch):
     """States under displacement control.
 
     Attributes:
-        missed: how far the search may be off the largest tension [FU].
-        on_the_way: how many of the first states nobody asks for.
+        missed: error of the search for the force maximum [FU].
+        on_the_way: how many of the first states are intermediate ones.
     """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
@@ -89,7 +89,7 @@ class Branch(ContactBranch):
 
     @property
     def peak(self) -> Peak:
-        """The largest tension of the states that were held while unloading."""
+        """The force maximum of the states that were held while unloading."""
         return peak_of(self.unloading)
 
     @property
@@ -97,7 +97,7 @@ class Branch(ContactBranch):
         return -math.inf
 
     def visit(self, positions: Sequence[float] | Array, phases: str = "falling") -> list[State]:
-        """Rows at displacements [LU] that are known beforehand."""
+        """Load steps at displacements [LU] that are known beforehand."""
         states = self.contact.rows(displacements([float(position) for position in positions]))
         (self.loading if phases == "loading" else self.falling).extend(states)
         return states
@@ -136,28 +136,28 @@ class Branch(ContactBranch):
             before = before or next((s for s in states[::-1] if direction * (s.carried - force) <= 0), None)
             if before is None:
                 raise UntrustedError(
-                    f"{force:.4g} FU cannot be approached: the force starts at {last.carried:.4g} FU, "
-                    f"{'below' if falls else 'above'} it already. Take a force beyond that, or "
-                    'kind = "path" to see the curve'
+                    f"{force:.4g} FU cannot be reached: the force starts at {last.carried:.4g} FU, already "
+                    f"{'below' if falls else 'above'} it. Give a force beyond that, or use "
+                    'kind = "path" for the full curve'
                 )
             self._require_within_reach(force, falls, before, beyond)
             step = self.settings.increment(math.inf if falls else last.smallest_distance)
             states.append(self._at(_secant(before, beyond, states, force, direction * step)))
 
     def _first_rows(self, force: float, direction: int) -> None:
-        """The first rows of a stretch towards a force [FU]: the place where it begins."""
+        """The first load steps of a stretch towards a force [FU]: the position where it begins."""
         states, start = (self.loading, 0.0) if direction > 0 else (self.falling, self.loading[-1].displacement)
         states.append(self._at(start))
 
     def _require_within_reach(self, force: float, falls: bool, before: State, beyond: State | None) -> None:
-        """Refuse a force that the branch jumps past, never comes to, or comes to in no time."""
+        """Refuse a force that the branch jumps past, never reaches, or does not reach in a practicable time."""
         states = self.falling if falls else self.loading
         if beyond is not None and abs(beyond.displacement - before.displacement) < SAME * self.scene.bodies.spacing:
             raise UntrustedError(
                 f"the force jumps past {force:.4g} FU at displacement {before.displacement:.6g} LU, from "
-                f"{before.carried:.4g} to {beyond.carried:.4g} FU: particles snap or slip there, and no state on this "
-                'way has the force. Take a force outside of the jump, kind = "path" to see all of it, or stiffer '
-                "springs or a longer range, with which particles do not snap"
+                f"{before.carried:.4g} to {beyond.carried:.4g} FU: an instability, and no state on this path has this "
+                'force. Give a force outside the jump, use kind = "path" for the full curve, or stiffer '
+                "springs or a longer range, which avoid the instability"
             )
         if falls and states[-1].smallest_distance > self.settings.cutoff:
             raise TensionError(force, max(-state.force for state in states))
@@ -165,16 +165,16 @@ class Branch(ContactBranch):
             raise UntrustedError(
                 f"{force:.4g} FU is not reached within {MOST_INCREMENTS} increments, at displacement "
                 f"{states[-1].displacement:.4g} LU and {states[-1].carried:.4g} FU: the ranges of the interaction are "
-                "short beside the way. Take a force that is nearer to 0, longer ranges or stiffer springs"
+                "short compared with the path. Use a force nearer to 0, longer ranges or stiffer springs"
             )
 
     # --- the largest tension
 
     def maximum(self) -> None:
-        """Find the largest tension of the unloading; the last state is then at it.
+        """Find the force maximum of the unloading; the last state is then at it.
 
         Rows past it, back to it, and at half the distance beside it until they change nothing. Just below snapping F(d)
-        has a tooth for each pair that is lost: every one that may be the highest is looked at.
+        has a maximum for each pair that separates: every one that may be the highest is examined.
 
         Raises:
             UntrustedError: see `require_trust`; it is not found.
@@ -201,7 +201,7 @@ class Branch(ContactBranch):
             surprise = self._halve((found.position + beside, found.position - beside))
             expected = self.peak
             changed = max(surprise, abs(expected.smooth - found.smooth))
-        raise UntrustedError(f"the largest tension is not found near {expected.position:.6g} LU: {JUMPS}")
+        raise UntrustedError(f"no force maximum is found near {expected.position:.6g} LU: {JUMPS}")
 
     def open(self) -> None:
         """Pull the bodies apart.
@@ -216,12 +216,12 @@ class Branch(ContactBranch):
         after = self.peak
         if abs(after.smooth - before.smooth) > self.tolerance * after.smooth:
             raise SecondMaximumError(
-                f"the tension rises again to {after.tension:.6g} FU after its largest maximum was {before.smooth:.6g} "
-                'FU: use kind = "path" through all of it'
+                f"the tensile force rises again to {after.tension:.6g} FU after its maximum of {before.smooth:.6g} "
+                'FU: use kind = "path" over the full range'
             )
 
     def _pass_maximum(self) -> float:
-        """Rows down until the largest tension is passed; where there are teeth, all that may exceed it.
+        """Unload until the force maximum is passed; where there are several, all that may exceed it.
 
         Returns the increment [LU].
         """
@@ -235,11 +235,11 @@ class Branch(ContactBranch):
             rows.append(self._at(zero.displacement - len(rows) * step))
             self.falling.append(rows[-1])
             if len(rows) > MOST_INCREMENTS:
-                raise UntrustedError("the largest tension is never passed")
+                raise UntrustedError("the search does not pass the force maximum")
         return step
 
     def _halve(self, positions: tuple[float, float]) -> float:
-        """Visit positions [LU] beside the largest tension; by how much they are not what was promised there [FU]."""
+        """Visit positions [LU] beside the force maximum; by how much they are not what was promised there [FU]."""
         expected = promised(*self.unloading.lists, positions)
         surprise = 0.0
         for position, tension in zip(positions, expected, strict=True):
@@ -248,7 +248,7 @@ class Branch(ContactBranch):
         return surprise
 
     def _look_at_rivals(self, allowed: float) -> float:
-        """Visit positions beside teeth that may be higher than the highest row by more than `allowed` [FU].
+        """Visit positions near maxima that may be higher than the highest load step by more than `allowed` [FU].
 
         Returns by how much one still may [FU].
         """
@@ -329,7 +329,7 @@ class Branch(ContactBranch):
     def _still_held(self, state: State) -> float:
         """Tension [FU] that bodies which move apart can have at most from this state on.
 
-        A particle that has passed the largest tension of its law only loses what it has; any other, wherever it is, may
+        A particle that has passed the force maximum of its law only loses what it has; any other, wherever it is, may
         come to hold that.
         """
         profile, (distance, largest) = state.profile, self.settings.strongest
@@ -339,7 +339,7 @@ class Branch(ContactBranch):
 
 
 class SecondMaximumError(UntrustedError):
-    """The tension rises again after its first maximum: rows through all of it tell."""
+    """The tension rises again after its first maximum: further load steps are needed."""
 
 
 def _secant(before: State, beyond: State | None, states: Sequence[State], force: float, step: float) -> float:
@@ -356,7 +356,7 @@ def _secant(before: State, beyond: State | None, states: Sequence[State], force:
 
 
 def _is_passed(states: Sequence[State]) -> bool:
-    """Whether the last rows lie beyond a largest tension."""
+    """Whether the last load steps lie beyond a force maximum."""
     tension = [-s.force for s in states]
     largest = max(tension)
     return largest > 0.0 and tension.index(largest) < len(tension) - ROWS_BEYOND_PEAK

@@ -1,14 +1,14 @@
-"""The error budget: how far each result may be off, by source, found by perturbing the one reader of the results.
+"""The error budget: the error of each result by source, found by perturbing the one reader of the results.
 
-    solver           the reader on forces ± ε, also tilted about the last mark: ε is what a minimiser or a motion
-                     leaves, and what table, cutoff or a plane that is not quite rigid change
-    sampling         what the reader's polynomials and the search leave; where the scene gives the steps, the reader on
+    solver           the reader on forces ± ε, also tilted about the last mark: ε is the residual of a minimiser or a
+    motion, and the error of table, cutoff and a plane of finite stiffness
+    sampling         error of the reader's polynomials and of the search; where the scene gives the steps, the reader on
                      the model with these steps beside the model with dense ones
     discretisation   the reader on the model with its apex elsewhere between particles, or on three spacings; and on
-                     radii changed by what reading between particles leaves
-    instability      what particles that are lost early, and other teeth of the force, may change (the reader's own)
+                     radii changed by the error of interpolation between particles
+    instability      premature detachment of particles, and other maxima of the force (the reader's own)
 
-Nothing here knows an experiment: whatever a script passes and a reader reads has all of these.
+Nothing here depends on the experiment: whatever a script passes and a reader reads has all of these.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 MARGIN = 1.25
-"""Error over the change of the model with the lattice: it knows no neighbours. Measured on both parities: 1.01."""
+"""Error over the change of the model with the lattice: it has no neighbour springs. Measured on both parities: 1.01."""
 STEP_MARGIN, PATH_MARGIN = 1.25, 1.5
-"""The same of the steps of a path: dense ones have errors, too; the second where the model's maximum lies elsewhere."""
+"""The same of the steps of a path: dense ones have errors, too; the second if the model's maximum is elsewhere."""
 PHASES = (0.25, 0.0)
 """Positions of the apex between particles, over the spacing, that an even chain is compared with."""
 MORE_PHASES = (0.375, 0.25, 0.125, 0.0)
@@ -65,20 +65,20 @@ class Reduction:
         return _values(self.read(self.trace(model, dense, shift)))
 
     def trace(self, model: Reduced, dense: int = 1, shift: float = 0.0) -> Trace:
-        """What the script leaves of the model."""
+        """The driver of the reduced model, and its trace."""
         branch = ModelBranch(self.scene, self.settings, model, dense, shift)
         self.script(branch)
         return branch.trace()
 
     @property
     def on_lattice(self) -> bool:
-        """Whether the particles' positions are the program's choice, and not the body that was asked for."""
+        """Whether the positions of the particles are chosen by the program, and not part of the scene."""
         bodies = self.scene.bodies
         return bodies.particles == "auto" and not bodies.profile.has_edge
 
     @property
     def converges(self) -> bool:
-        """Whether sums over particles come nearer to the body's own steadily: where cells share the edge.
+        """Whether sums over particles come closer to the body's own steadily: where cells share the edge.
 
         Whole particles touch or don't, and what they miss goes up and down with the spacing.
         """
@@ -114,7 +114,7 @@ def _extrapolated(coarse: float, fine: float, finest: float) -> float:
 
 
 def sampling_errors(case: Reduction, trace: Trace) -> Values:
-    """By name of a result, what the steps that a scene gives miss of it, by the model with the same and dense steps."""
+    """Sampling error of each result by the steps of the scene, from the model with the same and with dense steps."""
     model, found = reduced(case.scene, case.settings), dict[str, float]()
     step = float(np.median(np.abs(np.diff(trace.displacement)))) if len(trace) > 1 else 0.0
     is_copy = case.scene.is_stepped
@@ -130,7 +130,7 @@ def sampling_errors(case: Reduction, trace: Trace) -> Values:
 
 @dataclass(frozen=True)
 class ForceErrors:
-    """How far the forces of states may be off, (m,) [FU].
+    """Errors of the forces of states, (m,) [FU].
 
     Attributes:
         common: alike at neighbouring states: what residual forces add up to at most, table, cutoff, a plane not rigid.

@@ -1,4 +1,4 @@
-"""A contact in LAMMPS: rows of a schedule go there, and each comes back as a measured state that can be trusted."""
+"""A contact in LAMMPS: it runs load steps of a schedule and returns a measured, accepted state of each."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ MOST_NUMBERS = 1_000_000
 
 
 class Contact:
-    """A deck that is being run. It keeps its schedule: `phases` is what in.lammps must hold to repeat it."""
+    """A running deck. It records its schedule: `phases` is the content of in.lammps that repeats it."""
 
     def __init__(self, deck: Deck, session: Session, meanwhile: Callable[[], object] | None = None) -> None:
         """Run the deck's head. What `meanwhile` does costs no time: LAMMPS reads the bodies then."""
@@ -78,16 +78,16 @@ class Contact:
         self.session.execute("", phase=name, expected_steps=expected_steps)
 
     def row(self, row: Row, trusted: bool = True) -> State:
-        """Run one row of the current phase and measure; see `rows`."""
+        """Run one load step of the current phase and measure; see `rows`."""
         return self.rows((row,), trusted)[0]
 
     def rows(self, rows: Sequence[Row], trusted: bool = True, moving: bool = False) -> list[State]:
-        """Run rows of the current phase, which are known beforehand, and measure each.
+        """Run load steps of the current phase, which are known beforehand, and measure each.
 
         Args:
             rows: of one kind.
             trusted: whether each state is a result; one on the way to equilibrium is not.
-            moving: whether the motion itself is looked at, so that nothing has to be at rest.
+            moving: whether the motion itself is examined, so that nothing has to be at rest.
 
         Raises:
             EngineError: LAMMPS failed, or lost particles.
@@ -111,19 +111,19 @@ class Contact:
         return found
 
     def write_state(self) -> None:
-        """Write the state that the last row left to states.lammpstrj; it ends the phase."""
+        """Write the state that the last load step left to states.lammpstrj; it ends the phase."""
         self._phases[-1] = replace(self._phases[-1], state=True)
         self._unfinished += self.deck.state(first=not self._written)
         self._written = True
 
     def finish(self) -> None:
-        """Run what is left of the last row; what its states were made of is not kept."""
+        """Run the remaining phases of the last load step, whose states are not kept."""
         self.session.execute(self._unfinished, phase=self._phases[-1].name)
         self._unfinished = ""
         (self.session.folder / FRAMES).unlink(missing_ok=True)
 
     def replay(self, phases: Sequence[Phase], relaxed: bool = False) -> list[State]:
-        """Run a whole schedule; one state for each row. `relaxed`: a row in time is repeated until it is at rest."""
+        """Run a whole schedule; one state for each load step. `relaxed`: one in time is repeated until at rest."""
         states: list[State] = []
         trusted = self.scene.noise is None
         for phase in phases:
@@ -161,7 +161,7 @@ class Contact:
         return states
 
     def _steps(self, rows: Sequence[Row], first: int) -> list[State]:
-        """Rows that are steps of one run: nothing has to relax."""
+        """Load steps that are steps of one run: nothing has to relax."""
         began = self.session.timestep
         self.session.measure(self._unfinished + self.deck.in_one_run(rows), meanwhile=self._look_back)
         self._unfinished = ""
@@ -203,7 +203,7 @@ class Contact:
         return [Profile(self._x, none, z, p, q) for z, p, q in zip(surfaces, pressures, shears, strict=True)]
 
     def _look_back(self) -> None:
-        """Work out the radii of the rows before, which their states keep: LAMMPS is busy with the next ones."""
+        """Work out the radii of the load steps before, which their states keep: LAMMPS is busy with the next ones."""
         for state in self._latest:
             with suppress(ValueError):  # reported where the radius is asked for
                 _ = state.radius

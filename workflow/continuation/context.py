@@ -27,13 +27,13 @@ class RunContext:
     Attributes:
         deck: what is run.
         folder: the run folder; system.data and the table are in it.
-        progress: told of phases and steps.
+        progress: informed of phases and steps.
         time_limit: for each contact [s].
-        retries: whether a search in which bodies went through each other begins anew in smaller steps.
+        retries: whether a search in which bodies went through each other restarts in smaller steps.
         workers: contacts that an experiment may have open at a time.
         ranks: of MPI, for each of them.
         lammps_seconds, lammps_cpu_seconds, steps: summed over all contacts so far.
-        rows_seconds: of the first, what rows took: without the deck's head and the files of states.
+        rows_seconds: of the first, what load steps took: without the deck's head and the files of states.
         phase, timestep: where the latest contact is or ended.
         through: whether a search goes through all of the tension: it rises again after its first maximum.
         left: what a run that failed had so far, if that is worth looking at; its quantities are no results.
@@ -58,7 +58,7 @@ class RunContext:
 
     @contextmanager
     def contact(self, purpose: str = "", meanwhile: Callable[[], object] | None = None) -> Iterator[Contact]:
-        """A fresh contact at displacement 0, in a LAMMPS instance of its own; `purpose` is told to the user.
+        """A fresh contact at displacement 0, in a LAMMPS instance of its own; `purpose` is shown to the user.
 
         What `meanwhile` does costs no time: LAMMPS reads the bodies then.
         """
@@ -77,7 +77,7 @@ class RunContext:
                 self.phase, self.timestep = session.phase, session.timestep
 
     def add_time_of(self, other: RunContext) -> None:
-        """Add what a context beside this one, maybe in another thread, has used."""
+        """Add the time used by a parallel context, possibly in another thread."""
         with self._lock:
             self.lammps_seconds += other.lammps_seconds
             self.lammps_cpu_seconds += other.lammps_cpu_seconds
@@ -86,7 +86,7 @@ class RunContext:
 
 
 class ContactBranch:
-    """States of one contact, from its approach on; what a script moves.
+    """States of one contact, from its approach on; driven by a script.
 
     Attributes:
         context: where contacts are opened.
@@ -129,7 +129,7 @@ class ContactBranch:
 
     @property
     def scale(self) -> float:
-        """The largest tension that is expected [FU]."""
+        """The force maximum that is expected [FU]."""
         return self.settings.estimate.pull_off_force()
 
     def begin(self, name: str) -> None:

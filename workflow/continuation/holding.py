@@ -1,10 +1,10 @@
-"""Load control in time, the paper's way: hold a load until all is at rest, or until the bodies part.
+"""Load control in time, as in the paper: hold a load until all is at rest, or until the bodies separate.
 
-LAMMPS itself looks every few timesteps whether the plate is at rest or out of reach, and stops there; only then a state
+LAMMPS itself checks every few timesteps whether the plate is at rest or separated, and stops there; only then a state
 is measured. With automatic damping each load has the drag that is critical for the contact's stiffness under it: the
-stiffness falls to zero towards the pull-off, and one drag for all makes the last tensions creep. Where pairs let go one
-by one, it does not fall: F(d) is a row of teeth, each as stiff as the pairs that still hold, and a plate that swings
-past one lets go of pairs that would have held.
+stiffness falls to zero towards the pull-off, and one drag for all makes the last tensions creep. Where pairs separate
+one by one, it does not fall: F(d) has a maximum for each, as stiff as the pairs in contact, and a plate that oscillates
+past one detaches pairs prematurely.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from contact1d.workflow.scene import Scene
 
 FEWEST_STEPS = 20
 PATIENCE = 10.0
-"""Time of one row over the settling time, after which a state is measured in any case."""
+"""Time of one load step over the settling time, after which a state is measured in any case."""
 MOST_HOLDS = 50
-"""Rows under one load after which it counts as never coming to rest."""
+"""Load steps under one load after which it counts as never coming to rest."""
 REST_SHARE = 0.1
 """Unbalanced load over the load scale and the tolerance."""
 CALMING_FACTOR = 0.5
@@ -34,7 +34,7 @@ CALMING_FACTOR = 0.5
 LOSS_SHARE = 0.7
 """Tension over what is pulled with, below which a plate that moves off counts as lost."""
 PARTING_SHARE = 0.6
-"""The same of the estimate's largest tension, where LAMMPS stops: the first place at which to look for it."""
+"""The same of the predictor's force maximum, where LAMMPS stops: the first position at which to look for it."""
 
 
 class Start(IntEnum):
@@ -44,7 +44,7 @@ class Start(IntEnum):
     """Where the load before began."""
     HERE = 0
     KEPT = 1
-    """Here, and the place is kept to come back to."""
+    """Here, and the position is kept to come back to."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Held:
 
     Attributes:
         load: compression positive [FU].
-        states: measured on the way.
+        states: measured on the path.
         held: whether the contact carries it at rest.
         unbalance: |carried − load| at the end, and what drag may still carry: particles lag behind the plate [FU].
     """
@@ -70,7 +70,7 @@ class Held:
 
 
 def stiffness_under(settings: Settings, load: float) -> float:
-    """Contact stiffness [FU/LU] under a load [FU]; of a row of teeth, that of all that are stuck when deepest."""
+    """Contact stiffness [FU/LU] under a load [FU]; where pairs separate one by one, of all that ever touch."""
     if settings.is_toothed:
         return settings.estimate.stuck_stiffness(settings.largest_displacement)
     return settings.estimate.stiffness_under(load)
@@ -79,7 +79,7 @@ def stiffness_under(settings: Settings, load: float) -> float:
 def damping_under(settings: Settings, load: float) -> float:
     """Coefficient of a particle [FU·TU/LU]; an automatic one is critical for the contact's stiffness under the load.
 
-    In a search that begins anew, no particle that is pressed on swings either.
+    In a search that restarts, no particle that is pressed on oscillates either.
     """
     if settings.damped_stiffness == 0.0:
         return settings.damping
@@ -90,7 +90,7 @@ def damping_under(settings: Settings, load: float) -> float:
 
 
 def overshoot(settings: Settings, mass: float, load: float, next_load: float) -> float:
-    """How far a plate at rest under `load` shoots past its place under `next_load` at most, over the way there.
+    """How far a plate at rest under `load` shoots past its position under `next_load` at most, over the path there.
 
     exp(−πζ/√(1 − ζ²)) of a linear oscillator with the stiffness of the beginning, the largest one under tension.
     """
@@ -101,7 +101,7 @@ def overshoot(settings: Settings, mass: float, load: float, next_load: float) ->
 
 
 def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start: Start) -> Hold:
-    """A `hold` row, which ends where the contact's force is within `at_rest` of the load.
+    """A `hold` step, which ends where the contact force is within `at_rest` of the load.
 
     With M the plate's mass, N m that of the particles that move with it and c the drag on both, the contact's force
     misses the load by (M + N m) Z″ + c Z′; LAMMPS knows M Z″ and Z′.
@@ -133,7 +133,7 @@ def hold(
     """Apply a load to a `hold` phase and run until it is held at rest, or lost.
 
     At rest means that what the contact carries balances the load within `at_rest(settings, scale)`, and that the
-    plate's motion keeps it there (see `hold_row`). `settings` stand for those of the contact, with a drag of their own.
+    plate's motion keeps it there (see `hold_row`). `settings` represent those of the contact, with a drag of their own.
 
     Raises:
         UntrustedError: the contact neither comes to rest nor is lost, or see `require_trust`.
@@ -156,17 +156,19 @@ def hold(
             row = replace(row, parted=_apart(settings))
         if state.displacement > row.through:
             require_trust(contact.scene, settings, state)
-            raise ThroughError(f"under {load:.4g} FU the plate went on to {state.displacement:.4g} LU")
+            raise ThroughError(
+                f"the bodies went through each other under {load:.4g} FU, at {state.displacement:.4g} LU"
+            )
         row = replace(row, start=int(Start.HERE), rest=row.rest * (CALMING_FACTOR if calm else 1.0))
     raise RestlessError(
-        f"the contact did not come to rest under {load:.4g} FU within {MOST_HOLDS * row.steps} timesteps "
-        f"(phase {state.phase}): {unbalance:.2g} FU are unbalanced",
-        "more [damping] or [plate] damping settles it sooner",
+        f"the contact did not reach equilibrium under {load:.4g} FU within {MOST_HOLDS * row.steps} timesteps "
+        f"(phase {state.phase}): the residual force is {unbalance:.2g} FU",
+        "use more [damping] or [plate] damping",
     )
 
 
 def press(contact: Contact, load: float, scale: float) -> Held:
-    """Hold a load ≥ 0 at once, the paper's way; in as many steps as a search in smaller ones says. All states are kept.
+    """Hold a load ≥ 0 at once, as in the paper; in as many steps as a search in smaller ones says. All states are kept.
 
     Raises:
         UntrustedError: see `hold`.
@@ -182,7 +184,7 @@ def press(contact: Contact, load: float, scale: float) -> Held:
 
 
 def _inertia(scene: Scene, settings: Settings) -> float:
-    """What moves over what LAMMPS counts as plate: the upper particles go with it, or are part of it."""
+    """Total moving mass over that of the plate in LAMMPS: the upper particles move with it, or are part of it."""
     return 1.0 if scene.stands else 1.0 + settings.particles * scene.bodies.mass / settings.plate_mass
 
 

@@ -1,8 +1,8 @@
-"""A branch of states under load control, in time, as the paper has it: loads, each held until rest or separation.
+"""A branch of states under load control, in time, as in the paper: loads, each held until equilibrium or separation.
 
-A tension that breaks the contact is undone: the next one begins where it began. The first tensions are chosen by the
-model, which is mostly within a tolerance of the pull-off force; what counts is the bracket of a tension that held
-and one that did not. The rows of the search are the schedule: nothing is run twice.
+A tension that separates the bodies is undone: the next one starts from the state before. The reduced model, which
+is mostly within a tolerance of the pull-off force, chooses the first loads; the result is the bracket of a load that
+is sustained and one that is not. The load steps of the search are the schedule: nothing is run twice.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ SPREAD = 2.0
 STRIDE = 0.8
 """Rise of a tension over what is left to the expected pull-off force at most, so that the last states lie near it."""
 EDGES = 2
-"""Pairs that let go together, one at each edge of the contact: by so much the tension falls after a snap."""
+"""Pairs that separate together, one at each contact edge: by so much the tensile force falls after a snap-out."""
 GROWTH = 0.25
 """Rise of a tension over the one that held, where nothing better is known."""
 FIRST_RISE = 2.0
@@ -47,7 +47,7 @@ FIRST_RISE = 2.0
 DOUBTFUL_SHARE = 0.9
 """Tension over the expected largest one from which on it may be the pull-off force."""
 LEAST_STEP = 1e-3
-"""Steps towards a tension, over the largest one that is expected, below which the tension itself is tried."""
+"""Distance to a tensile load, over the expected force maximum, below which the load itself is tried."""
 
 
 @dataclass
@@ -72,7 +72,7 @@ class Search:
 
     @property
     def best(self) -> float:
-        """The largest tension that held [FU]."""
+        """The largest tensile force sustained [FU]."""
         return -self.held[-1].load
 
     @property
@@ -81,7 +81,7 @@ class Search:
         return self.broken - self.best <= BRACKET * self.tolerance * self.best
 
     def learn(self, result: Held) -> None:
-        """Take in what the latest tension led to."""
+        """Record the outcome of the latest tensile load."""
         if result.held:
             self.held.append(result)
             return
@@ -109,11 +109,11 @@ class Search:
 
 
 class LoadBranch(ContactBranch):
-    """States at rest under loads; what `Branch` does by displacement is done here by force.
+    """States at rest under loads; as `Branch`, but under load control.
 
     Attributes:
         unbalance: force [FU] that the last state leaves unbalanced.
-        search: of the largest tension, once there was one.
+        search: of the force maximum, once there was one.
     """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
@@ -150,7 +150,7 @@ class LoadBranch(ContactBranch):
             close = gentle >= held.load - LEAST_STEP * self.scale
             self._take(hold(self.contact, force if close else max(force, gentle), scale), self.falling)
         if not self._last.held:
-            raise UntrustedError(f"the contact cannot hold {self._last.load:.4g} FU: the bodies part")
+            raise UntrustedError(f"the contact does not sustain {self._last.load:.4g} FU: the bodies separate")
 
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
         """Hold a force [FU] for a time [TU]; a tension from F = 0 on."""
@@ -161,10 +161,10 @@ class LoadBranch(ContactBranch):
         self.loading += self.contact.rows([UnderLoad(force, 1), *[UnderLoad(force, steps)] * count], moving=True)
 
     def holds_more(self, force: float) -> bool:
-        """Whether a tension that is larger by FIRST_RISE tolerances is held, too, tried with a contact of its own.
+        """Whether a tensile load larger by FIRST_RISE tolerances is sustained, too, tried with a contact of its own.
 
         A contact at rest balances its load within a share of the tolerance, and near the limit point it creeps: on
-        which side of it a load is can't be told nearer than that.
+        which side of it a load is cannot be resolved further.
         """
         if force > -DOUBTFUL_SHARE * self.scale:
             return True
@@ -183,7 +183,7 @@ class LoadBranch(ContactBranch):
         """Try tensions until the bracket of the largest one is narrow enough, then hold the largest that was held.
 
         Raises:
-            UntrustedError: see `hold`; the largest tension is not bracketed, or not held again.
+            UntrustedError: see `hold`; the force maximum is not bracketed, or not held again.
         """
         zero = self._last
         past = partial(_overshoot, self)
@@ -199,24 +199,24 @@ class LoadBranch(ContactBranch):
                 break
         else:
             raise UntrustedError(
-                f"the pull-off force was not bracketed within {MOST_LEVELS} tensions: it is above {search.best:.6g} FU"
+                f"the pull-off force was not bracketed within {MOST_LEVELS} loads: it is above {search.best:.6g} FU"
             )
         self.contact.begin("critical")
         critical = hold(self.contact, -search.best, search.guess, Start.BACK)
         if not critical.held:
             raise UntrustedError(
-                f"the contact held {search.best:.6g} FU once and not again: a plate that still swings decides there. "
-                'Leave [damping] coefficient and [plate] damping "auto" or give more of them, or take method = '
+                f"the contact sustained {search.best:.6g} FU in one trial and not in the next: the plate oscillates. "
+                'Use "auto" or larger values for [damping] coefficient and [plate] damping, or method = '
                 '"quasistatic"'
             )
         self.falling[-1] = critical.last
         self._held, self.unbalance = critical, critical.unbalance
 
     def open(self) -> None:
-        """Nothing: a tension that was not held has parted the bodies."""
+        """Nothing: a tension that was not held has separated the bodies."""
 
     def missed_teeth(self) -> float:
-        """Tension [FU] that a plate may miss which swings past a tooth of it, where pairs are lost one by one."""
+        """Tension [FU] that a plate may miss which oscillates past a force maximum, where pairs are lost one by one."""
         settings = self.settings
         lost = (settings.estimate.snap[1] or settings.strongest[1]) if settings.is_toothed else 0.0
         assert self.search is not None
@@ -237,7 +237,7 @@ def _overshoot(branch: LoadBranch, tension: float) -> float:
 
 
 def top_of(displacement: Array, force: Array) -> tuple[float, float] | None:
-    """(displacement [LU], tension [FU]) of the largest tension of the polynomial through states at rest.
+    """(displacement [LU], tension [FU]) of the force maximum of the polynomial through states at rest.
 
     None where it has none within LONGEST_EXTRAPOLATION of the states. Their own forces count, not the loads that
     they balance within a threshold.

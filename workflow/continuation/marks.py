@@ -1,4 +1,4 @@
-"""Marks of a curve: the largest tension of an unloading, and how a displacement or a radius goes with the force."""
+"""Marks of a curve: the force maximum of an unloading, and displacement or radius as a function of the force."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ Array = NDArray[np.float64]
 BRANCH_DISTANCE = 0.02
 """Distance of two displacements over the whole path from which on a change is more than interpolation error."""
 LAST = 1e-6
-"""Distance from the limit point, over the way from F = 0 to there, within which the last row stands for it."""
+"""Distance from the limit point, over the path from F = 0 to there, within which the last load step represents it."""
 SEPARATED = 0.02
-"""Force over the largest tension below which bodies count as separated: the model has the rest."""
+"""Force over the force maximum below which bodies count as separated: the model has the rest."""
 NODES, MODEL_DIGITS = 128, 1e-6
 """Of the quadrature of a work; half of them, and of the states, say how well it is known; error of the
 model's own tables, relative."""
 TINY = float(np.finfo(np.float64).tiny)
 PLACE_FACTOR = 2.0
-"""Error of the position of the largest tension over the distance between those of two polynomials."""
+"""Error of the position of the force maximum over the distance between those of two polynomials."""
 
 
 def unloading(branch: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
     """F_A, a_cr, a₀ and the work of separation of a branch of falling displacement, those of the four that it has.
 
-    F_A is the largest tension, at the vertex of a smooth curve or at the last row before a jump, and a_cr the radius
-    there; a₀ is the radius where the force crosses 0. A largest tension at an end of the branch is none, but at the
+    F_A is the force maximum, at the vertex of a smooth curve or at the last row before a jump, and a_cr the radius
+    there; a₀ is the radius where the force crosses 0. A force maximum at an end of the branch is none, but at the
     limit point of the contact.
     """
     found: dict[str, Reading] = {}
@@ -82,9 +82,9 @@ def _separation(branch: Trace, peak: Peak, scene: Scene, settings: Settings) -> 
 
 
 def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: float) -> Reading:
-    """a at the largest tension; where that may be another tooth by `missed` [FU], the radius may be the one there.
+    """a at the force maximum; where that may be another one by `missed` [FU], the radius may be the one there.
 
-    A jump comes anywhere on the way to the next row, and may leave nothing to read a radius off.
+    A jump comes anywhere on the way to the next load step, and may leave nothing to read a radius off.
     """
     d, i = branch.displacement, peak.index
     jumps = i + 1 < len(d) and peak.position == d[i]
@@ -104,7 +104,7 @@ def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: floa
 
 
 def _zero_load(branch: Trace) -> Reading | None:
-    """a where the force crosses 0, by a parabola; a straight line says how far to believe it.
+    """a where the force crosses 0, by a parabola; a straight line estimates its error.
 
     None where it never does, or only as the contact is lost.
     """
@@ -123,7 +123,7 @@ def _zero_load(branch: Trace) -> Reading | None:
 
 
 def early_loss(branch: Trace, peak: Peak, settings: Settings) -> float:
-    """How far [LU] before its limit the largest tension may have been lost, in the move after it."""
+    """How far [LU] before its limit the force maximum may have been lost, in the move after it."""
     d = branch.displacement
     return settings.let_go_early(float(d[peak.index] - d[min(peak.index + 1, len(d) - 1)]))
 
@@ -139,12 +139,12 @@ def cut_short(branch: Trace, peak: Peak, settings: Settings) -> float:
 
 
 def _distance_from_limit(branch: Trace) -> float:
-    """Of the last row, over the whole branch; infinite where no limit point is known."""
+    """Of the last load step, over the whole branch; infinite where no limit point is known."""
     return abs(float(branch.displacement[-1]) - branch.limit) / max(float(np.ptp(branch.displacement)), TINY)
 
 
 def peak_of(trace: Trace) -> Peak:
-    """The largest tension by falling displacement; at the limit point, where a contact is lost at once, what it is."""
+    """The force maximum by falling displacement; at the limit point, where a contact is lost at once, its force."""
     found = largest_tension(*trace.lists)
     last = len(trace) - 1
     left = _distance_from_limit(trace)
@@ -182,7 +182,7 @@ def radius_at(trace: Trace, position: float) -> float:
 def displacement_under(trace: Trace, state: int, force: float, expected: float) -> float:
     """Displacement [LU] at which the curve through a state carries a force [FU] that is near to its own.
 
-    x with S x + K x²/2 = ΔF: towards the largest tension the stiffness S = dF/dd falls as K = dS/dd says, and x
+    x with S x + K x²/2 = ΔF: towards the force maximum the stiffness S = dF/dd falls as K = dS/dd says, and x
     grows as a square root, up to √(2 |ΔF|/K). S and K are those of a parabola through up to two states beside it,
     one at least twice as far off as the other; S is at most `expected` [FU/LU], which counts alone where there are
     no such states.

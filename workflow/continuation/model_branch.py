@@ -1,4 +1,4 @@
-"""The reduced model in the place of LAMMPS: the same script goes through it, the same reader reads it."""
+"""The reduced model in place of LAMMPS: driven by the same script and evaluated by the same reader."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 COARSE, FINE, ZOOMS = 100, 30, 2
-"""Positions of the first look for the largest tension and of each closer one, and how many of these: none where the
+"""Positions of the first look for the force maximum and of each closer one, and how many of these: none where the
 curve is smooth, since the model's forces are straight between the points of a grid, whose corners would move a top."""
 BETWEEN = 8
 """Positions on the way to a force."""
 LAST = 1e-9
-"""How much of the way from F = 0 to the limit point is left before it."""
+"""How much of the path from F = 0 to the limit point is left before it."""
 MOST_NUMBERS = 400_000
 """Forces that are worked out in a path with dense positions."""
 
@@ -31,7 +31,7 @@ UNSEEN = ""
 
 
 class ModelBranch:
-    """States of the model, with positions as dense as asked for; they are worked out together in the end.
+    """States of the model, with positions of the required density; they are computed together at the end.
 
     Attributes:
         model: the particles.
@@ -48,7 +48,7 @@ class ModelBranch:
 
     @property
     def scale(self) -> float:
-        """The largest tension that is expected [FU]."""
+        """The force maximum that is expected [FU]."""
         return self.settings.estimate.pull_off_force()
 
     def begin(self, name: str) -> None:
@@ -85,7 +85,7 @@ class ModelBranch:
             self.visit([self.model.apart, displacement])  # what follows from the beginning is as uncertain as the end
 
     def maximum(self) -> None:
-        """Pass the largest tension, densely about it."""
+        """Pass the force maximum, densely about it."""
         zero, apart = self._rows[-1][1], self.model.apart
         end = zero + (1.0 - LAST) * (apart - zero)
         dense = COARSE * (2 if self.settings.snaps else 1)

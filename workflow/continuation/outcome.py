@@ -1,4 +1,4 @@
-"""What an experiment hands over: results with their error budgets, the curve, profiles, the schedule, and warnings."""
+"""The outcome of an experiment: results with their error budgets, the curve, profiles, the schedule, and warnings."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MODEL = "model"
 
 @dataclass(frozen=True)
 class Reading:
-    """A value that was read, and what its reader knows of its errors, by source.
+    """A value with the errors that its reader determines, by source.
 
     Attributes:
         value: in `unit`.
@@ -132,10 +132,10 @@ def in_words(shares: Mapping[str, float]) -> str:
 
 
 def unmet(results: Mapping[str, Result], tolerance: float, without: Iterable[str] = ()) -> dict[str, float]:
-    """Relative uncertainties of the results that are known less well than the tolerance, by name.
+    """Relative uncertainties of the results that exceed the tolerance, by name.
 
     Args:
-        results: what the scene prescribes is none of them.
+        results: without those that the scene prescribes.
         tolerance: relative.
         without: sources that are left out.
     """

@@ -1,6 +1,6 @@
-"""A branch of states that depend on the path, since pairs snap: the schedule is run again from the start.
+"""A branch of states that depend on the loading history, since pairs snap: the schedule is run again from the start.
 
-Each time it has the wanted positions in their order, more of them about the largest tension.
+Each time it has the required positions in their order, more of them near the force maximum.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ MOST_REPLAYS = 8
 GROWTH = 1.2
 """Of moves apart: longer ones lose particles early."""
 SAME = 1e-9
-"""Distance of two rows over the way that are one."""
+"""Distance of two load steps over the way that are one."""
 WINDOW_ROWS, ZOOM_FACTOR, RIVAL_SHARE = 8, 0.25, 0.05
-"""Of a schedule that is run again: rows on either side of the largest tension, width of that window over the one
-before, and teeth within this share of the largest that are all looked at in the first one."""
+"""Of a schedule that is run again: load steps on either side of the force maximum, width of that window over the one
+before, and maxima within this share of the largest that are all examined in the first one."""
 
 
 class ReplayedBranch(Branch):
@@ -51,9 +51,9 @@ class ReplayedBranch(Branch):
             super().finish()
 
     def maximum(self) -> None:
-        """Pull the bodies apart, then run the schedule again and again, each time finer about the largest tension.
+        """Pull the bodies apart, then run the schedule again and again, each time finer about the force maximum.
 
-        The numbers are those of the last schedule, which holds the positions of F_D, F = 0 and the largest tension; it
+        The numbers are those of the last schedule, which holds the positions of F_D, F = 0 and the force maximum; it
         ends when two of them agree.
 
         Raises:
@@ -71,9 +71,9 @@ class ReplayedBranch(Branch):
                 self._finished = True
                 return
         raise UntrustedError(
-            f"the pull-off force still changes from {before.tension:.6g} to {self.peak.tension:.6g} FU after "
-            f"{MOST_REPLAYS} refinements of the path, by more than a tolerance of {self.settings.tolerance:g} allows: "
-            "take a larger [accuracy] tolerance, or stiffer springs or a longer range, with which particles do not snap"
+            f"the pull-off force has not converged: {before.tension:.6g} and {self.peak.tension:.6g} FU after "
+            f"{MOST_REPLAYS} refinements differ by more than a tolerance of {self.settings.tolerance:g} allows. "
+            "Use a larger [accuracy] tolerance, or stiffer springs or a longer range, which avoid the instability"
         )
 
     def _replay(self, window: float, first: bool) -> None:
@@ -102,7 +102,7 @@ class ReplayedBranch(Branch):
         phases = [Phase("loading", displacements(loading))]
         phases += [Phase(name, displacements(rows), state=name != "separating") for name, rows in parts.items()]
         self._open.close()
-        purpose = "the whole path again, finer at the largest tension"
+        purpose = "repeating the path with smaller steps at the force maximum"
         self.contact = self._open.enter_context(self.context.contact(purpose))
         states = self.contact.replay(phases)
         self.loading, self.falling = states[: len(loading)], states[len(loading) :]
@@ -128,15 +128,15 @@ class ReplayedBranch(Branch):
         )
 
     def open(self) -> None:
-        """Nothing: a schedule that was run again has parted the bodies."""
+        """Nothing: a schedule that was run again has separated the bodies."""
 
     def _growth(self, state: State, largest: float) -> float:
-        """They grow only where no tooth can be higher any more."""
+        """They grow only where no maximum can be higher any more."""
         return GROWTH if self._still_held(state) < largest else 1.0
 
 
 def _displacement_of(states: Sequence[State], force: float) -> float:
-    """Displacement [LU] of a force [FU] on a rising branch, through its two nearest rows."""
+    """Displacement [LU] of a force [FU] on a rising branch, through its two nearest load steps."""
     near = sorted(states, key=lambda s: abs(s.force - force))[:2]
     if len(near) < 2 or near[0].force == near[1].force:
         return near[0].displacement

@@ -1,4 +1,4 @@
-"""A measured state of a contact, and what its contact radius is."""
+"""A measured state of a contact, and its contact radius."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ OUTSIDE = 1.5
 
 @dataclass(frozen=True)
 class RadiusRule:
-    """What the contact radius of a scene is; `tolerance` says how exact a minimiser leaves a pressure."""
+    """The definition of the contact radius of a scene; `tolerance` limits the residual of a pressure."""
 
     scene: Scene
     tolerance: float
@@ -41,7 +41,7 @@ class RadiusRule:
     def or_spot(self, profile: Profile) -> ContactRadius:
         """The contact radius; 0 where no particle is in tension, as where F = 0 and the pairs at the apex just touch.
 
-        The largest tension is then nearer than the next particle, OUTSIDE spacings from the apex at most.
+        The force maximum is then nearer than the next particle, OUTSIDE spacings from the apex at most.
         """
         outside = OUTSIDE * self.scene.bodies.spacing
         return self.of(profile) or ContactRadius(0.0, outside, 0.0, 0.0, reaches_end=False)
@@ -87,7 +87,7 @@ class State:
 
     @property
     def carried(self) -> float:
-        """The load that the state balances [FU]: what the contact carries and nothing else presses."""
+        """The load in equilibrium with the state [FU]: the contact force and other forces on the body."""
         return self.force - self.pushed
 
     @cached_property

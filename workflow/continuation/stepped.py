@@ -1,6 +1,6 @@
-"""A branch whose rows are steps of one run, on a rigid plane: they cost next to nothing.
+"""A branch whose load steps are steps of one run, on a rigid plane, at negligible cost.
 
-The reduced model of such a contact is the deck's own law, so that its limit points and forces are known beforehand.
+The reduced model of such a contact is identical to the deck, so that its limit points and forces are known beforehand.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from contact1d.workflow.continuation.trust import DigitsError, TensionError
 from contact1d.workflow.model.settings import Settings
 
 LOADING_STEPS = 24
-"""Rows on the way to a force that is known beforehand."""
+"""Load steps on the way to a force that is known beforehand."""
 CURVE_STEPS, CURVE_NUMBERS = 100, 200_000
 """Increments of a load where rows are steps of one run, for the sake of its curve: they cost some tens of microseconds
-each. Of long chains there are so many that positions times rows stay below the second."""
+each. Of long chains there are so many that positions times load steps stay below the second."""
 PULLING_STEPS = 48
-"""Rows from F = 0 to the limit point, where it is known."""
+"""Load steps from F = 0 to the limit point, where it is known."""
 LAST = 1e-9
 """How much of that is left before it."""
 BEYOND_LIMIT = 1.05
@@ -34,7 +34,7 @@ class SteppedBranch(Branch):
         return self.model.apart if self.scene.adheres else -math.inf
 
     def _first_rows(self, force: float, direction: int) -> None:
-        """Rows up to where the model has the force [FU].
+        """Load steps up to where the model has the force [FU].
 
         Raises:
             TensionError: no contact holds the force.
@@ -52,10 +52,10 @@ class SteppedBranch(Branch):
         self.visit(rows if direction > 0 else rows[1:], "loading" if direction > 0 else "falling")
 
     def maximum(self) -> None:
-        """Rows from F = 0 to just before the limit point, then about the largest tension.
+        """Load steps from F = 0 to just before the limit point, then about the force maximum.
 
         Raises:
-            DigitsError: it is nothing beside the last digits of positions.
+            DigitsError: it is below the round-off error of positions.
         """
         zero, last = self._last.displacement, self.model.apart
         end = zero + (1.0 - LAST) * (last - zero)
@@ -68,16 +68,16 @@ class SteppedBranch(Branch):
         digits = self._last.residual * self.settings.particles
         if self.peak.smooth <= digits:
             raise DigitsError(
-                f"the largest tension, about {self.scale:.2g} FU, is nothing beside {digits:.2g} FU, which "
-                "the last digits of positions make of the contact's force",
-                "take a larger adhesion.work_of_adhesion, or a smaller preload",
+                f"the force maximum, about {self.scale:.2g} FU, is too small compared with {digits:.2g} FU, the "
+                "round-off error of the contact force",
+                "use a larger adhesion.work_of_adhesion, or a smaller preload",
             )
 
     def open(self) -> None:
-        """Rows over the limit point."""
+        """Load steps over the limit point."""
         self.visit(np.linspace(self._last.displacement, BEYOND_LIMIT * self.model.apart, LOADING_STEPS + 1)[1:])
 
 
 def curve_steps(settings: Settings) -> int:
-    """Increments of a load's curve where rows are steps of one run."""
+    """Increments of a load's curve where load steps are steps of one run."""
     return max(LOADING_STEPS, min(CURVE_STEPS, CURVE_NUMBERS // settings.particles))

@@ -1,4 +1,4 @@
-"""What a reader of results sees of a run: displacements, forces and radii along a path, measured or of the model."""
+"""The trace from which results are read: displacements, forces and radii along a path, measured or of the model."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Trace:
     Attributes:
         phase: name of each state's phase.
         displacement, force: [LU], [FU].
-        asked: whether the scene asks for the state; the others are on the way there.
+        asked: whether the scene asks for the state; the others are on the path there.
         along: position along x [LU].
         profile: pressure and shear of a state, by its number.
         contact: radius of a state as it is read off its profile; None where the bodies do not touch.
@@ -35,8 +35,8 @@ class Trace:
         radius_shift: by how many of its own uncertainties each radius is taken too large, (m,); 0 as it is read.
         radius_factor: by which radii are taken larger.
         limit: displacement [LU] below which no contact is held; −inf where none is known.
-        doubt: by source, how far the search may be off the largest tension [FU].
-        bracket: under load control, the largest tension that was held and the smallest that was not [FU].
+        doubt: by source, error of the search for the force maximum [FU].
+        bracket: under load control, the force maximum that was held and the smallest that was not [FU].
     """
 
     phase: tuple[str, ...]
@@ -60,7 +60,7 @@ class Trace:
 
     @property
     def lists(self) -> tuple[list[float], list[float]]:
-        """Displacements and forces, as the functions that read a curve take them."""
+        """Displacements and forces, as arguments of the functions that read a curve."""
         return self.displacement.tolist(), self.force.tolist()
 
     def radius(self, state: int) -> float | None:
@@ -87,7 +87,7 @@ class Trace:
         return float(np.broadcast_to(self.radius_shift, self.force.shape)[state])
 
     def own_force(self, state: int) -> float:
-        """Force of a state as it is, whatever was changed [FU]."""
+        """Force of an unperturbed state [FU]."""
         return float((self.force - self.shift)[state])
 
     def falling(self) -> Trace:
@@ -115,7 +115,7 @@ class Trace:
     def perturbed(
         self, force: Array | float = 0.0, radius_shift: Array | float = 0.0, radius_factor: float = 1.0
     ) -> Trace:
-        """With forces changed [FU], and radii by so many of their own uncertainties and by a factor."""
+        """With forces changed [FU], and radii changed by a multiple of their uncertainties and by a factor."""
         changed = self.force + force
         bracket = self.bracket
         if bracket is not None:  # of tensions, that the last state is the largest of
@@ -156,7 +156,7 @@ def of_model(
     spacing: float,
     limit: float,
 ) -> Trace:
-    """The trace of what the reduced model followed, with particles that carry nothing beside the contact."""
+    """The trace of the reduced model, with unloaded particles on both sides of the contact."""
     beside = spacing * np.arange(1, BESIDE + 1)
     x = np.concatenate([followed.x[0] - beside[::-1], followed.x, followed.x[-1] + beside])
     none = np.zeros_like(x)

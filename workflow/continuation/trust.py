@@ -1,4 +1,4 @@
-"""Which states are no result, and what limits those that are."""
+"""Which states are accepted as results, and their limitations."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ COMPLIANCE_FACTOR = 2.0
 """Error of an equilibrium over that of the force on particles held in place: they follow it, and a table's error, here
 at the distances that happen to be there, is half of what it is between two entries on average."""
 SLOWNESS_RATIO = 10.0
-"""Timesteps to settle over those with automatic values from which on it is told: seconds become minutes."""
+"""Timesteps to settle over those with automatic values from which on it is reported: seconds become minutes."""
 
 
 def require_trust(scene: Scene, settings: Settings, state: State, moving: bool = False) -> None:
@@ -45,7 +45,7 @@ def require_trust(scene: Scene, settings: Settings, state: State, moving: bool =
     """
     at = f"at displacement {state.displacement:.4g} LU (phase {state.phase})"
     if state.depth > 0.0:
-        heat = "" if scene.noise is None else " under this heat"
+        heat = "" if scene.noise is None else " at this temperature"
         raise ThroughError(
             f"the bodies went through each other {at}: a particle lies {state.depth:.3g} LU below the opposite "
             f"surface. One layer of particles cannot carry this load{heat}",
@@ -56,20 +56,20 @@ def require_trust(scene: Scene, settings: Settings, state: State, moving: bool =
         limit = RESIDUAL_LIMIT * settings.tolerance * settings.force_scale
         if scene.is_stepped:
             raise DigitsError(
-                f"the forces are too small to compute with {at}: the last digit of a particle's place is a force of "
+                f"the forces are too small to resolve {at}: the round-off error of a position corresponds to "
                 f"{state.residual:.2g} FU, and a tolerance of {settings.tolerance:g} allows {limit:.2g} FU",
-                "take a larger load or displacement, or a larger [accuracy] tolerance",
+                "use a larger load or displacement, or a larger [accuracy] tolerance",
             )
         raise UntrustedError(
-            f"not converged {at}: a particle is left with a force of {state.residual:.2g} FU, above the {limit:.2g} FU "
-            f"that a tolerance of {settings.tolerance:g} allows. What helps is "
+            f"not converged {at}: a particle has a residual force of {state.residual:.2g} FU, above the {limit:.2g} FU "
+            f"that a tolerance of {settings.tolerance:g} allows. Use "
             + ("more [damping]" if scene.method == "dynamic" else "a smaller load or smaller displacements")
             + ", or a larger [accuracy] tolerance"
         )
     if _reaches_end(scene, state.profile):
         raise ChainEndError(
             f"the contact reaches the end of the chain {at}",
-            f"take {_more_particles(scene, settings)}, or a smaller load",
+            f"use {_more_particles(scene, settings)}, or a smaller load",
             longer_chain(scene),
         )
 
@@ -79,11 +79,11 @@ def _against_passing(scene: Scene) -> str:
     cooler = "" if scene.noise is None else f"lower noise.temperature from {scene.noise.temperature:g} FU·LU, "
     if scene.horizontal is None or scene.experiment.motion_is_result:  # a slide needs it
         return cooler
-    return f"{cooler}leave out [horizontal], which lets particles step aside, "
+    return f"{cooler}leave out [horizontal], which lets particles move aside, "
 
 
 def _more_particles(scene: Scene, settings: Settings) -> str:
-    """Which number is to grow: of the upper chain, where it has its own."""
+    """Which number to increase: that of the upper chain, if given."""
     if scene.bodies.upper_particles is not None:
         return f"more bodies.upper_particles than {settings.particles}, or leave it out"
     return f'more bodies.particles than {settings.particles} (or "auto")'
@@ -95,7 +95,7 @@ def is_converged(settings: Settings, state: State) -> bool:
 
 
 def require_no_contradiction(settings: Settings, tension: float, uncertainty: float, states: Iterable[State]) -> None:
-    """Refuse a largest tension [FU] that a state of the run's own curve exceeds by more than its uncertainty [FU].
+    """Refuse a force maximum [FU] that a state of the run's own curve exceeds by more than its uncertainty [FU].
 
     Raises:
         UntrustedError: names the state.
@@ -103,14 +103,14 @@ def require_no_contradiction(settings: Settings, tension: float, uncertainty: fl
     for state in states:
         if -state.force > tension + uncertainty + state.residual * settings.particles:
             raise UntrustedError(
-                f"the largest tension was found as {tension:.6g} FU, and the run's own curve has "
-                f"{-state.force:.6g} FU at displacement {state.displacement:.6g} LU (phase {state.phase}): the search "
-                'was misled. Use kind = "path" through all of the tension, or a smaller [accuracy] tolerance'
+                f"the search found a force maximum of {tension:.6g} FU, but the curve of this run has "
+                f"{-state.force:.6g} FU at displacement {state.displacement:.6g} LU (phase {state.phase}): it missed "
+                'the maximum. Use kind = "path" over the full tensile range, or a smaller [accuracy] tolerance'
             )
 
 
 def _reaches_end(scene: Scene, profile: Profile) -> bool:
-    """Whether the contact's edge, the largest tension or else the last loaded particle, is a chain's last particle.
+    """Whether the contact's edge, the force maximum or else the last loaded particle, is a chain's last particle.
 
     That of a flat punch is meant to be.
     """
@@ -131,38 +131,38 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
     if not scene.bodies.profile.has_edge and share > END_SHARE_LIMIT * settings.tolerance:
         found["chain_end"] = (
             f"the outermost particles carry up to {share:.2g} of the largest pressure, so the chain of "
-            f"{settings.particles} particles cuts the contact: take {_more_particles(scene, settings)}"
+            f"{settings.particles} particles truncates the contact: use {_more_particles(scene, settings)}"
         )
     ends = reflected(scene, settings.estimate, settings.largest_displacement, settings.particles)
     if not scene.bodies.profile.has_edge and ends > settings.tolerance:
         found["chain_end"] = (
             f"neighbour springs spread the load over {decay_length(scene):.3g} LU to each side, and the chain of "
-            f"{settings.particles} particles ends so near to the contact that up to {ends:.1g} of that comes back from "
-            f"there: take {_more_particles(scene, settings)}"
+            f"{settings.particles} particles ends so near to the contact that up to {ends:.1g} of it is reflected by "
+            f"its end: use {_more_particles(scene, settings)}"
         )
     share = law_share(scene, settings)
     if share > settings.tolerance:
         found["cutoff"] = (
-            f"what is left out of the law (beyond a cutoff of {settings.cutoff:.3g} LU, by a table of particles that "
-            f"all but stand on each other, or of a plane not quite rigid) changes a force by a share of up to "
-            f'{share:.1g}, and the radii with it: take a longer interaction.cutoff, or "auto", or a smaller load'
+            f"the truncation error of the interaction (a cutoff of {settings.cutoff:.3g} LU, its table near zero "
+            f"distance, or the finite stiffness of the plane) changes a force by up to "
+            f'{share:.1g} of it, and the radii with it: use a longer interaction.cutoff, or "auto", or a smaller load'
         )
     if slow := slowness(scene, settings):
         found["slow"] = slow
     if settings.estimate.snaps and not scene.experiment.way_is_given:
         found["snaps"] = (
-            "the attraction of a pair of particles is steeper than its springs are stiff, so that pairs can snap "
-            "together and apart: there are several equilibria under one load, and which one is reached depends on the "
-            "loading history. The uncertainties are of this history; another preload or method may end in another "
+            "the gradient of a pair's attraction exceeds the stiffness of its springs, so that pairs snap in and snap "
+            "out: there are several equilibria under one load, and the loading history decides which one is reached. "
+            "The uncertainties hold for this history; another preload or method may end in another "
             "equilibrium, a few particles wider or narrower. Stiffer springs or a longer range of the interaction "
-            "leave one equilibrium only"
+            "leave a single equilibrium"
         )
     closest = min(state.smallest_distance for state in states)
     if settings.table is not None and closest < settings.table_from:
         error = settings.table.error_beyond(max(closest, settings.table.core))
         found["table_core"] = (
-            f"opposite particles came as close as {closest:.3g} LU; the table was chosen for {settings.table_from:.3g} "
-            f"LU and follows the law within {error:.1e} FU there"
+            f"opposite particles came as close as {closest:.3g} LU; the table was made for {settings.table_from:.3g} "
+            f"LU and beyond, and its error is {error:.1e} FU there"
         )
     return found
 
@@ -191,7 +191,7 @@ def _plane_share(scene: Scene, settings: Settings) -> float:
 
 
 def slowness(scene: Scene, settings: Settings) -> str:
-    """What makes the scene slow, in words; empty where nothing does, or where time is what is looked at (a slide)."""
+    """The reason why the scene is slow; empty where it is not, or where the motion itself is studied (a slide)."""
     if scene.method != "dynamic" or scene.damping is None or scene.experiment.motion_is_result:
         return ""
     plate = None if scene.plate is None else Plate(free=scene.plate.free)
@@ -204,10 +204,10 @@ def slowness(scene: Scene, settings: Settings) -> str:
         return ""
     drag, usual = (_drag(s, c) for s, c in ((scene, settings), (same, automatic)))
     return (
-        f"a drag of {drag:.3g} FU·TU/LU in all on {_mass(scene, settings):.3g} MU, in place of the automatic "
-        f"{usual:.3g} FU·TU/LU on {_mass(same, automatic):.3g} MU, makes a load take about {times:.0f} times as long "
-        'to settle: give "auto" for [damping] coefficient and [plate] mass and damping, unless the motion itself is '
-        "what you look at"
+        f"a total drag of {drag:.3g} FU·TU/LU on {_mass(scene, settings):.3g} MU, in place of the automatic "
+        f"{usual:.3g} FU·TU/LU on {_mass(same, automatic):.3g} MU, makes relaxation under a load about {times:.0f} "
+        'times slower: use "auto" for [damping] coefficient and [plate] mass and damping, unless the motion itself '
+        "is studied"
     )
 
 

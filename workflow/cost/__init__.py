@@ -1,1 +1,1 @@
-"""What accuracy costs in time: every numerical knob of a scene, its error beside its CPU time, measured in one run."""
+"""The cost of accuracy: error and CPU time of every numerical setting of a scene, measured in one run."""

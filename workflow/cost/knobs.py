@@ -51,7 +51,7 @@ def at_tolerance(scene: Scene, tolerance: float) -> Keys:
 
 
 def with_method(scene: Scene, method: str) -> Keys:
-    """The scene with the other method: what exists in time only goes, or comes as far as the experiment needs it."""
+    """The scene with the other method; keys of a dynamic scene are removed, or added as the experiment needs them."""
     if method == "quasistatic":
         return ("experiment.method=quasistatic", *(WITHOUT + name for name in TIMED if name in scene.effects))
     plate = () if scene.experiment.way_is_given else ("plate.mass=auto",)
@@ -64,7 +64,7 @@ def is_sampled(scene: Scene) -> bool:
 
 
 def main_results(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """Those that have a relative error: present and not 0. With noise the force that a load holds is no result."""
+    """Results that have a relative error: present and not 0. With noise the force that a load holds is no result."""
     names = [name for name in kind_of(scene).main_results if scene.noise is None or name != "force"]
     found = {name: quantities.get(name) for name in names}
     return {name: one for name, one in found.items() if one and one.value != 0.0 and math.isfinite(one.value)}
@@ -77,7 +77,7 @@ TOLERANCE_FACTORS = (8.0, 4.0, 2.0, 0.5)
 OTHER_METHOD = {"dynamic": (1e-2, 3e-3), "quasistatic": (1e-1, 1e-2, 1e-3, 1e-4)}
 """Tolerances of the method that the scene does not have."""
 CUTOFF_SHARES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
-"""Force at the cutoff over the law's own, its h."""
+"""Force at the cutoff over the force scale, its h."""
 CHAIN_FACTORS = (0.6, 0.7, 0.8, 0.9)
 """Over the length that is automatic for the scene's tolerance."""
 INCREMENT_FACTORS = (1.0, 4.0, 2.0, 0.5)
@@ -87,7 +87,7 @@ SPACING_FACTORS = (1.0, 4.0, 2.0, 0.5, 0.125)
 
 
 class Level(NamedTuple):
-    """A value of a setting as text with its unit; `h` goes to zero as it gets finer, NaN where it is on no scale."""
+    """A value of a setting as text with its unit; `h` goes to zero as it gets finer, NaN without an order."""
 
     h: float
     value: str
@@ -178,7 +178,7 @@ def _tolerance(scene: Scene) -> Knob:
 
 def _cutoff(scene: Scene, own: Settings) -> Knob | str:
     if (law := own.law) is None or law.attraction is None:
-        physics = "without attraction displacements count from the cutoff, so it is physics"
+        physics = "without attraction displacements are measured from the cutoff"
         return "" if scene.interaction is None else physics
     cutoffs = (own.cutoff, *map(law.cutoff_for, CUTOFF_SHARES))
     free, reach = law.force_free_distance(), law.longest_range
@@ -193,7 +193,7 @@ def _rounded(value: float) -> float:
 
 def _chain(scene: Scene, own: Settings) -> Knob | str:
     if scene.bodies.profile.has_edge:
-        return "a flat punch is as long as it is wide"
+        return "its chain is as long as the flat punch is wide"
     automatic = settings_for(changed(scene, at_tolerance(scene, scene.accuracy.tolerance))).particles
     counts = (max(4, 2 * round(0.5 * factor * automatic)) for factor in CHAIN_FACTORS)
     # The tail of the pressure falls exponentially where a cutoff ends it, algebraically where springs carry it on.
@@ -217,9 +217,9 @@ def _increment(scene: Scene) -> Knob | str:
 
 def _method(scene: Scene) -> Knob | str:
     if scene.experiment.goes_along:
-        return "a row is one step, exact as it is"
+        return "a load step is one timestep, exact to round-off"
     if is_sampled(scene):
-        return "what is asked for exists in time only"
+        return "the experiment exists in time only"
     other = "dynamic" if scene.method == "quasistatic" else "quasistatic"
     keys = with_method(scene, other)
     others = (Level(math.nan, f"{other}, tolerance {t:g}", at_tolerance(scene, t) + keys) for t in OTHER_METHOD[other])
@@ -229,11 +229,11 @@ def _method(scene: Scene) -> Knob | str:
 
 def _spacing(scene: Scene) -> Knob | str:
     if scene.bodies.profile.has_edge:
-        return "a flat punch is as wide as its particles make it"
+        return "the particles define the width of a flat punch"
     if scene.noise is not None:
         return "thermal motion of a particle belongs to its spacing"
     if scene.interaction is not None:
-        return "the force of a row of opposite particles belongs to its spacing: no amplitudes keep it at another one"
+        return "the force of a chain of opposite particles depends on its spacing, whatever the amplitudes"
     values = (factor * scene.bodies.spacing for factor in SPACING_FACTORS)
     return _knob(
         scene, "bodies.spacing", values, unit=" LU", keys=lambda value: _at_spacing(scene, value), own_reference=True

@@ -50,9 +50,9 @@ class Measured:
         quantities: main results and all others, by name; the same in every run.
         cpu_runs: CPU time in LAMMPS of each run [s].
         steps: minimiser iterations or timesteps of a run.
-        memory_mb: peak resident memory of the LAMMPS process, NaN where the system does not tell.
+        memory_mb: peak resident memory of the LAMMPS process, NaN where the system does not report it.
         failure: why there are no numbers, "" where there are.
-        warnings: names of what limits the results; "tolerance <result>" where one is known less well than asked for.
+        warnings: names of limitations of the results; "tolerance <result>" where the uncertainty of one exceeds it.
     """
 
     quantities: Annotated[Mapping[str, Quantity], Field(exclude=True)] = field(default_factory=dict)
@@ -83,7 +83,7 @@ def measure(
         folder: for run folders.
         repeats: rounds; runs longer than LONG_RUN take part in the first one only.
         workers: runs at a time.
-        progress: is told of each run that ends.
+        progress: informed of each run that ends.
     """
     done: dict[str, Measured] = {}
     with pool(min(workers, len(variants))) as executor:
@@ -102,7 +102,7 @@ def measure(
 
 
 def run_once(variant: Prepared, folder: Path, fresh: bool) -> Measured:
-    """Run a variant; with `fresh` in a LAMMPS process of its own, whose peak memory is its."""
+    """Run a variant; with `fresh` in a LAMMPS process of its own, whose peak memory is measured."""
     if fresh:
         stop_idle()
     scene, settings = variant
@@ -125,7 +125,7 @@ def run_once(variant: Prepared, folder: Path, fresh: bool) -> Measured:
 
 
 def children_peak_mb() -> float:
-    """Largest peak resident memory [MB] of the living child processes, as /proc has it; NaN where there is no such."""
+    """Largest peak resident memory [MB] of the living child processes, from /proc; NaN where this is not available."""
     try:
         children = [child for task in Path("/proc/self/task").glob("*/children") for child in task.read_text().split()]
         texts = [Path(f"/proc/{child}/status").read_text() for child in children]
@@ -159,7 +159,7 @@ class EffectCost:
 
 
 def without_effects(scene: Scene) -> dict[str, Keys]:
-    """How to leave out each effect that can be, by its name."""
+    """How to leave out each optional effect, by its name."""
     has_one = scene.experiment.motion_is_result or scene.experiment.goes_along
     method = () if has_one else (f"experiment.method={scene.method}",)
     found = {}
@@ -213,7 +213,7 @@ def _interleaved(decks: Mapping[str, Deck], folder: Path) -> dict[str, list[floa
 
 @contextmanager
 def opened(deck: Deck, folder: Path) -> Iterator[Session]:
-    """A session in which the deck's scene stands at displacement 0, ready for timesteps."""
+    """A session with the scene of the deck at displacement 0, ready for timesteps."""
     folder.mkdir(parents=True)
     write_system(deck, folder)
     with Engine.session(folder) as session:

@@ -1,4 +1,4 @@
-"""What a cost study leaves: cost.json, the table for a terminal and for pages, the work-precision figure."""
+"""The output of a cost study: cost.json, the table for a terminal and for pages, the work-precision figure."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ WORTHWHILE = 90.0
 
 @dataclass(frozen=True, kw_only=True)
 class Variant(Measured):
-    """A variant of the scene: what it is, and once it has run, what was measured of it.
+    """A variant of the scene, and once it has run, its measurements.
 
     Attributes:
         knob, value, h: a setting and its `Level`; or AS_IT_IS, BASE, or EFFECT and the effect that is left out.
@@ -89,13 +89,13 @@ class CostRecord:
 
 
 def write_report(record: CostRecord, folder: Path) -> None:
-    """Write cost.json (what is no number is null) and cost.png into `folder`."""
+    """Write cost.json (null for an unknown number) and cost.png into `folder`."""
     write_whole(folder / "cost.json", TypeAdapter(CostRecord).dump_json(record, indent=1).decode() + "\n")
     save_figure(cost_figure(record), folder / "cost.png")
 
 
 def table(record: CostRecord) -> list[tuple[str, ...]]:
-    """The study: a header, a row for every setting, one for every effect."""
+    """The table of the study: a header, a row for every setting and for every effect."""
     header = (
         "setting or effect",
         "now",
@@ -135,7 +135,7 @@ def _saving(do: str, left: float) -> str:
 
 
 def _effects(record: CostRecord) -> Iterator[tuple[str, ...]]:
-    """An effect is on now; off is enough where that changes the results by no more than the limit."""
+    """An effect is on now; off suffices where this changes the results by at most the limit."""
     changes = {one.value: one for one in record.of(EFFECT)}
     for one in record.effect_costs:
         time, error, enough, advice = f"{one.with_us:.1f} µs a step", "", "on", "Keep it: the main results need it."
@@ -153,7 +153,7 @@ def _error(one: Variant) -> str:
 
 
 def summary(record: CostRecord) -> list[str]:
-    """The study for a terminal: reference, the scene as it is, the table, what its words mean, what was not tried."""
+    """The study for a terminal: reference, the scene as it is, the table, its definitions, settings not tried."""
     best = ", ".join(f"{name} {value:.9g}" for name, value in record.reference_values.items())
     own = record.variants[0]
     numbers = f"error {own.error:.2g}, {own.cpu_s:.2g} s of CPU, {own.memory_mb:.0f} MB ({own.details})"
@@ -165,7 +165,7 @@ def summary(record: CostRecord) -> list[str]:
         "",
         *("  ".join(map(str.ljust, row, widths)).rstrip() for row in rows),
         "",
-        f"Errors are the largest of the main results, all else exact; at most {record.limit:.2g} is enough.",
+        f"Errors are the largest of the main results, all else exact; at most {record.limit:.2g} suffices.",
         *(f"Not tried: {name}, because {reason}." for name, reason in record.left_out.items()),
     ]
 

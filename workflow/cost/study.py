@@ -1,7 +1,7 @@
 """A cost study: the reference, every setting changed from the base, effects left out; then errors and orders.
 
-What a tolerance chooses is good in every scene of a study of many (`workflow.model.settings`); one scene may
-need less. Errors are those of the main results, relative to a reference of much higher accuracy; the largest stands for
+The settings of a tolerance suffice for every scene of a study of many (`workflow.model.settings`); one scene may
+need less. Errors are those of the main results, relative to a reference of much higher accuracy; the largest represents
 a variant.
 """
 
@@ -50,15 +50,15 @@ Results = Mapping[str, Quantity]
 
 
 def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, progress: Progress) -> CostRecord:
-    """Measure what accuracy costs in a scene.
+    """Measure the cost of accuracy in a scene.
 
     Args:
         scene: to be studied.
         name: of it, for the record.
-        folder: where run folders may stand for a while; it exists.
+        folder: where run folders may represent a while; it exists.
         repeats: rounds of measurement.
         workers: runs at a time.
-        progress: is told what begins, and of each run that ends.
+        progress: informed of what begins, and of each run that ends.
 
     Raises:
         SettingsError: the scene leads to no computable system.
@@ -146,7 +146,7 @@ def judged_by_group(ran: Sequence[Variant], knobs: Sequence[Knob], reference: Re
 
 
 def judged(one: Variant, reference: Results, noisy: bool, against: Results | None = None) -> Variant:
-    """A variant that ran with its errors; one that lacks a main result has failed.
+    """A variant with its errors; one that lacks a main result has failed.
 
     Args:
         one: with its quantities.
@@ -203,7 +203,7 @@ def fit_order(h: Sequence[float], errors: Sequence[float], floor: float = 0.0) -
 
 
 def choice(scene: Scene, settings: Settings) -> str:
-    """What the settings of a scene are, in words."""
+    """The settings of a scene as text."""
     words = []
     if settings.table is not None and scene.interaction is not None:
         words.append(f"table of {settings.table.points} points")

@@ -1,7 +1,7 @@
 """A scene and its schedule as one flat LAMMPS deck; pure text, nothing runs here.
 
 A deck is a head (bodies, effects, method) and a schedule: phases, each a loop over rows. A row moves or loads the plate
-and measures. Python runs the very same text, row by row, so that it can choose the next row by what it measured; the
+and measures. Python runs the same text, row by row, so that it can choose the next row by what it measured; the
 deck that it leaves behind holds the rows of the schedule that the search ended with.
 """
 
@@ -47,7 +47,7 @@ class Deck:
 
     @cached_property
     def parts(self) -> tuple[Contribution, ...]:
-        """What bodies, lower body, effects and method bring, in deck order."""
+        """The parts of bodies, lower body, effects and method, in deck order."""
         scene, settings = self.written
         brought = [*contributions(scene, settings), *(standing if scene.stands else moving)(scene, settings)]
         if self.units.are_own:
@@ -81,15 +81,15 @@ class Deck:
         return title + "\n" + "\n".join(blocks)
 
     def begin(self, phase: str, fragments: Sequence[str] = ()) -> str:
-        """What comes before a phase's rows."""
+        """The commands before the rows of a phase."""
         return indexed({"row_phase": phase}) + commands(fragments)
 
     def row(self, kind: type[Row]) -> str:
-        """One row up to its measurement: move or load, then measure."""
+        """One row up to its measurement: displacement or load, then measurement."""
         return commands(self._row(kind))
 
     def as_listed(self, row: AnyRow) -> AnyRow:
-        """A row that is a step, with its numbers as LAMMPS has those of a list: to 15 digits."""
+        """A row that is one timestep, with its numbers as LAMMPS reads those of a list: to 15 digits."""
         numbers = {field.name: getattr(row, field.name) for field in fields(row)}
         read = {
             name: self.units.from_deck(float(f"{self.units.to_deck(value, UNITS[name]):.15g}"), UNITS[name])
@@ -98,7 +98,7 @@ class Deck:
         return replace(row, **read)
 
     def in_one_run(self, rows: Sequence[Row], skips: Sequence[int] = ()) -> str:
-        """All rows, each a place of the plate, in one run; `skips`: of which the state is not kept, else of none."""
+        """All rows, each a position of the plate, in one run; `skips`: those whose state is not written, else none."""
         columns = zip(*(row.texts(self.units.to_deck) for row in rows), strict=True)
         # A column is one word on one line, as LAMMPS has it.
         given = {name: f"[{','.join(texts)}]" for name, texts in zip(rows[0].columns(), columns, strict=True)}
@@ -108,16 +108,16 @@ class Deck:
         return indexed(given) + self.row(type(rows[0])) + deleted(given)
 
     def values(self, row: Row, first: bool) -> str:
-        """The variables of one row; `first`: no state has been written before it."""
+        """The variables of one row; `first`: no state has been written before."""
         texts = (*row.texts(self.units.to_deck), NEW if first else APPENDED)
         return indexed(dict(zip(self._columns(type(row)), texts, strict=False)))
 
     def row_end(self, kind: type[Row]) -> str:
-        """The end of its measurement; its variables are deleted, as `next` does after the last row."""
+        """The end of its measurement; its variables are deleted, as by `next` after the last row."""
         return commands(self._measured) + deleted(self._columns(kind))
 
     def state(self, first: bool) -> str:
-        """Write the state that the last row left; where rows of one run are kept, they have written it."""
+        """Write the state of the last row; where rows of one run are kept, they have written it."""
         if self.stepped and self.keeps:
             return ""
         append = "row_append" if self.keeps else "state_append"
@@ -143,7 +143,7 @@ class Deck:
 
     @property
     def keeps(self) -> bool:
-        """Whether states of the whole way are kept."""
+        """Whether states of the whole loading history are kept."""
         return self.scene.output is not None
 
     @property

@@ -14,11 +14,11 @@ from importlib.resources import files
 VARIABLE_USE = re.compile(r"\$\{(\w+)\}|\bv_(\w+)")
 KEYS = ("Purpose", "Formula", "Needs", "Defines")
 REDEFINES = "Redefines"
-"""Optional in a header: names that an earlier fragment has defined, and that stand for something else from here on."""
+"""Optional in a header: names that an earlier fragment has defined, and that represent something else from here on."""
 
 
 class DeckError(RuntimeError):
-    """A deck that is not what its own headers say; a mistake in the program, never in a scene."""
+    """A deck that contradicts the headers of its fragments; an error in the program, never in a scene."""
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ class Body:
 
     Attributes:
         name: "lower" or "upper".
-        particles: undeformed places.
+        particles: undeformed positions.
         anchors: the bulk's ends of the bulk springs, shape (0, 3) where particles stand still in the body.
         far_anchors: the bulk's ends of the long bonds, shape (N, 3), or (0, 3).
     """
@@ -83,7 +83,7 @@ def period(scene: Scene, settings: Settings) -> float:
 
 
 def start_offset(scene: Scene, settings: Settings) -> float:
-    """Place of the upper body's middle along x [LU]: as given, or 0.
+    """Position of the upper body's middle along x [LU]: as given, or 0.
 
     In a slide such that particles begin between the opposite ones: on top of them they would stand at rest too, and
     fall to either side.

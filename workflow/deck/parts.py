@@ -30,7 +30,7 @@ CHOSEN_BINS = ("far_bin", "wide_bin")
 
 
 def standing(scene: Scene, settings: Settings) -> list[Contribution]:
-    """A body whose particles stand still, over a rigid plane that has their springs: by steps, or moved in time."""
+    """A body with fixed particles over a rigid plane that has their springs: in single steps, or moved in time."""
     motion = Contribution("dynamic", Stage.MOTION, ("clock",), {"time_step": number(settings.time_step)})
     if scene.is_stepped:
         steps = ("sweep", "along") if scene.experiment.goes_along else ("sweep",)
@@ -40,7 +40,7 @@ def standing(scene: Scene, settings: Settings) -> list[Contribution]:
 
 
 def moving(scene: Scene, settings: Settings) -> list[Contribution]:
-    """Bodies whose particles find their own places, each on the spring of its bulk."""
+    """Bodies whose particles find their own positions, each on the spring of its bulk."""
     softer = min(settings.bulk_stiffness, scene.tangential_stiffness)
     coefficient = softer if settings.far else settings.bulk_stiffness
     found = [
@@ -74,7 +74,7 @@ def bins(scene: Scene, settings: Settings, brought: Sequence[Contribution]) -> l
 
 
 def own_units(units: DeckUnits) -> Contribution:
-    """What takes numbers of a deck that has units of its own back to LU and FU."""
+    """Converts the numbers of a deck with units of its own to LU and FU."""
     variables = {"unit_length": number(units.length), "unit_force": number(units.force)}
     return Contribution("units", Stage.MOTION, ("units",), variables)
 

@@ -30,7 +30,7 @@ UNITS = (
 
 @dataclass(frozen=True)
 class Row:
-    """What one row of a schedule prescribes."""
+    """The values that one row of a schedule prescribes."""
 
     step: ClassVar[str]
     """The fragment in `lammps_inputs/fragments/steps`."""
@@ -41,7 +41,7 @@ class Row:
         return tuple(f"row_{field.name}" for field in fields(cls))
 
     def texts(self, to_deck: Callable[[float, str], float]) -> tuple[str, ...]:
-        """Their values as LAMMPS text; `to_deck` takes a value with its unit to that of the deck."""
+        """Their values as LAMMPS text; `to_deck` converts a value with its unit to that of the deck."""
         given = {field.name: getattr(self, field.name) for field in fields(self)}
         return tuple(str(v) if isinstance(v, int) else number(to_deck(v, UNITS[name])) for name, v in given.items())
 
@@ -56,7 +56,7 @@ class Displace(Row):
 
 @dataclass(frozen=True)
 class Draw(Row):
-    """The plate is put to a displacement and a place along x [LU], in a straight line, its particles with it."""
+    """The plate is put to a displacement and a position along x [LU], in a straight line, its particles with it."""
 
     step: ClassVar[str] = "sweep_along"
     displacement: float
@@ -65,7 +65,7 @@ class Draw(Row):
 
 @dataclass(frozen=True)
 class DisplaceInTime(Row):
-    """The plate is put to a displacement [LU] and the particles move for so many timesteps."""
+    """The plate is set to a displacement [LU] and the particles move for a number of timesteps."""
 
     step: ClassVar[str] = "displace_dynamic"
     displacement: float
@@ -74,7 +74,7 @@ class DisplaceInTime(Row):
 
 @dataclass(frozen=True)
 class UnderLoad(Row):
-    """Plate and particles move for so many timesteps under a load [FU], compression positive."""
+    """Plate and particles move for a number of timesteps under a load [FU], compression positive."""
 
     step: ClassVar[str] = "load"
     load: float
@@ -96,7 +96,7 @@ class Hold(Row):
     """A load [FU], compression positive, until the plate is at rest, parted or through.
 
     Attributes:
-        start: 1: the place is kept to come back to, -1: first go back there, 0: go on.
+        start: 1: the position is kept to come back to, -1: first go back there, 0: go on.
         load: on the plate [FU].
         damping: coefficient of a particle [FU·TU/LU].
         drag: of the moving bodies over their inertia's share [FU·TU/LU].
@@ -126,7 +126,7 @@ class Phase:
     Attributes:
         name: what happens, one word.
         rows: all of one kind.
-        state: whether every atom's place and force are written after the last row.
+        state: whether every atom's position and force are written after the last row.
         begin: fragments that come before the first row.
         kept: with `[output] states`, whether the state of each row is kept; None: of all.
     """

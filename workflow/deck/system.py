@@ -1,4 +1,4 @@
-"""What a deck reads, in files: system.data, and the table or what particles know of their cells if it has these.
+"""The input files of a deck: system.data, and the table or the cells of the particles if it has these.
 
 Atom types: 1 lower particles, 2 upper particles, 3 lower anchors, 4 upper anchors, 5 lower far anchors, 6 upper far
 anchors, 7 the driver, which pulls the plate by a spring.
@@ -155,7 +155,7 @@ def _write_rows(file: TextIO, template: str, *columns: NDArray[np.float64] | Int
 
 
 def write_system(deck: Deck, folder: Path) -> None:
-    """Write what a deck reads: system.data, and interaction.table or adhesion.cells if it has one."""
+    """Write the input files of a deck: system.data, and interaction.table or adhesion.cells if it has one."""
     scene, settings = deck.written
     both = bodies(scene, settings)
     anchors = settings.particles

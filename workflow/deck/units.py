@@ -1,4 +1,4 @@
-"""In which units a deck is written: the scene's own, or for very small and very large numbers units of its own.
+"""The units of a deck: those of the scene, or for very small and very large numbers units of its own.
 
 LAMMPS has lengths and energies built in: the step of `hftn`'s differences, 2e-6, the longest move of a minimiser, 0.1,
 bins and box. With the lengths of a scene in metres they are far off, so a deck whose lengths or forces are, is written
@@ -42,7 +42,7 @@ SETTINGS = {
     "time_step": "TU", "settle_time": "TU", "damping": "FU·TU/LU", "plate_damping": "FU·TU/LU",
     "calm_damping": "FU·TU/LU", "calm_step": "TU",
 }  # fmt: skip
-"""Units of the settings; the others have none, are masses, or are the law, its table and the estimate."""
+"""Units of the settings; the others have none, are masses, or are the law, its table and the predictor."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class DeckUnits:
         return _factor(self.length, self.force, unit)
 
     def to_deck(self, value: float, unit: str) -> float:
-        """A number of the scene in deck units; the very same where they are the scene's."""
+        """A number of the scene in deck units; the same where they are the scene's."""
         return value / self.of(unit) if self.are_own else value
 
     def from_deck(self, value: Value, unit: str) -> Value:
@@ -70,7 +70,7 @@ class DeckUnits:
         return value * self.of(unit) if self.are_own else value
 
     def scene(self, scene: Scene) -> Scene:
-        """The scene with its numbers in deck units, and what follows from a material given as numbers."""
+        """The scene with its numbers in deck units, and with the values that follow from a material."""
         if not self.are_own:
             return scene
         given = {"bulk_stiffness": scene.bulk_stiffness, "bulk_stiffness_tangential": scene.tangential_stiffness}
@@ -82,7 +82,7 @@ class DeckUnits:
         return Scene.model_validate(data)
 
     def settings(self, settings: Settings) -> Settings:
-        """The settings in deck units, but for the estimate, which no deck asks."""
+        """The settings in deck units, but for the predictor, which no deck asks."""
         if not self.are_own:
             return settings
         changed: dict[str, Any] = {name: self.to_deck(getattr(settings, name), unit) for name, unit in SETTINGS.items()}
@@ -112,7 +112,7 @@ def _factor(length: float, force: float, unit: str) -> float:
 
 
 def units_for(scene: Scene) -> DeckUnits:
-    """The scene's own units where LAMMPS's lengths and forces do; else powers of ten that make them ordinary."""
+    """The scene's own units where they suit LAMMPS; else powers of ten that give numbers near 1."""
     terms = scene.interaction
     lengths = scene.bodies.spacing if terms is None else terms.repulsion.range
     # The ranges of ordinary scenes are tenths of a LU, so a repulsion's is made one; a spacing is made a few LU.

@@ -1,1 +1,1 @@
-"""LAMMPS in a process of its own; it runs any deck and knows no scene."""
+"""LAMMPS in a process of its own; it runs any deck and is independent of scenes."""

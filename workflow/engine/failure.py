@@ -1,4 +1,4 @@
-"""A failed run in one sentence: LAMMPS's own words without their wrapping, the command, the phase, the step.
+"""A failed run in one sentence: the error message of LAMMPS, the command, the phase, the step.
 
 "ERROR on proc 0: … (src/run.cpp:1)\nLast input line: run 9" ──▶ "LAMMPS stopped: …, at: run 9"
 """
@@ -10,17 +10,17 @@ from pathlib import Path
 
 from contact1d.workflow.errors import Contact1dError
 
-TOO_WIDE = "the bodies reach much further than their forces"
-TOO_LONG = "a run is longer than can be counted"
+TOO_WIDE = "the bodies are much longer than the range of their forces"
+TOO_LONG = "a run has too many timesteps to count"
 NO_MEMORY = "there is not enough memory"
-NOT_FINITE = "a place or a force is no finite number any more"
+NOT_FINITE = "a position or a force is no longer finite"
 MEANINGS = {
     r"Too many neighbor bins|Domain too large for neighbor bins|Cannot use neighbor bins": TOO_WIDE,
     r"(Illegal|Invalid) run command|Too many (timesteps|iterations)": TOO_LONG,
     r"Failed to (re)?allocate|bad_alloc|Too many (total|local) atoms|Too many atom": NO_MEMORY,
     r"Non-numeric|nan|Out of range atoms|Invalid pair table|must be finite": NOT_FINITE,
 }
-"""What LAMMPS says of numbers out of all proportion, and what a person can understand by it."""
+"""Error messages of LAMMPS for extreme numbers, and their meaning."""
 
 
 class EngineError(Contact1dError, RuntimeError):
@@ -31,7 +31,7 @@ class EngineError(Contact1dError, RuntimeError):
         phase: the phase of the experiment, as given to `Session.execute`.
         step: the timestep that LAMMPS had reached (after a crash or a kill: up to a fifth of a second earlier).
         folder: the run folder, whose files are kept.
-        log_tail: the last lines of its log, and what the process said when it died.
+        log_tail: the last lines of its log, and the last output of the process.
     """
 
     exit_code = 3

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 
 def last_frames(path: Path, frames: int, atoms: int, columns: int, start: int) -> tuple[NDArray[np.float64], int]:
-    """The frames that stand after byte `start`, atoms by rising id, and where the file ends.
+    """The frames from byte `start` on, atoms by ascending id, and the end of the file.
 
     A frame ends with its numbers, atom by atom; what is before them is as long in every frame.
 

@@ -1,4 +1,4 @@
-"""How several MPI ranks are started and heard: the command before theirs, their call, and what they said at the end.
+"""Start several MPI ranks and connect to them: the launcher's command, the connection, and their last output.
 
 mpiexec -n 4 python …        srun --mpi=pmi2 -n 4 python …   inside a job of Slurm of several nodes
 """
@@ -26,11 +26,11 @@ LOOK = 0.2
 
 
 class RanksError(Contact1dError, RuntimeError):
-    """Several ranks that can't be, or are no use: why, and what to do."""
+    """Several ranks that cannot be started or are of no use: why, and what to do."""
 
 
 def launcher_of(ranks: int) -> list[str]:
-    """The command that starts so many ranks of the one behind it.
+    """The launcher's command for this number of ranks.
 
     Raises:
         RanksError: mpi4py or a launcher isn't installed.
@@ -54,7 +54,7 @@ def on_one_node(environ: Mapping[str, str]) -> bool:
 
 
 class Calls:
-    """A socket that rank 0 calls, in a folder that nobody else may open."""
+    """A socket for rank 0, in a folder without access for others."""
 
     def __init__(self, path: Path) -> None:
         """Listen at a path that doesn't exist."""
@@ -87,13 +87,13 @@ class Calls:
 
 
 def cause_among_ranks(ranks: int, words: str) -> str:
-    """Why a run of several ranks ended, by what they and their launcher said; "" where they said nothing."""
+    """Why a run of several ranks ended, by the output of ranks and launcher; "" without output."""
     if said := re.search(r"^failed on rank (\d+): (.*)", words, re.MULTILINE | re.DOTALL):
         text = " ".join(said[2].partition("\nAbort(")[0].partition("\n====")[0].split())
         return f"{plain_message(text) if text.startswith('ERROR') else text}, on rank {said[1]} of {ranks}"
     if "EXIT CODE: 9" in words or "Killed" in words:
         return (
             f"one of its {ranks} ranks was killed (SIGKILL), most often because the machine was out of memory, and the "
-            "others were ended"
+            "others were stopped"
         )
     return ""

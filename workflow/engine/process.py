@@ -1,4 +1,4 @@
-"""The parent's end of a worker: start it, ask it, notice its death, keep it for the next session.
+"""The parent's side of a worker: start it, send requests, detect its end, keep it for the next session.
 
 ask(request, deadline) ──▶ worker ──▶ answer, or `WorkerLostError` with the cause in one sentence
 """
@@ -67,7 +67,7 @@ def worker_environment(environ: Mapping[str, str]) -> dict[str, str]:
 
 
 def receive(connection: Connection) -> Any:
-    """Return what `workflow.engine.worker.send` sent, reading each array into the place where it stays.
+    """Return what `workflow.engine.worker.send` sent, reading each array into its final memory.
 
     Raises:
         EOFError: the other end is gone.
@@ -140,7 +140,7 @@ class WorkerProcess:
 
     @property
     def alive(self) -> bool:
-        """Whether it can be asked."""
+        """Whether it accepts requests."""
         return not self._connection.closed and self._process.poll() is None
 
     def board(self) -> tuple[int, int]:
@@ -154,7 +154,7 @@ class WorkerProcess:
         tick: Callable[[], None] | None = None,
         meanwhile: Callable[[], object] | None = None,
     ) -> Any:
-        """Send a request and return the answer; any exception on the way kills the worker.
+        """Send a request and return the answer; any exception before that kills the worker.
 
         Args:
             request: verb and arguments.
@@ -188,7 +188,7 @@ class WorkerProcess:
         self._release()
 
     def stop(self) -> None:
-        """Let it leave by itself, which it does when its pipe closes; kill it after a second."""
+        """Let it end by itself, which it does when its pipe closes; kill it after a second."""
         self._connection.close()
         try:
             self._process.wait(1.0)
@@ -197,7 +197,7 @@ class WorkerProcess:
         self._release()
 
     def forget(self) -> None:
-        """After a fork, in the child: it belongs to the parent, leave it alone."""
+        """After a fork, in the child: do not touch it, since it belongs to the parent."""
         self._connection.close()
         self._output.close()
         self._process.returncode = 0
@@ -244,7 +244,7 @@ _lock = threading.Lock()
 
 
 def borrow(ranks: int = 1) -> WorkerProcess:
-    """Return a worker of so many ranks that nobody else uses: an idle one if it lives, otherwise a new one.
+    """Return a free worker of this number of ranks: an idle one if it lives, otherwise a new one.
 
     Raises:
         RanksError: several ranks, and what they need isn't installed.

@@ -1,4 +1,4 @@
-"""Who hears how far a run is: a bar on a terminal, a few plain lines elsewhere, or nobody.
+"""The progress of a run: a bar on a terminal, a few plain lines elsewhere, or nothing.
 
 phase(name, expected_steps) ──▶ advance(steps) … ──▶ close()
 """
@@ -17,10 +17,10 @@ class Progress(Protocol):
     """A listener to a run."""
 
     def phase(self, name: str, expected_steps: int | None = None, counted: str = "step") -> None:
-        """Begin a phase of that many steps, or of what else is counted; None where the number is unknown."""
+        """Begin a phase with a number of steps, or of another count; None where the number is unknown."""
 
     def advance(self, steps: int) -> None:
-        """Note that so many more steps of the phase are done."""
+        """Note that this number of steps of the phase is done."""
 
     def note(self, text: str) -> None:
         """Tell one line."""

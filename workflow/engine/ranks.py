@@ -1,4 +1,4 @@
-"""A worker of several MPI ranks: rank 0 talks to the parent and tells the others, and all do the same.
+"""A worker of several MPI ranks: rank 0 communicates with the parent and the others, and all run the same commands.
 
     parent ──request──▶ rank 0 ──▶ the others,   all: LAMMPS,   the others' atoms ──▶ rank 0 ──answer──▶ parent
 

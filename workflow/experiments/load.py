@@ -41,10 +41,10 @@ class LoadExperiment(Scripted):
         if surely:
             return outcome
         doubt = (
-            f"the contact does not hold a tension that is larger by {FIRST_RISE * settings.tolerance:g}: {-load:.6g} "
-            f"FU is the pull-off force as nearly as a tolerance of {settings.tolerance:g} can tell, and whether it is "
-            "held for good is open. A smaller tolerance decides it, "
-            'kind = "pull_off" gives the force itself'
+            f"the contact does not sustain a tensile force larger by {FIRST_RISE * settings.tolerance:g}: {-load:.6g} "
+            f"FU is the pull-off force within the tolerance of {settings.tolerance:g}, and this equilibrium may be "
+            "unstable. Use a smaller tolerance, or "
+            'kind = "pull_off" for the pull-off force itself'
         )
         return replace(outcome, warnings={"near_pull_off": doubt, **outcome.warnings})
 
@@ -98,5 +98,5 @@ class LoadExperiment(Scripted):
         """A warning where nothing touches."""
         if "contact_radius" in outcome.results:
             return outcome
-        missing = {"no_radius": "the bodies do not touch over a width, so there is no contact radius"}
+        missing = {"no_radius": "the contact has no width, so there is no contact radius"}
         return replace(outcome, warnings={**outcome.warnings, **missing})

@@ -1,10 +1,10 @@
-"""The motion of a slide in arrays: what each row measured, summed up over time.
+"""The motion of a slide in arrays: what each load step measured, summed up over time.
 
 Energy: the cantilever's far end does the work W = ∫ F_c v dt. The baths take from what moves
 
     Q = ∫ (γ Σ v_i² + c V²) dt − v (N γ ΔX_p + c ΔX)    [with heat: what the thermostats say]
 
-with X and X_p the places of the plate and of its particles on the mean, and what is stored is
+with X and X_p the positions of the plate and of its particles on average, and what is stored is
 E = E_pot + E_kin + F_c²/2k − F_N d, d the displacement: W = Q + ΔE.
 """
 
@@ -29,13 +29,13 @@ EVERY = 5
 
 @dataclass(frozen=True)
 class Motion:
-    """What happened, from the moment at which the drive starts; arrays over that moment and the ends of all rows.
+    """What happened, from the moment at which the drive starts; arrays over that moment and the ends of all load steps.
 
     Attributes:
         legs: the drive's.
-        leg: index of the leg that ends with, or contains, each row's end; shape (n,).
+        leg: index of the leg that ends with, or contains, each load step's end; shape (n,).
         time: [TU].
-        drive: place of the driven end [LU].
+        drive: position of the driven end [LU].
         place: of the plate [LU].
         friction: force of the lower body against +x [FU].
         pull: of the cantilever [FU].
@@ -60,7 +60,7 @@ class Motion:
     squares: Array
 
     def of_leg(self, leg: int) -> slice:
-        """The rows of a leg, its start first."""
+        """The load steps of a leg, its start first."""
         rows = np.flatnonzero(self.leg == leg)
         return slice(max(int(rows[0]) - 1, 0), int(rows[-1]) + 1)
 
@@ -85,7 +85,7 @@ def motion_of(scene: Scene, settings: Settings, start: State, states: list[State
     step = np.asarray([legs[i].time_step for i in numbers])
 
     def summed_over_rows(mean: int, ends: Array) -> Array:
-        """Integral of each row: samples at every fifth step up to its end, made the trapezoid rule."""
+        """Integral of each load step: samples at every fifth step up to its end, made the trapezoid rule."""
         means = np.diff(count * read(f"f_cantilever_means[{mean}]")) / np.diff(count)
         return np.asarray(means * span - 0.5 * EVERY * step * np.diff(ends))
 

@@ -1,4 +1,4 @@
-"""Path: prescribed displacement, there and back; the curve F(d), its largest tension and its load-free radius."""
+"""Path: prescribed displacement, there and back; the curve F(d), its force maximum and its load-free radius."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class PathExperiment(Scripted):
         return Outcome(results, tuple(reported), ends, phases, warnings, tables=tables)
 
     def script(self, branch: Any, scene: Scene) -> None:
-        """The approach, which no reader sees, and what the scene asks for; where pairs snap also what is between."""
+        """The approach, which is not evaluated, and the positions of the scene; where pairs snap also those between."""
         settings = branch.settings
         all_of_it = way(scene, settings)
         first = [asked for _, asked in all_of_it].index(True)
@@ -91,8 +91,8 @@ class PathExperiment(Scripted):
         return found | _lost(trace, scene, settings)
 
     def advice(self, scene: Scene) -> str:
-        """The rows are the scene's own."""
-        return f"What helps is more steps in experiment.displacements; for a radius {FINER_SPACING}, too"
+        """The load steps are the scene's own."""
+        return f"Use more steps in experiment.displacements; for a radius also {FINER_SPACING}"
 
     def _missing(self, results: Mapping[str, Result], scene: Scene, phases: Sequence[Phase]) -> dict[str, str]:
         """Warnings of results that the path does not reach."""
@@ -105,12 +105,12 @@ class PathExperiment(Scripted):
         warnings = {}
         if "adhesion_force" not in results:
             warnings["no_peak"] = (
-                "the largest tension lies at an end of the last unloading, so the path gives no adhesion_force: "
-                'go further back, or use kind = "pull_off"'
+                "the tensile force is largest at an end of the last unloading, so the path gives no adhesion_force: "
+                'extend the unloading, or use kind = "pull_off"'
             )
         if "zero_load_radius" not in results:
             warnings["no_zero_load"] = (
-                "the force does not pass 0 while the last unloading holds the contact, so there is no zero_load_radius"
+                "the force does not cross 0 before separation in the last unloading, so there is no zero_load_radius"
             )
         return warnings
 
@@ -134,7 +134,7 @@ def _largest(trace: Trace) -> dict[str, Reading]:
 
 
 def _adhesion(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
-    """Of the last phase in which the bodies are drawn apart; where a smooth curve has none, the last one says the same.
+    """Of the last phase of unloading; where a smooth curve has none, of the last phase.
 
     Where pairs snap, or an edge has no range, the tension while loading is that at which the bodies snap in.
     """
@@ -244,7 +244,7 @@ def way(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
 
 
 def _longest_drop(settings: Settings) -> float:
-    """Longest move [LU] by which bodies that part keep the particles that the interaction still holds; inf where
+    """Longest move [LU] of separating bodies without premature detachment of particles; inf where
     none snaps.
 
     A move h puts a joined pair h further apart before it relaxes. It is lost where that is beyond the unstable
@@ -267,6 +267,6 @@ def _rows(scene: Scene, settings: Settings, positions: Sequence[tuple[float, boo
 
 
 def _decay(scene: Scene, settings: Settings) -> float:
-    """Time constant [TU] with which a particle on its bulk spring comes to rest: 2m/γ, overdamped γ/k."""
+    """Relaxation time [TU] of a particle on its bulk spring: 2m/γ, overdamped γ/k."""
     mass, stiffness = scene.bodies.mass, scene.bulk_stiffness
     return max(2.0 * mass / settings.damping, settings.damping / stiffness)

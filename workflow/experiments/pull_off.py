@@ -1,4 +1,4 @@
-"""Pull-off: compress by F_D, then find the largest tension that the contact holds."""
+"""Pull-off: compress by F_D, then find the maximum tensile force."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from contact1d.workflow.scene import PullOff, Scene
 from contact1d.workflow.units import FORCE, LENGTH
 
 UNLOADING_STEPS, TENSIONS = 80, 12
-"""Rows of a planned way back, and tensions of a planned pull, where a run would search."""
+"""Load steps of a planned way back, and tensions of a planned pull, where a run would search."""
 LARGEST_TENSION = 1.2
 """The last of these tensions over the expected pull-off force."""
 
@@ -37,11 +37,11 @@ class PullOffExperiment(Scripted):
     branches = {"pulling": "unloading", "separating": "unloading", "critical": "unloading"}  # noqa: RUF012
 
     def run(self, context: RunContext) -> Outcome:
-        """With noise a ramp until the bodies part, once for each seed."""
+        """With noise a ramp until the bodies separate, once for each seed."""
         return super().run(context) if context.deck.scene.noise is None else pull_off_thermal(context)
 
     def script(self, branch: Any, scene: Scene) -> None:
-        """Press, unload to F = 0, pull to the largest tension, part."""
+        """Compress, unload to F = 0, retract to the force maximum, separate."""
         assert isinstance(scene.experiment, PullOff)
         preload = scene.experiment.preload
         scale = max(preload, branch.scale)
@@ -91,14 +91,14 @@ class PullOffExperiment(Scripted):
         return (Phase("loading", down), Phase("unloading", back, state=True))
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Refuse what the run's own curve contradicts."""
+        """Refuse results that contradict the curve of the run."""
         found = outcome.results["adhesion_force"]
         require_no_contradiction(settings, found.value, found.uncertainty, outcome.states)
         return outcome
 
     def advice(self, scene: Scene) -> str:
-        """In time there is a reason of its own."""
-        since = ", since force control never sees the pull-off itself" if scene.method == "dynamic" else ""
+        """With the limitation of load control in time."""
+        since = ", since load control never reaches the pull-off itself" if scene.method == "dynamic" else ""
         return super().advice(scene) + since
 
 
@@ -141,9 +141,9 @@ def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float)
 
 
 def _extrapolated(rested: Trace) -> Reading:
-    """The radius as a parabola through the last three states, where a cubic through four has its largest tension.
+    """The radius as a parabola through the last three states, where a cubic through four has its force maximum.
 
-    A parabola through three says how far both can be trusted.
+    A parabola through three estimates the error of both.
     """
     count = min(FEWEST_HELD, len(rested))
     at = np.arange(len(rested) - count, len(rested))

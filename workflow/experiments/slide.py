@@ -1,7 +1,7 @@
 """Slide: a normal force, and a cantilever that pulls the plate along x (Fig. 9 of the paper).
 
 It starts from rest under the normal force. A plate with little drag swings as it is loaded, past its equilibrium and
-through the other body: so the particles have a drag of their own on the way, critical for the contact, and at rest
+through the other body: so the particles have a drag of their own on the path, critical for the contact, and at rest
 that of the scene again. It counts as at rest where it is along both directions, the friction equal to the pull of
 the cantilever.
 """
@@ -43,12 +43,12 @@ STEADY = 0.1
 """Way of plate and drive after the run-in may differ by this share, or by one slip, where sliding counts as steady."""
 SETTINGS_SHARE = 0.3
 """Of the tolerance: what cutoff and timesteps leave open at most; against the integrator 0.05 was measured."""
-LONGER = "take a longer experiment.distance or a stiffer cantilever"
+LONGER = "use a longer experiment.distance or a stiffer cantilever"
 """What makes a steady slide of one that is none yet."""
 TEMPERATURE_BLOCKS = 20
 """Parts of the last leg whose spread gives the error of its temperature."""
 CLOSED = 5e-3
-"""Work that is neither dissipated nor stored, over the largest of the three, from which on it is told."""
+"""Residual of the energy balance, over its largest term, from which on it is reported."""
 
 
 class SlideExperiment(Experiment):
@@ -89,7 +89,7 @@ class SlideExperiment(Experiment):
         return outcome
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The schedule that runs, but for the way to rest under the normal force."""
+        """The schedule, without the relaxation under the normal force."""
         assert isinstance(scene.experiment, Slide)
         force, legs = scene.experiment.normal_force, settings.drive
         sliding = (
@@ -102,17 +102,17 @@ class SlideExperiment(Experiment):
         return loading_phase(scene, settings, force), *sliding
 
     def advice(self, scene: Scene) -> str:
-        """A mean is known by the length of what it is taken over."""
+        """The uncertainty of a mean depends on the averaging length."""
         assert isinstance(scene.experiment, Slide)
         way = "experiment.distance" if scene.experiment.path is None else "last leg of experiment.path that moves"
         return (
-            f"What helps is a longer {way}, of more whole periods of the spacing; not for static_friction, whose "
+            f"Use a longer {way}, with more whole periods of the spacing; this does not improve static_friction, whose "
             f"uncertainty is the change between two of {MOST_ROWS} points in a spacing"
         )
 
 
 def outcome_of(deck: Deck, loaded: State, states: list[State], phases: tuple[Phase, ...]) -> Outcome:
-    """The result of a slide that is over, or of what there is of one that ended early."""
+    """The result of a finished slide, or of the part before a failure."""
     scene, settings = deck.scene, deck.settings
     motion = motion_of(scene, settings, loaded, states)
     found = slips_of(scene, motion)
@@ -173,7 +173,7 @@ def temperature(scene: Scene, settings: Settings, motion: Motion) -> dict[str, R
 
 
 def energies(motion: Motion) -> dict[str, Result]:
-    """Work of the cantilever, what the baths took of it and what is stored; what is missing is uncertain in each."""
+    """Work of the cantilever, dissipated and stored energy; the residual of the balance is the uncertainty of each."""
     ends = {
         "cantilever_work": float(motion.work[-1]),
         "dissipated_energy": float(motion.dissipated[-1]),
@@ -202,11 +202,11 @@ def is_steady(scene: Scene, settings: Settings, motion: Motion) -> str:
     if blocks.size < friction.DROPPED + friction.FEWEST_BLOCKS:
         periods = "1 whole period" if blocks.size == 1 else f"{blocks.size} whole periods"
         return (
-            f"no steady sliding yet: the drive's way of {motion.drive[-1]:.3g} LU has {periods} of "
+            f"no steady sliding yet: the drive distance of {motion.drive[-1]:.3g} LU has {periods} of "
             f"the spacing, and a mean needs {friction.DROPPED + friction.FEWEST_BLOCKS}"
         )
     if motion.place[-1] < spacing:
-        found = f"the plate moved by {motion.place[-1]:.3g} LU only, which is no sliding yet"
+        found = f"the plate moved by {motion.place[-1]:.3g} LU only, which is not yet sliding"
         return found + _swing(scene, settings, motion)
     start = motion.time[-1] - period * (blocks.size - friction.mean_of(blocks).first)
     while_ = motion.time[-1] - start
@@ -222,13 +222,13 @@ def is_steady(scene: Scene, settings: Settings, motion: Motion) -> str:
 
 
 def _swing(scene: Scene, settings: Settings, motion: Motion) -> str:
-    """That the plate swings on its cantilever for longer than the whole way took; "" where it does not."""
+    """That the period of the plate on its cantilever is longer than the slide; "" where it is not."""
     swing = cantilever_swing(scene, settings)
     if swing < motion.time[-1]:
         return ""
     return (
-        f". On its cantilever the plate of {settings.plate_mass:.3g} MU swings once in {swing:.3g} TU, and the drive's "
-        f"way took {motion.time[-1]:.3g} TU: a lower cantilever.velocity or a lighter plate.mass gives it time, too"
+        f". The plate of {settings.plate_mass:.3g} MU on its cantilever has a period of {swing:.3g} TU, and the drive "
+        f"moved for {motion.time[-1]:.3g} TU: a lower cantilever.velocity or a lighter plate.mass helps, too"
     )
 
 
@@ -266,23 +266,23 @@ def _doubts(
     top = float(np.max(np.abs(motion.friction)))
     if drag * fastest > top:
         found["drag"] = (
-            f"the drag on what moves, {drag * fastest:.3g} FU at the drive's velocity, is more than the contact's own "
-            f"friction of up to {top:.3g} FU: it holds the plate to the drive's pace and keeps it from slipping. Take "
+            f"the viscous drag at the drive's velocity, {drag * fastest:.3g} FU, exceeds the friction of the contact, "
+            f"at most {top:.3g} FU, and suppresses slips of the plate. Use "
             "a lower cantilever.velocity, or less [damping] and [plate] damping"
         )
     energy = results["cantilever_work"].uncertainty
     largest = max(float(np.max(np.abs(values))) for values in (motion.work, motion.dissipated, motion.stored))
     if energy > CLOSED * largest:
         found["energy"] = (
-            f"{energy:.2g} FU·LU of the cantilever's work were neither dissipated nor stored, {energy / largest:.1g} "
-            "of the largest of the three: take an [accuracy] tolerance below "
-            f"{MOVING_TOLERANCE:g}, whose timesteps are shorter"
+            f"the residual of the energy balance is {energy:.2g} FU·LU, {energy / largest:.1g} "
+            "of its largest term: use an [accuracy] tolerance below "
+            f"{MOVING_TOLERANCE:g}, which shortens the timesteps"
         )
     return found
 
 
 def _columns(motion: Motion, states: list[State]) -> dict[str, tuple[float, ...]]:
-    """friction.csv: one line for each row."""
+    """friction.csv: one line for each load step."""
     return {
         "time": tuple(motion.time[1:].tolist()),
         "drive": tuple(motion.drive[1:].tolist()),
@@ -296,7 +296,7 @@ def _columns(motion: Motion, states: list[State]) -> dict[str, tuple[float, ...]
 
 
 def loading_phase(scene: Scene, settings: Settings, force: float) -> Phase:
-    """The planned way: that it takes no longer than usual."""
+    """The planned application of the normal force."""
     if scene.noise is not None:
         return sampled_phase("loading", settings, force, SETTLING_LOOKS)
     scale = abs(force) or settings.force_scale
@@ -310,8 +310,8 @@ def loaded(contact: Contact, force: float) -> State:
     """At rest under the normal force; with noise, after it has forgotten its start.
 
     Raises:
-        PartedError: the bodies part under it.
-        UntrustedError: see `hold`; or the plate swings on along x.
+        PartedError: the bodies separate under it.
+        UntrustedError: see `hold`; or the plate oscillates on along x.
     """
     scene, settings = contact.scene, contact.settings
     if scene.noise is not None:
@@ -322,7 +322,7 @@ def loaded(contact: Contact, force: float) -> State:
     scale = abs(force) or settings.force_scale
     held = hold(contact, force, scale, settings=_calm(settings))
     if not held.held:
-        raise PartedError(f"the bodies do not hold a normal force of {force:.4g} FU: they part", "take a smaller pull")
+        raise PartedError(f"the contact does not sustain {force:.4g} FU: the bodies separate", "use a smaller tension")
     state = _settled_along(contact, force, scale, held.last)
     if settings.calm_damping == settings.damping:
         return state
@@ -334,7 +334,7 @@ def _calm(settings: Settings) -> Settings:
 
 
 def _settled_along(contact: Contact, force: float, scale: float, state: State) -> State:
-    """The state when the plate has come to rest along x, too."""
+    """The state when the plate is at rest along x as well."""
     scene, settings = contact.scene, _calm(contact.settings)
     row = replace(hold_row(scene, settings, force, scale, Start.HERE), rest=0.0)
     row = replace(row, steps=max(1, round(settings.settle_time / settings.time_step)))
@@ -346,9 +346,9 @@ def _settled_along(contact: Contact, force: float, scale: float, state: State) -
         state = contact.row(row)
     speed = state.motion["vcm(plate,x)"]
     raise RestlessError(
-        f"the plate did not come to rest along x under {force:.4g} FU within {MOST_HOLDS * row.steps} timesteps: it is "
-        f"left with {speed:.2g} LU/TU",
-        "more [damping] or a stiffer cantilever settles it sooner",
+        f"the plate did not come to rest along x under {force:.4g} FU within {MOST_HOLDS * row.steps} timesteps: it "
+        f"moves at {speed:.2g} LU/TU",
+        "use more [damping] or a stiffer cantilever",
     )
 
 
@@ -365,7 +365,7 @@ def leg_begin(scene: Scene, number: int) -> tuple[str, ...]:
 
 
 def _drive(contact: Contact, force: float, leg: DriveLeg, states: list[State]) -> None:
-    """Run the rows of a leg and append their states, as long as they are ones of a slide."""
+    """Run the load steps of a leg and append their states, until the bodies separate or the plate slides off."""
     scene, settings = contact.scene, contact.settings
     for _ in range(leg.rows):
         state = contact.row(UnderLoad(force, leg.steps), trusted=False)
@@ -378,12 +378,12 @@ def _require_above(scene: Scene, settings: Settings, state: State) -> None:
     """Refuse a plate that has left the lower body, along it or off it.
 
     Raises:
-        OffEndError, PartedError: where it is, and what helps.
+        OffEndError, PartedError: where it is, with a suggested fix.
     """
     if state.smallest_distance > settings.cutoff:
         raise PartedError(
-            f"the bodies parted on the way, with the plate at {state.plate_x:.4g} LU",
-            "take a larger normal_force, or less of a pull" + (", or a lower temperature" if scene.noise else ""),
+            f"the bodies separated while sliding, with the plate at {state.plate_x:.4g} LU",
+            "use a larger normal_force, or a smaller tensile one" + (", or a lower temperature" if scene.noise else ""),
         )
     if scene.bodies.periodic:
         return
@@ -392,7 +392,7 @@ def _require_above(scene: Scene, settings: Settings, state: State) -> None:
     half = contact_half_width(scene, settings)
     if place + half > end + scene.bodies.spacing:
         raise OffEndError(
-            f"the plate ran off the lower body: {place:.4g} LU from its middle it reaches {half:.4g} LU further, and "
-            f"that ends at {end:.4g} LU",
-            "take more bodies.particles, a shorter distance, or more [damping]",
+            f"the plate slid off the lower body: at {place:.4g} LU from the middle its half-width is {half:.4g} LU, "
+            f"and the lower body ends at {end:.4g} LU",
+            "use more bodies.particles, a shorter distance, or more [damping]",
         )

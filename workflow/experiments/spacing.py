@@ -1,6 +1,6 @@
-"""How many particles stand in a contact on the plane, where nobody said: so many that the lattice keeps the tolerance.
+"""The automatic spacing of a contact on the plane: so small that the discretisation error meets the tolerance.
 
-What the lattice leaves open is known before a run, from the reduced model (`continuation.budget`). It falls with the
+The discretisation error follows before a run from the reduced model (`continuation.budget`). It falls with the
 square of the spacing.
 """
 
@@ -53,10 +53,10 @@ def with_spacing(scene: Scene) -> Scene:
     chosen = fine_enough(partial(_spaced, scene, radius))
     left = left_by_lattice(chosen)
     if scene.accuracy.tolerance < left < math.inf:  # without bound the run says what appears
-        larger = "" if left > 0.9 * LARGEST else f"take an accuracy.tolerance of {_up(left)}, or "
+        larger = "" if left > 0.9 * LARGEST else f"use an accuracy.tolerance of {_up(left)}, or "
         raise SettingsError(
-            f"a tolerance of {scene.accuracy.tolerance:g} is not kept by {MOST} particles in the contact radius of "
-            f'{radius:.4g} LU, the most that bodies.spacing = "auto" takes: they leave {left:.1e}. '
+            f"a tolerance of {scene.accuracy.tolerance:g} is not reached by {MOST} particles in the contact radius of "
+            f'{radius:.4g} LU, the limit of bodies.spacing = "auto": their discretisation error is {left:.1e}. '
             f"{larger[:1].upper()}{larger[1:]}{'give' if larger else 'Give'} bodies.spacing"
         )
     return chosen
@@ -75,7 +75,7 @@ def fine_enough(scene_of: Callable[[int], Scene]) -> Scene:
 
 
 def left_by_lattice(scene: Scene) -> float:
-    """The largest share of a result that its lattice leaves open; 0 where no contact can be estimated: the run says so.
+    """The largest relative discretisation error of a result; 0 where no contact can be predicted: the run reports it.
 
     A result that is 0 has no share; a radius that is 0 here and not elsewhere has one without bound.
     """
@@ -107,7 +107,7 @@ def _spaced(scene: Scene, radius: float, count: int) -> Scene:
 
 
 def _contact_radius(scene: Scene) -> float:
-    """The contact radius [LU] that particles are counted in: under the load, or at F = 0 where it is drawn off.
+    """The contact radius [LU] that determines the spacing: under the load, or at F = 0 of an unloading.
 
     Raises:
         SettingsError: nothing touches.
@@ -121,7 +121,7 @@ def _contact_radius(scene: Scene) -> float:
         if abs(size - before) <= SAME * size:
             return size
     raise SettingsError(
-        "nothing touches in this experiment, so that there is no contact to choose a spacing for: give bodies.spacing, "
+        "the bodies never touch in this experiment, so that no spacing can be chosen: give bodies.spacing, "
         "or a displacement above 0"
     )
 

@@ -118,7 +118,7 @@ class TangentialExperiment(Scripted):
 
     def advice(self, scene: Scene) -> str:
         """A row is exact, so that the lattice alone is left."""
-        return f"What helps is {FINER_SPACING}"
+        return f"Use {FINER_SPACING}"
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,7 @@ def chunk_steps(settings: Settings) -> int:
 
 
 def sampled_phase(name: str, settings: Settings, load: float, samples: int, state: bool = False) -> Phase:
-    """A planned phase of so many samples under a load [FU]."""
+    """A planned phase of samples under a load [FU]."""
     return Phase(name, (UnderLoad(load, chunk_steps(settings)),) * samples, state)
 
 
@@ -111,7 +111,7 @@ def thermal_load(context: RunContext) -> Outcome:
     """d, F, a and F/(πa²) of a load under noise, as means.
 
     Raises:
-        UntrustedError: the bodies part, or the mean force misses the load; see `require_trust`.
+        UntrustedError: the bodies separate, or the mean force misses the load; see `require_trust`.
     """
     scene, settings = context.deck.scene, context.deck.settings
     assert isinstance(scene.experiment, Load)
@@ -136,10 +136,10 @@ def thermal_load(context: RunContext) -> Outcome:
     error = results["displacement"].uncertainty
     if error > goal:
         warnings["statistics"] = (
-            f"{MOST_SAMPLES} samples give the displacement within {error:.2g} LU only, not the {goal:.2g} LU asked for"
+            f"standard error of the displacement {error:.2g} LU after {MOST_SAMPLES} samples, above {goal:.2g} LU"
         )
     if "contact_radius" not in results:
-        warnings["no_radius"] = "the bodies do not touch over a width, so there is no contact radius"
+        warnings["no_radius"] = "the contact has no width, so there is no contact radius"
     states = (*settling, *samples)
     table = {SAMPLE_TABLE: sample_columns(states, [load] * len(states), settings)}
     return Outcome(results, states, {"final": mean_state(samples)}, phases, warnings, tables=table)
@@ -152,7 +152,7 @@ def _samples(contact: Contact, load: float, count: int) -> list[State]:
         state = contact.row(UnderLoad(load, chunk_steps(contact.settings)), trusted=False)
         if contact.settings.law is not None and state.smallest_distance > contact.settings.cutoff:
             raise UntrustedError(
-                "the bodies parted under the load and the noise: take a more compressive experiment.force or a lower "
+                "the bodies separated under the load and the noise: use a more compressive experiment.force or a lower "
                 "noise.temperature"
             )
         found.append(state)
@@ -166,7 +166,7 @@ def _load_results(context: RunContext, samples: list[State], load: float) -> dic
     mean_force, force_error = float(np.mean(forces)), standard_error(forces)
     if abs(mean_force - load) > BALANCE * force_error:
         raise UntrustedError(
-            f"not in equilibrium: the mean force {mean_force:.4g} FU misses the load {load:.4g} FU by "
+            f"not in equilibrium: the mean force {mean_force:.4g} FU differs from the load {load:.4g} FU by "
             f"{abs(mean_force - load) / force_error:.1f} standard errors"
         )
     found = {
@@ -194,7 +194,7 @@ def _load_results(context: RunContext, samples: list[State], load: float) -> dic
 def thermal_rows(
     settings: Settings, decay: float, positions: Sequence[tuple[float, bool]]
 ) -> tuple[DisplaceInTime, ...]:
-    """The rows of a path: at each position all that forget, and where the state is asked for those that are averaged.
+    """The load steps of a path: at each position equilibration, and where the scene asks for the state also sampling.
 
     Args:
         settings: of the scene.
@@ -210,7 +210,7 @@ def thermal_rows(
 
 
 def averaged(states: Sequence[State], positions: Sequence[tuple[float, bool]]) -> list[State]:
-    """One state for each position of a path: the mean of its samples, or the last one on the way between two."""
+    """One state for each position of a path: the mean of its samples, or the last one between two positions."""
     found, first = [], 0
     for _, asked in positions:
         end = first + SETTLING_LOOKS + (SAMPLES if asked else 0)

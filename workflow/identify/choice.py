@@ -1,4 +1,4 @@
-"""From a material to a finished run: which scene stands for a contact, a chain on a rigid plane or two, and its run."""
+"""From a material to a finished run: which scene represents a contact, a chain on a rigid plane or two, and its run."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ class Choice:
     Attributes:
         contact: what was asked for.
         scene: with every number chosen; of two chains, its interaction is still to be searched for.
-        theories: what is said of an adhesive sphere; None of another body.
+        theories: the theories of an adhesive sphere; None of another body.
         target: what the interaction of two chains is to give, in units of the scene; None on the plane.
-        doubts: by name, why the scene stands for the contact in part only.
-        contact_radius: that the spacing was chosen by [m].
+        doubts: by name, why the scene represents the contact in part only.
+        contact_radius: that determines the spacing [m].
     """
 
     contact: AskedContact
@@ -51,13 +51,13 @@ class Choice:
 
 @dataclass(frozen=True)
 class MaterialRun(Choice):
-    """A contact with the run that stands for it; `scene` is the one that ran."""
+    """A contact with the run that represents it; `scene` is that of the run."""
 
     run: Run
 
 
 def theories_of(contact: AskedContact) -> Theories | None:
-    """What is said of an adhesive sphere; None of another body, or without attraction."""
+    """The theories of an adhesive sphere; None for another body, or without attraction."""
     if contact.radius is None or not contact.work_of_adhesion:
         return None
     return Theories(contact.radius, contact.contact_modulus, contact.work_of_adhesion, contact.range, contact.load)
@@ -67,7 +67,7 @@ def chosen(contact: AskedContact) -> Choice:
     """A scene for a contact.
 
     Raises:
-        IdentifyError: no chain can stand for it; the message says what holds.
+        IdentifyError: no chain can represent it; the message says what holds.
         SceneError: the profile is none.
     """
     theories = theories_of(contact)
@@ -98,7 +98,7 @@ def _particles(contact: AskedContact, theories: Theories | None, doubts: dict[st
     if theories is None or contact.radius is None or contact.shape.kind != "parabola":
         raise IdentifyError(
             'model = "particles" is for an adhesive sphere, with a radius and a work_of_adhesion: leave it out, and a '
-            "chain on a rigid plane stands for the body"
+            "chain on a rigid plane represents the body"
         )
     wanted = jkr_target(contact.contact_modulus, 0.5 * contact.work_of_adhesion, contact.radius)
     tolerance = contact.scene.accuracy.tolerance
@@ -109,7 +109,7 @@ def _particles(contact: AskedContact, theories: Theories | None, doubts: dict[st
     if contact.load:
         changes["experiment.preload"] = contact.load / scene.material.force_unit
     image = (
-        "of two chains only F_A and a_0 are JKR's, since the interaction is searched for by them: displacement, "
+        "of two chains only F_A and a_0 are JKR's, since the interaction is fitted to these two: displacement, "
         'critical radius and work are those of the one-dimensional image. Without model = "particles" all of them are '
         "JKR's"
     )
@@ -124,11 +124,11 @@ def from_material(source: AnyContact, folder: AnyPath, progress: Progress | None
     Args:
         source: a TOML file, by its path, or its tables; see docs/identify.md.
         folder: run folder.
-        progress: told of phases and steps.
+        progress: informed of phases and steps.
 
     Raises:
         SceneError: the description has mistakes; all of them.
-        IdentifyError: no chain can stand for this contact; the message says which theory holds, with its value.
+        IdentifyError: no chain can represent this contact; the message says which theory holds, with its value.
         SettingsError, RunError: see `workflow.runs.campaign.run`.
     """
     choice = chosen(read_contact(source))

@@ -1,4 +1,4 @@
-"""What a person knows of a real contact, from a TOML file or a table: shapes, materials, attraction, load, in SI."""
+"""Data of a real contact, from a TOML file or a table: shapes, materials, attraction, load, in SI."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ class AskedContact:
 
     @property
     def model(self) -> Model:
-        """A chain on a rigid plane, or two chains with an interaction that is searched for."""
+        """A chain on a rigid plane, or two chains with a fitted interaction."""
         return "particles" if self.given.get("model") == "particles" else "plane"
 
 
@@ -112,7 +112,7 @@ def read_contact(source: AnyContact, complete: bool = True) -> AskedContact:
     folder = Path() if isinstance(source, Mapping) else Path(fspath(source)).parent
     data = dict(source) if isinstance(source, Mapping) else read_tables(source)
     if {"bodies", "experiment"} <= data.keys():
-        raise SceneError([Problem("bodies", "this is a scene and no material", hint="run it with contact1d run")])
+        raise SceneError([Problem("bodies", "this is a scene, not a material file", hint="run it with contact1d run")])
     problems = [*_mistakes(data, complete), *_without_unit(data, folder)]
     taken = {problem.path for problem in problems}
     scene = None
@@ -172,7 +172,7 @@ def _without_unit(data: Mapping[str, Any], folder: Path) -> Iterator[Problem]:
         with suppress(ProfileFileError):
             if None in read_profile(folder / profile["file"])[1].values():
                 hint = 'write scale = "1 um", the length of one of its units, or name the columns r [µm] and z [nm]'
-                yield Problem("profile.scale", "missing: the file says no unit", hint=hint)
+                yield Problem("profile.scale", "missing: the file has no unit", hint=hint)
 
 
 def _as_scene(data: Mapping[str, Any]) -> dict[str, Any]:

@@ -53,7 +53,7 @@ class Target:
 
 
 def require_reachable(scene: Scene, target: Target) -> None:
-    """Refuse a target beyond what springs of the scene's stiffness can do.
+    """Refuse a target that springs of the scene's stiffness cannot reach.
 
     Raises:
         IdentifyError: with the nearest zero-load radius and the nearest adhesion force.
@@ -85,8 +85,8 @@ def require_held(target: Target, layer: float, radius: float, units: tuple[str, 
     largest = REACHABLE_RATIO * layer * a_0**3 / radius / ROUNDING
     newton, metre = units
     raise IdentifyError(
-        f"an adhesion force of {force:.6g} {newton} with a zero-load radius of {a_0:.6g} {metre} is more than springs "
-        "of this stiffness hold, whatever the interaction. Nearest: the same force with a radius of at least "
+        f"an adhesion force of {force:.6g} {newton} with a zero-load radius of {a_0:.6g} {metre} is not possible with "
+        "springs of this stiffness. Nearest: the same force with a radius of at least "
         f"{smallest:.6g} {metre}, or the same radius with a force of at most {largest:.6g} {newton}"
     )
 
@@ -98,11 +98,11 @@ FEWEST_IN_RADIUS = 8.0
 MOST_IN_RADIUS = 2000.0
 """Most particles in a₀."""
 LARGEST_RADIUS_SHARE = 0.6
-"""Largest a₀ over the radius of the sphere: beyond it neither a parabola nor a half space is meant."""
+"""Largest a₀ over the radius of the sphere: beyond it neither parabola nor half-space is valid."""
 PRELOAD_SHARE = 0.7
 """Preload of a scene for a material over its F_A."""
 SHAPE = {"amplitudes": 2.0, "ranges": 2.0}
-"""A over B and b over a of a scene for a material: those of the shipped pull_off scene."""
+"""A/B and b/a of the fitted interaction: those of the example scene pull_off.toml."""
 
 
 def material_scene(
@@ -128,20 +128,20 @@ def material_scene(
     unit = target.zero_load_radius / RESOLUTION if length_unit is None else length_unit
     if unit > coarsest:
         raise IdentifyError(
-            f"a length unit of {unit:.4g} m leaves {target.zero_load_radius / unit:.2g} particles in the zero-load "
-            f"radius of {target.zero_load_radius:.4g} m: at most {coarsest:.4g} m leaves {FEWEST_IN_RADIUS:g}"
+            f"a length unit of {unit:.4g} m gives {target.zero_load_radius / unit:.2g} particles in the zero-load "
+            f"radius of {target.zero_load_radius:.4g} m: use at most {coarsest:.4g} m for {FEWEST_IN_RADIUS:g}"
         )
     if unit < target.zero_load_radius / MOST_IN_RADIUS:
         raise IdentifyError(
-            f"a length unit of {unit:.4g} m puts {target.zero_load_radius / unit:.2g} particles into the zero-load "
-            f"radius of {target.zero_load_radius:.4g} m: at least {target.zero_load_radius / MOST_IN_RADIUS:.4g} m "
-            f"leaves {MOST_IN_RADIUS:g}"
+            f"a length unit of {unit:.4g} m gives {target.zero_load_radius / unit:.2g} particles in the zero-load "
+            f"radius of {target.zero_load_radius:.4g} m: use at least {target.zero_load_radius / MOST_IN_RADIUS:.4g} m "
+            f"for {MOST_IN_RADIUS:g}"
         )
     if target.zero_load_radius > LARGEST_RADIUS_SHARE * radius:
         raise IdentifyError(
             f"the zero-load radius of {target.zero_load_radius:.4g} m is {target.zero_load_radius / radius:.2g} of the "
-            f"sphere's: JKR is for contacts small beside the sphere, here up to {LARGEST_RADIUS_SHARE:g} of it. A "
-            "larger radius, a larger contact modulus or a smaller surface energy has that"
+            f"sphere's: JKR is for a << R, here up to {LARGEST_RADIUS_SHARE:g}. Use a "
+            "larger radius, a larger contact modulus or a smaller surface energy"
         )
     force_unit = 2.0 * contact_modulus * unit**2
     wanted = Target(target.adhesion_force / force_unit, target.zero_load_radius / unit)
@@ -177,15 +177,15 @@ def jkr_target(contact_modulus: float, surface_energy: float, radius: float) -> 
 
 Array = NDArray[np.float64]
 SLOPE_STEP = 0.03
-"""Step of the finite differences of the estimate, in both logarithms: well above the grain of its grid."""
+"""Step of the finite differences of the predictor, in both logarithms: well above the grain of its grid."""
 FIRST_STEP, FARTHEST = 0.25, 9.0
 """First and last step of a search for a bracket, in the logarithm of a factor."""
 START_ERROR = 1e-4
-"""Of both logarithms at the start: what the estimate itself is good for."""
+"""Of both logarithms at the start: what the predictor itself is good for."""
 TAIL = 1e-5
-"""Force at the estimate's cutoff over the law's own."""
+"""Force at the predictor's cutoff over the force scale."""
 POINTS = 1000
-"""Distances at which the estimate has the force of a row."""
+"""Distances at which the predictor has the force of a row."""
 
 
 def estimated(scene: Scene, target: Target) -> Scene:
@@ -232,7 +232,7 @@ class _NoRootError(ValueError):
 
 
 def _root(function: Callable[[float], float], start: float) -> float:
-    """The zero of a monotone function of a logarithm, looked for on both sides of `start`.
+    """The zero of a monotone function of a logarithm, searched on both sides of `start`.
 
     Raises:
         _NoRootError: there is none within a factor of exp(FARTHEST).
@@ -266,7 +266,7 @@ def scaled(scene: Scene, logarithms: Array) -> Scene:
 
 
 def _estimated(scene: Scene) -> Array:
-    """ln F_A and ln a₀ of independent pairs, by the estimate of every run's settings, on a coarser grid."""
+    """ln F_A and ln a₀ of independent pairs, by the predictor of every run's settings, on a coarser grid."""
     law = interaction_law(scene)
     assert law is not None
     cutoff, rest = law.cutoff_for(TAIL), law.force_free_distance()
@@ -276,7 +276,7 @@ def _estimated(scene: Scene) -> Array:
 
 
 def _largest_tension(estimate: ContactEstimate) -> float:
-    """The undeformed gap [LU] of the largest tension, between the points of the grid by a parabola."""
+    """The undeformed gap [LU] of the force maximum, between the points of the grid by a parabola."""
     force = estimate.force
     i = min(max(int(np.argmin(force)), 1), len(force) - 2)
     before, lowest, after = (float(f) for f in force[i - 1 : i + 2])
@@ -314,7 +314,7 @@ def identify(scene: Scene, target: Target, folder: Path, progress: Progress | No
         scene: a pull_off with attraction; its interaction's shape is kept.
         target: wanted.
         folder: run folder; it holds the last run.
-        progress: told of phases and steps.
+        progress: informed of phases and steps.
 
     Raises:
         IdentifyError: no interaction of this shape has the target, or the search does not end.
@@ -334,8 +334,8 @@ def identify(scene: Scene, target: Target, folder: Path, progress: Progress | No
         at = at - np.linalg.solve(slopes(scene, at), reached)
     assert found is not None
     raise IdentifyError(
-        f"the search did not come to its end in {MOST_RUNS} runs: adhesion force off by {found.deviations[0]:.1e}, "
-        f"zero-load radius by {found.deviations[1]:.1e}. A finer [accuracy] tolerance or more particles in a₀ may help"
+        f"the search did not converge in {MOST_RUNS} runs: deviation {found.deviations[0]:.1e} of the adhesion force, "
+        f"{found.deviations[1]:.1e} of a₀. Use a smaller [accuracy] tolerance or more particles in a₀"
     )
 
 

@@ -1,4 +1,4 @@
-"""What theories say of a contact: JKR, DMT, Maugis and Dugdale, which of them holds, and whether a chain stands for it.
+"""Theories of a contact: JKR, DMT, Maugis and Dugdale, which of them holds, and whether a chain represents it.
 
 Radius and force of the body before any run, by the method of dimensionality reduction: with E* per
 length, g(x) = |x| ∫ f′/√(x² − r²) dr and Heß's rule at the edge, d = g(a) − √(2πaW/E*),
@@ -50,7 +50,7 @@ class Theories:
 
     @property
     def sphere(self) -> MaugisDugdale:
-        """The contact with its range, which knows its limits."""
+        """The contact with a range of the attraction, by Maugis and Dugdale."""
         return MaugisDugdale(self.radius, self.contact_modulus, self.work_of_adhesion, self.range_of_attraction)
 
     @cached_property
@@ -76,7 +76,7 @@ class Theories:
 
     @property
     def holding(self) -> str:
-        """The theory of `values` whose numbers to take: by μ, DMT below 0.1, JKR above 5, else Maugis and Dugdale."""
+        """The theory of `values` that holds: by μ, DMT below 0.1, JKR above 5, else Maugis and Dugdale."""
         return str(of_tabor(self.tabor))
 
     @property
@@ -88,41 +88,41 @@ class Theories:
 LEAST_TABOR = 0.5
 """Tabor parameter μ below which no chain is offered: JKR's F_A is there 10 % below that of Maugis and Dugdale."""
 ATOM = 0.3e-9
-"""Diameter of an atom [m]: a contact that is narrower is none of a continuum."""
+"""Diameter of an atom [m]: continuum theory does not hold for narrower contacts."""
 ROUGH_SHARE, TOO_ROUGH_SHARE = 0.1, 1.0
-"""Roughness over the stretch δ_c at which a summit as blunt as the sphere lets go. Fuller and Tabor (1975): what holds
-falls with it, to a third or so at 1 and to nothing at 3; summits that are sharper let go sooner."""
+"""Roughness over the stretch δ_c at which an asperity as blunt as the sphere separates. Fuller and Tabor (1975): the
+pull-off force falls with it, to about a third at 1 and to zero at 3; sharper asperities separate earlier."""
 
 
 def judged(contact: AskedContact, theories: Theories) -> dict[str, str]:
-    """What limits a chain as a stand-in for an adhesive sphere.
+    """Limitations of a chain as a model of an adhesive sphere.
 
     Raises:
-        IdentifyError: it cannot stand for it.
+        IdentifyError: it cannot represent it.
     """
     held = theories.values[theories.holding]
     if held["zero_load_radius"] < ATOM:
         raise IdentifyError(
             f"the contact is narrower than an atom: {theories.holding} has a zero-load radius of "
-            f"{prefixed(held['zero_load_radius'], 'm')}, and an atom's diameter is {prefixed(ATOM, 'm')}. No continuum "
-            "theory and no chain says anything of it; atoms do"
+            f"{prefixed(held['zero_load_radius'], 'm')}, and an atom's diameter is {prefixed(ATOM, 'm')}. Continuum "
+            "theory does not hold; use an atomistic model"
         )
     if theories.tabor < LEAST_TABOR:
         raise IdentifyError(_no_chain(theories))
     doubts = {}
     stretch, roughness = -_let_go(contact), contact.roughness or 0.0
-    beside = f"summits of {prefixed(roughness, 'm')} beside a stretch of {prefixed(stretch, 'm')}"
+    beside = f"asperities of {prefixed(roughness, 'm')} against an elastic stretch of {prefixed(stretch, 'm')}"
     if roughness > TOO_ROUGH_SHARE * stretch:
         raise IdentifyError(
-            f"the surfaces are too rough to hold as a smooth sphere does: {beside} at which even one as blunt as the "
-            "sphere lets go, so that most have parted when the last hold (Fuller and Tabor). Up to a roughness of "
-            f"{_down(TOO_ROUGH_SHARE * stretch)} m there is a scene"
+            f"the surfaces are too rough for the adhesion of a smooth sphere: {beside} at pull-off, even of an "
+            "asperity as blunt as the sphere, so that few asperities adhere at a time (Fuller and Tabor). A scene is "
+            f"offered up to a roughness of {_down(TOO_ROUGH_SHARE * stretch)} m"
         )
     if roughness > ROUGH_SHARE * stretch:
-        doubts["roughness"] = f"{beside} at which the contact parts: it holds less than a smooth sphere's"
+        doubts["roughness"] = f"{beside} at pull-off: the pull-off force is below that of a smooth sphere"
     if theories.holding != "JKR":
         doubts["tabor"] = (
-            f"the Tabor parameter {theories.verdict.reason}. The scene has JKR's law, whose pull-off force is "
+            f"the Tabor parameter {theories.verdict.reason}. The scene has JKR's theory, whose pull-off force is "
             f"{-theories.jkr_error:.1%} below that of {theories.holding} with this range"
         )
     return doubts
@@ -139,11 +139,11 @@ def _no_chain(theories: Theories) -> str:
         )
         between += "Maugis and Dugdale, between it and JKR"
     return (
-        f"DMT holds, and no chain stands for it: the Tabor parameter μ is {theories.tabor:.2g}, so that the attraction "
-        f"reaches farther than it stretches the bodies. F_A = 2πWR = {prefixed(dmt, 'N')}, a_0 = "
+        f"DMT holds, which a chain cannot represent: the Tabor parameter μ is {theories.tabor:.2g}, so that the range "
+        f"of the attraction exceeds the elastic stretch. F_A = 2πWR = {prefixed(dmt, 'N')}, a_0 = "
         f"{prefixed(theories.values['DMT']['zero_load_radius'], 'm')}{between}. A chain would have JKR's F_A, "
-        f"{prefixed(jkr, 'N')}, which is {-theories.jkr_error:.0%} too small here; from μ = {LEAST_TABOR:g} on there "
-        "is a scene"
+        f"{prefixed(jkr, 'N')}, which is {-theories.jkr_error:.0%} too small here; a scene is offered from "
+        f"μ = {LEAST_TABOR:g} on"
     )
 
 
@@ -161,7 +161,7 @@ def _down(value: float) -> str:
 
 
 def require_size(contact: AskedContact, radius: float) -> None:
-    """Refuse a contact under an atom, and one that is wide beside its sphere."""
+    """Refuse a contact narrower than an atom, and one that is not small compared with its sphere."""
     if radius < ATOM:
         raise IdentifyError(
             f"the contact radius is {prefixed(radius, 'm')}, less than an atom's diameter: no theory holds"
@@ -169,13 +169,13 @@ def require_size(contact: AskedContact, radius: float) -> None:
     if contact.radius is not None and radius > LARGEST_RADIUS_SHARE * contact.radius:
         raise IdentifyError(
             f"the contact radius is {prefixed(radius, 'm')}, {radius / contact.radius:.2g} of the sphere's: the "
-            f"theory is for contacts small beside the sphere, here up to {LARGEST_RADIUS_SHARE:g} of it. A larger "
-            "radius, a larger contact modulus, a smaller load or less attraction has that"
+            f"theory is for a << R, here up to {LARGEST_RADIUS_SHARE:g}. Use a larger "
+            "radius, a larger contact modulus, a smaller load or less attraction"
         )
 
 
 SHORTEST, LONGEST, PLACES = 1e-12, 1e4, 8000
-"""Radii [m] among which that of a contact is looked for, in a geometric row, and how many."""
+"""Radii [m] among which that of a contact is sought, in a geometric row, and how many."""
 INSIDE = 0.999999
 """Largest of them over the half-width of a body that ends: the transform of a circle has no bound there."""
 
@@ -214,7 +214,7 @@ def contact_radius(contact: AskedContact) -> float:
 
 
 def largest_tension(contact: AskedContact) -> float:
-    """The largest tension under a fixed load [N]."""
+    """The force maximum under a fixed load [N]."""
     radii, forces = curve(contact)
     if len(radii) > 1:
         return max(-float(forces.min()), 1e-300)

@@ -4,11 +4,11 @@ With the transformed profile g(x), independent springs E* per length, and the ru
 
     h(x) = g(x) − Δl(x),    Δl(x) = √(2π x W/E*),    d = h(a),    F = 2 E* ∫₀ᵃ (d − g) dx
 
-h falls to its least value, at which fixed grips let go, and rises from there on. A place x, once in contact, stays so
-for d > H(x) = min h(y) over y ≥ x: the edge comes in from outside. H is a length for each place, so that each particle
-knows by its own height whether its place is in contact; only whether there is a contact at all is one state for all.
+h falls to its minimum, the pull-off under fixed grips, and rises from there on. A position x, once in contact, stays so
+for d > H(x) = min h(y) over y ≥ x: the contact edge recedes from outside. H is a length for each position, so that each
+particle is in contact or not by its own height; only whether there is a contact at all is one state for all.
 
-A particle stands for its cell, x ± s/2, of which the edge leaves a share φ. With q = (d − H₋)/(H₊ − H₋) over the cell
+A particle represents its cell, x ± s/2, of which the edge leaves a share φ. With q = (d − H₋)/(H₊ − H₋) over the cell
 
     φ = q + κ q (1 − q),    f = k φ [d − g(x) + c (1 − φ)],    c = g(x) − g(x − s/2)
 
@@ -31,7 +31,7 @@ from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 PLACES = 4000
-"""Places between which the estimate is straight."""
+"""Positions between which the predictor is straight."""
 FIRST = 1e-3
 """The first of them over the last."""
 BEYOND = 1.2
@@ -41,7 +41,7 @@ SPANNED = 0.9
 RISE = 1e-9
 """Rise of h before its least value over its depth that counts as one."""
 NARROWEST = 1e-12
-"""Heights in which a particle lets go that does so at once, over the spacing: no formula may divide by 0."""
+"""Heights in which a particle separates that does so at once, over the spacing: no formula may divide by 0."""
 NEAR_AN_END = 0.1
 """Place of the middle of a cell between its ends, as h sees it, beyond which its bend would turn the share around."""
 SOFTEST = 0.998
@@ -49,18 +49,18 @@ SOFTEST = 0.998
 
 
 def elongation(x: Array, modulus: float, work: float) -> Array:
-    """Δl(x) = √(2π x W/E*) [LU] at places x ≥ 0 [LU]; E* [FU/LU²], W [FU/LU]."""
+    """Δl(x) = √(2π x W/E*) [LU] at positions x ≥ 0 [LU]; E* [FU/LU²], W [FU/LU]."""
     return np.asarray(np.sqrt(2.0 * math.pi * work / modulus * x))
 
 
 @dataclass(frozen=True)
 class Cells:
-    """What each particle of a chain knows; arrays (n,) [LU], and `bend` without a unit.
+    """The cell of each particle of a chain; arrays (n,) [LU], and `bend` without a unit.
 
     Attributes:
         heights: g(x) of the particle.
-        hold: height at which it has let go of all of its cell.
-        width: below that, heights in which it lets go.
+        hold: height at which its cell is separated.
+        width: below that, heights over which it separates.
         fall: c of the module's docstring.
         bend: κ.
     """
@@ -93,7 +93,7 @@ class AdhesiveEstimate(ContactEstimate):
 
     Attributes:
         work: W [FU/LU].
-        known: the greatest place up to which it is known [LU].
+        known: the greatest position up to which it is known [LU].
     """
 
     work: float = field(kw_only=True)
@@ -106,7 +106,7 @@ class AdhesiveEstimate(ContactEstimate):
 
     @cached_property
     def _grid(self) -> tuple[Array, Array, Array, int]:
-        """Places x [LU], h(x) [LU], F of a contact up to there [FU], and the index of the least h."""
+        """Positions x [LU], h(x) [LU], F of a contact up to there [FU], and the index of the least h."""
         x = np.concatenate([[0.0], np.geomspace(FIRST * self.known, self.known, PLACES)])
         g = self.profile.height(x)
         h = g - elongation(x, self.modulus, self.work)
@@ -124,7 +124,7 @@ class AdhesiveEstimate(ContactEstimate):
 
     @property
     def fixed_grips(self) -> tuple[float, float]:
-        """(radius, displacement) [LU] at which fixed grips let go."""
+        """(radius, displacement) [LU] at pull-off under fixed grips."""
         x, h, _, least = self._grid
         return float(x[least]), float(h[least])
 
@@ -137,19 +137,19 @@ class AdhesiveEstimate(ContactEstimate):
         """Refuse a profile whose h falls again beyond its least value.
 
         Raises:
-            SettingsError: with the place.
+            SettingsError: with the position.
         """
         x, h, _, least = self._grid
         rising = np.diff(h[least:])
         if (rising < -RISE * abs(float(h[least]))).any():
             at = float(x[least + int(np.argmax(rising < 0.0))])
             raise SettingsError(
-                f"the edge of this adhesive contact would jump at x = {at:.4g} LU, where the body is too flat for its "
+                f"the contact edge would jump at x = {at:.4g} LU, where the profile is too flat for this work of "
                 "adhesion: smooth the profile, or lower adhesion.work_of_adhesion"
             )
 
     def cells(self, x: Array, body: Profile) -> Cells:
-        """The cells of particles at places x, (n,) [LU], of the very `body`. Without adhesion they let go at touch."""
+        """The cells of particles at positions x, (n,) [LU], of `body`. Without adhesion they separate at touch."""
         at, half = np.abs(x), 0.5 * self.spacing
         heights, narrowest = body.height(at), NARROWEST * self.spacing
         if self.work == 0.0:
@@ -190,7 +190,7 @@ class AdhesiveEstimate(ContactEstimate):
 
     @cached_property
     def _rising(self) -> tuple[Array, Array]:
-        """Displacements [LU] and forces [FU] from the largest tension on."""
+        """Displacements [LU] and forces [FU] from the force maximum on."""
         _, h, force, least = self._grid
         top = least + int(np.argmin(force[least:]))
         return h[top:], force[top:]
@@ -200,7 +200,7 @@ class AdhesiveEstimate(ContactEstimate):
         return max(0.0, -float(self._rising[1][0]))
 
     def displacement_at(self, force: float) -> float:
-        """Displacement [LU] at which a contact carries a force [FU]; that of the largest tension if none does."""
+        """Displacement [LU] at which a contact carries a force [FU]; that of the force maximum if none does."""
         places, forces = self._rising
         return float(np.interp(force, forces, places))
 
@@ -210,16 +210,16 @@ class AdhesiveEstimate(ContactEstimate):
         return float(np.interp(max(force, -SOFTEST * self.pull_off_force()), forces, np.gradient(forces, places)))
 
     def parted(self, share: float) -> float:
-        """Displacement [LU] at which fixed grips let go: all of the tension goes at once."""
+        """Displacement [LU] of pull-off under fixed grips, where the tensile force vanishes at once."""
         return self.fixed_grips[1]
 
     def tooth(self, particles: int) -> float:
-        """Without a range and with parts of cells there are no teeth: infinite."""
+        """Infinite: with a range of zero and fractions of cells the force has one maximum."""
         return math.inf
 
 
 def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
-    """The estimate of a scene on a rigid plane; that of one with [adhesion] is known as far as its experiment needs.
+    """The predictor of a scene on a rigid plane; that of one with [adhesion] is known as far as its experiment needs.
 
     Raises:
         SettingsError: the contact would be as wide as the body, or its edge would jump.
@@ -241,14 +241,14 @@ def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
         limit = min(profile.reach, bodies.profile.curvature_radius or math.inf)
         if widest > SPANNED * limit:
             raise SettingsError(
-                f"the adhesive contact would spread over the whole body, which ends at {limit:.6g} LU: JKR's theory is "
-                "of a contact that is small beside it. Lower adhesion.work_of_adhesion, the load or the displacement"
+                f"the adhesive contact would cover the body, which ends at {limit:.6g} LU: JKR's theory is for a "
+                "contact much smaller than the body. Lower adhesion.work_of_adhesion, the load or the displacement"
             )
     estimate.require_one_edge()
     return estimate
 
 
 def cells_of(scene: Scene, estimate: ContactEstimate, x: Array) -> Cells:
-    """The cells of particles at places x [LU] of a scene with [adhesion]."""
+    """The cells of particles at positions x [LU] of a scene with [adhesion]."""
     assert isinstance(estimate, AdhesiveEstimate)
     return estimate.cells(x, scene.bodies)

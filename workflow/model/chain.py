@@ -18,7 +18,7 @@ from contact1d.workflow.model.pairs import ContactEstimate
 from contact1d.workflow.scene import Bodies, Scene, Tangential
 
 CHAIN_MARGIN = 1.1
-"""Length of an automatic chain over what the estimate asks for."""
+"""Length of an automatic chain over what the predictor asks for."""
 FALL_SHARE = 1e-9
 """A profile counts as falling where it does by more than this share of its height."""
 ROUND_OFF = 1e-9
@@ -26,7 +26,7 @@ ROUND_OFF = 1e-9
 
 
 class SettingsError(Contact1dError, ValueError):
-    """A scene whose numbers, each allowed, lead to no computable system; the message says which and what to change."""
+    """A scene whose numbers, each allowed, give no computable system; the message says which and what to change."""
 
 
 def require_room(bodies: Bodies) -> None:
@@ -65,7 +65,7 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
         deepest = float(bodies.height(np.asarray([longest]))[0])
         if largest >= deepest:
             raise SettingsError(
-                f"the contact would spread over the whole profile, which ends at {bodies.reach:.6g} LU: the experiment "
+                f"the contact would cover the profile, which ends at {bodies.reach:.6g} LU: the experiment "
                 f"needs a displacement of about {largest:.4g} LU, at most {deepest:.4g} LU is possible"
             )
     places = np.linspace(0.0, half, 2001)
@@ -74,8 +74,8 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
     if falls.any():
         at = float(places[int(np.argmax(falls))])
         raise SettingsError(
-            f"the profile, as the reduction {bodies.reduction} has it, falls beyond x = {at:.4g} LU, so that the "
-            "contact would not be one piece: smooth it, or end it there"
+            f"the profile under the reduction {bodies.reduction} falls beyond x = {at:.4g} LU, so that the "
+            "contact would have several parts: smooth it, or end it there"
         )
 
 
@@ -85,7 +85,7 @@ def _most_particles(bodies: Bodies) -> int:
 
 
 def decay_length(scene: Scene) -> float:
-    """Length ℓ [LU] in which a chain that is pushed at one place comes back to rest beside it; 0 without neighbours.
+    """Decay length ℓ [LU] of the displacement of a chain beside a point load; 0 without neighbours.
 
     Beside the push, k u_i = k_n (u_{i+1} − 2 u_i + u_{i−1}) has the solutions exp(±x/ℓ), cosh(s/ℓ) = 1 + k/(2 k_n): for
     stiff neighbours ℓ = s √(k_n/k).
@@ -97,7 +97,7 @@ def decay_length(scene: Scene) -> float:
 
 
 def reflected(scene: Scene, estimate: ContactEstimate, largest: float, particles: int) -> float:
-    """Share of a contact's displacement that comes back to its edge from the chain's ends, exp(−2 L/ℓ), L apart."""
+    """Share of a displacement at the contact edge that the ends of the chain reflect, exp(−2 L/ℓ), L apart."""
     decay = decay_length(scene)
     beyond = 0.5 * particles * scene.bodies.spacing - _edge(estimate, largest)
     return math.exp(-2.0 * max(beyond, 0.0) / decay) if decay > 0.0 else 0.0
@@ -119,7 +119,7 @@ def chains_of(scene: Scene, estimate: ContactEstimate, largest: float, share: fl
 
 
 def _edge(estimate: ContactEstimate, largest: float) -> float:
-    """Half-width [LU] up to the largest tension, or without attraction up to where nothing is felt."""
+    """Half-width [LU] up to the force maximum, or without attraction up to where nothing is felt."""
     return estimate.half_width(max(largest, 0.0), float(estimate.gap[int(estimate.force.argmin())]))
 
 
@@ -134,7 +134,7 @@ def felt_up_to(estimate: ContactEstimate, largest: float, share: float) -> float
 
 
 def chain_length(scene: Scene, estimate: ContactEstimate, largest: float, share: float) -> int:
-    """Particles of an automatic chain: out to where a force, and what a chain's end reflects, is this share at most.
+    """Particles of an automatic chain: up to where a force, and the reflection by the end, is at most this share.
 
     A flat punch has its own length; no chain is longer than its profile is wide.
     """
@@ -153,7 +153,7 @@ MOST_PARTICLES = 10_000_000
 MOST_PARTNERS = 5_000
 """Opposite particles within reach of one."""
 MOST_ROWS = 1_000_000
-"""Rows of a prescribed path, those on the way between two places included."""
+"""Rows of a prescribed path, those on the way between two positions included."""
 PER_PARTICLE = 2_000.0
 """Memory for each particle of a body, its opposite and both anchors [bytes]: measured, 2 GB at 10⁶."""
 PER_PAIR = 8.0
@@ -165,9 +165,9 @@ LARGE, USUALLY_FELT = 20_000, 10.0
 SHARPEST_RATIO = 1e3
 """Height of the particles beside an apex over cutoff and spacing: so far even neighbour springs bring none."""
 FARTHEST_RATIO = 1e9
-"""Way of a body over cutoff and spacing: LAMMPS divides the box into no more bins, and coordinates lose the digits."""
+"""Displacement over cutoff and spacing: LAMMPS limits the number of bins, and coordinates lose digits."""
 DIGIT_SHARE = 0.1
-"""Force that the last digit of a place may be, over one particle's and the tolerance: that of a converged state."""
+"""Force that the last digit of a position may be, over one particle's and the tolerance: that of a converged state."""
 MIX_UP = "All lengths (spacing, radius, ranges) are in LU: are some of them in another unit?"
 
 
@@ -180,20 +180,20 @@ def require_reach(scene: Scene, cutoff: float) -> None:
     spacing = scene.bodies.spacing
     if reaches_too_far(scene, cutoff):
         raise SettingsError(
-            f"with a cutoff of {cutoff:.4g} LU and a spacing of {spacing:.4g} LU a particle would feel "
-            f"{2.0 * cutoff / spacing:.2g} opposite ones, at most {MOST_PARTNERS} are possible: take shorter ranges in "
+            f"with a cutoff of {cutoff:.4g} LU and a spacing of {spacing:.4g} LU a particle would interact with "
+            f"{2.0 * cutoff / spacing:.2g} opposite ones, at most {MOST_PARTNERS} are possible: use shorter ranges in "
             f"[interaction], an interaction.cutoff below {0.5 * MOST_PARTNERS * spacing:.4g} LU, or a wider "
             f"bodies.spacing. {MIX_UP}"
         )
 
 
 def reaches_too_far(scene: Scene, cutoff: float) -> bool:
-    """Whether a particle would feel more opposite ones within a cutoff [LU] than can be summed over."""
+    """Whether a particle would interact with more opposite ones within a cutoff [LU] than can be summed over."""
     return cutoff > 0.5 * MOST_PARTNERS * scene.bodies.spacing
 
 
 def require_apex(scene: Scene, particles: int, cutoff: float) -> None:
-    """Refuse a chain whose apex lies between two particles far beyond the reach of all forces (a cutoff [LU]).
+    """Refuse a chain whose particles beside the apex are far out of range of the interaction (a cutoff [LU]).
 
     Raises:
         SettingsError: with the particles' height.
@@ -203,27 +203,27 @@ def require_apex(scene: Scene, particles: int, cutoff: float) -> None:
     if height > SHARPEST_RATIO * max(cutoff, scene.bodies.spacing):
         raise SettingsError(
             f"the body is too sharp for its chain: it rises by {height:.4g} LU from its apex to the nearest particles, "
-            f"{beside:.4g} LU beside it. Take a finer bodies.spacing, a blunter bodies.profile, or an odd number of "
+            f"{beside:.4g} LU from it. Use a finer bodies.spacing, a blunter bodies.profile, or an odd number of "
             f"bodies.particles, of which one is the apex. {MIX_UP}"
         )
 
 
 def require_travel(scene: Scene, largest: float, cutoff: float) -> None:
-    """Refuse a body that goes as far as `largest` [LU], beyond all proportion to the reach of its forces.
+    """Refuse a displacement `largest` [LU] out of all proportion to the range of the forces.
 
     Raises:
-        SettingsError: with the way.
+        SettingsError: with the path.
     """
     most = FARTHEST_RATIO * max(cutoff, scene.bodies.spacing)
     if abs(largest) > most:
         raise SettingsError(
-            f"the upper body would go as far as {largest:.3g} LU, at most {most:.3g} LU are possible at this reach of "
-            f"forces: take a larger bodies.bulk_stiffness, or a smaller load or displacement. {MIX_UP}"
+            f"the displacement would reach {largest:.3g} LU, at most {most:.3g} LU are possible with this range of "
+            f"forces: use a larger bodies.bulk_stiffness, or a smaller load or displacement. {MIX_UP}"
         )
 
 
 def require_memory(scene: Scene, particles: int, cutoff: float) -> None:
-    """Refuse a system that this machine has no memory for.
+    """Refuse a system that exceeds the memory of this machine.
 
     Raises:
         SettingsError: with the number of particles or bytes.
@@ -245,12 +245,12 @@ def require_memory(scene: Scene, particles: int, cutoff: float) -> None:
 
 
 def require_digits(scene: Scene, particles: int, deepest: float, force: float) -> None:
-    """Refuse springs so stiff that the last digit of a place is more force than a particle at rest may be left with.
+    """Refuse springs so stiff that the last digit of a position is more force than a particle at rest may be left with.
 
     Args:
         scene: whose particles are brought to rest without time.
         particles: per body.
-        deepest: length that a place has beside the height of the last particle [LU].
+        deepest: length that a position has beside the height of the last particle [LU].
         force: of one particle, times the tolerance [FU].
 
     Raises:
@@ -263,9 +263,9 @@ def require_digits(scene: Scene, particles: int, deepest: float, force: float) -
     left, allowed = scene.bulk_stiffness * digit, DIGIT_SHARE * force
     if left > allowed:
         raise SettingsError(
-            f"a bodies.bulk_stiffness of {scene.bulk_stiffness:.3g} FU/LU is too stiff to compute with: the last digit "
-            f"of a place, {digit:.1g} LU, is a force of {left:.1g} FU, and the tolerance allows {allowed:.1g} FU. "
-            f"{float(f'{0.3 * allowed / digit:.1g}'):g} FU/LU are possible, and as good as rigid"
+            f"a bodies.bulk_stiffness of {scene.bulk_stiffness:.3g} FU/LU is too stiff to resolve: the round-off error "
+            f"of a position, {digit:.1g} LU, is a force of {left:.1g} FU, and the tolerance allows {allowed:.1g} FU. "
+            f"Use {float(f'{0.3 * allowed / digit:.1g}'):g} FU/LU, which is practically rigid"
         )
 
 
@@ -280,27 +280,27 @@ def require_rows(scene: Scene, longest_move: float, drive: Sequence[DriveLeg]) -
     experiment = scene.experiment
     if isinstance(experiment, Tangential) and len(experiment.along()) > MOST_ROWS:
         raise SettingsError(
-            f"the way along x would take {len(experiment.along()):.3g} rows, more than {MOST_ROWS:.0e}: take fewer "
-            "steps in experiment.displacements"
+            f"the tangential path would need {len(experiment.along()):.3g} load steps, more than {MOST_ROWS:.0e}: use "
+            "fewer steps in experiment.displacements"
         )
     if (driven := sum(leg.rows for leg in drive)) > MOST_ROWS:
         raise SettingsError(
-            f"the drive's way would take {driven:.3g} rows, more than {MOST_ROWS:.0e}: each spacing of it has some "
-            f"tens. Take a shorter experiment.distance, or shorter legs of experiment.path. {MIX_UP}"
+            f"the slide would need {driven:.3g} load steps, more than {MOST_ROWS:.0e}: each spacing has some tens. "
+            f"Use a shorter experiment.distance, or shorter legs of experiment.path. {MIX_UP}"
         )
     places = [0.0, *experiment.places()]
     way = sum(max(0.0, after - before) for before, after in pairwise(places))
     rows = len(places) + math.floor(way / longest_move)
     if rows > MOST_ROWS:
         raise SettingsError(
-            f"the path would take {rows:.3g} rows, more than {MOST_ROWS:.0e}: bodies move towards each other by "
-            f"{longest_move:.3g} LU at a time, as the interaction's ranges allow. Take nearer "
+            f"the path would need {rows:.3g} load steps, more than {MOST_ROWS:.0e}: the ranges of the interaction "
+            f"limit a step to {longest_move:.3g} LU. Use smaller "
             f"experiment.displacements or longer ranges. {MIX_UP}"
         )
 
 
 def require_steps(steps: Iterable[int]) -> None:
-    """Refuse a scene one of whose rows takes more `steps` than LAMMPS can count.
+    """Refuse a scene with a load step of more `steps` than LAMMPS can count.
 
     Raises:
         SettingsError: with the number of timesteps.
@@ -308,9 +308,9 @@ def require_steps(steps: Iterable[int]) -> None:
     most = max(steps, default=0)
     if most > MOST_TIMESTEPS:
         raise SettingsError(
-            f"one row would take {most:.3g} timesteps, at most {MOST_TIMESTEPS} can be counted: the slowest motion is "
-            "too slow beside the fastest one. Bring masses ([bodies] and [plate]), stiffnesses and dampings nearer to "
-            'each other, or leave them to the program ("auto")'
+            f"a load step would need {most:.3g} timesteps, at most {MOST_TIMESTEPS} can be counted: the periods of the "
+            "slowest and the fastest motion differ too much. Use masses ([bodies] and [plate]), stiffnesses and "
+            'dampings of similar magnitude, or "auto"'
         )
 
 

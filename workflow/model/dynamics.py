@@ -25,9 +25,9 @@ SWING = 0.5
 DRAG_STEP = 0.2
 """Time step over the time m/γ in which drag stops a particle, or the plate: explicit integration needs it below 1."""
 CALM_STEP = 0.4
-"""The same on the way to rest, whose drag is no part of what is looked at."""
+"""The same on the way to rest, whose drag is no part of what is examined."""
 CREEPING = 10.0
-"""Drag over the critical one from which on a plate takes too long to come to rest."""
+"""Drag over the critical one from which on the relaxation of a plate is too slow."""
 NOISE_BIAS = 0.4
 """Relative error of ⟨u²⟩ over (ω Δt)² with `fix langevin` and `fix nve`, measured at ω Δt = 0.1: 0.4 %."""
 SOFTENING = 0.6
@@ -51,7 +51,7 @@ class Dynamics:
 
 
 def stiffest_of(scene: Scene, law: DoubleExponential | None, closest: float, plane: float) -> float:
-    """Largest stiffness [FU/LU] that a particle feels: its springs, the plane, and a row of opposite ones nearby."""
+    """Largest stiffness [FU/LU] acting on a particle: its springs, the plane, and a nearby chain of opposite ones."""
     stiffest = max(scene.bulk_stiffness, scene.tangential_stiffness) + plane
     if law is not None:
         rows = 1.0 + 2.0 * law.repulsion.range / scene.bodies.spacing
@@ -105,7 +105,7 @@ def dynamics_of(
 
 
 def time_step_limits(scene: Scene, product: float, stiffest: float, damping: float) -> dict[str, float]:
-    """Longest time steps [TU] that the particles allow, by what limits them; the smallest of all limits is taken."""
+    """Longest time steps [TU] that the particles allow, by limit; the smallest of all limits is used."""
     mass = scene.bodies.mass
     limits = {"stiffest spring of a particle": product / math.sqrt(stiffest / mass)}
     if damping > 0.0:
@@ -130,7 +130,7 @@ def _plate_limits(
 
 
 def _product(scene: Scene, tolerance: float, still_step: float) -> float:
-    """Largest ω Δt: of a motion that comes to rest, of one that is the result, with noise, or without time."""
+    """Largest ω Δt: of a relaxation, of a motion that is the result, with noise, or quasi-static."""
     if scene.experiment.motion_is_result:
         product = MOVING_STEP * math.sqrt(min(1.0, tolerance / MOVING_TOLERANCE))
     else:
@@ -165,7 +165,7 @@ def _swinging_apart(plate: float, particles: float, rate: float) -> float:
 
 
 MOST_ROWS, FEWEST_ROWS = 50, 20
-"""Measured states per spacing of the drive's way."""
+"""Measured states per spacing of the drive distance."""
 USUAL_STEPS = 10
 """Timesteps of a row below which measuring takes longer than moving, so that there are fewer rows."""
 FEWEST_STEPS = 5
@@ -192,7 +192,7 @@ class DriveLeg:
 
     @property
     def row_time(self) -> float:
-        """Time of a row [TU]."""
+        """Duration of a load step [TU]."""
         return self.steps * self.time_step
 
 

@@ -1,4 +1,4 @@
-"""Friction on a rigid plane before LAMMPS runs: independent springs, each with a slider that gives at μ f.
+"""Friction on a rigid plane before LAMMPS runs: Jenkins elements, springs with a slider that slips at μ f.
 
     f_i = k_n max(0, d − h(x_i)),   s_i ← clip(s_i + k_t Δu, ±μ f_i)
 
@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 CLEAR = 1e-9
 """Gap over the body's height in which it stands clear of the plane."""
 Stop = tuple[float, float]
-"""Displacement and place along x [LU]."""
+"""Displacement and position along x [LU]."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class Sliders:
 
 
 def without_rests(way: Sequence[Stop]) -> list[Stop]:
-    """The way without stops from which it goes straight on under the same displacement: they change nothing."""
+    """The path without intermediate stops on a straight line at constant displacement, which have no effect."""
     kept = list(way[:2])
     for stop in way[2:]:
         (depth, start), (next_depth, place) = kept[-2:]
@@ -75,14 +75,14 @@ def without_rests(way: Sequence[Stop]) -> list[Stop]:
 
 
 def sliders_of(scene: Scene, x: Array) -> Sliders:
-    """The sliders of a scene with [friction], at places `x` [LU] from the apex."""
+    """The sliders of a scene with [friction], at positions `x` [LU] from the apex."""
     assert scene.friction is not None
     heights = np.asarray(scene.bodies.height(x), dtype=np.float64)
     return Sliders(x, heights, scene.bulk_stiffness, scene.tangential_stiffness, scene.friction.coefficient)
 
 
 def stops(experiment: Tangential, sliders: Sliders) -> list[Stop]:
-    """Where each row of an experiment ends; before the first one the load is brought on at the place 0."""
+    """The end of each load step of an experiment; before the first one the load is applied at position 0."""
     normal = experiment.places()
     if not normal:
         found: dict[float, float] = {}

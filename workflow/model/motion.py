@@ -1,7 +1,7 @@
 """A slide's inertia in LAMMPS, whether it stays on its lower chain, whether particles can follow its drive.
 
 LAMMPS evaluates the drag of a step with the velocity half a step before: m a = F − γ (v − a Δt/2). With m + γ Δt/2 in
-the place of m that is m a = F − γ v. Otherwise a slip is as much too light as its drag is strong, which at usual
+the position of m that is m a = F − γ v. Otherwise a slip is as much too light as its drag is strong, which at usual
 timesteps is percents of its time and tenths of percents of a mean friction. The first half step of a row has the right
 velocity by itself, and so its share of the row is left out.
 """
@@ -39,7 +39,7 @@ def contact_half_width(scene: Scene, settings: Settings) -> float:
 
 
 def require_way(scene: Scene, settings: Settings) -> None:
-    """Refuse a slide whose contact would leave the lower chain; one without an end is left nowhere.
+    """Refuse a slide whose contact would leave the lower chain; a periodic one has no end.
 
     Raises:
         SettingsError: with the particles that are needed.
@@ -52,10 +52,10 @@ def require_way(scene: Scene, settings: Settings) -> None:
     if end < half + way:
         needed = 2 * math.ceil((half + way) / bodies.spacing)
         room = end - half - abs(bodies.upper_offset or 0.0)
-        shorter = f", or a way of at most {room:.4g} LU" if room >= SHORTEST * bodies.spacing else ""
+        shorter = f", or a distance of at most {room:.4g} LU" if room >= SHORTEST * bodies.spacing else ""
         raise SettingsError(
-            f"the lower chain is too short for the way: it ends {end:.4g} LU from its middle, and a contact that "
-            f"reaches {half:.4g} LU to each side is drawn {way:.4g} LU along it. Take at least "
+            f"the lower chain is too short for the sliding distance: it ends {end:.4g} LU from its middle, and a "
+            f"contact of half-width {half:.4g} LU moves {way:.4g} LU along it. Use at least "
             f"{needed} bodies.particles (with upper_particles = "
             f'{settings.particles}), or "auto"{shorter}',
             changes=[SceneEdit({"bodies.particles": needed, "bodies.upper_particles": settings.particles})],
@@ -79,7 +79,7 @@ def too_fast(scene: Scene) -> str:
     if 2.0 * math.pi * fastest / bodies.spacing <= own:
         return ""
     return (
-        f"the drive passes a particle in {bodies.spacing / fastest:.3g} TU, less than a particle on its springs needs "
-        f"for a swing, {2.0 * math.pi / own:.3g} TU: the bodies cannot follow, and the friction is that of a shock. "
-        f"Waves and particles follow below {own * bodies.spacing / (2.0 * math.pi):.3g} LU/TU"
+        f"the drive passes a particle in {bodies.spacing / fastest:.3g} TU, less than the period of a particle on its "
+        f"springs, {2.0 * math.pi / own:.3g} TU: the bodies cannot follow, and the friction is that of a shock. "
+        f"Use a velocity below {own * bodies.spacing / (2.0 * math.pi):.3g} LU/TU"
     )

@@ -1,4 +1,4 @@
-"""What a contact will roughly look like, before LAMMPS runs: independent opposite pairs under the undeformed profile.
+"""A predictor of the contact before LAMMPS runs: independent opposite pairs under the undeformed profile.
 
 A particle on each side, each on its spring k, at the actual distance r have the undeformed gap
 
@@ -24,7 +24,7 @@ from contact1d.potentials import DoubleExponential
 
 Array = NDArray[np.float64]
 PLACES, NEAR = 1000, 0.01
-"""Places at which a profile is tabulated, and the first one beyond its apex over the spacing."""
+"""Positions at which a profile is tabulated, and the first one beyond its apex over the spacing."""
 
 
 def places_within(reach: float, spacing: float, phase: float) -> Array:
@@ -49,9 +49,9 @@ class Profile(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Tabulated:
-    """A profile that was asked once for its `heights` [LU] at rising `places` [LU] from 0, with straight lines between.
+    """A profile given by its `heights` [LU] at ascending `places` [LU] from 0, linear between them.
 
-    For a measured one, whose transform takes long: an estimate asks thousands of times.
+    For a measured one, whose transform takes long: a predictor asks thousands of times.
     """
 
     places: Array
@@ -68,9 +68,9 @@ class Tabulated:
 
 
 def tabulated(profile: Profile, spacing: float) -> Tabulated:
-    """The profile, which must have an end, at places in a geometric row: those of a parabola within 1e-4 of its height.
+    """The profile, which must be finite, at positions in geometric series: those of a parabola to 1e-4 of its height.
 
-    That holds for a reach of 0.1 to 1e10 spacings [LU]; nearer to the apex than NEAR spacings it is a line.
+    That holds for a reach of 0.1 to 1e10 spacings [LU]; closer to the apex than NEAR spacings it is a line.
     """
     places = np.concatenate([[0.0], np.geomspace(NEAR * spacing, profile.reach, PLACES)])
     return Tabulated(places, profile.height(places))
@@ -80,10 +80,10 @@ GRID = 4000
 CONTACT_POINTS = 401
 BRANCH_POINTS, COARSE_POINTS = 400, 40
 FARTHEST = 1e12
-"""Displacement over spacing and force-free distance beyond which none is looked for: no deck holds it
+"""Displacement over spacing and force-free distance beyond which none is sought: no deck holds it
 (`chain.require_travel`)."""
 CUTS, PARTS = 5, 17
-"""How often the bracket of a displacement is cut, and at how many places: then the force is straight in it to 1e-10.
+"""How often the bracket of a displacement is cut, and at how many positions: then the force is straight in it to 1e-10.
 `scipy.optimize.brentq` would do it too, but its import takes a quarter of the time of a whole small run."""
 DIFFERENCE = 1e-3
 """Difference of two displacements whose forces give a stiffness, over the way since the bodies feel each other."""
@@ -92,16 +92,16 @@ FLATNESS = 1e-6
 SOFTEST_SHARE = 0.998
 """Tension over the largest one at which a contact counts as softest: at the largest itself it has no stiffness left."""
 TEETH_POINTS, TOOTH = 2000, 1e-4
-"""Displacements at which the tension of a chain is summed, and the fall between two of its teeth over the largest."""
+"""Displacements at which the force of a chain is summed, and the fall between two of its maxima over the largest."""
 UNRELAXED = 20.0
-"""Force under which a pair lets go at rest over the norm at which a relaxation stops; measured: 17 and 18, at
+"""Force at which a relaxed pair separates over the norm at which a relaxation stops; measured: 17 and 18, at
 tolerances of 1e-2 and 1e-3."""
 ROUNDS, EDGES = 12, 33
-"""How often a bracket is cut, and at how many places: a bisection's step takes as long, and 60 give all digits."""
+"""How often a bracket is cut, and at how many positions: a bisection's step takes as long, and 60 give all digits."""
 
 
 class NotCarriedError(ValueError):
-    """A load that no displacement carries; `most` is what some displacement does [FU]."""
+    """A load that exceeds the force at every displacement; `most` is the largest force [FU]."""
 
     def __init__(self, most: float) -> None:
         """Keep it."""
@@ -111,7 +111,7 @@ class NotCarriedError(ValueError):
 
 @dataclass(frozen=True, eq=False)
 class ContactEstimate:
-    """Independent pairs under a profile. Scenes one after the other share it, and what was found before with it.
+    """Independent pairs under a profile. Successive scenes share it with its cached results.
 
     Attributes:
         gap: undeformed gap G [LU] over a grid of distances, made monotone where pairs would snap.
@@ -121,7 +121,7 @@ class ContactEstimate:
         spacing: [LU].
         stiffness: contact stiffness of one particle [FU/LU], both springs in series.
         snaps: whether pairs snap: G(r) falls somewhere, so that loading and unloading differ.
-        bend: |d²G/dr²| where a joined pair lets go [1/LU]; 0 where none snaps.
+        bend: |d²G/dr²| at the limit point of a joined pair [1/LU]; 0 where none snaps.
         outer: where pairs snap, the gap made monotone from outside [LU]: on it a pair comes near.
     """
 
@@ -171,7 +171,7 @@ class ContactEstimate:
             while (short := (outer < reach) & (self.profile.height(outer) < height)).any():
                 inner[short], outer[short] = outer[short], np.minimum(2 * outer[short], reach)
         if np.isinf(outer).any():
-            raise OverflowError("the body is endlessly wide beside its spacing")
+            raise OverflowError("the body is too wide compared with its spacing")
         column = np.arange(len(height))
         for _ in range(ROUNDS):
             places = np.linspace(inner, outer, EDGES)
@@ -186,11 +186,11 @@ class ContactEstimate:
         return float(ends[1] - ends[0]) / (2.0 * step)
 
     def pull_off_force(self) -> float:
-        """Largest tension of the estimate [FU]; 0 without attraction."""
+        """Largest tension of the predictor [FU]; 0 without attraction."""
         return max(0.0, self._largest_tension[1])
 
     def stiffness_under(self, force: float) -> float:
-        """Contact stiffness dF/dd [FU/LU] under a force [FU]; above SOFTEST_SHARE of the largest tension: there."""
+        """Contact stiffness dF/dd [FU/LU] under a force [FU]; above SOFTEST_SHARE of the force maximum: there."""
         if force > 0.0:
             deepest = self.displacement_at(force)
             step = DIFFERENCE * (deepest - self._apart)
@@ -202,9 +202,9 @@ class ContactEstimate:
 
     @cached_property
     def tooth(self) -> Callable[[int], float]:
-        """Least distance [LU] of two tops of the tension, between which it falls by TOOTH of the largest; inf for one.
+        """Least distance [LU] of two maxima of the force, between which it falls by TOOTH of the largest; inf for one.
 
-        Summed over the particles of a chain of so many: where they let go one by one, F(d) has a tooth for each.
+        Summed over the particles of a chain of so many: where they separate one by one, F(d) has a maximum for each.
         """
         return cache(self._tooth)
 
@@ -213,8 +213,8 @@ class ContactEstimate:
         """Displacement [LU] at which F(d) reaches a compressive force [FU] ≥ 0.
 
         Raises:
-            NotCarriedError: the particles stand on each other before it does.
-            OverflowError: the spacing is too small beside the body.
+            NotCarriedError: the particles coincide before it does.
+            OverflowError: the spacing is too small compared with the body.
         """
         return cache(self._displacement_at)
 
@@ -232,7 +232,7 @@ class ContactEstimate:
 
     @cached_property
     def snap(self) -> tuple[float, float]:
-        """(undeformed gap [LU] at which a pair lets go, tension [FU] that it loses then); the end, 0 if none does."""
+        """(undeformed gap [LU] at the snap-out of a pair, tension [FU] that it loses then); the end, 0 if none does."""
         rises = np.diff(self.gap)
         level = np.flatnonzero(rises < FLATNESS * rises.mean())
         if level.size == 0:
@@ -241,7 +241,7 @@ class ContactEstimate:
 
     @property
     def joins(self) -> float:
-        """Undeformed gap [LU] below which a pair that comes near has snapped together; where none snaps, any gap."""
+        """Undeformed gap [LU] below which an approaching pair has snapped in; where none snaps, any gap."""
         if self.outer is None:
             return float(self.gap[-1])
         level = np.flatnonzero(np.diff(self.outer) < FLATNESS * np.diff(self.outer).mean())
@@ -253,9 +253,9 @@ class ContactEstimate:
         return float(self.gap[-1])
 
     def let_go_early(self, move: float, force: float) -> float:
-        """How far [LU] before its time a pair lets go of a body that is drawn away by `move` [LU] at a time.
+        """Premature detachment [LU] of a pair under displacement increments `move` [LU].
 
-        A move h puts a joined pair h further apart before it relaxes. That is beyond the unstable place next to it,
+        A move h puts a joined pair h further apart before it relaxes. That is beyond the unstable position next to it,
         which is 2 √(2 e/|G″|) away at a gap e before the fold of G(r), up to e = h² |G″|/8. What a relaxation to a norm
         F of the forces [FU] leaves adds to h: it is lost at e = UNRELAXED · 2F/k itself.
         """
@@ -265,13 +265,13 @@ class ContactEstimate:
         return 0.125 * self.bend * (move + math.sqrt(8.0 * left / self.bend)) ** 2
 
     def stuck_stiffness(self, displacement: float) -> float:
-        """Contact stiffness [FU/LU] of all pairs together that have not let go at a displacement [LU]; one at least."""
+        """Contact stiffness [FU/LU] of all pairs that are in contact at a displacement [LU]; one at least."""
         lets_go = self.snap[0] if self.snaps else float(self.gap[self.force.argmin()])
         width = 2.0 * self.half_width(displacement, lets_go)
         return max(1.0, width / self.spacing) * self.stiffness
 
     def parted(self, share: float) -> float:
-        """Displacement [LU] beyond the largest tension at which the tension has fallen to this share of it."""
+        """Displacement [LU] beyond the force maximum at which the tension has fallen to this share of it."""
         places, forces = self._tensions
         top = int(forces.argmin())
         gone = forces[:top] > share * forces[top]
@@ -284,12 +284,12 @@ class ContactEstimate:
 
     @cached_property
     def _all_the_way(self) -> float:
-        """Displacement [LU] at which each particle of a body that ends stands on its opposite one."""
+        """Displacement [LU] at which each particle of a finite body coincides with its opposite one."""
         return self.rest - float(self.gap[0]) + float(self.profile.height(np.asarray([self.profile.reach]))[0])
 
     @cached_property
     def _largest_tension(self) -> tuple[float, float]:
-        """(displacement [LU], tension [FU]) where the tension is largest, looked for twice, the second time nearby."""
+        """(displacement [LU], tension [FU]) where the tension is largest, found in two passes."""
         low, high = self._apart, self.rest
         for _ in range(2):
             places, step = np.linspace(low, high, COARSE_POINTS, retstep=True)
@@ -306,7 +306,7 @@ class ContactEstimate:
 
     def _displacement_at(self, force: float) -> float:
         if self.spacing**2 == 0.0:
-            raise OverflowError("the spacing is nothing beside the body")
+            raise OverflowError("the spacing is too small compared with the body")
         low = self._largest_tension[0]  # where the force begins to rise
         high = max(self.spacing, 2 * self.rest)
         farthest = FARTHEST * max(self.spacing, self.rest)
@@ -323,7 +323,7 @@ class ContactEstimate:
 
 
 def row_force(law: DoubleExponential, r: Array, spacing: float, cutoff: float) -> Array:
-    """Force [FU] of a straight row of opposite particles on the one facing it, at distances r [LU], shape (n,)."""
+    """Force [FU] of a straight chain of opposite particles on the one facing it, at distances r [LU], shape (n,)."""
     offsets = spacing * np.arange(int(cutoff / spacing) + 1)
     distance = np.hypot(r[:, None], offsets[None, :])
     forces = np.where(distance <= cutoff, law.force(distance), 0.0) * r[:, None] / distance
@@ -342,7 +342,7 @@ def particles_estimate(
     chains: int = 2,
     row: float | None = None,
 ) -> ContactEstimate:
-    """The estimate for particles held by springs `stiffness` [FU/LU] each, in two chains or in the upper one alone.
+    """The predictor for particles held by springs `stiffness` [FU/LU] each, in two chains or in the upper one alone.
 
     `row`: spacing [LU] of the opposite row where it differs.
     """
@@ -369,7 +369,7 @@ def _row_over(law: DoubleExponential, spacing: float, cutoff: float, points: int
 
 @lru_cache(maxsize=16)  # as particles_estimate
 def plane_estimate(profile: Profile, spacing: float, stiffness: float) -> ContactEstimate:
-    """The estimate for one chain on a rigid plane: one-sided springs `stiffness` [FU/LU]."""
+    """The predictor for one chain on a rigid plane: one-sided springs `stiffness` [FU/LU]."""
     deepest = 1e6 * spacing
     gap = np.asarray([-deepest, 0.0])
     return ContactEstimate(gap, -stiffness * gap, 0.0, profile, spacing, stiffness)

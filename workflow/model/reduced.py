@@ -6,7 +6,7 @@
     springs with a slider       s ← clip(s + k_t Δu, ±μ f)
 
 It follows any path of displacements with the memory that its particles have, all positions at once. No result
-depends on it: it predicts, and it says how a result changes with the lattice (`shifted`, `resized`).
+depends on it: it is a predictor, and it gives the discretisation error (`shifted`, `resized`).
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 OVERREACH = 0.1
-"""How far beyond the expected displacement a force is looked for, over that displacement and a spacing."""
+"""How far beyond the expected displacement a force is searched, over that displacement and a spacing."""
 MARGIN = 1.5
 """Depth up to which particles of springs are counted, over the expected one: few carry a load deeper than many."""
 FEWEST = 4.0
 """Least half-width up to which they are counted, over the spacing."""
 ROUNDS, POINTS, SNAPPING = 5, 24, 10
 """How often the bracket of a displacement is cut, and at how many positions: so many times more at first where pairs
-snap, and the force is a row of teeth."""
+snap, and the force has many maxima."""
 NEAREST = 1e-9
-"""Of the way from the limit point to the largest displacement, the nearest that is looked at."""
+"""Distance from the limit point, over that to the largest displacement, from which positions are examined."""
 TOUCH = 1e-9
 """Distance over the spacing at which bodies touch: round-off of a displacement of 0."""
 
@@ -103,7 +103,7 @@ class Reduced(ABC):
         return float(self.x[-1]) + 0.5 * self.estimate.spacing
 
     def displacement_at(self, force: float) -> float:
-        """Largest displacement [LU] at which a force [FU] is carried; that of the largest tension if none is."""
+        """Largest displacement [LU] at which a force [FU] is carried; that of the force maximum if none is."""
         low, high = self.apart, self.deepest + OVERREACH * (abs(self.deepest) + self.estimate.spacing)
         points = POINTS * (SNAPPING if self.estimate.snaps else 1)
         # The attraction may end within a millionth of the way: what lies near the limit point is looked at by decades.
@@ -140,7 +140,7 @@ class Springs(Reduced):
         return self.estimate.rest - float(self.estimate.gap[-1])
 
     def held(self, displacements: Array) -> Array:
-        """As joined pairs have it [FU]."""
+        """On the branch of joined pairs [FU]."""
         heights, own = self.heights
         each = self._forces(heights - displacements[:, None], np.ones(heights.size, dtype=bool))
         return np.asarray(each @ np.bincount(own))
@@ -245,7 +245,7 @@ def legs(displacements: Array) -> list[slice]:
 
 
 def reduced(scene: Scene, settings: Settings) -> Reduced:
-    """The model of the very particles that run, as far as the contact reaches."""
+    """The model of the particles that run, as far as the contact reaches."""
     estimate, spacing = settings.estimate, settings.estimate.spacing
     deepest = settings.largest_displacement
     phase = 0.5 if settings.particles % 2 == 0 else 0.0

@@ -9,7 +9,7 @@ The cutoff of a slide follows from how a particle is held along x by a straight 
 
     F_x(x, z) = Σ_j f(r_j) (x − j s)/r_j,    r_j = √((x − j s)² + z²)
 
-a small difference of large sums: at the spacing of the law's longest range b it is some 1e-2 of one pair's force.
+a small difference of large sums: at the spacing of the longest range b it is some 1e-2 of one pair's force.
 """
 
 from __future__ import annotations
@@ -83,12 +83,12 @@ CALIBRATION = calibration_of(json.loads(FILE.read_text(encoding="utf-8")))
 
 Array = NDArray[np.float64]
 REACH = 40.0
-"""Reach of the sums, and of the longest cutoff, over the law's longest range."""
+"""Reach of the sums, and of the longest cutoff, over the longest range."""
 PLACES, HEIGHTS = 33, 400
-"""Places within half a spacing, and heights, that are looked at."""
+"""Positions within half a spacing, and heights, that are examined."""
 LEFT_OUT = 0.1
 """Force of a pair at the cutoff over the largest force along x, per unit of tolerance: each pair that comes within
-reach, or leaves it, changes that by so much at once."""
+reach, or leaves it, changes that by that much at once."""
 
 
 def slide_cutoff(law: DoubleExponential, spacing: float, load: float, share: float) -> float:
@@ -107,7 +107,7 @@ def slide_cutoff(law: DoubleExponential, spacing: float, load: float, share: flo
 
 
 def largest_holding_force(law: DoubleExponential, spacing: float, load: float) -> float:
-    """max_x F_x [FU] of a particle that a load [FU] presses onto a rigid row, at the height that it has in a hollow."""
+    """max_x F_x [FU] of a particle pressed by a load [FU] onto a rigid chain, at its height in a potential minimum."""
     reach = math.ceil(REACH * law.longest_range / spacing) + 1
     row: Array = np.asarray(spacing * np.arange(-reach, reach + 1), dtype=np.float64)
     heights: Array = np.asarray(law.longest_range * np.geomspace(1e-2, 10.0, HEIGHTS))
@@ -131,7 +131,7 @@ THERMAL_SIGMAS = 5.0
 
 
 def interaction_law(scene: Scene) -> DoubleExponential | None:
-    """The scene's law, or None on a rigid plane."""
+    """The pair interaction of the scene, or None on a rigid plane."""
     if scene.interaction is None:
         return None
     terms = scene.interaction
@@ -140,7 +140,7 @@ def interaction_law(scene: Scene) -> DoubleExponential | None:
 
 
 def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: float) -> float:
-    """The scene's cutoff [LU], or the one beyond which the force is below a share of the law's own.
+    """The scene's cutoff [LU], or the one beyond which the force is below a share of the force scale.
 
     In a slide also below what the tolerance leaves of the force along x.
     """
@@ -154,20 +154,20 @@ def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: fl
 
 
 def innermost_distance(estimate: ContactEstimate, cutoff: float, displacement: float) -> float:
-    """Distance [LU] of the estimate's innermost pair at a displacement [LU]; its grid ends at the cutoff [LU]."""
+    """Distance [LU] of the predictor's innermost pair at a displacement [LU]; its grid ends at the cutoff [LU]."""
     grid = cutoff / estimate.gap.size * np.arange(1, estimate.gap.size + 1)
     return float(np.interp(estimate.rest - displacement, estimate.gap, grid))
 
 
 def thermal_motion(scene: Scene) -> float:
-    """By how much noise brings two particles on their springs nearer to each other [LU]: THERMAL_SIGMAS √(2 k_BT/k)."""
+    """Thermal approach [LU] of two particles on their springs: THERMAL_SIGMAS √(2 k_BT/k)."""
     return (
         0.0 if scene.noise is None else THERMAL_SIGMAS * math.sqrt(2.0 * scene.noise.temperature / scene.bulk_stiffness)
     )
 
 
 def force_scale_of(scene: Scene, law: DoubleExponential | None, largest: float) -> float:
-    """The largest tension of one pair, or without attraction the force of the deepest particle."""
+    """The force maximum of one pair, or without attraction the force of the deepest particle."""
     if law is not None and law.attraction is not None:
         r = law.force_free_distance() + law.longest_range * np.linspace(0.0, 5.0, 2001)
         return float(-law.force(r).min())
@@ -200,7 +200,7 @@ def plane_stiffness_of(scene: Scene, tolerance: float) -> float:
 
 TABLE_MARGIN = 0.8
 """Distance from which on a table is to follow the law, over the expected smallest one. Measured: the smallest distance
-is 0.93 to 1.004 of what the estimate of independent pairs says."""
+is 0.93 to 1.004 of what the predictor of independent pairs says."""
 CLOSEST_SHARE = 0.2
 """Smallest distance that is looked after over the force-free one (with attraction) or the repulsion's range."""
 MOVE_SHARE = 0.25
@@ -208,11 +208,11 @@ MOVE_SHARE = 0.25
 near 0."""
 NEAR_SHARE = 0.2
 """Least distance down to which a table follows the law and a search comes down in ever smaller moves, over `closest`: a
-table that is smoothed any earlier lets bodies through that the law still carries."""
+table that is smoothed any earlier lets bodies pass that the interaction still carries."""
 ROWS_IN_TIME = 100
 """States of a motion that is followed for a given time."""
 FAR_SHARE = 10.0
-"""Length of a long bond over the spacing, per 1/tolerance: a sideways move u bends its force by u/2L."""
+"""Length of a long bond over the spacing, per 1/tolerance: a lateral move u turns its force by u/2L."""
 STAGGER_SHARE = 5e-4
 """Shift of a plate's anchors out of the plane, to and fro, over the chain's length.
 
@@ -232,7 +232,7 @@ class Settings:
         beyond: how many more the lower body has, where it has any.
         rest: apex distance at displacement 0 [LU].
         law, cutoff, table, table_from: the interaction, its cutoff [LU], its table, and the distance [LU] from which on
-            the table was chosen to follow the law; None or 0 on a rigid plane.
+            the table was chosen to follow the interaction; None or 0 on a rigid plane.
         closest: smallest distance for which moves and time step are chosen [LU].
         bulk_stiffness: normal bond of a particle to its anchor [FU/LU]; on a rigid plane such that plane and bond in
             series have the scene's value.
@@ -251,11 +251,11 @@ class Settings:
         longest_move: of a body between two states at rest [LU], inf on a rigid plane: a body that is moved by more than
             its particles' distance from the opposite ones is put behind them. A search may come nearer than `closest`,
             in moves down to NEAR_SHARE of this.
-        largest_displacement: what the estimate expects [LU].
+        largest_displacement: what the predictor expects [LU].
         calm_damping, calm_step: damping with which particles snap together and don't swing [FU·TU/LU], and the time
             step for it [TU]; the usual ones where the scene gives its damping. In a slide the one under which it is
             loaded, with which its plate does not swing.
-        part: of increments, moves and loads over the usual ones, of a search that begins anew in smaller steps.
+        part: of increments, moves and loads over the usual ones, of a search that restarts in smaller steps.
     """
 
     tolerance: float
@@ -300,7 +300,7 @@ class Settings:
 
     @property
     def gentle(self) -> bool:
-        """Whether a relaxation moves no particle by more than `longest_move` at a time, and none swings in time."""
+        """Whether a relaxation moves no particle by more than `longest_move` at a time, and none oscillates in time."""
         return self.part < 1.0
 
     @property
@@ -310,7 +310,7 @@ class Settings:
 
     @cached_property
     def is_toothed(self) -> bool:
-        """Whether the tension falls between two of its tops: pairs let go one by one; they snap, or nearly so."""
+        """Whether the tensile force has several maxima: pairs separate one by one; they snap, or nearly so."""
         return self.snaps or (self.law is not None and self.estimate.tooth(self.particles) < math.inf)
 
     @property
@@ -320,9 +320,9 @@ class Settings:
 
     @property
     def strongest(self) -> tuple[float, float]:
-        """(distance [LU], tension [FU]) where the force of a row of opposite particles on one is the largest tension.
+        """(distance [LU], tension [FU]) of the force maximum of a chain of opposite particles on one.
 
-        Of the estimate, whose grid of distances ends at the cutoff; (0, 0) on a rigid plane.
+        Of the predictor, whose grid of distances ends at the cutoff; (0, 0) on a rigid plane.
         """
         if self.law is None:
             return 0.0, 0.0
@@ -338,17 +338,17 @@ class Settings:
         return min(self.smooth_step, max(NEAR_SHARE * self.longest_move, MOVE_SHARE * smallest_distance))
 
     def rows_of(self, duration: float) -> tuple[int, int]:
-        """Rows of a motion that takes so long [TU], and timesteps of each."""
+        """Load steps of a motion of this duration [TU], and timesteps of each."""
         total = max(1, math.ceil(duration / self.time_step))
         rows = min(ROWS_IN_TIME, total)
         return rows, math.ceil(total / rows)
 
     def let_go_early(self, move: float) -> float:
-        """How far [LU] before its time a pair lets go of a body that is drawn away by `move` [LU] at a time."""
+        """Premature detachment [LU] of a pair under displacement increments `move` [LU]."""
         return self.estimate.let_go_early(move, self.force_tolerance)
 
     def in_smaller_steps(self, part: float) -> Settings:
-        """The same, with increments and moves that are this part as long, also those of a relaxation.
+        """The same, with increments and moves, also those of a relaxation, scaled by this factor.
 
         In time a particle that comes to the opposite one is stopped by drag, not by its core, where the scene leaves
         the drag open; it needs timesteps of its own.
@@ -382,20 +382,20 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
             chosen = _chosen(scene, tolerance or scene.accuracy.tolerance, calibration or CALIBRATION)
     except NotCarriedError as error:
         raise SettingsError(
-            f"a load of {scene.experiment.compression:.6g} FU is more than these bodies carry: their particles stand "
-            f"on each other from about {error.most:.4g} FU on. Lower the load, or take a stronger repulsion",
+            f"a load of {scene.experiment.compression:.6g} FU exceeds what the repulsion of these particles can carry, "
+            f"about {error.most:.4g} FU. Lower the load, or use a stronger repulsion",
             changes=less_compression(scene, error.most),
         ) from None
     except (OverflowError, FloatingPointError, ZeroDivisionError, MemoryError) as error:
         raise SettingsError(
-            f"the scene's numbers are too far apart to compute with ({error}): compare its lengths (spacing, ranges, "
-            "radius), its energies (amplitudes) and its stiffnesses with each other"
+            f"the magnitudes in this scene differ too much to compute with ({error}): compare its lengths (spacing, "
+            "ranges, radius), its energies (amplitudes) and its stiffnesses with each other"
         ) from None
     return chosen
 
 
 def _require_carried(scene: Scene) -> None:
-    """Refuse a load beyond N A/a, the repulsion of N pairs that stand on each other.
+    """Refuse a load beyond N A/a, the repulsion of N pairs at zero distance.
 
     Raises:
         NotCarriedError: with N A/a [FU].

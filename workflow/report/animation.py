@@ -1,4 +1,4 @@
-"""The way of a run as moving pictures: bodies and bulk springs, particles coloured by pressure, the force beneath."""
+"""The states of a run as an animation: bodies and bulk springs, particles coloured by pressure, the force beneath."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def animate(folder: AnyPath, out: AnyPath | None = None, frames_per_second: int 
     run = load_run(folder)
     path = Path(out) if out is not None else run.folder / "way.gif"
     if path.suffix not in FORMATS:
-        raise Contact1dError(f"{path}: a moving picture ends in {' or '.join(FORMATS)}")
+        raise Contact1dError(f"{path}: the name of an animation ends in {' or '.join(FORMATS)}")
     if path.suffix == ".mp4" and shutil.which("ffmpeg") is None:
         raise Contact1dError("MP4 needs the program ffmpeg: install it, or take a name that ends in .gif")
     kept = run.folder / "states.npz"

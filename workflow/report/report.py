@@ -1,4 +1,4 @@
-"""Runs, or a sweep, as one HTML page that needs nothing beside it: no network, no other file.
+"""Runs, or a sweep, as one HTML page that needs no network and no other file.
 
 A scene is put in words for somebody who has not seen its file, from the tables' own descriptions.
 """
@@ -135,7 +135,7 @@ def _of_sweep(folder: Path) -> str:
 
 
 def _page(template: str, charts: Sequence[Chart], moving: Mapping[str, Any] | None, **values: Any) -> str:
-    """A page that needs nothing beside it. Texts are plain; through `symbols` `F_A` and `R^0.5` become HTML."""
+    """A page without other files. Texts are plain; through `symbols` `F_A` and `R^0.5` become HTML."""
     from plotly.offline import get_plotlyjs
 
     made = Environment(

@@ -1,4 +1,4 @@
-"""The way of a run in OVITO: particles coloured by how the opposite body presses or pulls them, springs as bonds.
+"""The states of a run in OVITO: particles coloured by how the opposite body presses or pulls them, springs as bonds.
 
 With OVITO's Python module (`pip install ovito`), or as a script of OVITO Pro,
 
@@ -6,7 +6,7 @@ With OVITO's Python module (`pip install ovito`), or as a script of OVITO Pro,
 
 writes beside itself, from states.lammpstrj and system.data, way.ovito: a session that every OVITO opens (File, Load
 Session State) and plays; and way.png: the state with the largest force. Heights are drawn larger than x, by the same
-factor in all states. Blue presses, red pulls; the colours' scale is that of the whole way.
+factor in all states. Blue presses, red pulls; the colours' scale is that of all states.
 """
 
 from __future__ import annotations

@@ -90,7 +90,7 @@ def reported(scene: Scene, outcome: Outcome) -> Outcome:
 
 
 def open_results(scene: Scene, outcome: Outcome) -> dict[str, float]:
-    """Results that are known less well than the tolerance on the very lattice that ran; under noise none is."""
+    """Results whose uncertainty exceeds the tolerance, without the discretisation error; with noise none."""
     return (
         {} if scene.noise is not None else unmet(outcome.results, scene.accuracy.tolerance, (LATTICE, "input", MODEL))
     )
@@ -102,17 +102,17 @@ def _kind(name: str, one: Result) -> str:
 
 
 def _advice(scene: Scene, outcome: Outcome, names: Iterable[str]) -> str:
-    """What makes these results better, by what limits them."""
+    """How to improve these results, by their dominant error."""
     tolerance, results = scene.accuracy.tolerance, outcome.results
     if all(MODEL in results[name].errors for name in names):
-        return "Two readings of one quantity (`formulas` in results.json) differ by so much"
+        return "Two evaluations of this quantity differ by that much (`formulas` in results.json)"
     if any(results[name].read > tolerance * results[name].size for name in names):
-        return f"A radius is known no better than the spacing lets it: take {FINER_SPACING}"
+        return f"The uncertainty of a radius is limited by the spacing: use {FINER_SPACING}"
     return kind_of(scene).advice(scene)
 
 
 def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, float]:
-    """Relative discretisation errors above the tolerance, without those of reading between particles, by name."""
+    """Relative discretisation errors above the tolerance, without those of interpolation between particles, by name."""
     left = {name: one.errors.get(LATTICE, 0.0) - one.read for name, one in results.items()}
     found = {name: replace(results[name], errors={LATTICE: error}, read=0.0) for name, error in left.items()}
     return unmet(found, tolerance)
@@ -122,6 +122,6 @@ def _lattice_message(scene: Scene, shares: Mapping[str, float]) -> str:
     spacing = scene.bodies.spacing * np.sqrt(0.5 * scene.accuracy.tolerance / min(1.0, max(shares.values())))
     return (
         f"relative discretisation errors above the tolerance of {scene.accuracy.tolerance:g}: {in_words(shares)}. "
-        f"Take a smaller bodies.spacing, about {spacing:.2g} LU, at the same stiffness and energy per "
-        "length, or give bodies.particles where these very particles are meant"
+        f"Use a smaller bodies.spacing, about {spacing:.2g} LU, at the same stiffness and energy per "
+        "length, or give bodies.particles if this discrete chain is intended"
     )

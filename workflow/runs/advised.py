@@ -1,4 +1,4 @@
-"""A scene to a finished run folder, or to an error that says what helps: the first change that it carries is tried."""
+"""A scene to a finished run folder, or to an error with a suggested fix: the first change that it carries is tried."""
 
 from __future__ import annotations
 
@@ -68,12 +68,12 @@ def run(
 
 
 def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
-    """The error of a scene, and whether the first way to mend it gives a result.
+    """The error of a scene, and whether the first suggested fix gives a result.
 
     Args:
         reader: gives the scene with an edit.
         error: the scene's, without.
-        progress: told of the trial.
+        progress: informed of the trial.
     """
     found = _tried(reader, error, progress)
     if not found:
@@ -83,7 +83,7 @@ def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
 
 
 def overrides(edit: SceneEdit) -> tuple[str, ...]:
-    """The values of an edit as `read_scene` and `--set` take them."""
+    """The values of an edit in the form of `read_scene` and `--set`."""
     return tuple(f"{key}={value if isinstance(value, str) else as_toml(value)}" for key, value in edit.values.items())
 
 
@@ -93,7 +93,7 @@ def in_words(edit: SceneEdit) -> str:
 
 
 def _tried(reader: Reader, error: Contact1dError, progress: Progress) -> str:
-    """What is said of the changes that an error carries, the first of which is tried; "" where it carries none."""
+    """The message on the changes that an error carries, the first of which is tried; "" where it carries none."""
     edits = []
     for edit in error.changes:
         try:
@@ -104,11 +104,11 @@ def _tried(reader: Reader, error: Contact1dError, progress: Progress) -> str:
     if not edits:
         return ""
     (first, scene), *others = edits
-    progress.note(f"trying what helps: {in_words(first)}")
+    progress.note(f"trying a suggested fix: {in_words(first)}")
     try:
         _attempt(scene)
     except Contact1dError:
-        untried = f". Not tried: {', or '.join(in_words(edit) for edit, _ in others)} may help" if others else ""
+        untried = f". Not tried: {', or '.join(in_words(edit) for edit, _ in others)}" if others else ""
         return f"Tried without a result within {TRIAL:g} s: {in_words(first)}{untried}"
     return f"Tried: {in_words(first)} gives a result"
 
@@ -138,7 +138,7 @@ def _in_si(scene: Scene, edit: SceneEdit) -> SceneEdit:
 
 
 def _reported(error: RunError, cause: UntrustedError, found: str) -> RunError:
-    """The error with what the trial found, before advice that nobody tried; results.json says the same."""
+    """The error with the result of the trial, before advice that was not tried; the same in results.json."""
     document = read_results(error.folder)
     facts = document["error"]
     advice = f": {cause.advice}" if cause.advice and "gives a result" not in found else ""

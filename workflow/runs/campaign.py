@@ -53,13 +53,13 @@ def run(
     workers: int | None = None,
     ranks: int = 1,
 ) -> Run:
-    """Run a scene in a folder and leave everything there.
+    """Run a scene in a folder.
 
     Args:
         scene: a `Scene`, or what `read_scene` makes one of: a file, TOML text, tables.
         folder: made if it does not exist; an earlier run in it is replaced.
         figures: whether to draw, or the format: "png" (as True has it), "svg" or "pdf".
-        progress: told of phases and steps.
+        progress: informed of phases and steps.
         time_limit: wall time for LAMMPS [s].
         settings: in place of those that `settings_for` chooses and refines; for cost studies.
         retries: whether smaller steps are tried where the bodies went through each other; a trial does without.
@@ -70,7 +70,7 @@ def run(
         SceneError: it is no scene; nothing is written.
         RanksError: several ranks can't run it, or are no use; nothing is written.
         SettingsError: the scene's numbers lead to no computable system; nothing is written.
-        FolderError: the folder holds something else, or another run is at work in it.
+        FolderError: the folder holds something else, or another run is active in it.
         RunError: LAMMPS failed, or the result can't be trusted.
     """
     started = time.perf_counter()
@@ -163,13 +163,13 @@ def _scene(scene: AnyScene) -> Scene:
 def _hint(message: str) -> str:
     """What to do about LAMMPS errors whose own words don't say it."""
     if "atoms" in message and ("missing" in message or "left the box" in message):
-        return ". Particles flew apart: bring stiffnesses, masses, damping and ranges nearer to each other"
+        return ". The motion is unstable: use stiffnesses, masses, damping and ranges of similar magnitude"
     if TOO_WIDE in message:
         return f". Compare spacing, radius, ranges and displacements with each other. {MIX_UP}"
     if TOO_LONG in message:
-        return ". Bring masses, stiffnesses and dampings nearer to each other"
+        return ". Use masses, stiffnesses and dampings of similar magnitude"
     if NO_MEMORY in message:
-        return ". Fewer particles need less: a wider bodies.spacing, a smaller radius or load, a shorter cutoff"
+        return ". Use fewer particles: a wider bodies.spacing, a smaller radius or load, a shorter cutoff"
     return ""
 
 
@@ -198,7 +198,7 @@ def prepare(folder: Path) -> Path:
     if folder.exists() and not folder.is_dir():
         raise FolderError(f"{folder} is a file; a run needs a folder")
     if folder.is_dir() and any(folder.iterdir()) and not any((folder / name).exists() for name in ("in.lammps", LOCK)):
-        raise FolderError(f"{folder} holds files that are not of a run; choose another folder")
+        raise FolderError(f"{folder} has files that do not belong to a run; choose another folder")
     try:
         folder.mkdir(parents=True, exist_ok=True)
         (folder / LOCK).touch()
@@ -208,8 +208,8 @@ def prepare(folder: Path) -> Path:
 
 
 @contextmanager
-def alone(folder: Path, busy: str = "another run is at work in") -> Iterator[None]:
-    """Hold the folder against others; the system lets go of it whatever happens to this process."""
+def alone(folder: Path, busy: str = "another run is active in") -> Iterator[None]:
+    """Lock the folder; the system releases it whatever happens to this process."""
     with (folder / LOCK).open("w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -222,7 +222,7 @@ def alone(folder: Path, busy: str = "another run is at work in") -> Iterator[Non
 
 
 def _planned_text(deck: Deck) -> str:
-    """in.lammps with the planned schedule. Raises SettingsError where its way or one of its rows is too long."""
+    """in.lammps with the planned schedule. Raises SettingsError where its path or one of its rows is too long."""
     require_way(deck.scene, deck.settings)
     phases = planned(deck.scene, deck.settings)
     require_steps(getattr(row, "steps", 0) for phase in phases for row in phase.rows)

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 MEASURED = ("sampling", "unloading", "pulling")
-"""Branches of a motion under heat that are what is asked for; the others forget how it began."""
+"""Branches of a thermal motion that are results; the others are run-in."""
 Drawings = dict[str, Callable[[], "Figure"]]
 FINE = 300
 """Radii at which a closed form is drawn."""

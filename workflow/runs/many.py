@@ -1,4 +1,4 @@
-"""Many scenes through an executor: one entry for each, whatever happens to it."""
+"""Many scenes run by an executor: one entry for each, a run or an error."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Numbers of a scene and its results that no contact in a laboratory has: most often a unit that was forgotten.
+"""Values of a scene and its results outside the usual range of real contacts: most often a missing unit.
 
-They are told, and nothing is refused: the model knows no atoms, and gives its numbers for any size.
+They are warnings, and nothing is refused: the model has no atoms, and gives its numbers for any size.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ ATOM = 1e-10
 
 @dataclass(frozen=True)
 class Usual:
-    """What a number usually is in SI, from `least` to `most`, and what one outside is told."""
+    """The usual range of a number in SI, from `least` to `most`, and the warning outside of it."""
 
     key: str
     name: str
@@ -34,24 +34,24 @@ class Usual:
 
 
 USUAL = (
-    Usual(r"bodies\.profile\.radius", "size", 3e-10, 10.0, "m", "which is less than two atoms are wide",
-          "and no ball of such a radius touches without roughness"),
+    Usual(r"bodies\.profile\.radius", "size", 3e-10, 10.0, "m", "less than the width of two atoms",
+    "and no ball of such a radius is smooth"),
     Usual(r"bodies\.spacing", "size", 1e-12, 1.0, "m", "a hundredth of an atom",
-          "and particles stand for less of a body"),
+          "but a particle represents a small part of a body"),
     Usual(r"interaction\.\w+\.range", "size", 1e-11, 1e-3, "m", "a tenth of an atom's radius",
-          "and forces between surfaces end within micrometres"),
+          "but surface forces have ranges below a micrometre"),
     Usual(r"material\.surface_energy|adhesion\.surface_energy", "surface_energy", 1e-6, 10.0, "J/m²",
-          "which is less than anything that sticks has", "where 0.02 to 3 are usual"),
+          "below that of any adhesive solid", "where 0.02 to 3 are usual"),
     Usual(r"adhesion\.work_of_adhesion", "surface_energy", 2e-6, 20.0, "J/m²",
-          "which is less than anything that sticks has", "where 0.04 to 6 are usual"),
-    Usual(r"noise\.temperature", "temperature", 0.01, 1e4, "K", "which is colder than any such contact was",
-          "at which nothing is solid"),
+          "below that of any adhesive solid", "where 0.04 to 6 are usual"),
+    Usual(r"noise\.temperature", "temperature", 0.01, 1e4, "K", "below that of any such experiment",
+    "above any melting point"),
 )  # fmt: skip
 """Numbers of a scene that have a usual size, by their keys."""
 
 
 def implausible(scene: Scene, scales: Scales | None, quantities: Mapping[str, Quantity]) -> dict[str, str]:
-    """What looks wrong about the sizes of a scene and its results, by names of warnings.
+    """Implausible sizes of a scene and its results, by names of warnings.
 
     Args:
         scene: with or without a material.
@@ -73,15 +73,15 @@ def _moduli(scene: Scene) -> Iterator[tuple[str, str]]:
         moduli["material.contact_modulus"] = material.contact_modulus
     for key, modulus in moduli.items():
         if modulus < SOFTEST:
-            meant = f": was {modulus:g} GPa meant?" if modulus >= 0.01 else ": is its unit right?"
+            meant = f": was {modulus:g} GPa meant?" if modulus >= 0.01 else ": check its unit"
             yield "implausible_modulus", f"{key} is {modulus:g} Pa, softer than any gel{meant}"
     if moduli and min(moduli.values()) > STIFFEST:  # one rigid body beside another one is usual
         least = f"{min(moduli.values()):g} Pa"
-        yield "implausible_modulus", f"{' and '.join(moduli)}: {least} is stiffer than diamond: is its unit right?"
+        yield "implausible_modulus", f"{' and '.join(moduli)}: {least} is stiffer than diamond: check its unit"
     for name, body in bodies.items():
         if body is not None and body.poisson_ratio < 0.0:
             ratio = f"{name}.poisson_ratio is {body.poisson_ratio:g}"
-            yield "implausible_poisson_ratio", f"{ratio}, and few materials have one below 0: is its sign right?"
+            yield "implausible_poisson_ratio", f"{ratio}, and few materials have one below 0: check its sign"
 
 
 def _numbers(scene: Scene, scales: Scales | None) -> Iterator[tuple[str, str]]:
@@ -96,11 +96,11 @@ def _numbers(scene: Scene, scales: Scales | None) -> Iterator[tuple[str, str]]:
         value /= float(BOLTZMANN) if usual.unit == "K" else 1.0
         if not usual.least <= value <= usual.most:
             what = usual.low if value < usual.least else usual.high
-            yield f"implausible_{usual.name}", f"{key} is {value:.4g} {usual.unit}, {what}: is its unit right?"
+            yield f"implausible_{usual.name}", f"{key} is {value:.4g} {usual.unit}, {what}: check its unit"
 
 
 def _radii(scales: Scales | None, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
-    """Contacts smaller than an atom, where no continuum is."""
+    """Contacts smaller than an atom, where continuum theory does not hold."""
     if scales is None:
         return
     for name, quantity in quantities.items():

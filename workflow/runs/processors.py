@@ -42,7 +42,7 @@ class _Pool(ProcessPoolExecutor):
     """
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
-        """As any executor's. A process starts here, if at all, and is told of what is `__main__` meanwhile."""
+        """As any executor's. A process starts here, if at all, and gets another `__main__` meanwhile."""
         main = sys.modules["__main__"]
         sys.modules["__main__"] = ModuleType("__main__")
         try:
@@ -53,7 +53,7 @@ class _Pool(ProcessPoolExecutor):
 
 @contextmanager
 def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """An executor of `workers` processes. Where its block ends in an error, what they do is not finished first.
+    """An executor of `workers` processes. After an error in its block their work is not awaited.
 
     The parent holds one end of a pipe, and nobody else: when that closes, however the parent went, the workers end.
     """
@@ -94,23 +94,23 @@ def require_ranks(deck: Deck, ranks: int) -> None:
     scene, particles = deck.scene, deck.settings.particles
     if scene.noise is not None:
         raise RanksError(
-            "with [noise] each rank draws random forces of its own, so that several give other numbers than one: take "
-            "one rank, and seeds side by side (contact1d sweep over noise.seed)"
+            "with [noise] each rank draws its own random forces, so that the results depend on the number of ranks: "
+            "use one rank, and run several seeds in parallel (contact1d sweep over noise.seed)"
         )
     if scene.bodies.lower == "rigid_plane":
         raise RanksError(
-            "on a rigid plane there are no forces between particles but neighbour springs, so that LAMMPS hands no "
-            "particles from rank to rank: take one rank"
+            "on a rigid plane there are no forces between particles but neighbour springs, so that LAMMPS exchanges no "
+            "particles between ranks: use one rank"
         )
     if deck.settings.far > 0.0 and scene.tangential_stiffness > scene.bulk_stiffness:
         raise RanksError(
-            "bulk springs that are stiffer along x have anchors far away along x, on other ranks: take one rank, or no "
-            "larger bodies.bulk_stiffness_tangential than bulk_stiffness"
+            "bulk springs that are stiffer along x have distant anchors, on other ranks: use one rank, or a "
+            "bodies.bulk_stiffness_tangential of at most bulk_stiffness"
         )
     if particles < FEWEST * ranks:
         most = particles // FEWEST
         raise RanksError(
-            f"{ranks} ranks for {particles} particles per body are more than can share them: take "
+            f"{ranks} ranks are too many for {particles} particles per body: use "
             + (f"at most {most}, {FEWEST} particles each" if most > 1 else "one")
         )
     launcher_of(ranks)

@@ -1,7 +1,7 @@
-"""What was asked for and is not reached: the run again with finer settings, until it is, or until that helps no more.
+"""Refinement: the run is repeated with finer settings until the tolerance is met, or there is no improvement.
 
 A pass has the settings and the checks of a tolerance that is TOLERANCE_RATIO times smaller than that of the one before.
-Two nested passes are evidence of how exact they are: where they differ by more than both claim, the claim is raised.
+Where two nested passes differ by more than both uncertainties, these are increased.
 """
 
 from __future__ import annotations
@@ -53,12 +53,12 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
         results = outcome.results
         left = {name: share for name, share in open_.items() if results[name].read <= wanted * abs(results[name].value)}
         if not left:
-            ended = "; ".join(filter(None, (ended, "the spacing alone leaves that open")))
+            ended = "; ".join(filter(None, (ended, "the spacing limits these")))
             break
         if count == MOST_REFINEMENTS:
-            ended = f"{_after(count)}, the most that are tried"
+            ended = f"{_after(count)}, the limit"
             break
-        context.progress.note(f"refining: {in_words(left)}, asked {scene.accuracy.tolerance:g}")
+        context.progress.note(f"refining: {in_words(left)}, tolerance {scene.accuracy.tolerance:g}")
         try:
             finer_deck, finer = _pass(context, tolerance / TOLERANCE_RATIO)
         except (EngineError, UntrustedError, SettingsError) as error:
@@ -68,7 +68,7 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
         before, deck, outcome = outcome, finer_deck, nested(outcome, finer)
         ended = _after(count)
         if _open(scene, outcome) and not _helped(left, before, outcome):
-            ended += ", the last of which did not help"
+            ended += ", the last without improvement"
             break
     # What a pass doubts by its own tolerance is no doubt of a run that was asked for less.
     stricter = doubts(deck.scene, deck.settings, outcome.states)
@@ -78,13 +78,13 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
 
 
 def _open(scene: Scene, outcome: Outcome) -> dict[str, float]:
-    """Main results that are known less well than the tolerance on the very lattice that ran."""
+    """Main results whose uncertainty exceeds the tolerance, without the discretisation error."""
     main = {name: one for name, one in outcome.results.items() if name in kind_of(scene).main_results}
     return unmet(main, scene.accuracy.tolerance, (LATTICE,))
 
 
 def nested(coarse: Outcome, fine: Outcome) -> Outcome:
-    """The finer outcome; where |fine − coarse| exceeds what both claim, its claim is raised by the same factor."""
+    """The finer outcome; where |fine − coarse| exceeds both uncertainties, its own is increased by the same factor."""
     results = {}
     for name, one in fine.results.items():
         before = coarse.results.get(name, one)

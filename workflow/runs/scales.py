@@ -1,4 +1,4 @@
-"""What one LU and one FU of a finished run stand for in SI, where the scene has a [material].
+"""One LU and one FU of a finished run in SI, where the scene has a [material].
 
 With `length_unit`:      c LU² h χ / k = FU,  c the layer's stiffness per length, h the spacing, k the stiffness of a
                          bulk spring, χ = 2 chains in series, or 1 on a rigid plane.
@@ -19,7 +19,7 @@ UNIT_FIXING_RESULTS = ("adhesion_force", "zero_load_radius")
 
 
 def scales_of(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales | None:
-    """The scales of a run; None without a [material], and where `unfound` names what keeps them from being known."""
+    """The scales of a run; None without a [material], and where results that determine them (`unfound`) are missing."""
     material = scene.material
     if material is None or unfound(scene, quantities):
         return None

@@ -1,7 +1,7 @@
-"""Each table of a scene by itself: every mistake, reported once and in the words of the scene file.
+"""Each table of a scene by itself: every error, reported once in the terms of the scene file.
 
 A misspelt word that can only mean one thing is reported and then read as what was meant, so that the rest of its table
-and the rules across tables are checked in the same go.
+and the rules across tables are checked as well.
 
 Numbers with units in a scene, "10 mm", as numbers in the scene's own units LU, FU, MU, TU = √(MU·LU/FU).
 
@@ -62,7 +62,7 @@ LISTS = ((*PROFILE, "r"), (*PROFILE, "z"))
 
 
 def mend_words(data: dict[str, Any], model: type[Tables]) -> list[Problem]:
-    """Report and mend, in `data` (a plain dict for this `model`), every word that is misspelt or unknown."""
+    """Report and correct, in `data` (a plain dict for this `model`), every word that is misspelt or unknown."""
     wrong = _validated(data, model)[1]
     return [problem for place in walk(WHOLE, data) for problem in _mended(data, place)] if wrong else []
 
@@ -70,7 +70,7 @@ def mend_words(data: dict[str, Any], model: type[Tables]) -> list[Problem]:
 def check_tables(
     data: dict[str, Any], model: type[AnyTables], reported: Collection[Keys] = ()
 ) -> tuple[AnyTables | None, list[Problem], frozenset[Keys]]:
-    """Check every table of `data`, a plain dict whose words were mended, for a `model` of a scene.
+    """Check every table of `data`, a plain dict whose words were corrected, for a `model` of a scene.
 
     Keys that were `reported` are not reported again. Returns the scene if all tables are right, what is wrong, and the
     keys at which a value is, which the rules cannot rely on.
@@ -100,7 +100,7 @@ def _keys(details: ErrorDetails, value: Any) -> Keys:
 
 
 def _mended(data: dict[str, Any], place: Place) -> Iterator[Problem]:
-    """Report and mend, in `data`, the words of a place: of a table its kind and its keys."""
+    """Report and correct, in `data`, the words of a place: of a table its kind and its keys."""
     value, kinds = place.value, place.allowed.kinds
     yield from _mended_word(data, place, place.allowed.words)
     if not isinstance(value, dict):
@@ -188,7 +188,7 @@ def _hint(place: Place) -> str:
     given, allowed, text = place.value, statement(place.allowed), text_of(place.allowed)
     if isinstance(given, str) and allowed.startswith(("a number", "a whole number")):
         if any(map(str.isdigit, given)):
-            return "a number stands without quotes" + (f", or with its unit: {as_toml(text)}" if text else " and unit")
+            return "write a number without quotes" + (f", or with its unit: {as_toml(text)}" if text else " and unit")
         if text and not place.allowed.words:
             return f"a number with its unit begins with a digit: {as_toml(text)}"
     if isinstance(given, float) and given.is_integer() and "whole number" in allowed:
@@ -268,7 +268,7 @@ class Conversion:
         try:
             number = float(value)
         except OverflowError:
-            self._report(place, "is larger than any number that a computer holds")
+            self._report(place, "exceeds the range of floating-point numbers")
             return
         if place.keys in LISTS:
             place.put(self.data, [number * item for item in self.data["bodies"]["profile"][place.keys[-1]]])
@@ -286,7 +286,7 @@ class Conversion:
             return None  # reported where tables are checked
         first, stiffness = texts[0], bodies.get("bulk_stiffness", "auto")
         if "surface_energy" in material:
-            message = "LU and FU follow from the run (material.surface_energy), so that units have no size before it"
+            message = "LU and FU follow from the run (material.surface_energy), so that units are not known before it"
             self._report(first, message, f"write a number in {first.unit.name}")
             return None
         needed = frozenset[str]().union(*(place.unit.bases for place in texts))
@@ -345,7 +345,7 @@ class Conversion:
 
 
 def _positive(value: Any) -> Fraction | None:
-    """A number of [material] as the exact decimal that stands there; None for what is none, which is told elsewhere."""
+    """A number of [material] as the exact decimal given; None for what is none, which is reported elsewhere."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < math.inf:
         return None
     return Fraction(repr(value))

@@ -47,7 +47,7 @@ class Exponential(Table):
 
 
 class Effect(Table):
-    """A table that may be absent, and then adds nothing. Each says here what it needs and what it excludes.
+    """A table that may be absent, and then adds nothing. Each declares what it needs and what it excludes.
 
     Attributes:
         timed: it exists in time only, so never in a quasistatic run.
@@ -92,27 +92,27 @@ class Friction(Effect):
     how = "[friction] with its coefficient"
 
     coefficient: RatioOrZero
-    """largest tangential over normal force of a particle; along x it gives as bodies.bulk_stiffness_tangential says"""
+    """largest tangential over normal force of a particle; before slip it has bodies.bulk_stiffness_tangential"""
 
 
 class Adhesion(Effect):
-    """Effect: the bodies hold each other on a rigid plane, as JKR has it, without a range. W or γ is given."""
+    """Effect: JKR adhesion on a rigid plane, with a range of zero. W or γ is given."""
 
     one_of = (
         (("work_of_adhesion", "surface_energy"), "give W, or with surface_energy γ of one side, half of it; not both"),
     )
     excludes: ClassVar[Mapping[str, str]] = {
-        "neighbours": "JKR's contact is a row of independent springs, and neighbours would tie them together",
-        "noise": "particles at rest in their body have no thermal motion of their own",
+        "neighbours": "the springs of a JKR contact are independent, and neighbours would couple them",
+        "noise": "particles that are fixed to their body have no thermal motion",
     }
 
     work_of_adhesion: LineEnergy | None = None
-    """W, to part both surfaces: F_A = 1.5 π W R of a sphere"""
+    """work of adhesion W of both surfaces: F_A = 1.5 π W R for a sphere"""
     surface_energy: LineEnergy | None = None
     """γ of one side, half the work of adhesion"""
     range: Length | None = None
-    """z₀ over which the surfaces attract, if known: the run has none, and beside its results stands by the Tabor
-    parameter how far a body of that range is from it
+    """range z₀ of the attraction, if known: the simulation has a range of zero, and its results are compared with the
+    theory for z₀ by the Tabor parameter
     """
 
     @property
@@ -158,7 +158,7 @@ Free = Annotated[Listed[Literal["x", "z"]], AfterValidator(_free_directions)]
 
 
 class Plate(Effect):
-    """Effect: the upper plate is a rigid body with inertia, loaded by a force. Absent: its place is prescribed."""
+    """Effect: the upper plate is a rigid body with inertia, loaded by a force. Absent: its position is prescribed."""
 
     timed = True
     how = '[plate] with mass = "auto"'

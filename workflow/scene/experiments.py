@@ -1,6 +1,6 @@
 """The experiments of a scene: load, path, pull_off, slide, tangential; and hold, which is not in `Experiment` yet.
 
-Each says beside its keys what it needs and what it excludes: the rules read no more of it than that.
+Each declares its keys, what it needs and what it excludes: the rules read nothing else of it.
 
 A prescribed path from d₀ to d₁ in n steps holds d_i = (d₀ (n − i) + d₁ i)/n for i = 0…n, and back in the same places.
 """
@@ -36,14 +36,14 @@ from contact1d.workflow.scene.quantities import (
 
 Method = Literal["quasistatic", "dynamic"]
 ANY_METHOD = (
-    '"quasistatic" (no time) or "dynamic" (as in the paper); absent: "dynamic" with [plate], [damping] or [noise], '
+    '"quasistatic" (equilibrium) or "dynamic" (in time); absent: "dynamic" with [plate], [damping] or [noise], '
     'else "quasistatic"'
 )
 AnyMethod = Annotated[Method | None, Field(description=ANY_METHOD)]
 
 
 class Span(Table):
-    """Evenly spaced displacements from one place to another, by default there and back."""
+    """Evenly spaced displacements from one value to another, by default there and back."""
 
     from_: Displacement = Field(alias="from")
     """displacement at the start"""
@@ -61,7 +61,7 @@ class Span(Table):
         return self
 
     def values(self) -> list[float]:
-        """Displacements [LU] in order: steps + 1 on the way there, then `steps` back; the turning point once."""
+        """Displacements [LU] in order: steps + 1 on the path there, then `steps` back; the turning point once."""
         n = self.steps
         between = [(self.from_ * (n - i) + self.to * i) / n for i in range(1, n)]
         there = [self.from_, *between, self.to]
@@ -102,13 +102,13 @@ def _for_each(given: tuple[float, ...] | float | None, count: int) -> list[float
 
 
 UNPULLED = "only a slide is pulled through a spring"
-UNMOVED = "nothing moves along x in it, so that friction does nothing"
-TIMELESS = "its load steps follow each other without time, each in equilibrium"
+UNMOVED = "it has no tangential displacement, so that friction has no effect"
+TIMELESS = "it is quasi-static, each load step in equilibrium"
 """Why an experiment excludes an effect."""
 
 
 class Kind(Table):
-    """The experiment. Each kind says here what other rooms must know of it.
+    """The experiment. Each kind declares the properties that other modules use.
 
     Attributes:
         only_method: the one method that it has; None: the key `method` says it, or the effects do.
@@ -116,11 +116,11 @@ class Kind(Table):
         needs: effects that it cannot do without by any method.
         needs_in_time: effects that a dynamic one cannot do without.
         only_with_noise: keys that say how a thermal one is repeated.
-        load_key: the key of its one normal force, which but for a preload may pull where the bodies attract each other.
+        load_key: the key of its one normal force, which may be tensile (not a preload) if the bodies attract.
         finds_pull_off: whether its results have F_A and a₀.
-        way_is_given: the scene prescribes the whole way, so that nothing is searched for and no state is ambiguous.
-        motion_is_result: the motion itself is looked at, so that the scene exists in time only and its drag is its own.
-        draws_off: the plate is drawn off through a spring along z.
+        way_is_given: the scene prescribes the loading history, so that nothing is searched for and states are unique.
+        motion_is_result: the motion itself is examined, so that the scene exists in time only and its drag is its own.
+        draws_off: the plate is retracted through a spring along z.
         goes_along: the scene also prescribes places along x, on a plane, and has no other method.
     """
 
@@ -147,7 +147,7 @@ class Kind(Table):
 
     @property
     def drawing_stiffness(self) -> float:
-        """Stiffness [FU/LU] of a spring that draws the plate off along z; 0 without one."""
+        """Stiffness [FU/LU] of a spring that retracts the plate along z; 0 without one."""
         return 0.0
 
     @property
@@ -194,7 +194,7 @@ class Path(Kind):
     displacements: Displacements
     """displacements, compression positive: a list or an even span"""
     start: Literal["approach", "contact"] = "approach"
-    """branch of the first point, where adhesion has two: bodies come from afar, or back from the largest displacement
+    """branch of the first point where adhesion has two: approach from afar, or unloading from the largest displacement
     """
     method: AnyMethod = None
 
@@ -204,24 +204,24 @@ class Path(Kind):
 
 
 class PullOff(Kind):
-    """Compression by a preload, then the largest tension that the contact holds."""
+    """Compression by a preload, then unloading up to pull-off."""
 
     only_with_noise = ("loading_rate", "velocity", "stiffness", "repeats")
     load_key = "preload"
     finds_pull_off = True
 
     kind: Literal["pull_off"]
-    """compress by the preload, then the largest tension held"""
+    """compress by the preload, then unload up to pull-off"""
     preload: Compression
     """compressive force F_D before the pull"""
     loading_rate: LoadingRate | None = None
-    """with [noise]: rate at which the load is drawn off until the bodies part"""
+    """with [noise]: rate at which the load decreases until the bodies separate"""
     velocity: Velocity | None = None
-    """with [noise], in place of loading_rate: velocity at which the far end of a spring draws the plate off"""
+    """with [noise], in place of loading_rate: velocity of the far end of a spring that retracts the plate"""
     stiffness: Stiffness | None = None
-    """with velocity: of that spring; absent: that of the contact without load"""
+    """with velocity: stiffness of that spring; absent: that of the contact at zero load"""
     repeats: RepeatCount | None = None
-    """with [noise]: how often, each time with the next seed; absent: once"""
+    """with [noise]: number of repeats, each with the next seed; absent: 1"""
     method: AnyMethod = None
 
     @property
@@ -243,7 +243,7 @@ class Leg(Table):
     velocity: DriveVelocity
     """velocity of the driven end; negative: back, 0: it rests"""
     distance: Length
-    """way of the driven end; where it rests, it does so as long as cantilever.velocity takes for that"""
+    """distance of the driven end; at velocity 0 the time that cantilever.velocity takes for it"""
 
 
 class Slide(Kind):
@@ -252,8 +252,8 @@ class Slide(Kind):
     one_of = ((("distance", "path"), "give a distance (LU), or a path = [[velocity, distance], …]; not both"),)
     only_method = "dynamic"
     excludes: ClassVar[Mapping[str, str]] = {
-        "adhesion": "it is that of a rigid plane, which drags nothing",
-        "friction": "its friction is that of the particles' own forces",
+        "adhesion": "it is that of a rigid plane, which cannot drag the upper body",
+        "friction": "its friction results from the interaction of the particles",
     }
     needs = ("horizontal", "damping", "plate", "cantilever")
     load_key = "normal_force"
@@ -263,9 +263,9 @@ class Slide(Kind):
     kind: Literal["slide"]
     """normal force and cantilever; always dynamic"""
     normal_force: Force
-    """force held while sliding, compression positive; 0 or a pull where bodies attract each other"""
+    """normal force during sliding, compression positive; 0 or tensile where bodies attract each other"""
     distance: Length | None = None
-    """way of the driven end of the cantilever at cantilever.velocity; absent with a path"""
+    """distance of the driven end of the cantilever at cantilever.velocity; absent with a path"""
     path: Listed[Leg] | None = None
     """legs [velocity, distance] of the driven end in place of one distance"""
 
@@ -275,7 +275,7 @@ class Slide(Kind):
 
     @property
     def way(self) -> float:
-        """How far the driven end goes to one side at most."""
+        """Largest excursion of the driven end to one side."""
         place, farthest = 0.0, self.distance or 0.0
         for leg in self.path or ():
             place += leg.distance * ((leg.velocity > 0.0) - (leg.velocity < 0.0))
@@ -284,7 +284,7 @@ class Slide(Kind):
 
 
 class Tangential(Kind):
-    """Normal load, then tangential displacement along x, with Coulomb's friction on a rigid plane."""
+    """Normal load, then tangential displacement, with Coulomb's friction on a rigid plane."""
 
     one_of = (
         (
@@ -297,10 +297,10 @@ class Tangential(Kind):
     excludes: ClassVar[Mapping[str, str]] = {
         "adhesion": "whether shear peels an adhesive edge or makes it slip is a criterion of its own (Savkoor and "
         "Briggs), which neither JKR nor Mindlin has",
-        "neighbours": "friction depends on the path, and a minimiser, which such springs need, has none",
+        "neighbours": "friction depends on the loading history, and a minimiser, which such springs need, has none",
         "damping": TIMELESS,
         "noise": TIMELESS,
-        "plate": f"{TIMELESS}; a plate with inertia would oscillate about each, and friction would remember how far",
+        "plate": f"{TIMELESS}; a plate with inertia would oscillate about it, and friction depends on this history",
         "cantilever": UNPULLED,
     }
     needs = ("friction",)
@@ -308,7 +308,7 @@ class Tangential(Kind):
     goes_along = True
 
     kind: Literal["tangential"]
-    """normal load, then displacement along x with friction"""
+    """normal load, then tangential displacement with friction"""
     normal_force: OneOrMore[Compression, CompressionOrNone] | None = None
     """compressive force: one, or one for each of the displacements"""
     normal_displacement: OneOrMore[Displacement, Displacement] | None = None
@@ -316,7 +316,7 @@ class Tangential(Kind):
     displacements
     """
     displacements: Displacements | None = None
-    """displacements along x, from 0 on where the load comes on: a list or an even span"""
+    """tangential displacements, 0 where the load is applied: a list or an even span"""
     cycles: Cycles | None = None
     """in place of displacements: closed cycles along x between two displacements ±u_m"""
 
@@ -326,15 +326,15 @@ class Tangential(Kind):
         return max(_for_each(self.normal_force, 1), default=None)
 
     def places(self) -> list[float]:
-        """Normal displacements [LU] of the rows, none where forces are given."""
+        """Normal displacements [LU] of the load steps, none where forces are given."""
         return _for_each(self.normal_displacement, len(self.along()))
 
     def along(self) -> list[float]:
-        """Displacements along x [LU] of the rows."""
+        """Displacements along x [LU] of the load steps."""
         return _values(self.cycles or self.displacements or ())
 
     def normal_forces(self) -> list[float]:
-        """Normal forces [FU] of the rows, none where displacements are given."""
+        """Normal forces [FU] of the load steps, none where displacements are given."""
         return _for_each(self.normal_force, len(self.along()))
 
     @property

@@ -1,4 +1,4 @@
-"""What is wrong with a scene: one line per mistake, in the words of the scene file."""
+"""Errors in a scene: one line for each, in the terms of the scene file."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ SHOWN_LENGTH = 60
 LONGEST = 1000
 """Characters of a path that a message shows."""
 MOST_PROBLEMS = 20
-"""Problems that are listed; of more, their number is."""
+"""Most problems that are listed; the number of the others is added."""
 
 
 @dataclass(frozen=True)
 class Problem:
-    """One mistake: where (`path`), what was `given` (as TOML, or None), what is allowed, and what to do (`hint`).
+    """One error: where (`path`), what was `given` (as TOML, or None), what is allowed, and what to do (`hint`).
 
     `ways`: values by dotted keys, each set of which would make a scene of it, where the program can tell.
     """
@@ -49,7 +49,7 @@ class SceneError(Contact1dError):
 
     @property
     def changes(self) -> tuple[SceneEdit, ...]:
-        """Every way to mend the first problem, with the first way of each other; none where one problem has none."""
+        """Every fix of the first problem, with the first fix of each other one; none where one problem has none."""
         if not all(problem.ways for problem in self.problems):
             return ()
         first, *others = self.problems
@@ -100,7 +100,7 @@ def as_key(key: str) -> str:
 
 
 def tables_as_toml(tables: Mapping[str, Any]) -> str:
-    """The `tables` of a scene as a TOML file: one [table] each, what is inside a table inline."""
+    """The `tables` of a scene as a TOML file: one [table] each, nested ones inline."""
     top = "\n".join(f"{as_key(key)} = {as_toml(value)}" for key, value in tables.items() if not isinstance(value, dict))
     blocks = (
         "\n".join([f"[{name}]", *(f"{as_key(key)} = {as_toml(value)}" for key, value in table.items())])

@@ -1,4 +1,4 @@
-"""A measured profile from a CSV file: the columns r and z, as comma, semicolon, tab or blanks part them."""
+"""A measured profile from a CSV file: the columns r and z, separated by comma, semicolon, tab or blanks."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ Row = tuple[int, list[str]]
 
 
 class ProfileFileError(ValueError):
-    """A file that is no profile; the message says in which line and what is wrong."""
+    """A file that is not a profile; the message has the line and the error."""
 
 
 class ScaleError(ValueError):
-    """A scale that is none for this file; the message says why."""
+    """A scale that is invalid for this file; the message says why."""
 
 
 def read_profile(path: Path, scale: object = None) -> tuple[dict[str, list[float]], dict[str, str | None]]:
@@ -67,7 +67,7 @@ def read_profile(path: Path, scale: object = None) -> tuple[dict[str, list[float
     r, z = ([*column] for column in zip(*points, strict=True))
     if len(r) > 1 and not _rising(r) and (_rising(z) or _rising(z[::-1])):
         raise ProfileFileError(
-            f"{path.name}: its radii do not rise and its heights do, as if the columns were swapped; name them r and z"
+            f"{path.name}: its heights increase and its radii do not: the columns may be swapped; name them r and z"
         )
     if r[0] < 0.0 and _rising(r):
         r, z = _folded(path, r, z)
@@ -102,7 +102,7 @@ def _rows(path: Path) -> list[Row]:
     """The lines that have content, each with its number, as cells."""
     lines = read_text(path).splitlines()
     if len(lines) > MOST_LINES:
-        raise ProfileFileError(f"{path} has {len(lines)} lines, and at most {MOST_LINES} are read; thin it out")
+        raise ProfileFileError(f"{path} has {len(lines)} lines, at most {MOST_LINES} are allowed; use fewer points")
     full = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
     if full and re.fullmatch(r"sep=.", full[0][1].strip()):
         del full[0]
@@ -152,7 +152,7 @@ def _only(at: str, words: list[str], allowed: tuple[str, ...]) -> int | None:
     """Where the one column of an allowed name is; None where there is none."""
     found = [i for i, word in enumerate(words) if word in allowed]
     if len(found) > 1:
-        raise ProfileFileError(f"{at}: {len(found)} columns could be meant by {allowed[0]}; name only one so")
+        raise ProfileFileError(f"{at}: {len(found)} columns match {allowed[0]}; give this name to one of them")
     return found[0] if found else None
 
 
@@ -162,7 +162,7 @@ def _size(at: str, unit: str) -> str | None:
     try:
         si_value(f"1 {unit}", MODEL)
     except UnitTextError:
-        raise ProfileFileError(f"{at}: the unit in the names is no length that is known, such as µm; {FORM}") from None
+        raise ProfileFileError(f"{at}: the unit in the names is not a known length, such as µm; {FORM}") from None
     return f"1 {unit}"
 
 
@@ -176,15 +176,15 @@ def _folded(path: Path, x: list[float], z: list[float]) -> tuple[list[float], li
     step = (x[-1] - x[0]) / (n - 1)
     if any(abs(x[i] + x[n - 1 - i]) > PLACE_DIFFERENCE * step for i in range(n)):
         raise ProfileFileError(
-            f"{path.name} goes to both sides of 0, and its places left and right are not the same; shift it so that "
+            f"{path.name} has both sides of 0, and their positions differ; shift it so that "
             "the apex is at 0, or give one side, r from 0 on"
         )
     height = max(z) - min(z)
     apart = max(abs(z[i] - z[n - 1 - i]) for i in range(n))
     if apart > HEIGHT_DIFFERENCE * height:
         raise ProfileFileError(
-            f"{path.name} goes to both sides of 0, and these differ by {apart / height:.0%} of its height, where the "
-            "model has one body of revolution; shift it so that the apex is at 0, or give one side, r from 0 on"
+            f"{path.name} has both sides of 0, and these differ by {apart / height:.0%} of its height, but the model "
+            "is a body of revolution; shift it so that the apex is at 0, or give one side, r from 0 on"
         )
     kept = range(n // 2, n)
     return [0.5 * (x[i] - x[n - 1 - i]) for i in kept], [0.5 * (z[i] + z[n - 1 - i]) for i in kept]
@@ -199,7 +199,7 @@ def _point(at: str, cells: list[str], columns: tuple[int, int]) -> list[float]:
     for name, cell in zip("rz", (cells[column] for column in columns), strict=True):
         value, what, hint = _number(cell), "is empty", "leave out a line that has no value, or interpolate it"
         if cell.strip():
-            what = "is no number" if value is None else f"is {value}"
+            what = "is not a number" if value is None else f"is {value}"
         if _number(cell.replace(",", ".")) is not None:
             hint = "leave out a line that has no value" if value is not None else "write it with a decimal point"
         if value is None or not math.isfinite(value):

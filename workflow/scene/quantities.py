@@ -1,4 +1,4 @@
-"""Types of the values in a scene, each with its range and its unit in one name, and what can be read off them.
+"""Types of the values in a scene, each with its range and its unit in one name, and what follows from them.
 
 Model units: length LU (the spacing), force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT in FU·LU.
 
@@ -150,7 +150,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Allowed:
-    """What may stand at a key: one or more types."""
+    """The allowed values of a key: one or more types."""
 
     choices: tuple[Choice, ...]
 
@@ -188,7 +188,7 @@ class Allowed:
 
 @dataclass(frozen=True)
 class Key:
-    """A key of a table: its field in Python, what may stand there, what it is, and its default (None: none)."""
+    """A key of a table: its field in Python, allowed values, description, and default (None: none)."""
 
     field: str
     allowed: Allowed
@@ -198,7 +198,7 @@ class Key:
 
 @cache
 def keys_of(table: type[Table]) -> dict[str, Key]:
-    """Every key that may stand in `table`, as written in TOML, in order; kept, since every scene asks for some tens."""
+    """Every key allowed in `table`, as written in TOML, in order; cached, since every scene needs some tens."""
     hints = get_type_hints(table, include_extras=True)
     return {
         field.alias or name: Key(
@@ -209,7 +209,7 @@ def keys_of(table: type[Table]) -> dict[str, Key]:
 
 
 def allowed_by(annotation: Any, marks: tuple[Any, ...] = ()) -> Allowed:
-    """What a type allows, None left out: a key that may be absent has it."""
+    """What a type allows, without None: a key that may be absent has it."""
     origin, arguments = get_origin(annotation), get_args(annotation)
     if origin is Annotated:
         return allowed_by(arguments[0], (*arguments[1:], *marks))
@@ -225,7 +225,7 @@ def allowed_by(annotation: Any, marks: tuple[Any, ...] = ()) -> Allowed:
 
 @dataclass(frozen=True)
 class Place:
-    """A place in a scene: its `keys`, what stands there, and what may; `absent`: what counts where nothing stands."""
+    """A position in a scene: its `keys`, its value, and what is allowed; `absent`: the default without a value."""
 
     keys: Keys
     value: Any
@@ -263,7 +263,7 @@ class Place:
 
 
 def walk(allowed: Allowed, value: Any, keys: Keys = (), absent: bool = False) -> Iterator[Place]:
-    """Every place in `value`, a table before what is inside it, which may be mended meanwhile; absent keys, too."""
+    """Every position in `value`, a table before its content, which may be corrected meanwhile; absent keys, too."""
     yield Place(keys, value, allowed, absent)
     if isinstance(value, Mapping) and (table := allowed.table_for(value)):
         for name, key in keys_of(table).items():

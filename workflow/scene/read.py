@@ -24,14 +24,14 @@ from contact1d.workflow.units import Scales
 
 DEEPEST = 100
 """Levels of tables and lists in a scene."""
-TOO_DEEP = f"tables or lists are nested more than {DEEPEST} deep; look for a dot or a bracket too many"
+TOO_DEEP = f"tables or lists are nested more than {DEEPEST} deep; check for an extra dot or bracket"
 LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')\s*+\.\s*+){{{DEEPEST}}}""")
 """A dotted key that is deeper: tomllib takes minutes for it."""
 MEANING = {
     "Cannot overwrite a value": "this key is given twice",
     "Cannot declare": "this table is given twice",
-    "Invalid value": "this is no value",
-    "Expected newline or end of document": "there is something behind the value",
+    "Invalid value": "this is not a value",
+    "Expected newline or end of document": "unexpected text after the value",
     "Unclosed array": "a list is not closed",
     "Expected '=' after a key": "a key needs = and a value",
     "Invalid statement": "this is neither key = value nor a [table]",
@@ -45,9 +45,9 @@ MEANING = {
 """What the messages of tomllib, by their beginnings, mean to a person."""
 
 HINTS = {
-    "Invalid value": "text stands in quotes; a number has digits on both sides of its point; true and false are small",
+    "Invalid value": "write text in quotes, a number with digits around its point, true and false in lower case",
     "Expected newline or end of document": (
-        'one key = value on a line; a decimal point is no comma; a number with a unit stands in quotes, "10 mm"'
+        'write one key = value per line, decimals after a point, a number with a unit in quotes, "10 mm"'
     ),
 }
 
@@ -134,7 +134,7 @@ def scene_from_dict(
 ) -> Scene:
     """The scene that `data` (keys as in a scene file; None counts as absent) describes. `data` is left as it is.
 
-    A profile's file is looked for in `folder` and read into the scene, which then needs it no more. `overrides` are
+    A profile's file is looked up in `folder` and read into the scene, which then needs it no more. `overrides` are
     strings "table.key=value", applied in order, the value read as TOML or else as bare text; `without` has names of
     effects whose tables are then removed. Raises SceneError with every problem at once.
     """
@@ -146,7 +146,7 @@ def scene_from_dict(
 
 
 def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -> Scene:
-    """The scene of `plain`, which is mended on the way; `problems` are those found so far."""
+    """The scene of `plain`, which is corrected meanwhile; `problems` are those found so far."""
     problems += mend_words(plain, Scene)
     source, unread = _with_points(plain, folder)
     _with_legs(plain)
@@ -206,7 +206,7 @@ def _with_points(data: dict[str, Any], folder: FilePath) -> tuple[PointsFile | N
     if not isinstance(profile.get("file"), str):
         return None, []
     file, scale = profile.pop("file"), profile.pop("scale", None)
-    message, hint = "not together with the lists r and z", "give the one or the other"
+    message, hint = "not together with the lists r and z", "give one of the two"
     if not lists:
         try:
             points, units = read_profile(folder / file, scale)
@@ -232,7 +232,7 @@ def _with_legs(data: dict[str, Any]) -> None:
 
 
 def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Problem]:
-    """Set in `data` what each of `overrides` says, in order; returns the problems of those that say nothing.
+    """Set each of `overrides` in `data`, in order; returns the problems of invalid ones.
 
     A value is read as TOML, or as bare text where it is not TOML; tables on the way that are absent are made.
     """
@@ -249,7 +249,7 @@ def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Prob
 
 
 def set_values(data: dict[str, Any], values: Mapping[str, Any]) -> list[Problem]:
-    """Set in `data` the value of each dotted key; None takes the key away. Returns the problems."""
+    """Set the value of each dotted key in `data`; None removes the key. Returns the problems."""
     form = "write table.key, for example experiment.method"
     return [problem for path, value in values.items() for problem in _set(data, path, value, f"set {path}", form)]
 
@@ -298,7 +298,7 @@ def _listed(words: Iterable[str]) -> list[str]:
 
 
 def plain_data(value: Any, levels: int = DEEPEST) -> Any:
-    """A copy of `value` in dicts and lists, without keys that hold None. Raises SceneError below so many `levels`."""
+    """A copy of `value` in dicts and lists, without keys that are None. Raises SceneError below `levels`."""
     if not levels:
         raise SceneError([Problem("scene", TOO_DEEP)])
     if isinstance(value, Table):

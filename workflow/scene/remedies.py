@@ -1,4 +1,4 @@
-"""Edits of a scene that help against named failures: for the errors that carry them."""
+"""Suggested fixes of a scene for named failures, carried by their errors."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def less_compression(scene: Scene, carried: float | None = None) -> Iterator[Sce
 
 
 def against_passing(scene: Scene) -> Iterator[SceneEdit]:
-    """Against bodies that go through each other: less heat, no lateral motion unless it is looked at, less load."""
+    """Against bodies that go through each other: less heat, no lateral motion unless it is examined, less load."""
     if scene.noise is not None:
         yield SceneEdit({"noise.temperature": float(f"{COLDER * scene.noise.temperature:.3g}")})
     pulled = scene.experiment.motion_is_result or (scene.plate is not None and "x" in scene.plate.free)

@@ -1,4 +1,4 @@
-"""What fits together in a scene: tables of rules by subject, and one evaluation that reports every breach at once.
+"""Rules across the tables of a scene, by subject, and one evaluation that reports every violation at once.
 
 A rule is a row: the key that it speaks of, whether it is broken, what is wrong, what to do, and at times the changes by
 dotted keys that would each make a scene of it. What an experiment or an effect needs and excludes is declared beside
@@ -57,7 +57,7 @@ class Draft:
         self.effects = tuple(name for name in EFFECT_TABLES if name in data)
 
     def written(self, path: str) -> Any:
-        """What stands at `path`, right or wrong; None if nothing does."""
+        """The value at `path`, right or wrong; None without one."""
         value: Any = self.data
         for key in path.split("."):
             value = value.get(key) if isinstance(value, Mapping) else None
@@ -94,7 +94,7 @@ def _lower_body(d: Draft) -> Rows:
     yield ("interaction", touched and "interaction" in d,
            f"not with {PLANE}, which is touched directly", f"remove it, or use {PARTICLES}")
     yield ("horizontal", touched and "horizontal" in d,
-           "useless on a rigid plane, which never pulls a particle tangentially",
+           "has no effect on a rigid plane, which exerts no tangential force on a particle",
            f"remove it, or use {PARTICLES}")
     yield ("bodies.lower", inert and slides,
            "a rigid plane cannot drag the upper body", 'use lower = "particles" and an [interaction]')
@@ -102,7 +102,7 @@ def _lower_body(d: Draft) -> Rows:
            "a rigid plane cannot hold the upper body",
            'add [adhesion] with work_of_adhesion, or use lower = "particles" and an [interaction]')
     yield ("bodies.lower", d.on_chain and along,
-           'must be "rigid_plane" in a tangential, whose friction is Coulomb\'s',
+           'must be "rigid_plane" with kind = "tangential", whose friction is Coulomb\'s',
            'between two chains friction comes from the interaction: use kind = "slide"')
     yield ("friction", d.on_chain and "friction" in d and not along,
            "not between two chains, whose friction comes from the interaction",
@@ -156,7 +156,7 @@ def _attraction(d: Draft) -> Rows:
            'must be "mdr" with [adhesion], whose contact edge is that of a contact of three dimensions',
            'write reduction = "mdr"')
     yield ("damping", adheres and d.kind == "path" and "damping" in d,
-           "not with [adhesion] in a path: under displacement control nothing moves",
+           "not with [adhesion] in a path, which under displacement control has no dynamics",
            'remove it: method = "quasistatic" is the same without time')
 
 
@@ -208,7 +208,7 @@ def _open_spacing(d: Draft) -> Rows:
            'must be "auto" with spacing = "auto": the stiffness of a particle is E* times the spacing',
            f"write it, and {ELASTICITY}; or {GIVE_SPACING}")
     yield ("bodies.bulk_stiffness_tangential", "bodies.bulk_stiffness_tangential" in d,
-           'not with spacing = "auto": it belongs to one particle',
+           'not with spacing = "auto": it is a property of one particle',
            f"remove it: it follows from ν of material.upper and lower; or {GIVE_SPACING}")
     yield ("bodies.spacing", d.profile == "flat",
            "must be a length (LU) of a flat body without an edge", f'{GIVE_SPACING}, or use kind = "flat_punch"')
@@ -227,7 +227,7 @@ def _punch(d: Draft) -> Rows:
         return
     width = 2.0 * (radius / spacing)
     yield ("bodies.profile.radius", width == math.inf,
-           "is more spacings than a number holds", "make it smaller, or bodies.spacing wider")
+           "is too large compared with the spacing", "make it smaller, or bodies.spacing larger")
     if width == math.inf:
         return
     count = max(3, round(width))
@@ -245,7 +245,7 @@ def _material(d: Draft) -> Rows:
     length, force, energy = (f"material.{key}" in d for key in ("length_unit", "force_unit", "surface_energy"))
     elastic, auto = modulus or upper or lower, d["bodies.bulk_stiffness"] == "auto"
     yield ("bodies.bulk_stiffness", auto and not elastic,
-           "must be given (FU/LU): the scene has no elasticity to take it from",
+           "must be given (FU/LU): the scene has no elastic moduli from which it follows",
            f"give a number, or {ELASTICITY}")
     units_alone = length and force and not energy
     if "material" not in d or (not elastic and (auto or units_alone)):
@@ -276,7 +276,7 @@ def _units_by_run(d: Draft, auto: bool) -> Rows:
                "not together with surface_energy, with which both units follow from F_A and a₀ of the run",
                "remove one of the two")
     yield ("bodies.bulk_stiffness", auto,
-           "no units to take it by before the run",
+           "must be a number: LU and FU are not known before the run",
            "give the stiffness (FU/LU), or length_unit and force_unit in place of surface_energy")
     key = "material.surface_energy"
     yield (key, d.kind is not None and not d.experiment.finds_pull_off,
@@ -284,7 +284,7 @@ def _units_by_run(d: Draft, auto: bool) -> Rows:
            'use kind = "pull_off", whose results give length_unit and force_unit')
     nothing = "adhesion" not in d if d.on_plane else "interaction" in d and "interaction.attraction" not in d
     yield (key, d.kind == "path" and nothing,
-           "useless: nothing attracts, so there is no F_A and no a₀",
+           "has no effect without attraction: there is no F_A and no a₀",
            'use length_unit, or lower = "particles" with an interaction.attraction')
     yield (key, d.profile not in (None, *SPHERES),
            "not with this profile: JKR is for a sphere", "use a parabola or a circle, or length_unit")
@@ -311,12 +311,12 @@ def _pull_off(d: Draft) -> Rows:
     thermal = "noise" in d and d["experiment.method"] != "quasistatic"
     yield ("experiment.loading_rate", thermal and not rate and not velocity,
            "missing, needed by a pull_off with [noise]",
-           "give the rate (FU/TU) at which the load is drawn off, or a velocity (LU/TU) at which a spring draws the "
-           "plate off, or remove [noise]")
+           "give the rate (FU/TU) at which the load decreases, or the velocity (LU/TU) of a spring that retracts the "
+           "plate, or remove [noise]")
     yield ("experiment.velocity", rate and velocity, "not together with a loading_rate", "remove one of the two")
     yield ("experiment.stiffness", stiffness and not velocity,
            "only with a velocity: it is that of the spring",
-           "remove it, or give the velocity at which its far end is drawn off")
+           "remove it, or give the velocity of its far end")
 
 
 def _periodic(d: Draft) -> Rows:
@@ -326,14 +326,14 @@ def _periodic(d: Draft) -> Rows:
     if not periodic:
         return
     yield ("bodies.periodic", d.profile not in (None, "flat"),
-           "not with a body that is not flat: it would end nowhere",
+           "not with a body that is not flat: a periodic body has no end",
            'use profile = { kind = "flat" }, or leave periodic out')
     yield ("bodies.periodic", d.kind not in (None, "slide"), "only in a slide", 'remove it, or use kind = "slide"')
     normal, tangential = d["bodies.bulk_stiffness"], d["bodies.bulk_stiffness_tangential"]
     if normal not in (None, "auto") and tangential is not None:
         yield ("bodies.bulk_stiffness_tangential", tangential > normal,
                f"must be at most bulk_stiffness, {normal:g} (FU/LU), with bodies.periodic",
-               "lower it: what is stiffer along x hangs on far anchors along x, and a periodic body has none")
+               "lower it: a larger one needs distant anchors along x, which a periodic body cannot have")
     count, spacing = d["bodies.particles"], d["bodies.spacing"]
     upper, pitch = (
         below if d.written(f"bodies.upper_{key}") is None else d[f"bodies.upper_{key}"]
@@ -341,7 +341,7 @@ def _periodic(d: Draft) -> Rows:
     )
     yield ("bodies.particles", count == "auto",
            "must be a number with bodies.periodic",
-           "give a number: no contact says how many particles a flat body without end needs")
+           "give a number: it does not follow from the contact of a periodic body")
     if {None, "auto"} & {count, spacing, upper, pitch} or upper == 1:
         return
     ratio = Fraction(pitch / spacing).limit_denominator(LONGEST_CELL)
@@ -353,8 +353,8 @@ def _periodic(d: Draft) -> Rows:
             f"upper_spacing = {ratio.numerator / ratio.denominator * spacing:.10g}"
         )
     yield ("bodies.upper_spacing", abs(count * spacing - upper * pitch) > WHOLE_NUMBER_ERROR * count * spacing,
-           f"periodic chains do not close: {count} · {spacing:g} LU below and {upper} · {pitch:g} LU above",
-           f"the nearest that do: {nearest}")
+           f"the periodic chains differ in length: {count} · {spacing:g} LU below and {upper} · {pitch:g} LU above",
+           f"the nearest equal lengths: {nearest}")
 
 
 # What an experiment or an effect declares
@@ -389,7 +389,7 @@ def _methods(d: Draft) -> Rows:
             yield _needed(d, name, f"a dynamic {kind}{cause}{also}")
     for name in TIMED:
         yield (name, method == "quasistatic" and name in rest,
-               f"not in a quasistatic {kind}, which has no time in it",
+               f"not in a quasistatic {kind}, which does not depend on time",
                'remove it, or use experiment.method = "dynamic"')
 
 
@@ -404,7 +404,7 @@ def _declared_keys(d: Draft) -> Rows:
                 yield (f"{name}.{key}", True, f"not together with {given[0]}", fix)
     for key in d.experiment.only_with_noise:
         yield (f"experiment.{key}", "noise" not in d and f"experiment.{key}" in d,
-               "only with [noise]: without thermal fluctuations each repetition ends alike",
+               "only with [noise]: without thermal fluctuations all repeats are equal",
                "remove it, or add [noise] with temperature and seed")
     for key in ("upper_particles", "upper_spacing", "upper_offset", "periodic"):
         path = f"bodies.{key}"
@@ -439,7 +439,7 @@ RULES = (
 
 
 def check_fit(data: Mapping[str, Any], unsound: frozenset[Keys] = frozenset()) -> list[Problem]:
-    """Every breach of a rule across the tables of `data` that can be found in spite of the `unsound` values in it."""
+    """Every violation of a rule across the tables of `data` that does not depend on its `unsound` values."""
     draft, problems = Draft(data, unsound), []
     for key, broken, message, fix, *ways in (row for rows in RULES for row in rows(draft)):
         if broken:

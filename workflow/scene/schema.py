@@ -1,4 +1,4 @@
-"""What a key of a scene may hold, in words and as a JSON schema for editors, from the types of the tables alone.
+"""The allowed values of a key of a scene, as text and as a JSON schema for editors, from the types of the tables.
 
 The schema knows each table by itself; what tables need of each other is checked by the program alone. Written without
 references and in the words of draft 7, which editors of TOML read (taplo, and with it Even Better TOML in VS Code).
@@ -28,7 +28,7 @@ Node = dict[str, Any]
 
 
 def statement(allowed: Allowed) -> str:
-    """What a value must be, in words: "a number greater than 0 (LU), or "auto"", continues "must be"."""
+    """The allowed values as text: "a number greater than 0 (LU), or "auto"", continues "must be"."""
     if len(allowed.choices) > 1:
         if len(allowed.kinds) == len(allowed.choices):
             return f"a table with kind = {_either(tuple(allowed.kinds))}"

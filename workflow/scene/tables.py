@@ -1,6 +1,6 @@
 """The typed scene: one frozen model per table of a scene file.
 
-What the model stands for: elasticity, the reduction to a plane model, and the metres and newtons behind LU and FU.
+The physical system: elasticity, the reduction to one dimension, and LU and FU in metres and newtons.
 
     1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂,        1/G* = (2 − ν₁)/4G₁ + (2 − ν₂)/4G₂
 
@@ -72,7 +72,7 @@ Reduction = Literal["geike_popov", "mdr"]
 LAYER_SHARE = {"geike_popov": 0.5, "mdr": 1.0}
 """Stiffness per length of the layer over E*."""
 PARABOLA_SHARE = {"geike_popov": 1.0, "mdr": 0.5}
-"""Radius of the plane parabola x²/2R₁ over that of the body that it stands for: the MDR takes x²/2R to x²/R."""
+"""Radius of the plane parabola x²/2R₁ over that of the body that it represents: the MDR takes x²/2R to x²/R."""
 
 SPHERES = ("parabola", "circle")
 """Profiles of which two make the pair of spheres of the paper."""
@@ -90,7 +90,7 @@ class Elastic(Table):
     poisson_ratio: Poisson
     """Poisson's ratio ν"""
     yield_strength: Pascal | None = None
-    """yield strength Y, for the check of validity alone: the body stays elastic"""
+    """yield strength Y, used to check validity only: the body remains elastic"""
 
     @property
     def compliance(self) -> float:
@@ -104,7 +104,7 @@ class Elastic(Table):
 
 
 class Material(Table):
-    """What the model stands for in SI: elasticity, and either the units or the surface energy."""
+    """The material in SI: elasticity, and either the units or the surface energy."""
 
     upper: Elastic | None = None
     """the upper body"""
@@ -153,7 +153,7 @@ def wider_than_body(profile: Mapping[str, Any]) -> float | None:
         profile: with the keys of a scene file. Of a circle or an ellipsoid the factor is that of its parabola.
 
     Returns:
-        (2κ_n)^{1/(n+1)}; None where no closed form tells.
+        (2κ_n)^{1/(n+1)}; None where there is no closed form.
     """
     exponents = {"cone": 1.0, "parabola": 2.0, "circle": 2.0, "ellipsoid": 2.0, "power": profile.get("exponent")}
     n = exponents.get(str(profile.get("kind")))
@@ -170,38 +170,38 @@ class Bodies(Table):
     particles: Auto[ParticleCount]
     """particles per body, or of the lower one, or "auto": as many as the contact needs"""
     given_spacing: Auto[Length] = Field(alias="spacing")
-    """distance of neighbouring particles, or on a rigid plane "auto": so near that all results keep
+    """distance of neighbouring particles, or on a rigid plane "auto": so small that all results meet
     `accuracy.tolerance`
     """
     profile: Profile
     """shape of the upper body"""
     reduction: Reduction = cast("Reduction", None)
-    """how the plane model stands for a 3D one: "geike_popov" (profile as drawn) or "mdr" (transformed); absent: "mdr"
+    """reduction of the 3D contact: "geike_popov" (profile as given) or "mdr" (transformed); absent: "mdr"
     with a material, on a rigid plane and for every profile but a parabola, else "geike_popov"
     """
     bulk_stiffness: Auto[Stiffness] = "auto"
-    """stiffness of each particle to its bulk, normal direction, or "auto": from the material"""
+    """normal stiffness of each particle to its bulk, or "auto": from the material"""
     bulk_stiffness_tangential: Stiffness | None = None
-    """stiffness of each particle to its bulk, along x; absent: as in normal direction, or with E and ν of both
-    bodies G*/E* of that
+    """tangential stiffness of each particle to its bulk; absent: the normal one, or G*/E* of it where E and ν of both
+    bodies are known
     """
     mass: Mass = 1.0
     """mass of a particle; matters only where something moves in time"""
     lower: Literal["particles", "rigid_plane", "rigid_chain"] = "particles"
     """lower body: "particles" like the upper one, a "rigid_plane", or a "rigid_chain" of particles without springs"""
     periodic: bool = False
-    """whether both bodies, which are flat, go on for ever along x"""
+    """whether both bodies are flat and periodic along x"""
     upper_particles: AnyParticleCount | None = None
     """particles of the upper body; absent: as many as the lower one has"""
     upper_spacing: Length | None = None
     """distance of neighbouring particles of the upper body; absent: the spacing"""
     upper_offset: Displacement | None = None
-    """place of the upper body's middle along x; absent: 0, and in a slide such that its particles begin between
-    those of the lower one
+    """position of the middle of the upper body along x; absent: 0, in a slide such that its particles start between
+    those of the lower body
     """
 
     def height(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Height [LU] of the upper chain above its apex at the places `x` [LU], as its reduction has it."""
+        """Height [LU] of the upper chain above its apex at the positions `x` [LU], by its reduction."""
         return self.profile.transformed(x) if self.reduction == "mdr" else self.profile.height(x)
 
     @property
@@ -225,24 +225,24 @@ class Bodies(Table):
 
     @property
     def plane_radius(self) -> float | None:
-        """Radius R₁ [LU] of the plane parabola x²/2R₁ that stands for one of R, R or with the MDR R/2; else None."""
+        """Radius R₁ [LU] of the plane parabola x²/2R₁ that represents R, R or with the MDR R/2; else None."""
         return PARABOLA_SHARE[self.reduction] * self.profile.radius if isinstance(self.profile, Parabola) else None
 
 
 class Accuracy(Table):
-    """How exact the results are to be; chooses every numerical setting that the scene leaves open."""
+    """Accuracy of the results; determines every numerical setting that the scene leaves open."""
 
     tolerance: RelativeTolerance = 1e-3
     """relative error allowed in the main results"""
 
 
 class Output(Table):
-    """What is kept besides the results."""
+    """Additional output."""
 
     states: AllOr[StateCount]
-    """how many states of the whole way states.lammpstrj holds, each with all atoms' places and the force of the
-    opposite body on them: so many, evenly among the rows of curve.csv, or "all" of these; without this table it has
-    the reported states only
+    """number of states in states.lammpstrj, evenly among the load steps of curve.csv, or "all" of these; each has the
+    positions of all atoms and the force of the opposite body on them; without this table it has the reported states
+    only
     """
 
 
@@ -258,7 +258,7 @@ class Tables(Table):
     model_config = ConfigDict(defer_build=True)  # built once, by that
 
     title: Annotated[str, AfterValidator(_one_line)]
-    """what the scene shows, one line"""
+    """title of the scene, one line"""
     bodies: Bodies
     """the two bodies"""
     interaction: Interaction | None = None
@@ -280,11 +280,11 @@ class Tables(Table):
     cantilever: Cantilever | None = None
     """the plate is pulled through a spring"""
     material: Material | None = None
-    """what the model stands for in SI"""
+    """the material in SI"""
     accuracy: Accuracy = Accuracy()
-    """how exact"""
+    """accuracy of the results"""
     output: Output | None = None
-    """what is kept besides the results"""
+    """additional output"""
     experiment: Experiment
     """the experiment"""
 
@@ -349,12 +349,12 @@ class Tables(Table):
 
     @property
     def stands(self) -> bool:
-        """Whether particles stand still in the upper body, on a rigid plane that has their springs."""
+        """Whether particles are fixed in the upper body, on a rigid plane that has their springs."""
         return self.is_stepped or self.adhesion is not None
 
     @property
     def is_stepped(self) -> bool:
-        """Whether particles have no place to find: alone at rest on a rigid plane, they have what the plate's gives."""
+        """Whether particles need no relaxation: on a rigid plane without neighbour springs they follow the plate."""
         alone = self.bodies.lower == "rigid_plane" and self.neighbours is None
         return alone and self.method == "quasistatic"
 

@@ -35,7 +35,7 @@ MOST_POINTS = 1_000_000
 
 @dataclass(frozen=True)
 class Axis:
-    """A key of a scene, dotted, and the values that it takes, in order."""
+    """A key of a scene, dotted, and its values, in order."""
 
     key: str
     values: tuple[Any, ...]
@@ -58,7 +58,7 @@ class SweepPlan:
     Attributes:
         title: of the sweep.
         base: tables of the base scene, unchecked: an axis may bring what it lacks.
-        folder: where files that the base scene names are looked for.
+        folder: where files that the base scene names are searched.
         axes: at least one.
         combine: "product": every value with every other, the last axis quickest; "zip": the first values together, the
             second ones, and so on.
@@ -118,7 +118,7 @@ def read_sweep(source: AnySweep) -> SweepPlan:
             (combine not in COMBINATIONS, "combine", 'must be "product" or "zip"', combine, ""),
             (given is None or given == [], "axes", "missing", None,
              'write [[axes]] with key = "bodies.profile.radius" and values'),
-            (given is not None and not listed, "axes", "must be written as [[axes]], in double brackets, once for each",
+            (given is not None and not listed, "axes", "must be written as [[axes]], in double brackets, one for each",
              given, ""),
             (scene is not None and base is not None, "scene", "not together with [base]", None,
              "give a scene file, or the scene's tables under [base]"),
@@ -149,7 +149,7 @@ def _shape(axes: Sequence[Axis], combine: str) -> Iterator[Rule]:
     yield uneven, "combine", f'"zip" needs axes of one length, they have {words} values', None, ""
     count, product = math.prod(lengths), " × ".join(map(str, lengths))
     many = combine == "product" and count > MOST_POINTS
-    yield many, "axes", f"{product} = {count} points are more than {MOST_POINTS}", None, "take coarser axes"
+    yield many, "axes", f"{product} = {count} points are more than {MOST_POINTS}", None, "use fewer values"
 
 
 def _axis(table: Any, where: str, problems: list[Problem]) -> Axis:
@@ -242,7 +242,7 @@ def points(plan: SweepPlan) -> Iterator[Point]:
 
 
 def require_keys(plan: SweepPlan) -> None:
-    """See that each axis is a key of the scene. Raises SceneError; values that are wrong are a point's own matter."""
+    """Check that each axis is a key of the scene. Raises SceneError; wrong values are errors of their points."""
     try:
         _scene(plan, next(plan.values()))
     except SceneError as error:

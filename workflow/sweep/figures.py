@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 SEED = "noise.seed"
 MOST_LINES = 8
-"""Lines that a legend names; more are told apart by colour along the second axis."""
+"""Lines that a legend names; more are distinguished by colour along the second axis."""
 LOG_SPAN = 20.0
 """Largest value of an axis over its smallest one from which on its scale is logarithmic."""
 CONSTANT = 1e-6

@@ -1,6 +1,6 @@
-"""A sweep: the points that are missing run, on this machine or as jobs of Slurm; the table and figures have them all.
+"""A sweep: its missing points run on this machine or as Slurm jobs; the table and figures have all points.
 
-What is done is told by the run folders alone, so a sweep that was broken off at any moment goes on by the same command.
+The run folders alone record what is done, so the same command continues a sweep that was interrupted at any moment.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ Task = tuple[Scene, Path]
 
 @dataclass(frozen=True)
 class Sweep:
-    """A sweep that has run, or ran as far as it got.
+    """A finished or interrupted sweep.
 
     Attributes:
         folder: with results.csv, figures, and a run folder for each point in runs/.
@@ -95,7 +95,7 @@ def sweep(
         executor: "local", "slurm", or anything with the interface of `concurrent.futures`.
         workers: processes, or jobs of Slurm, at a time; None: as many as there are processors.
         figures: whether to draw, or the format: "png" (as True has it), "svg" or "pdf".
-        progress: told of each point.
+        progress: informed of each point.
         partition: of Slurm; None: its default.
 
     Raises:
@@ -112,7 +112,7 @@ def sweep(
     _require_own(folder, record, progress)
     rows: list[str | Answer] = []
     answers: dict[str, Answer] = {}
-    with alone(folder, "a sweep is at work in"):
+    with alone(folder, "a sweep is active in"):
         write_whole(folder / RECORD, record)
         progress.phase("sweep", len(plan), "point")
         try:
@@ -131,7 +131,7 @@ def sweep(
 
 
 def _record(plan: SweepPlan) -> str:
-    """The sweep as it runs, in the form of a sweep file; values that are no numbers or words come as in a scene."""
+    """The sweep in the form of a sweep file; values other than numbers and text are written as in a scene."""
     head = f"title = {as_toml(plan.title)}\ncombine = {as_toml(plan.combine)}\n"
     axes = "".join(f"\n[[axes]]\nkey = {as_toml(a.key)}\nvalues = {as_toml(list(a.values))}\n" for a in plan.axes)
     base = "".join(f"{key} = {as_toml(value)}\n" for key, value in plan.base.items())
@@ -144,7 +144,7 @@ def _same(folder: Path, record: str, progress: Progress) -> bool:
         plans = [read_record(folder), read_sweep(record)]
     except FolderError:
         if own := (folder / RUNS).is_dir():
-            progress.note(f"{folder / RECORD} is no record of a sweep and is replaced")
+            progress.note(f"{folder / RECORD} is not the record of a sweep and is replaced")
         return own
     one, two = ((plan.base, [axis.key for axis in plan.axes]) for plan in plans)
     return one == two
@@ -160,7 +160,7 @@ def _require_own(folder: Path, record: str, progress: Progress) -> None:
                 f"{folder} holds another sweep: its base scene or the keys of its axes differ; choose another folder"
             )
     elif folder.is_dir() and any(entry.name != LOCK for entry in folder.iterdir()):
-        raise FolderError(f"{folder} holds files that are not of a sweep; choose another folder")
+        raise FolderError(f"{folder} has files that do not belong to a sweep; choose another folder")
     folder.mkdir(parents=True, exist_ok=True)
 
 
@@ -177,7 +177,7 @@ def _missing(plan: SweepPlan, folder: Path, rows: list[str | Answer], progress: 
             if point.name not in seen and answer_in(folder, point.name) is None:
                 seen.add(point.name)
                 if (folder / RUNS / point.name / RESULTS).exists():
-                    progress.note(f"{point.name}: its {RESULTS} is not that of a run, so it is run again")
+                    progress.note(f"{point.name}: its {RESULTS} is invalid, so it is run again")
                 yield point.scene, folder / RUNS / point.name
                 continue
         progress.advance(1)
@@ -186,7 +186,7 @@ def _missing(plan: SweepPlan, folder: Path, rows: list[str | Answer], progress: 
 def _answered(tasks: Iterator[Task], workplace: Workplace) -> Iterator[tuple[str, Answer]]:
     """Run tasks, `workplace.window` chunks at a time; yields name and answer as they come.
 
-    A process that dies takes its executor along. Then what was under way runs again, one by one, so that one task alone
+    A process that dies breaks its executor. Then what was under way runs again, one by one, so that one task alone
     has to answer for the second death.
     """
     suspects: list[Task] = []
@@ -200,7 +200,7 @@ def _answered(tasks: Iterator[Task], workplace: Workplace) -> Iterator[tuple[str
         with workplace.opened() as executor:
             yield from _through(executor, chain([first], queue), chunk, window, broken)
         if one_by_one and broken:
-            yield broken[0][1].name, Answer("failed", "its process was killed twice, most often for want of memory")
+            yield broken[0][1].name, Answer("failed", "its process was killed twice, most often by a lack of memory")
         suspects = [*broken[1:], *queue] if one_by_one else broken
 
 
@@ -227,7 +227,7 @@ def _through(
             except OSError:
                 raise
             except CalledProcessError as error:
-                raise ExecutorError(f"the job was refused: {' '.join(map(str, error.cmd))} says why") from None
+                raise ExecutorError(f"the job was refused: {' '.join(map(str, error.cmd))} gives the reason") from None
             except Exception as error:  # of the executor: a job that was cancelled, a node that went away
                 answers = [answer_in(path.parent.parent, path.name) or _not_run(error) for _, path in some]
             yield from ((path.name, answer) for (_, path), answer in zip(some, answers, strict=True))
@@ -236,7 +236,7 @@ def _through(
 def _not_run(error: Exception) -> Answer:
     """The answer of a point whose job ended before it: the same command runs it."""
     words = " ".join(str(error).split()).rstrip(".")
-    return Answer("missing", f"its job ended before it was run, and the same command runs it: {words}")
+    return Answer("missing", f"its job ended before it ran; start the sweep again: {words}")
 
 
 def attempt_all(tasks: Sequence[Task]) -> list[Answer]:
@@ -263,7 +263,7 @@ def _attempt(scene: Scene, folder: Path) -> Answer:
 
 def _finish(plan: SweepPlan, folder: Path, rows: Sequence[str | Answer], answers: Mapping[str, Answer]) -> Sweep:
     """Write the table: each row's refusal, what its run's folder says, or an answer that no folder holds."""
-    broken_off = Answer("missing", "the sweep was broken off before it")
+    broken_off = Answer("missing", "the sweep was interrupted before it")
 
     def answered() -> Iterator[tuple[tuple[Any, ...], Answer]]:
         for values, row in zip(plan.values(), chain(rows, repeat(broken_off)), strict=False):
@@ -328,7 +328,7 @@ def workplace_of(
     if find_spec("executorlib") is None:
         raise ExecutorError("Slurm is reached through executorlib: install it with pip install 'contact1d[cluster]'")
     if which("sbatch") is None:
-        raise ExecutorError("there is no sbatch on this machine: start the sweep where jobs of Slurm are handed in")
+        raise ExecutorError("there is no sbatch on this machine: start the sweep where Slurm jobs are submitted")
     chosen = _partition(partition)
     return Workplace(lambda: _slurm(folder / "slurm", chosen), JOB_POINTS, count)
 

@@ -22,7 +22,7 @@ DEEP = 4.0
 
 
 class Stage(IntEnum):
-    """Order of the fragments in a deck: a force that acts comes before what takes parts of it away or integrates it."""
+    """Order of the fragments in a deck: a force precedes the fixes that modify or integrate it."""
 
     BODIES = 0
     SPRINGS = 1
@@ -35,7 +35,7 @@ class Stage(IntEnum):
 
 @dataclass(frozen=True)
 class Contribution:
-    """One effect's part of a deck.
+    """The part of one effect in a deck.
 
     Attributes:
         name: the effect, the scene's table.
@@ -86,5 +86,5 @@ EFFECTS: dict[str, Callable[[Scene, Settings], Contribution]] = {
 
 
 def contributions(scene: Scene, settings: Settings) -> tuple[Contribution, ...]:
-    """What the effects of a scene bring to its deck."""
+    """The parts of all effects of a scene."""
     return tuple(EFFECTS[name](scene, settings) for name in scene.effects)

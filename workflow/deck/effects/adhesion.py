@@ -10,7 +10,7 @@ TOUCH = 1e-9
 
 
 def adhesion(scene: Scene, settings: Settings) -> Contribution:
-    """What each particle knows of its cell is in a file beside system.data. It comes after the plane."""
+    """The cells of the particles are in a file of their own. The effect follows the plane."""
     assert isinstance(settings.estimate, AdhesiveEstimate)
     last = settings.estimate.fixed_grips[1] / settings.estimate.spacing
     variables = {

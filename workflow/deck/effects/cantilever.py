@@ -1,6 +1,6 @@
 """Effect [cantilever]: F_x = c (v t − X) pulls the plate along x through a spring whose far end moves at velocity v.
 
-What is drawn along moves at v on the mean, and so does the bath that drags at it: drag is against v, not against rest,
+Plate and particles move at v on average, and so does their heat bath: drag is relative to v, not to rest,
 
     F_i = −γ (v_i − v)  on each upper particle,    F = −c_plate (V − v)  on the plate,
 

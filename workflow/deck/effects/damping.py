@@ -6,7 +6,7 @@ from contact1d.workflow.scene import Scene
 
 
 def damping(scene: Scene, settings: Settings) -> Contribution:
-    """With noise in the scene the Langevin thermostat does the damping, and this effect has no line of its own."""
+    """With noise the Langevin thermostat includes the damping, and this effect adds nothing."""
     if scene.noise is not None:
         return Contribution("damping", Stage.DRAG, ())
     return Contribution("damping", Stage.DRAG, ("damping",), {"damping_coefficient": number(settings.damping)})

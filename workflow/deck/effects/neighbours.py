@@ -6,7 +6,7 @@ from contact1d.workflow.scene import Scene
 
 
 def neighbours(scene: Scene, settings: Settings) -> Contribution:
-    """Shared slots: a bond type in system.data, and the places of the anchors (`workflow.deck.lattice`)."""
+    """Shared slots: a bond type in system.data, and the positions of the anchors (`workflow.deck.lattice`)."""
     assert scene.neighbours is not None
     coefficient = number(scene.neighbours.stiffness / 2)
     return Contribution("neighbours", Stage.SPRINGS, ("neighbours",), {"neighbours_bond_coefficient": coefficient})

@@ -6,7 +6,7 @@ from contact1d.workflow.scene import Scene
 
 
 def noise(scene: Scene, settings: Settings) -> Contribution:
-    """`fix langevin` takes the relaxation time m/γ. A drag on the plate brings its heat, too, to one of its anchors."""
+    """`fix langevin` takes the relaxation time m/γ. A drag on the plate has its random force, on one of its anchors."""
     assert scene.noise is not None
     variables = {
         "noise_temperature": number(scene.noise.temperature),
