@@ -166,7 +166,7 @@ def detachments_figure(forces: Array) -> Figure:
     bins = max(4, round(2.0 * forces.size ** (1.0 / 3.0)))  # Rice's rule
     axis.hist(forces, bins, color=LOADING, edgecolor="white")
     axis.axvspan(mean - error, mean + error, color=TENSION, alpha=0.3, linewidth=0.0)
-    axis.axvline(mean, color=TENSION, linewidth=1.2, label=f"mean of {forces.size} pulls, standard error")
+    axis.axvline(mean, color=TENSION, linewidth=1.2, label=f"mean of {forces.size} repeats, standard error")
     axis.locator_params(axis="y", integer=True)
     describe(axis, "detachment force (FU)", "pulls", zero=False)
     legend(axis)
@@ -193,7 +193,7 @@ def samples_figure(columns: Mapping[str, Array], measured: NDArray[np.bool_], me
         upper.axhline(mean, color=TENSION, linewidth=1.2, label="mean")
         legend(upper)
     if not measured.all():
-        upper.set_title("grey: before the measurement", loc="left", fontsize=9, color=THEORY)
+        upper.set_title("grey: run-in", loc="left", fontsize=9, color=THEORY)
     lower.set_xlabel("time (TU)")
     return figure
 
@@ -302,7 +302,7 @@ def stick_slip_figure(states: Mapping[str, tuple[Profile, Array, float, float]],
         half = max(half, float(np.abs(x[touched] if touched.any() else x).max()), float(x[1] - x[0]))
         legend(axis, "upper right", 8)
     axes[-1].set_xlim(-BEYOND * half, BEYOND * half)
-    axes[-1].set_xlabel("x from the body's middle (LU)")
+    axes[-1].set_xlabel("x from the middle of the body (LU)")
     return figure
 
 

@@ -91,7 +91,7 @@ def test_a_run_that_does_not_say_its_scene_is_told(scene: object, tmp_path: Path
     (tmp_path / "results.json").write_text(json.dumps(document if scene is None else document | {"scene": scene}))
     done = contact1d("identify", "--contact-modulus", "1e9", "--surface-energy", "1", "--run", ".", cwd=tmp_path)
     assert (done.exit_code, done.stdout) == (2, "")
-    assert done.stderr.startswith("results.json is not what a run writes; ")
+    assert done.stderr.startswith("results.json is not the results.json of a run; ")
     assert done.stderr.endswith("run its scene again\n")
     assert done.stderr.count("\n") == 1
 

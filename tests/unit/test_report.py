@@ -65,7 +65,7 @@ def test_the_page_of_a_run_says_results_scene_cost_deck_and_versions(finished: R
         assert str(quantity) in page
     assert "&lt;a&gt; pull-off &amp; more" in page
     assert "<h1><a>" not in page
-    for words in ("Compression by a preload", "tolerance asked for", "lmp -in in.lammps", "units           lj"):
+    for words in ("Compression by a preload", "required tolerance", "lmp -in in.lammps", "units           lj"):
         assert words in page
     for name in finished.document["versions"]:
         assert f"<dt>{name}</dt>" in page
@@ -142,7 +142,7 @@ def test_the_way_of_a_run_moves_a_picture_for_each_state(tmp_path: Path) -> None
     assert not list(finished.folder.glob("*.part*"))
 
 
-@pytest.mark.parametrize(("name", "words"), [("way.avi", "ends in .gif or .mp4"), ("way.gif", "holds one state only")])
+@pytest.mark.parametrize(("name", "words"), [("way.avi", "ends in .gif or .mp4"), ("way.gif", "has a single state")])
 def test_what_cannot_move_is_told(name: str, words: str, tmp_path: Path) -> None:
     run(chains(400.0, experiment={"kind": "path", "displacements": [0.1]}), tmp_path / "run", figures=False)
     with pytest.raises(Contact1dError, match=words):

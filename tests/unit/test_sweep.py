@@ -110,7 +110,7 @@ def test_a_record_that_was_cut_short_is_replaced(kept: int, finished: Path, tmp_
     (folder / RECORD).write_text(whole[:kept])
     page = CliRunner().invoke(app, ["report", str(folder), "--out", str(tmp_path / "page.html")])
     assert (page.exit_code, page.output.count("\n")) == (2, 1)
-    assert "sweep.toml is no record of a sweep: start the sweep again" in page.output
+    assert "sweep.toml is not the record of a sweep: start the sweep again" in page.output
     sweep(TWO, folder, again := Here(), figures=False, progress=(progress := Notes()))
     assert again.given == []
     assert progress.notes == [f"{folder / RECORD} is not the record of a sweep and is replaced"]

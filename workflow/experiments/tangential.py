@@ -196,10 +196,10 @@ def _require_history(trace: Trace, rows: Sequence[Drawn]) -> None:
     for row in rows:
         if row.wrong > AS_PREDICTED * limit:
             raise UntrustedError(
-                f"a particle's tangential force is {row.wrong:.2g} FU off what its spring and slider make of the row "
-                f"before, at displacement {trace.displacement[row.state]:.4g} LU and {row.position:.4g} LU along x "
-                f"(phase {trace.phase[row.state]}): LAMMPS has lost its history. "
-                "Take rows that are nearer to each other"
+                f"the tangential force of a particle differs by {row.wrong:.2g} FU from that of its spring and slider "
+                f"after the previous load step, at displacement {trace.displacement[row.state]:.4g} LU and tangential "
+                f"displacement {row.position:.4g} LU (phase {trace.phase[row.state]}): the contact history was lost. "
+                "Use smaller load steps"
             )
 
 

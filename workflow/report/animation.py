@@ -56,7 +56,7 @@ def animate(folder: AnyPath, out: AnyPath | None = None, frames_per_second: int 
         raise Contact1dError("MP4 needs the program ffmpeg: install it, or take a name that ends in .gif")
     kept = run.folder / "states.npz"
     if not kept.is_file() or len(run.curve.force) < 2:
-        raise FolderError(f"{folder} holds one state only: a path, a pull_off, a tangential or a slide has a way")
+        raise FolderError(f"{folder} has a single state; an animation needs a path, pull_off, tangential or slide")
     _draw(run, read_states(kept), path, frames_per_second)
     return path
 
@@ -70,7 +70,7 @@ def ovito_script(folder: AnyPath) -> Path:
     run = load_run(folder)
     missing = [name for name in (STATES, "system.data") if not (run.folder / name).is_file()]
     if missing:
-        raise FolderError(f"{folder} lacks {' and '.join(missing)}, which OVITO reads: run the scene again")
+        raise FolderError(f"{folder} lacks {' and '.join(missing)}, required by OVITO: run the scene again")
     path = run.folder / OVITO
     write_whole(path, files("contact1d.workflow.report").joinpath(OVITO).read_text(encoding="utf-8"))
     return path
@@ -112,7 +112,7 @@ def _bodies(axis: Axes, run: Run, states: States) -> Callable[[int], list[Any]]:
         chains.append((axis.scatter(x[0], low[0], c=pressure[0], **look), low, -length))
     axis.figure.colorbar(chains[0][0], ax=axis, label="pressure (FU/LU), compression positive", shrink=0.9)
     axis.set(xlim=(-half, half), ylim=(bottom - 1.1 * length, top + 1.1 * length))
-    describe(axis, "x (LU)", "z (LU), drawn larger than x", run.scene.title, zero=has_plane)
+    describe(axis, "x (LU)", "z (LU), magnified", run.scene.title, zero=has_plane)
 
     def move(frame: int) -> list[Any]:
         for dots, z, _ in chains:

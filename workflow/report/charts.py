@@ -190,7 +190,7 @@ def path_of(run: Run, states: States) -> dict[str, Any]:
             _chart(names, [_line("", "#999999") | dict(zip("xy", line, strict=True)), mark]),
             _chart([along, f"line load ({load})"],
                    [_line("pressure"), _line("shear", COLOURS[1], bool(loads[1].any()))], ends, loads),
-            _chart([along, f"z ({height}), drawn larger"], [_line("upper"), _line("lower", COLOURS[2])], ends, bodies),
+            _chart([along, f"z ({height}), magnified"], [_line("upper"), _line("lower", COLOURS[2])], ends, bodies),
         ],
         "x": [listed(row) for row in x],
         "loads": [[listed(row) for row in one] for one in loads],

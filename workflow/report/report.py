@@ -55,7 +55,7 @@ def report(folders: Sequence[AnyPath], out: AnyPath = "report.html") -> Path:
     if sweeps and len(places) > 1:
         raise FolderError(f"{sweeps[0]} holds a sweep: a page shows one sweep, or runs")
     if len(places) > MOST_RUNS:
-        raise FolderError(f"{len(places)} runs are more than the {MOST_RUNS} that one page can show")
+        raise FolderError(f"{len(places)} runs are too many for one page; at most {MOST_RUNS}")
     try:
         page = _of_sweep(places[0]) if sweeps else _of_runs([read_run(place) for place in places])
     except (OSError, LookupError, TypeError, ValueError, EOFError, BadZipFile, csv.Error) as error:
@@ -102,12 +102,12 @@ def _facts(run: Run) -> dict[str, str]:
     accuracy: Mapping[str, Any] = run.document.get("accuracy", {})
     asked, timing = run.scene.accuracy.tolerance, run.timing
     return {
-        "tolerance asked for": f"{asked:g}",
+        "required tolerance": f"{asked:g}",
         "tolerance of the settings": f"{accuracy.get('tolerance', asked):g}",
         "refinements": str(accuracy.get("refinements", 0)),
         "LAMMPS steps": f"{timing['steps']:,.0f}".replace(",", "\u202f"),
         "time in LAMMPS": f"{timing['lammps_s']:.2f} s",
-        "time in all": f"{timing['total_s']:.2f} s",
+        "total time": f"{timing['total_s']:.2f} s",
     }
 
 

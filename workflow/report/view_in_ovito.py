@@ -64,7 +64,7 @@ def main(folder: Path) -> None:
     data.cell.vis.enabled = False
     pipeline.add_to_scene()
     view = Viewport(type=Viewport.Type.Front)
-    title = "force on a particle (FU): blue presses, red pulls"
+    title = "force on a particle (FU): blue: compressive, red: tensile"
     view.overlays.append(ColorLegendOverlay(modifier=colours, title=title, font_size=0.06, format_string="%.3g"))
     view.zoom_all(size=SIZE)
     scene.save(str(folder / "way.ovito"))

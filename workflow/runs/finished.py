@@ -235,7 +235,7 @@ def read_run(folder: Path) -> Run:
         return Run(folder.resolve(), document, scene, tables)
     except (ValueError, OSError, SceneError, csv.Error) as error:
         reason = str(error).partition("\n")[0]
-        raise FolderError(f"{folder} holds no run that this version can read: {reason}. Run its scene again") from None
+        raise FolderError(f"{folder} has no run readable by this version: {reason}. Run its scene again") from None
 
 
 def drawings(run: Run) -> Drawings:

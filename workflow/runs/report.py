@@ -81,7 +81,7 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
     if missing := unfound(scene, known.quantities):
         doubts["no_units"] = (
             f"the run found no {' and no '.join(missing)} above 0, from which surface_energy would fix both units, so "
-            'nothing is in SI: use kind = "pull_off", and a radius that makes the contact many spacings wide'
+            'nothing is in SI: use kind = "pull_off", and a larger radius, so that the contact has many particles'
         )
     refinement = outcome.refinement
     accuracy = {
@@ -185,7 +185,7 @@ def read_results(folder: Path) -> dict[str, Any]:
         model.model_validate(document | {"results": quantities_in(document)})
         return document
     except ValueError as error:
-        reason = error if isinstance(error, UnreadableError) else f"{folder / RESULTS} is not what a run writes"
+        reason = error if isinstance(error, UnreadableError) else f"{folder / RESULTS} is not the results.json of a run"
         raise FolderError(f"{reason}; give the folder of a finished run, or run its scene again") from None
 
 

@@ -121,7 +121,7 @@ def read_record(folder: Path) -> SweepPlan:
     try:
         return read_sweep(folder / RECORD)
     except SceneError:
-        raise FolderError(f"{folder / RECORD} is no record of a sweep: start the sweep again") from None
+        raise FolderError(f"{folder / RECORD} is not the record of a sweep: start the sweep again") from None
 
 
 def units_in(folder: Path) -> dict[str, str]:
