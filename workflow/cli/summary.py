@@ -112,42 +112,22 @@ def regime(found: MaterialRun) -> Iterator[str]:
     yield f"  {', '.join(said)}"
     if theories is not None:
         yield f"  Tabor parameter μ = {theories.tabor:.3g}, {theories.verdict.theory}: {theories.verdict.reason}"
-    material = found.scene.material
-    assert material is not None
-    assert material.length_unit is not None
-    spacing = found.scene.bodies.spacing * material.length_unit
+    spacing = found.scene.bodies.spacing * found.run.scales.length
     what = "a chain on a rigid plane" if found.scene.bodies.lower == "rigid_plane" else "two chains of particles"
     count = found.contact_radius / spacing
     yield f"  {what}: {count:.0f} particles in the contact radius, {prefixed(spacing, 'm')} apart"
 
 
 def beside_theories(found: MaterialRun) -> Iterator[str]:
-    """A table: the results of the run, the predictions of each theory, and the deviation of the run from JKR."""
+    """A table: the predictions of each theory."""
     theories = found.theories
     if theories is None:
         return
-    yield ""
-    columns = {name: f"{name}*" if name == theories.holding else name for name in theories.values}
-    yield f"  {'':<28} {'this run':<26}" + "".join(f"{shown:<{WIDTH}}" for shown in columns.values()) + "against JKR"
+    columns = [f"{name}*" if name == theories.holding else name for name in theories.values]
+    yield f"\n  {'':<28} {''.join(f'{name:<{WIDTH}}' for name in columns)}".rstrip()
     for name, unit in THEORY.items():
-        values = {theory: theories.values[theory].get(name) for theory in columns}
-        if None in values.values():
-            continue
-        own, deviation = _own(found, name), ""
-        if own is not None and values["JKR"]:
-            deviation = f"{own.value / values['JKR'] - 1.0:+.2%}"
-        said = "—" if own is None else str(own)
-        shown = "".join(f"{prefixed(value, unit) if value else '0':<{WIDTH}}" for value in values.values())
-        yield f"  {LABELS[name]:<28} {said:<26}{shown}{deviation}"
+        values = [marks.get(name) for marks in theories.values.values()]
+        if None not in values:
+            shown = "".join(f"{prefixed(value or 0.0, unit):<{WIDTH}}" for value in values)
+            yield f"  {LABELS[name]:<28} {shown}".rstrip()
     yield "  * valid at this μ"
-
-
-def _own(found: MaterialRun, name: str) -> Quantity | None:
-    """The run's own value; the radius under the load is that of the last loading row."""
-    if name != "loaded_radius":
-        return found.run.results.get(name)
-    curve = found.run.curve
-    loading = np.flatnonzero(curve.branch == "loading")
-    if not loading.size or not math.isfinite(radius := curve.contact_radius[loading[-1]]):
-        return None
-    return Quantity(float(radius), float(curve.contact_radius_uncertainty[loading[-1]]), "m")
