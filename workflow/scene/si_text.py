@@ -40,6 +40,7 @@ DIMENSIONS = {
     "mol": ("an amount of substance", "1 mol"),
     "C": ("an electric charge", "1 C"),
     "1": ("a number without a unit", "0.3"),
+    "rad": ("an angle", "80°"),
 }
 """Each dimension in words, with an example, by its unit in SI."""
 COMMON = (
@@ -133,10 +134,12 @@ def si_value(text: str, unit: str, *also: str) -> tuple[Fraction, str]:
     exact = Fraction(number) if size else Fraction(0)  # 1e-999999999 is 0, and no fraction of so many digits
     value = exact * found.factor + found.zero
     for name in (unit, *also):
-        if found.dimension == _dimension(in_si(name)) and not found.angular:
+        if found.dimension == _dimension(in_si(name)) and found.angular == (name == "rad"):
             return value, name
     if found.angular and in_si(unit) == "1":
-        instead = f": its tangent is {math.tan(value):.6g}"
+        slope = math.tan(value)
+        half = math.degrees(math.atan2(1.0, slope))
+        instead = f': its tangent is {slope:.6g}; a cone may have half_angle = "{half:.6g}°" in place of this slope'
     what = "an angle" if found.angular else _named(found.dimension)
     raise UnitTextError(f"{wanted}; {_quoted(text)} is {what}{instead}")
 
@@ -192,6 +195,7 @@ def _for_pint(unit: str) -> str:
 @cache
 def _unit(unit: str) -> Unit:
     """What the text `unit` means. Raises UnitTextError."""
+    unit = re.sub("°(?![CF])", "deg", unit)  # pint's parser knows the sign, and its names don't
     names = [part for part in re.split(r"[\s·*×/()]+", POWER.sub("", unit)) if part]
     unknown = [name for name in names if not NAME.fullmatch(name) or not _is_known(name)]
     if unknown or not names:

@@ -226,7 +226,8 @@ class Bodies(Table):
     @property
     def plane_radius(self) -> float | None:
         """Radius R₁ [LU] of the plane parabola x²/2R₁ that stands for one of R, R or with the MDR R/2; else None."""
-        return PARABOLA_SHARE[self.reduction] * self.profile.radius if isinstance(self.profile, Parabola) else None
+        profile = self.profile
+        return PARABOLA_SHARE[self.reduction] * profile.curvature_radius if isinstance(profile, Parabola) else None
 
 
 class Accuracy(Table):
