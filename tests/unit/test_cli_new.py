@@ -12,9 +12,9 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from contact1d.workflow.cli.app import Kind, app
-from contact1d.workflow.cli.starter import SCENES, starter
+from contact1d.workflow.cli.starter import DATA, starter, starter_scene
 from contact1d.workflow.scene import Scene, read_scene
-from contact1d.workflow.scene.quantities import keys_of
+from contact1d.workflow.scene.quantities import keys_of, places
 from contact1d.workflow.scene.schema import meaning, schema_text
 
 KINDS = [kind.value for kind in Kind]
@@ -30,24 +30,62 @@ def everything(kind: str) -> dict[str, Any]:
 
 
 def test_there_is_a_file_for_each_experiment() -> None:
-    assert set(KINDS) == set(SCENES) == set(keys_of(Scene)["experiment"].allowed.kinds)
+    assert set(KINDS) == set(DATA["scenes"]) == set(keys_of(Scene)["experiment"].allowed.kinds)
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_new_scene_is_right_as_it_stands(kind: str, tmp_path: Path) -> None:
     done = contact1d("new", tmp_path / "my", "--kind", kind)
     assert done.exit_code == 0, done.output
-    scene = read_scene(tmp_path / "my.toml")
-    assert scene.experiment.kind == kind
-    set_ = scene.model_dump(by_alias=True, exclude_unset=True, exclude={"title"}, mode="json")
-    assert set_ == SCENES[kind]
+    set_ = tomllib.loads((tmp_path / "my.toml").read_text(encoding="utf-8"))
+    assert read_scene(tmp_path / "my.toml").experiment.kind == kind
+    assert set_.pop("title")
+    assert set_ == starter_scene(kind)
 
 
-def test_a_new_scene_runs(tmp_path: Path) -> None:
-    assert contact1d("new", tmp_path / "my.toml", "--kind", "load").exit_code == 0
+ON_THE_PLANE = [(kind, profile) for kind in KINDS if kind != "slide" for profile in ("parabola", "cone", "flat_punch")]
+
+
+@pytest.mark.parametrize(("kind", "profile"), [*ON_THE_PLANE, ("load", "power"), ("load", "circle"), ("slide", None)])
+def test_a_new_scene_runs_without_a_warning(kind: str, profile: str | None, tmp_path: Path) -> None:
+    options = ["--profile", profile, "--material", "rubber/PMMA"] if profile else []
+    assert contact1d("new", tmp_path / "my.toml", "--kind", kind, *options).exit_code == 0
     done = contact1d("run", tmp_path / "my.toml", "--out", tmp_path / "run", "--no-figures", "-q")
     assert done.exit_code == 0, done.output
     assert json.loads((tmp_path / "run" / "results.json").read_text(encoding="utf-8"))["warnings"] == []
+
+
+def test_materials_are_those_of_the_option() -> None:
+    material = read_scene(starter("load", "cone", "rubber/PMMA")).material
+    assert material is not None
+    assert material.upper is not None
+    assert material.lower is not None
+    assert (material.upper.youngs_modulus, material.lower.poisson_ratio) == (2e6, 0.35)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--material", "stel/glass"), 'material.upper = "stel": must be a table with'),
+        (("--kind", "slide", "--profile", "cone"), "its two bodies are particles that an interaction holds"),
+        (("--kind", "slide", "--material", "steel/glass"), "leave both out"),
+    ],
+)
+def test_what_makes_no_scene_is_refused_and_not_written(options: tuple[str, ...], words: str, tmp_path: Path) -> None:
+    done = contact1d("new", tmp_path / "my.toml", *options)
+    assert done.exit_code == 2
+    assert words in " ".join(done.output.split())
+    assert not [*tmp_path.iterdir()]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_quantity_has_a_unit_behind_a_sign_too(kind: str) -> None:
+    plain = [
+        place.keys
+        for place in places(Scene, everything(kind))
+        if not place.absent and place.unit.name != "1" and isinstance(place.value, float | int)
+    ]
+    assert plain == []
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -75,7 +75,7 @@ def test_every_problem_is_told_at_once() -> None:
     bad = {"youngs_modulus": "210 N", "poisson_ratio": 0.8}
     assert problems(radius="10 mn", upper=bad, lower=GLASS, lod="10 N", model="plate") == [
         'lod: unknown key; did you mean "load"?',
-        'radius = "10 mn": must be a length, such as 10 mm; 10 mn has a unit that is not known, mn',
+        'radius = "10 mn": must be a length, such as 10 mm; 10 mn has an unknown unit, mn',
         'upper.youngs_modulus = "210 N": must be a pressure, such as 210 GPa; 210 N is a force',
         "upper.poisson_ratio = 0.8: must be greater than -1 and at most 0.5",
         "load: missing; without attraction a load alone makes a contact; or give surface_energy or work_of_adhesion: "
@@ -92,7 +92,10 @@ def test_every_problem_is_told_at_once() -> None:
         ({"radius": -1.0}, "radius = -1.0: must be greater than 0 (m)"),
         ({"load": "-1 N"}, 'load = "-1 N": must be at least 0'),
         ({"lower": None}, "lower: missing"),
-        ({"lower": "stiff"}, 'lower = "stiff": must be a table with youngs_modulus and poisson_ratio, or "rigid"'),
+        ({"lower": "stiff"},
+         'lower = "stiff": must be a table with youngs_modulus, poisson_ratio, yield_strength, or a name such as '
+         '"steel", or "rigid"; names: steel, stainless_steel, '),
+        ({"lower": "rigid", "upper": "stel"}, 'upper = "stel": must be a table'),
         ({"upper": "rigid", "lower": "rigid"}, "upper: one of the two bodies must be elastic"),
         ({"contact_modulus": "1 GPa"}, "contact_modulus: not together with upper or lower"),
         ({"surface_energy": 0.1, "work_of_adhesion": 0.2}, "surface_energy: not together with work_of_adhesion"),
@@ -100,7 +103,7 @@ def test_every_problem_is_told_at_once() -> None:
         ({"radius": True}, "radius = true: must be a number greater than 0 (m)"),
         ({"title": ""}, 'title = "": must be one line of text'),
     ],
-)
+)  # fmt: skip
 def test_one_mistake_is_one_sentence(change: dict[str, Any], words: str) -> None:
     (problem,) = problems(**{key: value for key, value in (LOADED | change).items() if value is not None})
     assert problem.startswith(words)

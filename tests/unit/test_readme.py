@@ -30,7 +30,12 @@ BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 SHOWN = (
     ("README.md", "steel_on_glass", "run lammps_inputs/scenes", r"displacement|contact radius|peak pressure"),
     ("README.md", "rubber", "identify lammps_inputs/contacts", r"(adhesion force|zero-load radius|peak).*\)$"),
-    ("docs/identify.md", "silica", "identify lammps_inputs/contacts", r"Tabor|(adhesion force|zero-load|critical) |JKR  |\* valid"),
+    (
+        "docs/identify.md",
+        "silica",
+        "identify lammps_inputs/contacts",
+        r"Tabor|(adhesion force|zero-load|critical) |JKR  |\* valid",
+    ),
 )
 """Page, name of the scene and of what is shown, the command, and which lines of what it prints."""
 

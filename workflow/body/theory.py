@@ -114,7 +114,7 @@ class Case:
         profile: Any = self.scene.bodies.profile
         e = self.contact_modulus
         if self.kind == "cone":
-            return PowerLaw(profile.slope, 1.0, e, self.work)
+            return PowerLaw(profile.rise, 1.0, e, self.work)
         if self.kind == "power":
             return PowerLaw(profile.height_there / profile.radius**profile.exponent, profile.exponent, e, self.work)
         if self.kind == "ellipsoid":

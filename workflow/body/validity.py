@@ -71,7 +71,7 @@ def checks(scene: Scene, found: Mapping[str, Quantity], scales: Scales | None) -
 
 
 def _slope(case: Case, radius: float) -> Iterator[Check]:
-    profile = case.scene.bodies.profile
+    profile = case.scene.bodies.profile.steepest
     if profile.has_edge:  # it is plane at the edge
         return
     around = np.asarray([1.0 - STEP, 1.0]) * min(radius, profile.reach)
@@ -88,7 +88,8 @@ def _slope(case: Case, radius: float) -> Iterator[Check]:
 
 def _beside_a_ball(case: Case, radius: float) -> str:
     """What a ball has instead of a paraboloid under the force of this contact radius."""
-    if case.kind != "parabola":
+    profile = case.scene.bodies.profile
+    if profile.kind != "parabola" or profile.counter_radius is not None:  # two balls are no profile here
         return ""
     r, e, w = case.sphere
     force = max(PowerLaw.sphere(r, e, w).force(radius), 0.0)

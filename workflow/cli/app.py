@@ -287,20 +287,35 @@ def animate(
 
 Kind = StrEnum("Kind", ["PULL_OFF", "LOAD", "PATH", "HOLD", "SLIDE", "TANGENTIAL"])
 """The experiments."""
+Profile = StrEnum("Profile", ["PARABOLA", "CIRCLE", "ELLIPSOID", "CONE", "FLAT_PUNCH", "POWER"])
+"""The profiles that need no file."""
 
 
 def new(
     name: Annotated[Path, typer.Argument(metavar="NAME", help="File to write; .toml is added if absent.")],
     kind: Annotated[Kind, typer.Option(help="The experiment.")] = Kind.PULL_OFF,
+    profile: Annotated[Profile | None, typer.Option(help="Shape of the upper body.", show_default="parabola")] = None,
+    material: Annotated[
+        str | None,
+        typer.Option(metavar="UPPER/LOWER", help="Of `contact1d materials`.", show_default="steel/glass"),
+    ] = None,
 ) -> None:
-    """Write a scene file to start from: it runs as it is, with every key explained and its allowed values."""
+    """Write a scene file in SI to start from: it runs as it is, with every key explained and its allowed values."""
     if name.name in ("", ".."):
         stop(f"{name} is a folder; give the file a name", CALL_IS_WRONG)
     path = name if name.suffix == ".toml" else name.with_name(name.name + ".toml")
     from contact1d.workflow.cli.starter import starter
 
-    _write(path, starter(kind.value), "choose another name")
+    _write(path, starter(kind.value, profile and profile.value, material), "choose another name")
     typer.echo(f"{path}: run it with contact1d run {quote(str(path))}")
+
+
+def materials() -> None:
+    """List the named materials: Young's modulus, Poisson's ratio, and where they are from."""
+    from contact1d.workflow.scene.materials import MATERIALS
+
+    for name, one in MATERIALS.items():
+        typer.echo(f"{name:<16}{one['youngs_modulus']:>9}  ν = {one['poisson_ratio']:<6}{one['source']}")
 
 
 def schema(
@@ -336,7 +351,7 @@ def _write(path: Path, text: str, instead: str) -> None:
         raise
 
 
-for one in (new, run, sweep, report, animate, deck, cost, identify, schema, doctor):
+for one in (new, run, sweep, report, animate, deck, cost, identify, materials, schema, doctor):
     app.command()(one)
 
 

@@ -1,15 +1,17 @@
 """A scene file to start from, as text: what a scene of its kind needs, and every other key behind a #.
 
-The comments are what the tables themselves say of their keys; typed here are the values alone.
+The comments are what the tables themselves say of their keys; `starter.toml` has the values alone.
 """
 
 from __future__ import annotations
 
 import textwrap
+import tomllib
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
-from contact1d.workflow.scene import Scene, Table
+from contact1d.workflow.scene import Problem, Scene, SceneError, Table, read_scene
 from contact1d.workflow.scene.problems import as_toml
 from contact1d.workflow.scene.quantities import Allowed, keys_of
 from contact1d.workflow.scene.schema import meaning
@@ -17,87 +19,39 @@ from contact1d.workflow.scene.schema import meaning
 WIDTH = 118
 """Characters of a line of comment."""
 HEAD = (
-    "A scene of contact1d: `contact1d run` and the name of this file runs it.",
-    "A # with a letter or a [ right behind it begins a key or a table that is not set: take the # away to set it.",
-    "Units: LU length, FU force, MU mass, TU = √(MU·LU/FU). What tables need of each other is checked when it runs.",
+    "A scene of contact1d; run it with: contact1d run FILE.",
+    "Remove the # before a key or a table to set it. Combinations of tables are checked at the start of a run.",
+    "Quantities have units of SI; numbers without units are in units of the model: LU, FU, MU, TU = √(MU·LU/FU).",
 )
 
-BODY: dict[str, dict[str, Any]] = {
-    "bodies": {
-        "particles": "auto",
-        "spacing": 1.0,
-        "profile": {"kind": "parabola", "radius": 1000.0},
-        "reduction": "geike_popov",
-        "bulk_stiffness": 0.83,
-    },
-    "interaction": {
-        "repulsion": {"amplitude": 0.18, "range": 0.13},
-        "attraction": {"amplitude": 0.09, "range": 0.26},
-    },
-    "neighbours": {"stiffness": 0.3},
-}
-SCENES: dict[str, dict[str, Any]] = {
-    "pull_off": BODY | {"experiment": {"kind": "pull_off", "preload": 1.0}},
-    "load": BODY | {"experiment": {"kind": "load", "force": 3.0}},
-    "path": BODY | {"experiment": {"kind": "path", "displacements": {"from": -1.0, "to": 2.0, "steps": 60}}},
-    "hold": BODY
-    | {
-        "damping": {"coefficient": "auto"},
-        "experiment": {"kind": "hold", "displacement": 0.5, "duration": 100.0},
-    },
-    "slide": {
-        "bodies": BODY["bodies"] | {"profile": {"kind": "parabola", "radius": 30.0}, "bulk_stiffness": 2.0},
-        "interaction": {
-            "repulsion": {"amplitude": 1.0, "range": 0.5},
-            "attraction": {"amplitude": 0.5, "range": 1.0},
-        },
-        "horizontal": {},
-        "damping": {"coefficient": "auto"},
-        "plate": {"free": ["x", "z"]},
-        "cantilever": {"stiffness": 20.0, "velocity": 0.05},
-        "accuracy": {"tolerance": 2e-2},
-        "experiment": {"kind": "slide", "normal_force": 1.0, "distance": 6.0},
-    },
-    "tangential": {
-        "bodies": BODY["bodies"] | {"reduction": "mdr", "bulk_stiffness": 1.0, "lower": "rigid_plane"},
-        "friction": {"coefficient": 0.3},
-        "experiment": {
-            "kind": "tangential",
-            "normal_force": 40.0,
-            "displacements": {"from": 0.0, "to": 0.4, "steps": 40},
-        },
-    },
-}
-"""What is set in the file of each kind."""
-STEEL = {"youngs_modulus": 210e9, "poisson_ratio": 0.3}
-EXAMPLES: dict[str, dict[str, Any]] = {
-    "interaction": BODY["interaction"],
-    "bodies": {
-        "bulk_stiffness_tangential": 0.83, "upper_particles": 40, "upper_spacing": 1.0, "upper_offset": 0.5,
-    },
-    "neighbours": {"stiffness": 0.3},
-    "adhesion": {"work_of_adhesion": 0.005, "surface_energy": 0.0025, "range": 0.002},
-    "friction": {"coefficient": 0.3},
-    "damping": {"coefficient": "auto"},
-    "noise": {"temperature": 1e-4, "seed": 1},
-    "cantilever": {"stiffness": 20.0, "velocity": 0.05},
-    "material": {
-        "upper": STEEL, "lower": STEEL, "contact_modulus": 115e9, "length_unit": 1e-9, "force_unit": 1e-6,
-        "mass_unit": 1e-12, "surface_energy": 1.0,
-    },
-    "output": {"states": 100},
-    "experiment": {
-        "method": "quasistatic", "normal_displacement": 1.0, "force": 3.0, "loading_rate": 1e-4,
-        "velocity": 1e-3, "stiffness": 2.0,
-        "repeats": 20, "path": [[0.05, 6.0], [-0.05, 6.0]], "cycles": {"amplitude": 0.2, "number": 3, "points": 40},
-    },
-}  # fmt: skip
-"""Values of keys that are not set and have no default."""
+DATA: dict[str, Any] = tomllib.loads(Path(__file__).with_name("starter.toml").read_text(encoding="utf-8"))
+"""What is set in the file of each kind, and examples of what is not."""
 
 
-def starter(kind: str) -> str:
-    """The text of a scene file for an experiment of this kind. Raises KeyError for an unknown kind."""
-    scene, keys = SCENES[kind], keys_of(Scene)
+def starter_scene(kind: str, profile: str | None = None, material: str | None = None) -> dict[str, Any]:
+    """What is set in a scene of this experiment, with a parabola of steel on glass unless others are given.
+
+    `material` is "steel/glass", upper and lower body, or one name for both.
+
+    Raises:
+        SceneError: this experiment has bodies of its own.
+    """
+    scene = dict(DATA["scenes"][kind])
+    bodies = scene.get("bodies", {})
+    if "profile" in bodies:
+        if profile or material:
+            message = "has no --profile and no --material: its two bodies are particles that an interaction holds"
+            raise SceneError([Problem(f"--kind {kind}", message, hint="leave both out, and change the file")])
+        return scene
+    upper, _, lower = (material or "steel/glass").partition("/")
+    scene["bodies"] = DATA["bodies"] | bodies | {"profile": DATA["profiles"][profile or "parabola"]}
+    return scene | {"material": {"upper": upper, "lower": lower or upper}}
+
+
+def starter(kind: str, profile: str | None = None, material: str | None = None) -> str:
+    """The text of a scene file for an experiment of this kind; arguments as of `starter_scene`."""
+    scene, keys = starter_scene(kind, profile, material), keys_of(Scene)
+    read_scene({"title": kind, **scene})  # so that a material without a name is reported before there is a file
     experiment = keys["experiment"].allowed.kinds[kind]
     lines = [line for head in HEAD for line in _comment(head)]
     lines.append(f"title = {as_toml((experiment.__doc__ or kind).strip().rstrip('.'))}")
@@ -113,7 +67,7 @@ def _table(name: str, table: type[Table], given: Mapping[str, Any] | None, allow
     yield from _comment((table.__doc__ or "").strip().splitlines()[0])
     yield from _other_kinds(allowed, table)
     yield f"[{name}]" if given is not None else f"#[{name}]"
-    here, examples = given or {}, EXAMPLES.get(name, {})
+    here, examples = given or {}, DATA["examples"].get(name, {})
     for word, key in keys_of(table).items():
         if word != "kind":
             yield from _comment(meaning(table, word))

@@ -120,7 +120,8 @@ def read_contact(source: AnyContact, complete: bool = True) -> AskedContact:
         scene = scene_from_dict(_as_scene({key: v for key, v in data.items() if key not in taken}), folder=folder)
     except SceneError as error:
         found = [_as_given(problem, data) for problem in error.problems]
-        problems += [one for one in found if one.path.partition(".")[0] in data.keys() - taken]
+        keys = {key for key, value in data.items() if value != RIGID} - taken
+        problems += [one for one in found if one.path.partition(".")[0] in keys]
     roughness = _length(data, "roughness", problems)
     if problems or scene is None:
         raise SceneError(sorted(problems, key=lambda one: _rank(one, data)))
@@ -145,14 +146,12 @@ def _mistakes(data: Mapping[str, Any], complete: bool) -> Iterator[Problem]:
         hint = "give E*, or E and ν of both bodies"
         yield Problem("contact_modulus", "not together with upper or lower", hint=hint)
     elif "contact_modulus" not in data and len(given) < 2:
-        hint = 'write { youngs_modulus = "210 GPa", poisson_ratio = 0.3 } or "rigid", or give contact_modulus, E*'
+        hint = (
+            'write { youngs_modulus = "210 GPa", poisson_ratio = 0.3 }, "steel" or "rigid", or give contact_modulus, E*'
+        )
         yield Problem("lower" if "upper" in data else "upper", "missing", hint=hint)
     if given == [RIGID, RIGID]:
         yield Problem("upper", "one of the two bodies must be elastic")
-    for name in ("upper", "lower"):
-        if not isinstance(data.get(name, {}), Mapping) and data[name] != RIGID:
-            must = 'must be a table with youngs_modulus and poisson_ratio, or "rigid"'
-            yield Problem(name, must, shown(data[name]))
     if {"surface_energy", "work_of_adhesion"} <= data.keys():
         hint = "γ of one side is half of W, the work of adhesion: give one of the two"
         yield Problem("surface_energy", "not together with work_of_adhesion", hint=hint)
@@ -178,7 +177,7 @@ def _without_unit(data: Mapping[str, Any], folder: Path) -> Iterator[Problem]:
 def _as_scene(data: Mapping[str, Any]) -> dict[str, Any]:
     """A chain on a rigid plane with what is given; what is missing, or no scene has, stands in."""
     profile = data.get("profile", {"kind": "parabola", "radius": data.get("radius", 1.0)})
-    elastic = {name: data[name] for name in ("upper", "lower") if isinstance(data.get(name), Mapping)}
+    elastic = {name: data[name] for name in ("upper", "lower") if data.get(name, RIGID) != RIGID}
     one = next(iter(elastic.values()), None)
     bodies = {} if one is None else {"upper": one, "lower": one} | elastic
     modulus = {"contact_modulus": data.get("contact_modulus", 1.0)} if one is None else {}
@@ -202,7 +201,8 @@ def _as_given(problem: Problem, data: Mapping[str, Any]) -> Problem:
     keys = [key for key in PLACES if key in data]
     own = next((key for key in keys if problem.path.startswith(PLACES[key])), problem.path)
     path = problem.path.replace(PLACES.get(own, own), own, 1)
-    return Problem(path, problem.message, problem.given, problem.hint)
+    message = problem.message + (', or "rigid"' if path in ("upper", "lower") else "")
+    return Problem(path, message, problem.given, problem.hint)
 
 
 def _rank(problem: Problem, data: Mapping[str, Any]) -> int:

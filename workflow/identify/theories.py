@@ -166,9 +166,10 @@ def require_size(contact: AskedContact, radius: float) -> None:
         raise IdentifyError(
             f"the contact radius is {prefixed(radius, 'm')}, less than an atom's diameter: no theory holds"
         )
-    if contact.radius is not None and radius > LARGEST_RADIUS_SHARE * contact.radius:
+    sphere = contact.radius and contact.shape.steepest.curvature_radius
+    if sphere and radius > LARGEST_RADIUS_SHARE * sphere:
         raise IdentifyError(
-            f"the contact radius is {prefixed(radius, 'm')}, {radius / contact.radius:.2g} of the sphere's: the "
+            f"the contact radius is {prefixed(radius, 'm')}, {radius / sphere:.2g} of the sphere's: the "
             f"theory is for a << R, here up to {LARGEST_RADIUS_SHARE:g}. Use a larger "
             "radius, a larger contact modulus, a smaller load or less attraction"
         )

@@ -238,7 +238,7 @@ def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
         known *= 2.0
     if not bodies.profile.has_edge:
         widest = float(estimate.radii(np.asarray([max(wanted, estimate.displacement_at(load))]))[0])
-        limit = min(profile.reach, bodies.profile.curvature_radius or math.inf)
+        limit = min(profile.reach, bodies.profile.steepest.curvature_radius or math.inf)
         if widest > SPANNED * limit:
             raise SettingsError(
                 f"the adhesive contact would cover the body, which ends at {limit:.6g} LU: JKR's theory is for a "

@@ -23,7 +23,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from contact1d.workflow.scene.experiments import Kind
-from contact1d.workflow.scene.problems import MOST_PROBLEMS, Problem, as_toml, nearest, path_of, shown
+from contact1d.workflow.scene.problems import MOST_PROBLEMS, Problem, as_toml, nearest, path_of, plain, shown
 from contact1d.workflow.scene.quantities import (
     Keys,
     Length,
@@ -103,6 +103,12 @@ def _mended(data: dict[str, Any], place: Place) -> Iterator[Problem]:
     """Report and correct, in `data`, the words of a place: of a table its kind and its keys."""
     value, kinds = place.value, place.allowed.kinds
     yield from _mended_word(data, place, place.allowed.words)
+    if isinstance(value, str) and place.allowed.table and (known := place.allowed.table.by_name):
+        meant = nearest(value, known)
+        place.put(data, dict(known.get(plain(value)) or known[meant or next(iter(known))]))
+        if plain(value) not in known:
+            hint = (f'did you mean "{meant}"? ' if meant else "") + f"names: {', '.join(known)}"
+            yield Problem(path_of(place.keys), f"must be {statement(place.allowed)}", shown(value), hint)
     if not isinstance(value, dict):
         return
     if kinds and "kind" not in value and (similar := next((key for key in value if nearest(key, ["kind"])), None)):

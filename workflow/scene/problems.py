@@ -120,12 +120,16 @@ def path_of(keys: Iterable[str | int]) -> str:
 
 def nearest(word: str, allowed: Iterable[str]) -> str | None:
     """The one of `allowed` that a person who wrote `word` most likely meant, or None."""
-    known = list(allowed)
-    plain = word.strip().lower().replace("-", "_").replace(" ", "_")
-    starting = [name for name in known if len(plain) > 2 and name.startswith(plain)]
+    known, meant = list(allowed), plain(word)
+    starting = [name for name in known if len(meant) > 2 and name.startswith(meant)]
     if len(starting) == 1:
         return starting[0]
-    return next(iter(get_close_matches(plain, known, n=1, cutoff=0.7)), None)
+    return next(iter(get_close_matches(meant, known, n=1, cutoff=0.7)), None)
+
+
+def plain(word: str) -> str:
+    """`word` as keys are written: small letters, "_" in place of "-" and spaces."""
+    return word.strip().lower().replace("-", "_").replace(" ", "_")
 
 
 def _escaped(character: str) -> str:

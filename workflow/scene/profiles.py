@@ -20,10 +20,11 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 from annotated_types import Ge, MinLen
-from pydantic import Discriminator, Field, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from contact1d.workflow.scene.quantities import Height, Length, Ratio, Table, Unit
+from contact1d.workflow.scene.quantities import Height, Length, Ratio, SignedRadius, Table, Unit
+from contact1d.workflow.scene.si_text import UnitTextError, si_value
 
 if TYPE_CHECKING:
     import numpy as np
@@ -68,27 +69,42 @@ class Shape(Table):
         """Radius of curvature R at the apex [LU], None where there is none."""
         return None
 
+    @property
+    def steepest(self) -> Self:
+        """The steeper one of the two bodies, whose slope and size limit the theory: this one on a plane."""
+        return self
+
 
 class Parabola(Shape):
-    """Profile of the upper body: z = x²/2R."""
+    """Profile of the upper body: z = x²/2R, of two curved bodies the gap, 1/R = 1/R₁ + 1/R₂."""
 
     kind: Literal["parabola"]
     """z = x²/2R, the paper's circle"""
     radius: Length
-    """radius of curvature R at the apex"""
+    """radius of curvature R at the apex; with a counter_radius R₁"""
+    counter_radius: SignedRadius | None = None
+    """radius of curvature R₂ of the lower body, 1/R = 1/R₁ + 1/R₂: positive for a convex one; negative for a concave
+    one, a cup, and then larger in magnitude than the radius; absent: a plane
+    """
 
     def height(self, x: Array) -> Array:
         """z = x²/2R."""
-        return x**2 / (2 * self.radius)
+        return x**2 / (2 * self.curvature_radius)
 
     def transformed(self, x: Array) -> Array:
         """g = x²/R."""
-        return x**2 / self.radius
+        return x**2 / self.curvature_radius
 
     @property
     def curvature_radius(self) -> float:
-        """R."""
-        return self.radius
+        """R, the effective one of both bodies: R₁/(1 + R₁/R₂)."""
+        return self.radius / (1.0 + self.radius / (self.counter_radius or math.inf))
+
+    @property
+    def steepest(self) -> Self:
+        """The body with the smaller radius: the gap of a ball in a cup is flat where the ball itself is steep."""
+        radius = min(self.radius, abs(self.counter_radius or math.inf))
+        return self.model_copy(update={"radius": radius, "counter_radius": None})
 
 
 class Circle(Shape):
@@ -154,21 +170,43 @@ class Ellipsoid(Shape):
         return self.radius**2 / self.half_axis
 
 
+def _half_angle(text: object) -> object:
+    """The text as it is, where it is a half angle. Raises PydanticCustomError."""
+    problem = 'must be text with a unit, greater than 0° and less than 90°, from the axis to the flank: write "80°"'
+    try:
+        if isinstance(text, str) and 0.0 < si_value(text, "rad")[0] < 0.5 * math.pi:
+            return text
+    except UnitTextError as error:
+        problem = str(error)
+    raise PydanticCustomError("scene", "{problem}", {"problem": problem})
+
+
 class Cone(Shape):
     """Profile of the upper body: z = s |x|."""
 
+    one_of = ((("slope", "half_angle"), 'give one of the two: slope = 0.1, or half_angle = "80°"'),)
+
     kind: Literal["cone"]
     """z = s |x|"""
-    slope: Ratio
+    slope: Ratio | None = None
     """slope s, the tangent of the angle between flank and plane"""
+    half_angle: Annotated[str, BeforeValidator(_half_angle)] | None = None
+    """half angle from the axis to the flank, such as "80°" or "1.4 rad", less than 90°, in place of the slope, which
+    is its cotangent
+    """
+
+    @property
+    def rise(self) -> float:
+        """s."""
+        return self.slope or 1.0 / math.tan(si_value(self.half_angle or "", "rad")[0])
 
     def height(self, x: Array) -> Array:
         """z = s |x|."""
-        return self.slope * abs(x)
+        return self.rise * abs(x)
 
     def transformed(self, x: Array) -> Array:
         """g = (π/2) s |x|."""
-        return 0.5 * math.pi * self.slope * abs(x)
+        return 0.5 * math.pi * self.rise * abs(x)
 
 
 class Level(Shape):
@@ -257,7 +295,7 @@ class Measured(Shape):
     @model_validator(mode="after")
     def _is_a_profile(self) -> Self:
         if self.r is None or self.z is None:
-            raise PydanticCustomError("scene", "must have a file, or the lists r and z")
+            raise PydanticCustomError("scene", "needs a file, or the lists r and z")
         if problem := fault_of(self.r, self.z):
             raise PydanticCustomError("scene", "{problem}", {"problem": problem})
         return self
@@ -348,17 +386,17 @@ def fault_of(r: tuple[float, ...], z: tuple[float, ...]) -> str | None:
     middle = statistics.median(steps)
     for at, step in enumerate(steps):
         if step <= 0.0:
-            return f"must have rising radii; {r[at + 1]:.6g} follows on {r[at]:.6g}"
+            return f"radii must increase; {r[at + 1]:.6g} follows {r[at]:.6g}"
         if step > GAP * middle:
             return (
                 f"has a gap from r = {r[at]:.6g} to {r[at + 1]:.6g}: beside a median step of {middle:.4g}, the longest "
                 f"that is read over is {GAP * middle:.4g}; measure there, or interpolate"
             )
     if max(z) == z[0] > min(z):
-        return "has heights that fall from the axis on: they count away from the plane; change their sign"
+        return "has heights that decrease from the axis: heights are measured from the plane; change the sign"
     lowest = z.index(min(z))
     if z[lowest] < z[0]:
-        return f"must have its apex at r = 0; at r = {r[lowest]:.6g} it is lower by {z[0] - z[lowest]:.4g}"
+        return f"must have its apex at r = 0; at r = {r[lowest]:.6g} the height is lower by {z[0] - z[lowest]:.4g}"
     if max(z) == z[0]:
         return 'is flat: write kind = "flat_punch"'
     return None

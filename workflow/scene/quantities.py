@@ -59,6 +59,7 @@ class Table(BaseModel):
     Attributes:
         as_list: it is written as a list of its values.
         one_of: sets of keys of which exactly one must be there, with what to do otherwise.
+        by_name: tables that a name may stand for, each name as `problems.plain` has it.
     """
 
     model_config = ConfigDict(
@@ -67,6 +68,7 @@ class Table(BaseModel):
 
     as_list: ClassVar[bool] = False
     one_of: ClassVar[tuple[tuple[tuple[str, ...], str], ...]] = ()
+    by_name: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
 
     def __dir__(self) -> list[str]:
         """Names for completion: keys and what can be asked, without those of pydantic."""
@@ -75,6 +77,7 @@ class Table(BaseModel):
 
 Length = Annotated[float, Gt(0), Unit("LU")]
 Height = Annotated[float, Unit("LU")]
+SignedRadius = Annotated[float, Unit("LU")]
 Ratio = Annotated[float, Gt(0), Unit("1")]
 RatioOrZero = Annotated[float, Ge(0), Unit("1")]
 Stiffness = Annotated[float, Gt(0), Unit("FU/LU")]

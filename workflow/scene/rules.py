@@ -18,8 +18,18 @@ from typing import Any
 
 from contact1d.workflow.scene.experiments import KINDS, Cycles, Kind, Span
 from contact1d.workflow.scene.problems import Problem, shown
-from contact1d.workflow.scene.quantities import Keys, keys_of
-from contact1d.workflow.scene.tables import ALIKE, EFFECT_TABLES, SPHERES, TIMED, WHOLE, default_method, wider_than_body
+from contact1d.workflow.scene.quantities import Keys, Table, keys_of
+from contact1d.workflow.scene.tables import (
+    ALIKE,
+    EFFECT_TABLES,
+    SPHERES,
+    TIMED,
+    WHOLE,
+    Bodies,
+    default_method,
+    default_reduction,
+    wider_than_body,
+)
 
 WHOLE_NUMBER_ERROR = 1e-9
 """Relative error of a quotient of two decimals up to which it counts as whole, or two lengths as equal."""
@@ -290,6 +300,20 @@ def _units_by_run(d: Draft, auto: bool) -> Rows:
            "not with this profile: JKR is for a sphere", "use a parabola or a circle, or length_unit")
 
 
+def _counter_body(d: Draft) -> Rows:
+    """The curved lower body of a parabola."""
+    key = "bodies.profile.counter_radius"
+    radius, counter = d["bodies.profile.radius"], d[key]
+    if None in (radius, counter):
+        return
+    yield (key, -radius <= counter <= 0.0,
+           f"must be greater than 0 (convex), or less than {-radius:g} (LU) (concave), else the bodies conform",
+           "a cup is wider than the ball in it; leave it out for a plane")
+    chosen = d["bodies.reduction"] or default_reduction("material" in d, d.lower or "", "parabola")
+    yield (key, chosen == "geike_popov",
+           'not with reduction = "geike_popov", whose bodies are two spheres of the one radius', 'write "mdr"')
+
+
 def _reduction(d: Draft) -> Rows:
     """What the paper's reduction makes of a body that it was not derived for."""
     profile = d["bodies.profile"]
@@ -396,7 +420,8 @@ def _methods(d: Draft) -> Rows:
 def _declared_keys(d: Draft) -> Rows:
     """Of some keys exactly one is there; some are only with noise, or only with a lower body of particles."""
     effects = {name: EFFECT_TABLES[name] for name in d.effects if d[name] is not None}
-    for name, table in {**effects, "experiment": d.experiment}.items():
+    profile = keys_of(Bodies)["profile"].allowed.kinds.get(d.profile, Table)
+    for name, table in {**effects, "experiment": d.experiment, "bodies.profile": profile}.items():
         for keys, fix in table.one_of:
             given = [key for key in keys if f"{name}.{key}" in d]
             yield (f"{name}.{keys[0]}", not given, "missing", fix)
@@ -429,6 +454,7 @@ RULES = (
     _open_spacing,
     _punch,
     _material,
+    _counter_body,
     _reduction,
     _pull_off,
     _periodic,

@@ -40,7 +40,9 @@ def statement(allowed: Allowed) -> str:
         return f"a list, each item {statement(choice.items)}"
     if choice.table:
         keys = ", ".join(keys_of(choice.table))
-        return f"a list [{keys}]" if choice.table.as_list else f"a table {f'with {keys}' if keys else 'without keys'}"
+        name = f", or a name such as {as_toml(next(iter(names)))}" if (names := choice.table.by_name) else ""
+        table = f"a table {f'with {keys}' if keys else 'without keys'}{name}"
+        return f"a list [{keys}]" if choice.table.as_list else table
     unit = f" ({choice.unit.name})" if choice.unit and choice.unit.name != "1" else ""
     return SIMPLE[choice.type] + _range(choice.marks) + unit
 
@@ -103,6 +105,8 @@ def _table(table: type[Table]) -> Node:
         "description": table.__doc__, "type": "object",
         "properties": properties, "required": required, "additionalProperties": False,
     }  # fmt: skip
+    if table.by_name:  # the first is there for editors, which complete it
+        return {"anyOf": [{"type": "string", "enum": [*table.by_name]}, {"type": "string"}, node]}
     if not table.as_list:
         return node
     items = {"anyOf": [_nodes(key.allowed) for key in keys.values()]}

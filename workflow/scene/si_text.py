@@ -40,6 +40,7 @@ DIMENSIONS = {
     "mol": ("an amount of substance", "1 mol"),
     "C": ("an electric charge", "1 C"),
     "1": ("a number without a unit", "0.3"),
+    "rad": ("an angle", "80°"),
 }
 """Each dimension in words, with an example, by its unit in SI."""
 COMMON = (
@@ -99,11 +100,11 @@ def split(text: str) -> tuple[str, str]:
     if not unit:
         raise UnitTextError("has no unit")
     if unit[0] == ",":
-        raise UnitTextError("has a comma in its number: decimals follow a point, and thousands are not parted")
+        raise UnitTextError("has a comma in its number: write a decimal point, and no thousands separators")
     if re.match(r"[eE](?![^\W\d_])", unit):
-        raise UnitTextError("has an exponent that is no whole number")
+        raise UnitTextError("has an exponent that is not an integer")
     if unit[0] in ".'_" or unit[0].isdigit():
-        raise UnitTextError(f"has something behind the number {number} that is no unit")
+        raise UnitTextError(f"has something behind the number {number} that is not a unit")
     if re.fullmatch(r"(LU|FU|MU|TU)\b.*", unit):
         raise UnitTextError(f"{MODEL_UNITS}: write {number} without quotes and unit")
     return number, unit
@@ -130,14 +131,16 @@ def si_value(text: str, unit: str, *also: str) -> tuple[Fraction, str]:
         raise UnitTextError(f"{wanted}; {_quoted(text)} {error}{instead}") from None
     size = float(number)
     if not -LARGEST < size < LARGEST:
-        raise UnitTextError(f"{wanted}; {_quoted(text)} is larger than any number that a computer holds")
+        raise UnitTextError(f"{wanted}; {_quoted(text)} exceeds the range of floating-point numbers")
     exact = Fraction(number) if size else Fraction(0)  # 1e-999999999 is 0, and no fraction of so many digits
     value = exact * found.factor + found.zero
     for name in (unit, *also):
-        if found.dimension == _dimension(in_si(name)) and not found.angular:
+        if found.dimension == _dimension(in_si(name)) and found.angular == (name == "rad"):
             return value, name
     if found.angular and in_si(unit) == "1":
-        instead = f": its tangent is {math.tan(value):.6g}"
+        slope = math.tan(value)
+        half = math.degrees(math.atan2(1.0, slope))
+        instead = f': its tangent is {slope:.6g}; a cone may have half_angle = "{half:.6g}°" in place of this slope'
     what = "an angle" if found.angular else _named(found.dimension)
     raise UnitTextError(f"{wanted}; {_quoted(text)} is {what}{instead}")
 
@@ -206,12 +209,13 @@ def _for_pint(unit: str) -> str:
 @cache
 def _unit(unit: str) -> Unit:
     """What the text `unit` means. Raises UnitTextError."""
+    unit = re.sub("°(?![CF])", "deg", unit)  # pint's parser knows the sign, and its names don't
     names = [part for part in re.split(r"[\s·*×/()]+", POWER.sub("", unit)) if part]
     unknown = [name for name in names if not NAME.fullmatch(name) or not _is_known(name)]
     if unknown or not names:
-        raise UnitTextError(f"has a unit that is not known, {_quoted((unknown or [unit])[0])}")
+        raise UnitTextError(f"has an unknown unit, {_quoted((unknown or [unit])[0])}")
     if re.search(r"\d{2}", unit):
-        raise UnitTextError("has a power that no unit has")
+        raise UnitTextError("has an invalid power of a unit")
     registry = _registry()
     try:
         known = {registry.get_name(name) for name in names}
@@ -222,7 +226,7 @@ def _unit(unit: str) -> Unit:
         raise UnitTextError("has a unit that cannot be read") from error
     relative = not plain or any(name.startswith(("degree_", "delta_")) for name in known - ANGLES)
     if relative and (unit not in names or known.isdisjoint(OFFSET)):
-        raise UnitTextError("is not counted from zero: a temperature is in K or °C, and a level has no place here")
+        raise UnitTextError("is a relative scale: give a temperature in K or °C; levels (dB) are not allowed")
     zero = registry.Quantity(Fraction(0), found).to("K").magnitude if relative else Fraction(0)
     return Unit(Fraction(factor), zero, found.dimensionality, not known.isdisjoint(ANGLES))
 

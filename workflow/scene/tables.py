@@ -39,6 +39,7 @@ from contact1d.workflow.scene.effects import (
     Plate,
 )
 from contact1d.workflow.scene.experiments import Experiment, Method
+from contact1d.workflow.scene.materials import BY_NAME
 from contact1d.workflow.scene.problems import tables_as_toml
 from contact1d.workflow.scene.profiles import Flat, Parabola, Profile
 from contact1d.workflow.scene.quantities import (
@@ -83,7 +84,9 @@ WIDER_THAN_SPHERES = 2.0
 
 
 class Elastic(Table):
-    """An isotropic elastic body."""
+    """An isotropic elastic body; a name such as "steel" stands for E and ν of a named material."""
+
+    by_name = BY_NAME
 
     youngs_modulus: Pascal
     """Young's modulus E"""
@@ -226,7 +229,8 @@ class Bodies(Table):
     @property
     def plane_radius(self) -> float | None:
         """Radius R₁ [LU] of the plane parabola x²/2R₁ that represents R, R or with the MDR R/2; else None."""
-        return PARABOLA_SHARE[self.reduction] * self.profile.radius if isinstance(self.profile, Parabola) else None
+        profile = self.profile
+        return PARABOLA_SHARE[self.reduction] * profile.curvature_radius if isinstance(profile, Parabola) else None
 
 
 class Accuracy(Table):

@@ -1,0 +1,160 @@
+"""Claim: a half angle in place of a slope, and a second radius, are the contacts of Sneddon, Hertz and JKR.
+
+References, written down here: Sneddon's cone F = (2/π) E* d² tan α, with α from the axis to the flank; Hertz's
+F = (4/3) E* √R d^(3/2) and JKR's F_A = 1.5 π W R with 1/R = 1/R₁ + 1/R₂.
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import contact1d
+from contact1d.workflow.runs.finished import Run
+from contact1d.workflow.scene import SceneError, read_scene, scene_from_dict, scene_to_toml
+
+E_STAR, R = 1e9, 10e-3
+PLANE = {"particles": "auto", "spacing": "auto", "lower": "rigid_plane"}
+PATH = {"kind": "path", "displacements": {"from": "0 nm", "to": "1 µm", "steps": 10}}
+PULL_OFF = {"kind": "pull_off", "preload": "1 mN"}
+CUP = {"kind": "parabola", "radius": "10 mm", "counter_radius": "-12 mm"}
+
+
+def tables(profile: dict[str, Any], experiment: dict[str, Any] = PATH, **more: Any) -> dict[str, Any]:
+    bodies, material = PLANE | {"profile": profile}, {"contact_modulus": E_STAR}
+    return {"title": "x", "bodies": bodies, "material": material, "experiment": experiment} | more
+
+
+def run(*scene: Any, **more: Any) -> Run:
+    return contact1d.run(scene_from_dict(tables(*scene, **more)), figures=False)
+
+
+def si(done: Run, name: str) -> tuple[float, float]:
+    found = done.results[name].si
+    assert found is not None
+    return found.value, found.uncertainty
+
+
+def message(profile: dict[str, Any], **bodies: Any) -> str:
+    data = tables(profile)
+    data["bodies"] |= bodies
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict(data)
+    return str(caught.value)
+
+
+def cone(angle: object) -> dict[str, Any]:
+    return {"kind": "cone", "half_angle": angle}
+
+
+@pytest.mark.parametrize(("text", "degrees"), [("88°", 88.0), ("88 deg", 88.0), ("1.5 rad", math.degrees(1.5))])
+def test_a_cone_by_its_half_angle_is_sneddons(text: str, degrees: float) -> None:
+    force, uncertainty = si(run(cone(text)), "largest_force")
+    sneddon = 2.0 / math.pi * E_STAR * 1e-12 * math.tan(math.radians(degrees))
+    assert abs(force - sneddon) <= uncertainty + 1e-12 * sneddon  # round-off
+    assert uncertainty <= 1e-3 * sneddon
+
+
+def test_the_closed_form_beside_a_cone_is_the_half_angles() -> None:
+    (form,) = run(cone("88°")).document["theory"]
+    assert abs(form["values"]["largest_force"]["deviation"]) <= 1e-3
+
+
+def test_a_scene_keeps_its_half_angle() -> None:
+    scene = scene_from_dict(tables(cone("80°")))
+    assert scene_from_dict(tomllib.loads(scene_to_toml(scene))) == scene
+    assert scene.with_({"bodies.profile.half_angle": "70 deg"}) != scene
+
+
+@pytest.mark.parametrize(
+    ("profile", "words"),
+    [
+        (cone(80), 'half_angle = 80: must be text with a unit, greater than 0° and less than 90°, from the axis to the '
+                   'flank: write "80°"'),
+        (cone("90°"), 'half_angle = "90°": must be text with a unit, greater than 0° and less than 90°'),
+        (cone("0 rad"), 'half_angle = "0 rad": must be text with a unit, greater than 0°'),
+        (cone("-10°"), 'half_angle = "-10°": must be text'),
+        (cone("80"), 'half_angle = "80": must be an angle, such as 80°; 80 has no unit'),
+        (cone("80 mm"), "must be an angle, such as 80°; 80 mm is a length"),
+        (cone("5 %"), "must be an angle, such as 80°; 5 % is a number without a unit"),
+        ({"kind": "cone", "slope": "10°"},
+         '10° is an angle: its tangent is 0.176327; a cone may have half_angle = "80°" in place of this slope'),
+        ({"kind": "cone"}, 'bodies.profile.slope: missing; give one of the two: slope = 0.1, or half_angle = "80°"'),
+        (cone("80°") | {"slope": 0.1}, 'bodies.profile.half_angle = "80°": not together with slope; give one'),
+    ],
+)  # fmt: skip
+def test_an_angle_that_is_none_is_one_sentence(profile: dict[str, Any], words: str) -> None:
+    printed = message(profile)
+    assert words in printed
+    assert "\n" not in printed
+
+
+@pytest.mark.parametrize(("counter", "effective"), [("30 mm", 7.5e-3), ("-12 mm", 60e-3), (None, 10e-3)])
+def test_two_radii_are_hertzs_and_jkrs_effective_one(counter: str | None, effective: float) -> None:
+    profile = {key: value for key, value in (CUP | {"counter_radius": counter}).items() if value}
+    hertz = 4.0 / 3.0 * E_STAR * math.sqrt(effective) * 1e-9
+    pressed, torn = run(profile), run(profile, PULL_OFF, adhesion={"work_of_adhesion": "50 mJ/m²"})
+    for done, name, exact in (
+        (pressed, "largest_force", hertz),
+        (pressed, "largest_radius", math.sqrt(effective * 1e-6)),
+        (torn, "adhesion_force", 1.5 * math.pi * 0.05 * effective),
+    ):
+        value, uncertainty = si(done, name)
+        assert abs(value - exact) <= uncertainty + 1e-12 * exact
+        assert uncertainty <= 2e-3 * exact
+
+
+def test_the_slope_is_that_of_the_body_with_the_smaller_radius() -> None:
+    """The gap of a ball in a cup is nearly plane where the ball itself is not."""
+    for counter, smaller in (("-10.5 mm", 10e-3), ("2 mm", 2e-3), ("30 mm", 10e-3)):
+        done = run(CUP | {"counter_radius": counter}, PATH)
+        (check,) = (one for one in done.document["validity"] if one["name"] == "slope")
+        assert check["value"] == pytest.approx(si(done, "largest_radius")[0] / smaller, rel=1e-5)  # a step of 1e-6
+    assert "slope" in run(CUP | {"counter_radius": "-10.01 mm"}, PATH | {"displacements": ["0 nm", "1 µm"]}).warnings
+
+
+@pytest.mark.parametrize(
+    ("counter", "words"),
+    [
+        ("-10 mm", "less than -0.01 (LU) (concave), else the bodies conform"),
+        ("-5 mm", "a cup is wider than the ball in it; leave it out for a plane"),
+        ("0 mm", "must be greater than 0 (convex)"),
+    ],
+)
+def test_a_cup_is_wider_than_its_ball(counter: str, words: str) -> None:
+    printed = message(CUP | {"counter_radius": counter})
+    assert printed.startswith(f'bodies.profile.counter_radius = "{counter}": must be greater than 0')
+    assert words in printed
+    assert "\n" not in printed
+
+
+def test_only_a_parabola_outside_the_papers_two_equal_spheres_has_it() -> None:
+    assert "counter_radius: unknown key" in message({**CUP, "kind": "circle"})
+    assert 'not with reduction = "geike_popov"' in message(CUP, reduction="geike_popov")
+
+
+def test_a_sweep_goes_over_radii_and_angles(tmp_path: Path) -> None:
+    axis = {"key": "bodies.profile.radius", "values": ["8 mm", "10 mm"]}
+    done = contact1d.sweep({"base": tables(CUP), "axes": [axis]}, tmp_path / "radii", figures=False)
+    forces = done.table()["largest_force"].to_list()
+    ratio = math.sqrt((1 / (1 / 8 - 1 / 12)) / (1 / (1 / 10 - 1 / 12)))
+    assert forces[0] / forces[1] == pytest.approx(ratio, rel=2e-3)
+    axis = {"key": "bodies.profile.half_angle", "from": "80°", "to": "88°", "steps": 1}
+    done = contact1d.sweep({"base": tables(cone("85°")), "axes": [axis]}, tmp_path / "angles", figures=False)
+    forces = done.table()["largest_force"].to_list()
+    ratio = math.tan(math.radians(80.0)) / math.tan(math.radians(88.0))
+    assert forces[0] / forces[1] == pytest.approx(ratio, rel=2e-3)
+
+
+def test_a_contact_of_a_material_takes_both(tmp_path: Path) -> None:
+    steel = {"upper": "steel", "lower": "steel", "load": "1 N"}
+    cup = contact1d.from_material(steel | {"profile": CUP}, tmp_path / "run")
+    modulus = 210e9 / 2.0 / (1.0 - 0.3**2)
+    found = cup.run.results["contact_radius"].si
+    assert found is not None
+    assert abs(found.value - math.cbrt(0.75 * 60e-3 / modulus)) <= found.uncertainty
+    assert read_scene(cup.run.folder / "scene.toml").bodies.profile == cup.run.scene.bodies.profile
