@@ -120,7 +120,7 @@ def test_the_slope_is_that_of_the_body_with_the_smaller_radius() -> None:
 @pytest.mark.parametrize(
     ("counter", "words"),
     [
-        ("-10 mm", "less than -0.01 (LU) (concave), else the bodies conform"),
+        ("-10 mm", "less than -10 mm (concave), else the bodies conform"),
         ("-5 mm", "a cup is wider than the ball in it; leave it out for a plane"),
         ("0 mm", "must be greater than 0 (convex)"),
     ],

@@ -85,16 +85,16 @@ WRONG = [
     odd(R, "10 mm # about", "10 mm # about has an unknown unit, #", "10 mm"),
     odd("noise.temperature", "300 K/m", "300 K/m is another quantity", "300 K",
         *PARTICLES, "damping.coefficient=auto", "plate={}", "noise.seed=1"),
-    odd("noise.temperature", "300 delta_degC", "300 delta_degC is not "
-        "counted from zero: a temperature is in K or °C, and a level has no place here", "27 °C",
+    odd("noise.temperature", "300 delta_degC", "300 delta_degC is a "
+        "relative scale: give a temperature in K or °C; levels (dB) are not allowed", "27 °C",
         *PARTICLES, "damping.coefficient=auto", "plate={}", "noise.seed=1"),
     # A number that is none.
     odd(R, "ten mm", 'must be a number greater than 0 (m); a number with its unit begins with a digit: "10 mm"',
         "10 mm"),
-    odd(R, "10,5 mm", "10,5 mm has a comma in its number: decimals follow a point, and thousands are not "
-        "parted", "10.5 mm"),
-    odd(R, "1.0.5 mm", "1.0.5 mm has something behind the number 1.0 that is not a unit", "1.05 mm"),
-    odd(R, "1 000 mm", "1 000 mm has something behind the number 1 that is not a unit", "1000 mm"),
+    odd(R, "10,5 mm", "10,5 mm has a comma in its number: write a decimal point, and no thousands separators",
+        "10.5 mm"),
+    odd(R, "1.0.5 mm", "1.0.5 mm has text after the number 1.0 that is not a unit", "1.05 mm"),
+    odd(R, "1 000 mm", "1 000 mm has text after the number 1 that is not a unit", "1000 mm"),
     odd(R, "1e mm", "1e mm has an exponent that is not an integer", "1e1 mm"),
     odd(R, "1O mm", "1O mm has an unknown unit, O", "10 mm"),
     odd(R, "1e999 m", "1e999 m exceeds the range of floating-point numbers", "10 mm"),
@@ -169,7 +169,7 @@ FILES = {
     "sides that differ": ("-2,8\n-1,2\n0,0\n1,1\n2,4\n", "these differ by 50% of its height", "0,0\n1,1\n2,4\n3,9\n"),
     "an apex off the middle": ("-1,4\n0,1\n1,0\n2,1\n3,4\n", "and their positions differ; shift it",
                                "-3,9\n-2,4\n-1,1\n0,0\n1,1\n2,4\n3,9\n"),
-    "upside down": ("0,0\n1,-1\n2,-4\n3,-9\n", "they count away from the plane; change their sign",
+    "upside down": ("0,0\n1,-1\n2,-4\n3,-9\n", "heights are measured from the plane; change the sign",
                     "0,0\n1,1\n2,4\n3,9\n"),
     "decimal commas": ("r;z\n0;0\n0,5;0,25\n1;1\n2;4\n", "line 3: r is not a number; write it with a decimal point",
                        "r;z\n0;0\n0.5;0.25\n1;1\n2;4\n"),

@@ -104,7 +104,7 @@ def split(text: str) -> tuple[str, str]:
     if re.match(r"[eE](?![^\W\d_])", unit):
         raise UnitTextError("has an exponent that is not an integer")
     if unit[0] in ".'_" or unit[0].isdigit():
-        raise UnitTextError(f"has something behind the number {number} that is not a unit")
+        raise UnitTextError(f"has text after the number {number} that is not a unit")
     if re.fullmatch(r"(LU|FU|MU|TU)\b.*", unit):
         raise UnitTextError(f"{MODEL_UNITS}: write {number} without quotes and unit")
     return number, unit
