@@ -12,14 +12,13 @@ from functools import partial
 
 import numpy as np
 
+from contact1d.analysis.pressure import Array
 from contact1d.workflow.continuation.budget import ForceErrors, budgeted
 from contact1d.workflow.continuation.outcome import LATTICE
 from contact1d.workflow.experiments import kind_of
-from contact1d.workflow.model.adhesion import estimate_on_plane
-from contact1d.workflow.model.pairs import tabulated
 from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import SettingsError, settings_for
-from contact1d.workflow.scene import FlatPunch, Measured, Path, PullOff, Scene
+from contact1d.workflow.scene import Path, PullOff, Scene
 
 FEWEST, MOST = 30, 5000
 """Particles in the contact radius: at FEWEST F_A and a₀ of JKR are within 3e-3; MOST keep 1e-6."""
@@ -30,15 +29,13 @@ APPEARING = 16.0
 """What an excess without bound counts: that of a radius which is 0 at one place of the contact's centre only."""
 LARGEST = 0.1
 """The largest tolerance that there is."""
-SAME = 0.01
-"""Difference of a radius at two spacings over it, below which it is the body's."""
 RADII = ("contact_radius", "stick_radius", "zero_load_radius", "critical_radius", "largest_radius")
 SQUARED = 2.0
 """Error of a square over that of its root: areas and mean pressures follow from radii."""
-WIDEST = 0.5
-"""Radius that is tried first, 1 LU or this share of where a body ends or of its curvature."""
-MOST_SIZES = 60
-"""Tries to find a radius: each brings a spacing that is too wide nearer by FEWEST, or doubles one that is too fine."""
+SHORTEST, LONGEST, PLACES = 1e-12, 1e12, 12000
+"""Radii [LU] among which that of a contact is sought, in geometric progression, and how many."""
+INSIDE = 0.999999
+"""Largest of them over the half-width of a body that ends: the transform of a circle has no bound there."""
 
 
 def with_spacing(scene: Scene) -> Scene:
@@ -49,7 +46,7 @@ def with_spacing(scene: Scene) -> Scene:
     """
     if scene.bodies.given_spacing != "auto":
         return scene
-    radius = _contact_radius(scene)
+    radius = contact_radius(scene)
     chosen = fine_enough(partial(_spaced, scene, radius))
     left = left_by_lattice(chosen)
     if scene.accuracy.tolerance < left < math.inf:  # without bound the run says what appears
@@ -106,37 +103,45 @@ def _spaced(scene: Scene, radius: float, count: int) -> Scene:
     return scene.model_copy(update={"bodies": scene.bodies.model_copy(update={"given_spacing": radius / count})})
 
 
-def _contact_radius(scene: Scene) -> float:
-    """The contact radius [LU] that determines the spacing: under the load, or at F = 0 of an unloading.
+def contact_curve(scene: Scene) -> tuple[Array, Array, Array]:
+    """Radii a [LU] of contacts of the body on the plane, rising, their displacements d [LU] and forces F [FU].
+
+        d = g(a) − √(2πaW/E*),    F = 2E* [a d − ∫₀ᵃ g dx],    of a flat punch its one radius
+
+    (V. L. Popov, M. Heß, Method of Dimensionality Reduction, 2015, sections 3.1 and 4.4), E* that of the layer.
+    """
+    bodies, modulus = scene.bodies, _spaced(scene, 1.0, 1).bulk_stiffness
+    work = 0.0 if scene.adhesion is None else scene.adhesion.work
+    reach, edge = bodies.profile.reach, bodies.profile.has_edge
+    radii = np.asarray([reach]) if edge else np.geomspace(SHORTEST, min(LONGEST, INSIDE * reach), PLACES)
+    with np.errstate(over="ignore"):
+        heights = bodies.height(radii)
+    radii, heights = radii[np.isfinite(heights)], heights[np.isfinite(heights)]
+    below = np.cumsum(0.5 * (heights + np.append(0.0, heights[:-1])) * np.diff(radii, prepend=0.0))
+    displacements = heights - np.sqrt(2.0 * math.pi * radii * work / modulus)
+    return radii, displacements, 2.0 * modulus * (radii * displacements - below)
+
+
+def contact_radius(scene: Scene) -> float:
+    """The contact radius [LU] that particles are counted in: under the load, or at F = 0 where it is drawn off.
 
     Raises:
         SettingsError: nothing touches.
     """
-    profile = scene.bodies.profile
-    if isinstance(profile, FlatPunch):
-        return profile.radius
-    size = WIDEST * min(profile.reach, profile.curvature_radius or math.inf, 1.0 / WIDEST)
-    for _ in range(MOST_SIZES):
-        before, size = size, _half_width(_spaced(scene, size, FEWEST))
-        if abs(size - before) <= SAME * size:
-            return size
-    raise SettingsError(
-        "the bodies never touch in this experiment, so that no spacing can be chosen: give bodies.spacing, "
-        "or a displacement above 0"
-    )
-
-
-def _half_width(scene: Scene) -> float:
-    """Half-width [LU] of the contact with this spacing, which is the least that there is."""
-    bodies, experiment = scene.bodies, scene.experiment
-    estimate = estimate_on_plane(
-        scene, tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
-    )
-    load = experiment.compression
-    if scene.adheres and isinstance(experiment, Path | PullOff):
+    radii, displacements, forces = contact_curve(scene)
+    load = scene.experiment.compression
+    if scene.adheres and isinstance(scene.experiment, Path | PullOff):
         load = 0.0
-    deepest = max(experiment.places()) if load is None else estimate.displacement_at(load)
-    return estimate.half_width(deepest, estimate.rest)
+    values, wanted = (displacements, max(scene.experiment.places())) if load is None else (forces, load)
+    lower = np.flatnonzero(values < wanted)
+    at = int(lower[-1]) if lower.size else int(np.argmin(values))
+    if at == 0 and radii.size > 1:
+        raise SettingsError(
+            "nothing touches in this experiment, so that there is no contact to choose a spacing for: give "
+            "bodies.spacing, or a displacement above 0"
+        )
+    near = slice(at, at + 2)  # of what is beyond either end the run says why
+    return float(np.interp(wanted, values[near], radii[near]))
 
 
 def _up(tolerance: float) -> str:

@@ -8,14 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from contact1d.workflow.engine.progress import Progress
-from contact1d.workflow.experiments.spacing import with_spacing
+from contact1d.workflow.experiments.spacing import contact_curve, contact_radius, with_spacing
 from contact1d.workflow.identify.contact import AnyContact, AskedContact, read_contact
 from contact1d.workflow.identify.interaction import IdentifyError, Target, identify, jkr_target, material_scene
 from contact1d.workflow.identify.theories import (
     Theories,
-    contact_radius,
     judged,
-    largest_tension,
     require_size,
 )
 from contact1d.workflow.runs import advised
@@ -74,12 +72,18 @@ def chosen(contact: AskedContact) -> Choice:
     doubts = {} if theories is None else judged(contact, theories)
     if contact.model == "particles":
         return _particles(contact, theories, doubts)
-    radius = contact_radius(contact)
-    require_size(contact, radius)
     experiment: dict[str, Any] = {"kind": "load", "force": contact.load}
     if contact.work_of_adhesion:
-        experiment = {"kind": "pull_off", "preload": contact.load or PRELOAD_SHARE * largest_tension(contact)}
-    return Choice(contact, with_spacing(on_plane(contact, experiment)), theories, None, doubts, radius)
+        experiment = {"kind": "pull_off", "preload": contact.load or usual_preload(contact)}
+    scene = on_plane(contact, experiment)
+    radius = contact_radius(scene)
+    require_size(contact, radius)
+    return Choice(contact, with_spacing(scene), theories, None, doubts, radius)
+
+
+def usual_preload(contact: AskedContact) -> float:
+    """PRELOAD_SHARE of the largest tension under a fixed load [N]."""
+    return -PRELOAD_SHARE * float(contact_curve(on_plane(contact, {"kind": "load", "force": 1.0}))[2].min())
 
 
 def on_plane(contact: AskedContact, experiment: Any, **tables: Any) -> Scene:

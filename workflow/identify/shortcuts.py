@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from contact1d.workflow.identify.choice import PRELOAD_SHARE, on_plane
+from contact1d.workflow.identify.choice import on_plane, usual_preload
 from contact1d.workflow.identify.contact import AskedContact, read_contact
-from contact1d.workflow.identify.theories import largest_tension
 from contact1d.workflow.runs.advised import run
 from contact1d.workflow.runs.campaign import AnyPath
 from contact1d.workflow.runs.finished import Run
@@ -41,7 +40,7 @@ class Contact:
 
     def pull_off(self, preload: str | float | None = None, folder: AnyPath | None = None) -> Run:
         """Press with a preload, by default 0.7 of the theory's pull-off force, and pull until the bodies separate."""
-        preload = PRELOAD_SHARE * largest_tension(self.asked) if preload is None else preload
+        preload = usual_preload(self.asked) if preload is None else preload
         return run(self.scene("pull_off", preload=preload), folder)
 
     def path(self, displacements: Any, folder: AnyPath | None = None) -> Run:

@@ -15,9 +15,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-from numpy.typing import NDArray
-
 from contact1d.analysis.theory.adhesion import MaugisDugdale, Verdict, of_tabor, valid_theory
 from contact1d.analysis.theory.indenters import PowerLaw
 from contact1d.workflow.identify.contact import AskedContact
@@ -173,51 +170,3 @@ def require_size(contact: AskedContact, radius: float) -> None:
             f"theory is for a << R, here up to {LARGEST_RADIUS_SHARE:g}. Use a larger "
             "radius, a larger contact modulus, a smaller load or less attraction"
         )
-
-
-SHORTEST, LONGEST, PLACES = 1e-12, 1e4, 8000
-"""Radii [m] among which that of a contact is sought, in a geometric row, and how many."""
-INSIDE = 0.999999
-"""Largest of them over the half-width of a body that ends: the transform of a circle has no bound there."""
-
-
-def curve(contact: AskedContact) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Contact radii [m], rising, and the forces F(a) [N] by the module's equation."""
-    shape = contact.shape
-    reach = shape.reach
-    if shape.has_edge:
-        radii = np.asarray([reach])
-        return radii, np.asarray([math.inf])
-    radii = np.geomspace(SHORTEST, min(LONGEST, INSIDE * reach), PLACES)
-    with np.errstate(over="ignore"):
-        heights = shape.transformed(radii)
-    radii, heights = radii[np.isfinite(heights)], heights[np.isfinite(heights)]
-    steps = np.diff(radii, prepend=0.0)
-    below = np.cumsum(0.5 * (heights + np.concatenate([[0.0], heights[:-1]])) * steps)
-    stretch = np.sqrt(2.0 * math.pi * radii * contact.work_of_adhesion / contact.contact_modulus)
-    return radii, 2.0 * contact.contact_modulus * (radii * (heights - stretch) - below)
-
-
-def contact_radius(contact: AskedContact) -> float:
-    """The contact radius [m] that spacings are counted in: at F = 0 with attraction, else under the load."""
-    radii, forces = curve(contact)
-    if len(radii) == 1:
-        return float(radii[0])
-    wanted = 0.0 if contact.work_of_adhesion else contact.load or 0.0
-    above = np.flatnonzero(forces < wanted)
-    if above.size == 0 or above[-1] + 1 == len(radii):
-        raise IdentifyError(
-            f"no contact radius between {radii[0]:.3g} and {radii[-1]:.3g} m has a force of {wanted:g} N: compare the "
-            "profile's lengths, the load and the contact modulus with each other"
-        )
-    at = int(above[-1])
-    return float(np.interp(wanted, forces[at : at + 2], radii[at : at + 2]))
-
-
-def largest_tension(contact: AskedContact) -> float:
-    """The force maximum under a fixed load [N]."""
-    radii, forces = curve(contact)
-    if len(radii) > 1:
-        return max(-float(forces.min()), 1e-300)
-    stretch = math.sqrt(2.0 * math.pi * radii[0] * contact.work_of_adhesion / contact.contact_modulus)
-    return 2.0 * contact.contact_modulus * float(radii[0]) * stretch  # a punch parts at once (Kendall)

@@ -109,8 +109,12 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
         context.left = last.outcome
         require_results(scene, last.outcome)
     except (EngineError, UntrustedError) as error:
+        words = (scales or UNKNOWN).in_words
+        error.message = words(error.message)
+        if isinstance(error, UntrustedError):
+            error.advice = words(error.advice)
         facts = {
-            "message": (scales or UNKNOWN).in_words(error.message if isinstance(error, EngineError) else str(error)),
+            "message": error.message if isinstance(error, EngineError) else str(error),
             "phase": context.phase,
             "step": context.timestep,
         }
