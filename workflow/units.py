@@ -61,7 +61,7 @@ PREFIXES = "yzafpnµm kMGT"
 FIRST = -8
 """The power of the first prefix."""
 IN_WORDS = re.compile(
-    r"([-−]?\d[\d.]*(?:e[+-]?\d+)?) (\()?([LFM]U(?:[·/][LFMT]U²?)*|TU)(?(2)\))|\(([LFM]U(?:[·/][LFMT]U²?)*|TU)\)"
+    r"([-−]?\d[\d.]*(?:e[+-]?\d+)?) (\()?([LFM]U(?:[·/][LFMT]U²?)*|TU)(?!\w)(?(2)\))|\(([LFM]U(?:[·/][LFMT]U²?)*|TU)\)"
 )
 """A number with a unit of the model in a text, "1.5 FU/LU" or "1.5 (FU/LU)"; or that unit alone, in brackets."""
 DIGITS = 4

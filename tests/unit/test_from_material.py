@@ -99,7 +99,7 @@ def test_every_problem_is_told_at_once() -> None:
         ({"upper": "rigid", "lower": "rigid"}, "upper: one of the two bodies must be elastic"),
         ({"contact_modulus": "1 GPa"}, "contact_modulus: not together with upper or lower"),
         ({"surface_energy": 0.1, "work_of_adhesion": 0.2}, "surface_energy: not together with work_of_adhesion"),
-        ({"surface_energy": "50 mN"}, 'surface_energy = "50 mN": must be a force per length or energy per area'),
+        ({"surface_energy": "50 mN"}, 'surface_energy = "50 mN": must be an energy per area'),
         ({"radius": True}, "radius = true: must be a number greater than 0 (m)"),
         ({"title": ""}, 'title = "": must be one line of text'),
     ],

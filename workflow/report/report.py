@@ -184,7 +184,8 @@ def _values(table: Table, scales: Scales, within: str = "") -> Iterator[tuple[st
         if isinstance(value, Table):
             yield from _values(value, scales, f"{within}{label}: ")
         elif value is not None and not (unit and scales.known and unit.name in SI and not scales.know(unit.name)):
-            yield within + label, _shown(value, NUMBER if unit is None else unit.name, scales)
+            text = _shown(value, NUMBER if unit is None else unit.name, scales)
+            yield within + label, text.replace("N/m", "J/m²") if unit and "J/m²" in unit.text else text
 
 
 def _shown(value: Any, unit: str, scales: Scales) -> str:

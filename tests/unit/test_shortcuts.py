@@ -1,0 +1,69 @@
+"""A contact in a line of Python, beside closed forms written out here."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+import contact1d
+from contact1d import Run, SceneError
+
+RUBBER, GLASS = {"youngs_modulus": "3 MPa", "poisson_ratio": 0.5}, {"youngs_modulus": "70 GPa", "poisson_ratio": 0.22}
+PAIR = {"upper": RUBBER, "lower": GLASS, "tolerance": 1e-2}
+MODULUS = 1.0 / ((1 - 0.5**2) / 3e6 + (1 - 0.22**2) / 70e9)
+R, W = 2e-3, 0.08
+
+
+def near(run: Run, name: str, value: float, unit: str) -> None:
+    found = run.results[name]
+    assert found.unit == unit
+    assert abs(found.value - value) <= max(found.uncertainty, 1e-6 * abs(value)), name
+
+
+def test_a_sphere_pulls_off_as_jkr_has_it() -> None:
+    run = contact1d.sphere("2 mm", work_of_adhesion="80 mJ/m²", **PAIR).pull_off()
+    near(run, "adhesion_force", 1.5 * math.pi * W * R, "N")
+    near(run, "zero_load_radius", (4.5 * math.pi * W * R**2 / MODULUS) ** (1 / 3), "m")
+    assert run.curve.units["force"] == "N"
+    assert float(-run.curve.force.min()) == pytest.approx(run.results.adhesion_force.value, rel=1e-2)
+
+
+def test_a_sphere_in_a_cup_is_hertz_with_the_effective_radius() -> None:
+    run = contact1d.sphere(2e-3, counter_radius=-2.2e-3, **PAIR).load("1 mN")
+    near(run, "contact_radius", (0.75 * 1e-3 * (R * 2.2e-3 / (2.2e-3 - R)) / MODULUS) ** (1 / 3), "m")
+
+
+def test_a_cone_is_sneddon_s_and_a_punch_kendall_s() -> None:
+    cone = contact1d.cone("85°", **PAIR).path(["0 µm", "10 µm"])
+    near(cone, "largest_force", 2.0 / math.pi * MODULUS * 1e-10 * math.tan(math.radians(85.0)), "N")
+    punch = contact1d.punch("1 mm", work_of_adhesion=W, **PAIR).pull_off()
+    near(punch, "adhesion_force", math.sqrt(8.0 * math.pi * MODULUS * W * 1e-9), "N")
+
+
+def test_a_profile_of_lists_and_a_tangential_displacement() -> None:
+    r = [1e-5 * i for i in range(61)]
+    ball = contact1d.profile(r=r, z=[x**2 / 2 / R for x in r], **PAIR).tangential("1 mN", 0.3, displacements=["1 nm"])
+    near(ball, "contact_radius", (0.75 * 1e-3 * R / MODULUS) ** (1 / 3), "m")
+    assert set(ball.curve) >= {"displacement", "force", "tangential_force", "stick_radius", "dissipated_energy"}
+
+
+@pytest.mark.parametrize(
+    ("contact", "words"),
+    [
+        ({"upper": RUBBER}, "lower: missing"),
+        (dict(PAIR, work_of_adhesion="80 mJ"), "must be an energy per area"),
+        (dict(PAIR, radus=1), "unknown key"),
+    ],
+)  # fmt: skip
+def test_a_mistake_is_one_sentence(contact: dict[str, Any], words: str) -> None:
+    with pytest.raises(SceneError, match=words):
+        contact1d.sphere("2 mm", **contact)
+
+
+def test_completion_names_keys_and_results_and_nothing_of_pydantic() -> None:
+    scene = contact1d.sphere("2 mm", **PAIR).scene("load", force="1 mN")
+    names = dir(scene)
+    assert {"bodies", "material", "experiment", "with_", "effects"} <= set(names)
+    assert not [name for name in names if "model_" in name or name in ("dict", "json", "copy", "schema")]
