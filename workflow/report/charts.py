@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999933")
+BLACK = "#000000"
+"""Of axes and marks, which no run has for its own."""
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#999933")
 """Okabe and Ito's, which the colour-blind can tell apart."""
 WIDER = 1.15
 """Half-width of a picture over that of what carries."""
@@ -56,16 +58,21 @@ def charts_of(drawn: Mapping[str, tuple[Mapping[str, Figure], Scales]]) -> list[
                 factors, shown = zip(*(scales.base(unit) for unit in units), strict=True)
                 names = [label.replace(f"({u})", f"({s})") for label, u, s in zip(labels, units, shown, strict=True)]
                 title = scales.in_words(axes.get_title(loc="left"))
+                title = title.partition(",")[0] if len(drawn) > 1 else title
                 made = found.setdefault(
-                    (figure_name, title.partition(",")[0], *names),
+                    (figure_name, title, *names),
                     _chart(names, [], title=title, types=(axes.get_xscale(), axes.get_yscale())) | {"units": shown},
                 )
                 ends = np.asarray([axes.get_xlim(), axes.get_ylim()]) * np.transpose([factors])
                 made.setdefault("ends", []).append(ends)
                 for trace in _traces(axes, factors, scales.in_words):
-                    if len(drawn) > 1 and trace["line"]["color"] != THEORY:
+                    if len(drawn) > 1 and trace["line"]["color"] not in (THEORY, BLACK):
                         trace["line"]["color"] = trace["fillcolor"] = colour
-                        trace |= {"name": ", ".join(filter(None, (run, trace["name"]))), "showlegend": True}
+                        bars = trace.get("opacity") == 1.0
+                        trace["name"] = f"{run}, {trace['name']}" if trace["name"] else run * bars
+                        trace |= {"opacity": 0.5} if bars else {}
+                    named = [other["name"] for other in made["data"]]
+                    trace["showlegend"] = bool(trace["name"]) and trace["name"] not in named
                     made["data"].append(trace)
     return [_with_prefixes(made) for made in found.values()]
 
@@ -111,10 +118,9 @@ def _traces(axes: Axes, factors: Sequence[float], in_words: Callable[[str], str]
             if transform == within:  # a line across the panel: a share of its width or height
                 points[:, column] = limits[0] + points[:, column] * (limits[1] - limits[0])
         label = in_words(str(labels.get(artist, artist.get_label())))
-        named = bool(label) and not label.startswith("_")
         return {
             "x": points[:, 0] * factors[0], "y": points[:, 1] * factors[1], "mode": "lines",
-            "name": symbols(label.replace("$", "")) if named else "", "showlegend": named,
+            "name": "" if label.startswith("_") else symbols(label.replace("$", "")),
             "line": {"color": to_hex(colour), "dash": "solid", "simplify": False},
         } | more  # fmt: skip
 

@@ -183,7 +183,11 @@ def _values(table: Table, scales: Scales, within: str = "") -> Iterator[tuple[st
         label = name.replace("_", " ")
         if isinstance(value, Table):
             yield from _values(value, scales, f"{within}{label}: ")
-        elif value is not None and not (unit and scales.known and unit.name in SI and not scales.know(unit.name)):
+        elif (
+            value is not None
+            and (not name.endswith("_unit") or value != 1.0)
+            and not (unit and scales.known and unit.name in SI and not scales.know(unit.name))
+        ):
             text = _shown(value, NUMBER if unit is None else unit.name, scales)
             yield within + label, text.replace("N/m", "J/m²") if unit and "J/m²" in unit.text else text
 
