@@ -154,13 +154,12 @@ def _error(one: Variant) -> str:
 
 def summary(record: CostRecord) -> list[str]:
     """The study for a terminal: reference, the scene as it is, the table, its definitions, settings not tried."""
-    best = ", ".join(f"{name} {value:.9g}" for name, value in record.reference_values.items())
     own = record.variants[0]
     numbers = f"error {own.error:.2g}, {own.cpu_s:.2g} s of CPU, {own.memory_mb:.0f} MB ({own.details})"
     rows = table(record)
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return [
-        f"reference: {record.reference}: {best}",
+        f"reference: {record.reference}, for {', '.join(record.reference_values)}",
         f"the scene as it is: {' '.join(own.failure.split()) or numbers}",
         "",
         *("  ".join(map(str.ljust, row, widths)).rstrip() for row in rows),
