@@ -110,7 +110,7 @@ def _bodies(axis: Axes, run: Run, states: States) -> Callable[[int], list[Any]]:
     has_plane = run.scene.bodies.lower == "rigid_plane"
     if not has_plane:
         chains.append((axis.scatter(x[0], low[0], c=pressure[0], **look), low, -length))
-    axis.figure.colorbar(chains[0][0], ax=axis, label="pressure (FU/LU), compression positive", shrink=0.9)
+    axis.figure.colorbar(chains[0][0], ax=axis, label="line load (FU/LU), compression positive", shrink=0.9)
     axis.set(xlim=(-half, half), ylim=(bottom - 1.1 * length, top + 1.1 * length))
     describe(axis, "x (LU)", "z (LU), magnified", run.scene.title, zero=has_plane)
 
