@@ -66,9 +66,9 @@ def run(scene: Scene, folder: Path, time_limit: float) -> None:
 
 
 def finished(scene: Scene, folder: Path) -> Run | None:
-    """The run in `folder`, if it is of this scene and of these versions, and whole."""
+    """The run in `folder` in units of the model, if it is of this scene and of these versions, and whole."""
     try:
-        run = read_run(folder)
+        run = read_run(folder).model
     except FolderError:
         return None
     return run if run.scene == with_spacing(scene) and run.document.get("versions") == versions() else None
