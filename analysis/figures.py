@@ -53,7 +53,7 @@ SHOWN_SHARE = 0.01
 """Pressure over the largest one that a figure still shows."""
 VIEW = 2.0
 """Largest contact radius that is shown, over itself: beyond is only the tail of an attraction."""
-CLEAR = 5.0
+CLEAR = 10.0
 """Largest pressure that is shown over that at a third of the contact radius: a pole at the edge would hide the rest."""
 BEYOND = 1.15
 """Half-width of what is shown over that of the contact."""
@@ -67,7 +67,8 @@ def pressure_figure(profiles: Mapping[str, Profile], radii: Mapping[str, float])
     for axis, (name, profile) in zip(axes, profiles.items(), strict=True):
         view = np.abs(profile.x) <= half
         pressure = profile.pressure[view]
-        _draw_bars(axis, profile.x[view], pressure, 0.8 * float(np.median(np.diff(profile.x))))
+        for colour, part in ((COMPRESSION, np.maximum(pressure, 0.0)), (TENSION, np.minimum(pressure, 0.0))):
+            axis.fill_between(profile.x[view], part, color=colour, linewidth=0.0, step="mid")
         radius, centre, marked = radii.get(name, math.nan), moved_centre(profile), ""
         if radius > 0.0:
             mark(axis, centre - radius, centre + radius)
@@ -108,8 +109,7 @@ def force_displacement_figure(
     if adhesion is not None:
         tension, spread = adhesion
         axis.axhspan(-tension - spread, -tension + spread, color=TENSION, alpha=0.3, linewidth=0.0)
-        label = f"$-F_A$ = \N{MINUS SIGN}{tension:.4g} FU"
-        axis.axhline(-tension, color=TENSION, linewidth=1.0, linestyle=":", label=label)
+        axis.axhline(-tension, color=TENSION, linewidth=1.0, linestyle=":", label=f"$F_A$ = {tension:.4g} FU")
     axis.margins(y=0.09)
     legend(axis, "upper left", None)
     return figure
@@ -327,16 +327,6 @@ def _points(axis: Axes, x: Array, y: Array, spread: Array, label: str, colour: s
     """Points with the uncertainty of x."""
     axis.hlines(y, x - spread, x + spread, color=colour, alpha=0.3)
     axis.plot(x, y, "o", markersize=3.5, color=colour, label=label)
-
-
-def _draw_bars(axis: Axes, x: Array, height: Array, width: float) -> None:
-    """Bars coloured by sign, as one artist: `Axes.bar` makes one per bar, which takes four times as long."""
-    from matplotlib.collections import PolyCollection
-
-    left, right, zero = x - 0.5 * width, x + 0.5 * width, np.zeros_like(x)
-    corners = np.stack([np.stack([left, left, right, right]), np.stack([zero, height, height, zero])]).T
-    for colour, chosen in ((COMPRESSION, height > 0.0), (TENSION, height < 0.0)):
-        axis.add_collection(PolyCollection(list(corners[chosen]), facecolors=colour, linewidths=0.0))
 
 
 def _half_width(profile: Profile) -> float:

@@ -66,7 +66,7 @@ IN_WORDS = re.compile(
 """A number with a unit of the model in a text, "1.5 FU/LU" or "1.5 (FU/LU)"; or that unit alone, in brackets."""
 DIGITS = 4
 """Of a number in a text."""
-EXACTNESS = 1e-9
+EXACTNESS = 1e-8
 """A relative uncertainty below it, as of a unit that was given, is left out."""
 
 
@@ -197,7 +197,7 @@ def rounded(value: float, uncertainty: float) -> str:
         return f"{round(value, place):.0f} ± {round(uncertainty, place):.0f}"
     if not 0 <= place <= 10:
         power = math.floor(math.log10(max(abs(value), uncertainty)))
-    value, uncertainty = (number / 10.0**power for number in (value, uncertainty))
+    value, uncertainty = (round(number / 10.0**power, place + power) + 0.0 for number in (value, uncertainty))
     text = f"{value:.{place + power}f} ± {uncertainty:.{place + power}f}"
     return f"({text})e{power:+03d}" if power else text
 
@@ -253,7 +253,7 @@ class Scales:
                 return f"({self.base(alone)[1]})" if alone else found[0]
             value = float(number.replace("−", "-"))
             if not value:
-                return f"{number} ({self.base(unit)[1]})"
+                return found[0].replace(unit, self.base(unit)[1])
             factor, name = self.written(value, unit)
             return f"{value * factor:.{DIGITS}g} {name}"
 

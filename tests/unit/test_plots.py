@@ -51,16 +51,17 @@ def lines(axis: object) -> dict[str, np.ndarray]:
     return {label: points for label, points in drawn.items() if not label.startswith("_")}
 
 
-def test_every_particle_that_carries_pressure_is_a_bar_of_its_sign() -> None:
+def test_every_particle_that_carries_pressure_is_a_step_of_its_sign() -> None:
     shown = profile(0.05)
     (axis,) = figures.pressure_figure({"zero_load": shown}, {"zero_load": 28.0}).axes
-    drawn = [(bars, path.vertices[:4]) for bars in axis.collections for path in bars.get_paths()]
-    corners = {round(place[:, 0].mean()): place[:, 1] for _, place in drawn}
-    colours = {round(place[:, 0].mean()): tuple(bars.get_facecolors()[0]) for bars, place in drawn}
+    steps = [np.concatenate([path.vertices for path in part.get_paths()]) for part in axis.collections]
+    colours = [tuple(part.get_facecolor()[0]) for part in axis.collections]
+    assert len(set(colours)) == len(steps) == 2  # compression, tension
     for x, p in zip(shown.x, shown.pressure, strict=True):
         if abs(p) > 0.01 * shown.pressure.max():
-            assert sorted(corners[round(x)]) == sorted([0.0, 0.0, p, p])
-            assert (colours[round(x)] == colours[0]) == (p > 0.0)
+            own = steps[0 if p > 0.0 else 1]
+            here = own[(np.abs(own[:, 0] - x) <= 0.5) & (own[:, 1] == p)]
+            assert sorted({*here[:, 0]}) == [x - 0.5, x + 0.5]
     assert axis.get_ylabel() == "line load (FU/LU)"
     assert axis.get_xlabel() == "x (LU)"
 

@@ -81,7 +81,8 @@ class Way:
             strongest = max(strongest, chain.normal_force)
         unit = min(self.friction * strongest, TANGENTIAL * WAY * len(x)) or 1.0
         errors = np.abs(np.asarray(run.friction["tangential_force"]) * s / e - forces) / unit
-        lost = abs(result(run, "dissipated_energy").value / e - chain.dissipated) / (unit * WAY)
+        # The curve's own number: the result of 1 to 3 particles is not reported where it is too uncertain.
+        lost = abs(float(run.friction["dissipated_energy"][-1]) / e - chain.dissipated) / (unit * WAY)
         return worst([float(errors.max()), lost])
 
 

@@ -92,7 +92,7 @@ def _other_kinds(allowed: Allowed, chosen: type[Table], begin: str = "# ") -> It
         if table is not chosen:
             keys = keys_of(table)
             what, others = keys["kind"].description, ", ".join(word for word in keys if word != "kind")
-            yield from _comment(f'or kind = "{kind}" ({what}) with {others}', begin)
+            yield from _comment(f'or kind = "{kind}" ({what}){f" with {others}" if others else ""}', begin)
 
 
 def _comment(text: str, begin: str = "# ") -> list[str]:

@@ -28,7 +28,7 @@ NAMES = {
     "contact_stiffness": "stiffness dF/dd",
     "adhesion_energy": "energy of adhesion",
     "separation_energy": "separation energy per length",
-    "work_of_adhesion": "implied W = 2γ",
+    "work_of_adhesion": "implied work of adhesion W",
 }
 COLUMNS = 64
 ROWS = 9
@@ -104,7 +104,7 @@ def regime(found: MaterialRun) -> Iterator[str]:
     contact, theories = found.contact, found.theories
     said = [f"E* = {prefixed(contact.contact_modulus, 'Pa')}"]
     if contact.work_of_adhesion:
-        said.append(f"work of adhesion W = 2γ = {contact.work_of_adhesion:.4g} J/m²")
+        said.append(f"work of adhesion W = {contact.work_of_adhesion:.4g} J/m²")
         assumed = " (assumed: no range was given)" if "range" not in contact.given else ""
         said.append(f"range z_0 = {prefixed(contact.range, 'm')}{assumed}")
     if contact.load is not None:

@@ -91,9 +91,8 @@ def on_plane(contact: AskedContact, experiment: Any, **tables: Any) -> Scene:
     data: dict[str, Any] = plain_data(contact.scene)
     if contact.is_rigid:
         data["material"] = {"contact_modulus": contact.contact_modulus, "length_unit": 1.0, "force_unit": 1.0}
-    data.pop("adhesion", None)
-    if contact.work_of_adhesion:
-        data["adhesion"] = {"work_of_adhesion": contact.work_of_adhesion}
+    if not contact.work_of_adhesion:
+        data.pop("adhesion", None)
     return scene_from_dict(data | tables | {"experiment": experiment})
 
 

@@ -172,7 +172,7 @@ def path_of(run: Run, states: States) -> dict[str, Any]:
     half, view = window(states)
     length, (x, ends) = shown(LENGTH, states.x[:, view], np.asarray([-half, half]))
     height, bodies = shown(LENGTH, states.z_upper[:, view], states.z_lower[:, view])
-    load, loads = shown(LINE_PRESSURE, states.pressure[:, view], states.shear[:, view])
+    load, loads = shown(LINE_PRESSURE, states.pressure[:, view], -states.shear[:, view])
     names, curve = [], []
     for name, (unit, column) in columns.items():
         unit, (values,) = shown(unit, column)
@@ -195,7 +195,7 @@ def path_of(run: Run, states: States) -> dict[str, Any]:
         "charts": [
             _chart(names, [_line("", "#999999") | dict(zip("xy", line, strict=True)), mark]),
             _chart([along, f"line load ({load})"],
-                   [_line("pressure"), _line("shear", COLOURS[1], bool(loads[1].any()))], ends, loads),
+                   [_line("normal"), _line("shear", COLOURS[1], bool(loads[1].any()))], ends, loads),
             _chart([along, f"z ({height}), magnified"], [_line("upper"), _line("lower", COLOURS[2])], ends, bodies),
         ],
         "x": [listed(row) for row in x],

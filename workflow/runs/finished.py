@@ -20,7 +20,7 @@ from contact1d.analysis.atoms import atoms
 from contact1d.analysis.curve import DETACHMENTS, PROFILE_COLUMNS, SAMPLE_TABLE, Columns, by_state, read_columns
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.shear import stick_margin
-from contact1d.analysis.theory.indenters import PowerLaw
+from contact1d.analysis.theory.indenters import Ellipsoid, PowerLaw
 from contact1d.analysis.theory.mindlin import mindlin_path
 from contact1d.workflow.body.derived import REPORTED
 from contact1d.workflow.body.reading import IMAGE
@@ -240,7 +240,8 @@ def read_run(folder: Path) -> Run:
 
 def drawings(run: Run) -> Drawings:
     """What draws each figure of a run, by the names of the files, the main one first; in SI where it is known."""
-    title, scales = f"{run.scene.title}\n(reduction {run.scene.bodies.reduction})", run.scales
+    title, scales, reduction = run.scene.title, run.scales, run.scene.bodies.reduction
+    title += "" if reduction == "mdr" else f"\n(reduction {reduction})"
 
     def dressed(draw: Callable[[], Figure]) -> Figure:
         figure = draw()
@@ -312,7 +313,7 @@ def _drawings(run: Run) -> Drawings:
     if scene.noise is not None and not scene.experiment.way_is_given:
         return pressure
     values = _values(run)
-    beside = _theory(scene, values, curve)
+    beside = _theory(run, values)
     over_d = None if beside is None else (beside[0], *beside[1][1:])
     tension = run.results.get("adhesion_force")
     adhesion = (tension.value, tension.uncertainty) if tension and tension.value else None
@@ -322,7 +323,7 @@ def _drawings(run: Run) -> Drawings:
         marks = values["adhesion_force"], values["zero_load_radius"]
         found["force_radius"] = partial(figures.force_radius_figure, curve, *marks)
     elif np.unique(curve.contact_radius[curve.contact_radius > 0.0]).size > 1:
-        over_a = (beside[0], *beside[1][::2]) if beside is not None and beside[0] == "Hertz" else None
+        over_a = (beside[0], *beside[1][::2]) if beside is not None and not scene.adheres else None
         found["force_radius"] = partial(figures.load_radius_figure, curve, over_a)
     return found | pressure | _body_pressure(run)
 
@@ -390,23 +391,30 @@ def _adheres_over_a_width(values: Mapping[str, float]) -> bool:
     return "adhesion_force" in values and values.get("zero_load_radius", 0.0) > 0.0
 
 
-def _theory(scene: Scene, values: Mapping[str, float], curve: Columns) -> tuple[str, Array] | None:
-    """Name, and a, d, F of JKR: with the run's own F_A and a₀, on a plane with nothing fitted; or of Hertz; or none.
+def _theory(run: Run, values: Mapping[str, float]) -> tuple[str, Array] | None:
+    """Name, and a, d, F of the closed form of the body; of two chains that of JKR with the run's own F_A and a₀.
 
     The image x²/2R₁ on springs E* per length is the contact of R = 2R₁; its a₀ is twice that of the two spheres.
     """
-    bodies, half = scene.bodies, scene.bodies.plane_radius
-    if half is None:
+    scene, half, case = run.scene, run.scene.bodies.plane_radius, Case(run.scene, run.results)
+    radius, forms = 2.0 * (half or 0.0), applying(case)
+    body: PowerLaw | Ellipsoid
+    if half is not None:
+        work = scene.adhesion.work if scene.adhesion is not None else 0.0
+        name, body = (
+            "JKR" if work else "Hertz",
+            PowerLaw.sphere(radius, scene.bulk_stiffness / scene.bodies.spacing, work),
+        )
+    elif forms and case.kind != "flat_punch":
+        name, body = forms[0].name, case.body
+    else:
         return None
-    radius, modulus = 2.0 * half, scene.bulk_stiffness / bodies.spacing
     if scene.adhesion is not None and scene.adheres:
-        jkr = PowerLaw.sphere(radius, modulus, scene.adhesion.work)
-        return "JKR", jkr.curve(jkr.fixed_grips_radius(), LARGEST * jkr.zero_load_radius())
+        return name, body.curve(body.fixed_grips_radius(), LARGEST * body.zero_load_radius())
     if _adheres_over_a_width(values):
         force, a_0 = values["adhesion_force"], values["zero_load_radius"]
         fitted = PowerLaw.sphere(radius, 3.0 * force * radius / a_0**3, force / (1.5 * pi * radius))
         return "JKR, same $F_A$ and $a_0$", fitted.curve(LEAST * a_0, LARGEST * a_0)
     if scene.interaction is None:
-        hertz = PowerLaw.sphere(radius, modulus)
-        return "Hertz", hertz.curve(0.0, hertz.radius_at(max(float(curve.displacement.max()), 0.0)))
+        return name, body.curve(0.0, body.radius_at(max(float(run.curve.displacement.max()), 0.0)))
     return None

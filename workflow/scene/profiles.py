@@ -380,17 +380,18 @@ def fault_of(r: tuple[float, ...], z: tuple[float, ...]) -> str | None:
     """What keeps the points (r, z) from being a profile, with what would do; None where nothing does."""
     if len(r) != len(z):
         return f"must have as many radii as heights, not {len(r)} and {len(z)}"
+    steps = [after - before for before, after in pairwise(r)]
+    if min(steps) <= 0.0:
+        at = next(at for at, step in enumerate(steps) if step <= 0.0)
+        return f"radii must increase; {r[at + 1]:.6g} follows {r[at]:.6g}"
     if r[0] != 0.0:
         return f"must begin at the radius 0, not {r[0]:.6g}: the transform needs the slope from the axis on"
-    steps = [after - before for before, after in pairwise(r)]
     middle = statistics.median(steps)
     for at, step in enumerate(steps):
-        if step <= 0.0:
-            return f"radii must increase; {r[at + 1]:.6g} follows {r[at]:.6g}"
         if step > GAP * middle:
             return (
-                f"has a gap from r = {r[at]:.6g} to {r[at + 1]:.6g}: beside a median step of {middle:.4g}, the longest "
-                f"that is read over is {GAP * middle:.4g}; measure there, or interpolate"
+                f"has a gap from r = {r[at]:.6g} to {r[at + 1]:.6g}: the median step is {middle:.4g}, and "
+                f"the largest gap allowed {GAP * middle:.4g}; add points there"
             )
     if max(z) == z[0] > min(z):
         return "has heights that decrease from the axis: heights are measured from the plane; change the sign"

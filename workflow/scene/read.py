@@ -45,6 +45,7 @@ MEANING = {
 """What the messages of tomllib, by their beginnings, mean to a person."""
 
 HINTS = {
+    "Unclosed inline table": 'a number with a unit stands in quotes, "10 mm"',
     "Invalid value": "write text in quotes, a number with digits around its point, true and false in lower case",
     "Expected newline or end of document": (
         'write one key = value per line, decimals after a point, a number with a unit in quotes, "10 mm"'

@@ -46,7 +46,9 @@ def answer_in(folder: Path, name: str) -> Answer | None:
     document = document_in(folder / RUNS / name)
     if not document:
         return None
-    return Answer(document["status"], document.get("error", {}).get("message", ""), f"{RUNS}/{name}")
+    named = ", ".join(warning["name"] for warning in document["warnings"])
+    reason = document["error"]["message"] if document["status"] == "failed" else f"warnings: {named}" if named else ""
+    return Answer(document["status"], reason, f"{RUNS}/{name}")
 
 
 def write_table(
