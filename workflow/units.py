@@ -75,7 +75,7 @@ def scale_of(value: float, unit: str) -> tuple[float, str]:
 
     Of a compound unit (N/m) the first has the prefix, as in mN/m.
     """
-    power = math.floor(math.log10(abs(value)) / 3.0 + EXACT) if value and math.isfinite(value) else 0
+    power = math.floor(math.log10(abs(float(f"{value:.6g}"))) / 3.0 + EXACT) if value and math.isfinite(value) else 0
     power = power if 0 <= power - FIRST < len(PREFIXES) and unit in WITH_PREFIX else 0
     return 1000.0**-power, PREFIXES[power - FIRST].strip() + unit
 
@@ -180,7 +180,9 @@ class Quantity:
 
     def __str__(self) -> str:
         """`402.7 ± 1.3 MPa`: the uncertainty with two digits, units of SI with a prefix."""
-        factor, unit = (1.0, self.unit) if self.si is None else scale_of(self.value or self.uncertainty, self.unit)
+        factor, unit = (
+            (1.0, self.unit) if self.si is None else scale_of(max(abs(self.value), self.uncertainty), self.unit)
+        )
         if 0.0 <= self.uncertainty <= EXACTNESS * abs(self.value):
             number = f"{self.value * factor:.5g}"
         else:
