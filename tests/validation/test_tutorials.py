@@ -54,14 +54,18 @@ def within(found: Quantity, exact: float) -> bool:
 
 
 def shell(block: str) -> str:
-    """What the commands of a block print, without the picture below the numbers."""
+    """What the commands of a block print, with narrower columns and without the picture below the numbers."""
     printed = []
     for line in block.splitlines():
         if line.startswith("contact1d "):
             done = CliRunner().invoke(app, shlex.split(line)[1:])
             assert done.exit_code == 0, f"{line}: {done.output}"
             printed += takewhile(str.strip, done.stdout.splitlines())
-    return "\n".join(line for line in printed if line.startswith(" "))
+    rows = [re.split(" {2,}", line.strip()) for line in printed if line.startswith(" ")]
+    widths = [
+        max(len(row[i]) for row in rows if i < len(row) - 1) + 2 for i in range(max(map(len, rows), default=1) - 1)
+    ]
+    return "\n".join("".join(map(str.ljust, row, [*widths[: len(row) - 1], 0])) for row in rows)
 
 
 def python(block: str, page: str, names: dict[str, Any]) -> str:
