@@ -38,7 +38,7 @@ lint: $(READY) ## check style, types and the direction of imports
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-docs: $(READY) ## build the site in site/; the tutorial runs on the way
+docs: $(READY) ## build the site in site/
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[docs]'
 	@$(BIN)/python -m mkdocs build --strict --quiet
 

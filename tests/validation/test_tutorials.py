@@ -1,0 +1,226 @@
+"""The tutorials run as they stand, page by page, show what their runs print, and agree with the closed forms.
+
+What limits the tolerances: the uncertainty that each run states; exponents also by the rounding of the page.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+import re
+import shlex
+from contextlib import redirect_stdout
+from io import StringIO
+from itertools import takewhile
+from pathlib import Path
+from typing import Any
+
+import pytest
+from matplotlib import pyplot
+from scipy.optimize import brentq
+from typer.testing import CliRunner
+
+from contact1d import Quantity, Run, read_scene
+from contact1d.workflow.cli.app import app
+from tests.pages import ROOT, require_shown
+
+FOLDER = "docs/tutorials"
+PAGES = ("hertz", "adhesion", "friction", "profile", "sweep", "particle_model")
+PART = re.compile(r"^```(\w*)\n(.*?)^```$|^<!-- (\w+): begin -->$", re.MULTILINE | re.DOTALL)
+LINES = {
+    ("hertz", "run"): r"displacement|radius|p\(0\)|stiffness",
+    ("hertz", "eight"): r"displacement|contact radius|p\(0\)",
+    ("particle_model", "run"): r"reduction|adhesion force|critical|zero-load",
+    ("particle_model", "units"): "1 [LF]U",
+}
+"""Which lines of an output a page shows; absent: all."""
+MOST_LINES, LARGEST_FIGURE = 90, 80_000
+"""Of a page with what its runs print; bytes of its figure."""
+STEEL, GLASS, RUBBER = (210e9, 0.3), (70e9, 0.22), (2e6, 0.5)
+"""E [Pa] and ν, as `contact1d materials` has them."""
+ROUNDED = 5e-4
+"""Half of the last decimal of an exponent on a page."""
+
+
+def modulus(*bodies: tuple[float, float]) -> float:
+    """E* [Pa]."""
+    return 1.0 / sum((1.0 - nu**2) / e for e, nu in bodies)
+
+
+def within(found: Quantity, exact: float) -> bool:
+    """Whether a result is the closed form up to its own uncertainty, which is below the default tolerance."""
+    return abs(found.value - exact) <= found.uncertainty <= 1e-3 * abs(exact)
+
+
+def shell(block: str) -> str:
+    """What the commands of a block print, with narrower columns and without the picture below the numbers."""
+    printed = []
+    for line in block.splitlines():
+        if line.startswith("contact1d "):
+            done = CliRunner().invoke(app, shlex.split(line)[1:])
+            assert done.exit_code == 0, f"{line}: {done.output}"
+            printed += takewhile(str.strip, done.stdout.splitlines())
+    rows = [re.split(" {2,}", line.strip()) for line in printed if line.startswith(" ")]
+    widths = [
+        max(len(row[i]) for row in rows if i < len(row) - 1) + 2 for i in range(max(map(len, rows), default=1) - 1)
+    ]
+    return "\n".join("".join(map(str.ljust, row, [*widths[: len(row) - 1], 0])) for row in rows)
+
+
+def python(block: str, page: str, names: dict[str, Any]) -> str:
+    out = StringIO()
+    with redirect_stdout(out):
+        exec(compile(block, page, "exec"), names)
+    return out.getvalue().rstrip()
+
+
+@pytest.fixture
+def names(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """A page's Python names, after its blocks have run in an empty folder beside lammps_inputs."""
+    name = request.param
+    page, text = f"{FOLDER}/{name}.md", (ROOT / FOLDER / f"{name}.md").read_text(encoding="utf-8")
+    (tmp_path / "lammps_inputs").symlink_to(ROOT / "lammps_inputs")
+    here = tmp_path / "tutorials"
+    here.mkdir()
+    monkeypatch.chdir(here)
+    found: dict[str, Any] = {"__name__": "__main__"}
+    printed, shown = "", []
+    for language, block, marker in PART.findall(text):
+        if marker:
+            chosen = [line.rstrip() for line in printed.splitlines() if re.search(LINES.get((name, marker), ""), line)]
+            require_shown(page, marker, "\n".join(["```text", *chosen, "```", ""]))
+            shown.append(marker)
+        elif language == "":
+            printed = shell(block)
+        elif language == "python":
+            printed = python(block, page, found)
+    assert shown
+    pyplot.close("all")
+    return found
+
+
+def one_page(name: str) -> pytest.MarkDecorator:
+    return pytest.mark.parametrize("names", [name], indirect=True)
+
+
+@one_page("hertz")
+def test_hertz(names: dict[str, Any]) -> None:
+    third = names["contact1d"].run(
+        read_scene(Path("ball.toml"), ['experiment.force="166.1 N"']), "ball_1GPa", figures=False
+    )
+    for force, folder in ((0.1, "ball"), (0.8, "ball_800mN"), (166.1, "ball_1GPa")):
+        results = names["contact1d"].load_run(folder).results
+        a = (0.75 * force * 0.01 / modulus(STEEL, GLASS)) ** (1.0 / 3.0)
+        assert within(results.contact_radius, a)
+        assert within(results.displacement, a**2 / 0.01)
+        assert within(results.central_pressure, 1.5 * force / (math.pi * a**2))
+        assert within(results.contact_stiffness, 2.0 * a * modulus(STEEL, GLASS))
+    assert names["exponent"] == pytest.approx(1.5, abs=ROUNDED)
+    assert third.results.central_pressure.value == pytest.approx(1e9, rel=1e-3)
+    require_figure("hertz")
+
+
+@one_page("adhesion")
+def test_adhesion(names: dict[str, Any]) -> None:
+    results, W, R = names["run"].results, 0.08, 2e-3
+    E = modulus(RUBBER, GLASS)
+    a_0 = (4.5 * math.pi * W * R**2 / E) ** (1.0 / 3.0)
+
+    def energy(a: float) -> float:
+        """Elastic energy less πa²W on the curve of equilibria."""
+        d = a**2 / R - math.sqrt(2.0 * math.pi * a * W / E)
+        return E * (a * d**2 - 2.0 * a**3 * d / (3.0 * R) + a**5 / (5.0 * R**2)) - math.pi * a**2 * W
+
+    separation = energy(a_0 / 36.0 ** (1.0 / 3.0)) - energy(a_0)  # fixed grips: dd/da = 0
+    assert within(results.adhesion_force, 1.5 * math.pi * W * R)
+    assert within(results.zero_load_radius, a_0)
+    assert within(results.critical_radius, a_0 / 4.0 ** (1.0 / 3.0))
+    assert within(results.work_of_separation, separation)
+    assert separation / (math.pi * a_0**2 * W) == pytest.approx(0.637, abs=ROUNDED)
+    (tabor,) = (check for check in names["run"].document["validity"] if check["name"] == "tabor")
+    assert tabor["value"] == pytest.approx((R * W**2 / (E**2 * 0.3e-9**3)) ** (1.0 / 3.0), rel=1e-9)
+    stiff: Run = names["stiff"]
+    assert within(stiff.results.adhesion_force, 1.5 * math.pi * W * R)
+    ratio = modulus((2.4e9, 0.38), GLASS) / E
+    assert within(stiff.results.zero_load_radius, a_0 / ratio ** (1.0 / 3.0))
+    require_figure("adhesion")
+
+
+@one_page("friction")
+def test_friction(names: dict[str, Any]) -> None:
+    results, E, N, mu, u_m = names["run"].results, modulus(STEEL, STEEL), 10.0, 0.3, 0.2e-6
+    a = (0.75 * N * 0.01 / E) ** (1.0 / 3.0)
+    u = mu * 1.7 / 1.4 * a**2 / 0.01  # E*/G* = (2 − ν)/2(1 − ν) of equal bodies
+    s = math.sqrt(1.0 - u_m / u)
+    assert within(results.contact_radius, a)
+    assert within(results.tangential_force, mu * N * (1.0 - s**3))
+    assert within(results.stick_radius, s * a)
+    cycle = 0.8 * mu * N * u * (1.0 - s) ** 3 * (1.0 + 3.0 * s + s**2)
+    assert within(results.dissipated_energy_per_cycle, cycle)
+    assert names["W"] == pytest.approx(cycle, rel=1e-9)
+    sliding = names["sliding"].results
+    assert within(sliding.tangential_force, mu * N)
+    assert within(sliding.dissipated_energy_per_cycle, 4.0 * mu * N * (0.4e-6 - 0.8 * u))
+    require_figure("friction")
+
+
+@one_page("profile")
+def test_profile(names: dict[str, Any]) -> None:
+    """F and d over a by Ejike (1981), inverted for the load; what the interpolation of the file changes is below it."""
+    E, R, b = modulus(STEEL, GLASS), 5e-3, 50e-6
+
+    def load(a: float) -> float:
+        return 2.0 * E / (3.0 * R) * (2.0 * a**2 + b**2) * math.sqrt(a**2 - b**2)
+
+    worn = names["worn"].results
+    a = brentq(lambda a: load(a) - 5.0, b, 10.0 * b, xtol=1e-15)
+    assert within(worn.contact_radius, a)
+    assert within(worn.displacement, a / R * math.sqrt(a**2 - b**2))
+    assert within(worn.contact_stiffness, 2.0 * E * a)
+    assert within(names["new"].results.contact_radius, (0.75 * 5.0 * R / E) ** (1.0 / 3.0))
+    assert "peak_pressure" not in worn
+    with (ROOT / "lammps_inputs" / "profiles" / "worn_ball.csv").open(encoding="utf-8") as file:
+        rows = list(csv.reader(line for line in file if line[0].isdigit()))
+    for r, z in ((float(r), float(z)) for r, z in rows):
+        assert z == pytest.approx(max(r**2 - 50.0**2, 0.0) / 10.0, abs=0.005 + 1e-9)  # nm, two decimals
+    require_figure("profile")
+
+
+@one_page("sweep")
+def test_sweep(names: dict[str, Any]) -> None:
+    table = names["table"]
+    assert names["sweep"].counts == {"done": len(table)} == {"done": 8}
+    for row in table.itertuples(index=False, name=None):
+        point = dict(zip(table.columns, row, strict=True))
+        R, W = point["bodies.profile.radius"], point["adhesion.work_of_adhesion"]
+        force = Quantity(point["adhesion_force"], point["adhesion_force_uncertainty"], "N")
+        assert within(force, 1.5 * math.pi * W * R)
+    assert (names["slope_R"], names["slope_W"]) == pytest.approx((4.0 / 3.0, 5.0 / 3.0), abs=ROUNDED)
+    assert Path("report.html").stat().st_size > 100_000
+    require_figure("sweep", "sweep/adhesion_force.png")
+
+
+@one_page("particle_model")
+def test_particle_model(names: dict[str, Any]) -> None:
+    ratio = names["wide"].results.adhesion_force.value / names["run"].results.adhesion_force.value
+    assert ratio == pytest.approx(2.0, rel=0.01)
+    require_figure("particle_model")
+
+
+def require_figure(name: str, drawn: str | None = None) -> None:
+    """The page's blocks drew its figure, and the page has it: written with WRITE_DOCS=1."""
+    made, shown = Path(drawn or f"{name}.png"), ROOT / FOLDER / f"{name}.png"
+    assert 10_000 < made.stat().st_size < LARGEST_FIGURE
+    if os.environ.get("WRITE_DOCS"):
+        shown.write_bytes(made.read_bytes())
+    assert shown.is_file()
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_has_one_figure_and_is_short(name: str) -> None:
+    text = (ROOT / FOLDER / f"{name}.md").read_text(encoding="utf-8")
+    assert re.findall(r"!\[[^\]]+\]\((.*?)\)", text) == [f"{name}.png"]
+    assert len(text.splitlines()) <= MOST_LINES
+    if name != "particle_model":
+        assert not re.search(r"\b[LF]U\b", text)
