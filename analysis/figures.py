@@ -53,7 +53,7 @@ SHOWN_SHARE = 0.01
 """Pressure over the largest one that a figure still shows."""
 VIEW = 2.0
 """Largest contact radius that is shown, over itself: beyond is only the tail of an attraction."""
-CLEAR = 10.0
+CLEAR = 8.0
 """Largest pressure that is shown over that at a third of the contact radius: a pole at the edge would hide the rest."""
 BEYOND = 1.15
 """Half-width of what is shown over that of the contact."""

@@ -92,6 +92,6 @@ def test_figures_come_in_the_format_that_is_asked_for(tmp_path: Path, form: str)
     for name in figures:
         assert (found.folder / name).read_bytes().startswith(FORMATS[form])
     figure = found.plot("pressure_3d")
-    assert figure.get_suptitle() == "Steel on glass\n(reduction mdr)"
+    assert figure.get_suptitle() == "Steel on glass"
     assert figure.axes[0].get_ylabel() == "pressure (MPa)"
     assert math.isclose(found.results.peak_pressure.value, found.body_pressures["final"].pressure[0], rel_tol=1e-9)

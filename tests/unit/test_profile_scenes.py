@@ -21,7 +21,7 @@ from tests.shapes import SHAPES
 FAULTS: dict[str, tuple[list[float], list[float], str]] = {
     "gap": (
         [0, 1, 2, 3, 13.5], [0, 1, 2, 3, 4],
-        "has a gap from r = 3 to 13.5: beside a median step of 1, the longest that is read over is 10; measure there",
+        "has a gap from r = 3 to 13.5: the median step is 1, and the largest gap allowed 10; add points there",
     ),
     "not from 0": ([0.5, 1, 2, 3], [0, 1, 2, 3], "must begin at the radius 0, not 0.5: the transform needs the slope"),
     "standing": ([0, 1, 2, 2, 3], [0, 1, 2, 3, 4], "radii must increase; 2 follows 2"),
