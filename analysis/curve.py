@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.analysis.named import Named
 from contact1d.analysis.pressure import Array, Profile
 from contact1d.files import whole
 
@@ -20,7 +21,7 @@ CHUNK = 100_000
 """Rows that are turned into text at a time."""
 
 
-class Columns(dict[str, Any]):
+class Columns(Named[Any]):
     """The columns of a table by name, arrays (n,); each is also an attribute: `curve.force` is `curve["force"]`.
 
     Attributes:
@@ -33,17 +34,6 @@ class Columns(dict[str, Any]):
         self.units = dict(units or {})
         if len(lengths := {len(column) for column in self.values()}) > 1:
             raise ValueError(f"the columns of a table must be equally long, got lengths {sorted(lengths)}")
-
-    def __getattr__(self, name: str) -> Any:
-        """Return the column of that name."""
-        try:
-            return self[name]
-        except KeyError:
-            raise AttributeError(f"no column {name}; there are {', '.join(self)}") from None
-
-    def __dir__(self) -> list[str]:
-        """Names for completion, those of the columns among them."""
-        return [*super().__dir__(), *self]
 
 
 PROFILE_COLUMNS = tuple(field.name for field in fields(Profile))

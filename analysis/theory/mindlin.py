@@ -46,7 +46,7 @@ def _ways(places: Sequence[float]) -> list[list[float]]:
 def mindlin_path(places: Sequence[float], normal_force: float, friction: float, sliding: float) -> list[float]:
     """Return F_x [force] at each of the positions, reached one after the other from 0 under a constant load.
 
-    From turn to turn T(u_1) + 2 T((u_2 - u_1)/2) + ..., T the force of the first way out.
+    From turn to turn T(u_1) + 2 T((u_2 - u_1)/2) + ..., T the force of the initial loading.
 
     Args:
         places: u [length].

@@ -86,7 +86,7 @@ def test_force_unit_follows_from_a_given_stiffness(lower: str, reduction: str, s
     given = E_STAR | {"length_unit": 1e-9}
     scene = scene_from_dict(tables(given, PATH, lower=lower, reduction=reduction, spacing=0.5))
     scales = scales_of(scene, {})
-    assert scales is not None
+    assert scales.known
     assert scales.length == 1e-9
     assert 0.83 * scales.force / 1e-9 / scene.chains == pytest.approx(share * 200e9 * 0.5e-9, rel=ROUND_OFF)
     assert (scales.length_uncertainty, scales.force_uncertainty) == (0.0, 0.0)
@@ -109,7 +109,7 @@ def test_tangential_springs_are_the_materials_share_unless_given() -> None:
 
 
 def test_no_material_has_no_scales() -> None:
-    assert scales_of(scene_from_dict(tables()), {}) is None
+    assert not scales_of(scene_from_dict(tables()), {}).known
 
 
 # Units by JKR.
@@ -159,7 +159,7 @@ def test_uncertainty_of_the_units_is_that_of_the_run() -> None:
 @pytest.mark.parametrize("found", [{}, {"adhesion_force": 1.0}, {"zero_load_radius": 1.0}])
 def test_path_without_f_a_or_a_0_has_no_units(found: dict[str, float]) -> None:
     scene = scene_from_dict(tables(E_STAR | {"surface_energy": 1.0}, PATH))
-    assert scales_of(scene, {name: Quantity(value, 0.0, "") for name, value in found.items()}) is None
+    assert not scales_of(scene, {name: Quantity(value, 0.0, "") for name, value in found.items()}).known
 
 
 # One quantity in SI.

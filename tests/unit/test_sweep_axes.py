@@ -49,10 +49,10 @@ def test_an_axis_may_have_a_unit() -> None:
     span = {"key": RADIUS, "from": "1 µm", "to": "100 µm", "steps": 2, "scale": "log"}
     (radii,) = read_sweep(plane(span)).axes
     assert radii.values == ("1 µm", "1e-05 m", "100 µm")
-    assert radii.numbers() == ((1e-6, 1e-5, 1e-4), "m")
-    assert Axis(RADIUS, ("1 µm", "1 mm")).numbers() == ((1e-6, 1e-3), "m")
-    assert Axis(RADIUS, ("1 µm", "1 N")).numbers() == ((), "")
-    assert Axis("bodies.lower", ("particles", "rigid_plane")).numbers() == ((), "")
+    assert radii.numbers == ((1e-6, 1e-5, 1e-4), "m")
+    assert Axis(RADIUS, ("1 µm", "1 mm")).numbers == ((1e-6, 1e-3), "m")
+    assert Axis(RADIUS, ("1 µm", "1 N")).numbers == ((), "")
+    assert Axis("bodies.lower", ("particles", "rigid_plane")).numbers == ((), "")
 
 
 @pytest.mark.parametrize(

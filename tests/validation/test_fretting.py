@@ -208,6 +208,6 @@ def test_the_page_shows_what_its_scene_prints_and_a_loop(tmp_path: Path) -> None
         (PAGE.parent.parent / "shear.png").write_bytes(drawn.read_bytes())
     assert (PAGE.parent.parent / "shear.png").is_file()
     columns = run(TEXT, figures=False).friction
-    force = columns["tangential_force"][columns["tangential_displacement"] == 0.0][-2:]  # on the way back, and there
+    force = columns["tangential_force"][columns["tangential_displacement"] == 0.0][-2:]  # backward, then forward
     assert force[0] == pytest.approx(-force[1], rel=1e-3)
     assert force[1] > 0.1 * columns["tangential_force"].max()  # open: a straight line would go through 0

@@ -157,7 +157,7 @@ def judge(bench: Bench) -> Findings:
     figures = figure("F_x and stick radius over the way, beside Cattaneo and Mindlin", *_panels(runs))
     worst = max(abs(check.value - check.reference.value) for check in rows[:4])
     finding = (
-        f"For {len(CASES)} pairs of bodies, equal and unequal, in both reductions, F_x on the way out and back, the "
+        f"For {len(CASES)} pairs of bodies, equal and unequal, in both reductions, F_x forward and back, the "
         f"stick radius and the dissipated energy are those of Cattaneo and Mindlin within {share(worst)}: "
         f"{agreement(rows[:4])}. The error of F_x is of the order {number(rows[-1].value, 3)} in the spacing. A load "
         f"that is raised while some particles slip has Mindlin's and Deresiewicz's force: {agreement(rows[4:-1])}."

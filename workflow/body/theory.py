@@ -164,20 +164,20 @@ def applying(case: Case) -> list[ClosedForm]:
     return [form for form in FORMS if form.applies(case)]
 
 
-def theory(scene: Scene, quantities: Mapping[str, Quantity], scales: Scales | None) -> list[dict[str, Any]]:
+def theory(scene: Scene, quantities: Mapping[str, Quantity], scales: Scales) -> list[dict[str, Any]]:
     """What results.json has as `theory`; `quantities` of the body, `scales` of the run."""
     case = Case(scene, quantities)
     return [_entry(form, case, scales) for form in applying(case)]
 
 
-def _entry(form: ClosedForm, case: Case, scales: Scales | None) -> dict[str, Any]:
+def _entry(form: ClosedForm, case: Case, scales: Scales) -> dict[str, Any]:
     values: dict[str, Any] = {}
     for name, value in form.values(case).items():
         if name not in case.quantities:
             continue
         ours = case.quantities[name]
         values[name] = {"value": value, "unit": ours.unit}
-        if scales is not None:
+        if scales.known:
             si = scales.in_si(value, 0.0, ours.unit)
             values[name]["si"] = {"value": si["value"], "unit": si["unit"]}
         values[name]["deviation"] = ours.value / value - 1.0 if value else None

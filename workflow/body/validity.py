@@ -61,7 +61,7 @@ class Check:
         return {"name": self.name, "quantity": self.quantity, "value": value, "limit": self.limit, "holds": self.holds}
 
 
-def checks(scene: Scene, found: Mapping[str, Quantity], scales: Scales | None) -> list[Check]:
+def checks(scene: Scene, found: Mapping[str, Quantity], scales: Scales) -> list[Check]:
     """The checks that a run allows; `found`: its results, of the body."""
     radius = max((found[name].value for name in RADII if name in found), default=0.0)
     if not is_of_a_body(scene) or radius <= 0.0:
@@ -112,13 +112,13 @@ def _half_width(case: Case, radius: float) -> Iterator[Check]:
     yield Check("body_size", "a/half-width", share, HALF_WIDTH, share <= HALF_WIDTH, message)
 
 
-def _tabor(case: Case, scales: Scales | None) -> Iterator[Check]:
+def _tabor(case: Case, scales: Scales) -> Iterator[Check]:
     adhesion, radius = case.scene.adhesion, case.radius
     if adhesion is None or radius is None or not adhesion.work:
         return
     if adhesion.range is not None:
         reach, assumed = adhesion.range, ""
-    elif scales is not None:
+    elif scales.known:
         reach, assumed = RANGE / scales.length, f" with an assumed range of the attraction of {prefixed(RANGE, 'm')}"
     else:
         return
@@ -133,11 +133,11 @@ def _tabor(case: Case, scales: Scales | None) -> Iterator[Check]:
     yield Check("tabor", "Tabor parameter", theory.tabor, JKR_TABOR, holds, message)
 
 
-def _yield(case: Case, scales: Scales | None) -> Iterator[Check]:
+def _yield(case: Case, scales: Scales) -> Iterator[Check]:
     material = case.scene.material
     bodies = () if material is None else (material.upper, material.lower)
     strength = min((body.yield_strength or math.inf for body in bodies if body is not None), default=math.inf)
-    if math.isinf(strength) or scales is None:
+    if math.isinf(strength) or not scales.known:
         return
     pressures = [case.quantities[name].value for name in PRESSURES if name in case.quantities]
     if case.radius is not None and "preload" in case.quantities:

@@ -44,7 +44,7 @@ RETURN_SHARE = 0.5
 SAME = 1e-12
 """Displacements nearer than this over the spacing are the same: a force that still differs has jumped."""
 APPROACH_STEPS = 20
-"""Timesteps of a move on the way to a displacement that is held for a time."""
+"""Timesteps of a move towards a displacement that is held for a time."""
 ROWS_BEYOND_PEAK = 3
 """Load steps beyond the force maximum that its polynomials need."""
 HALVINGS_AT_PEAK = 2

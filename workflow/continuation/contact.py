@@ -86,7 +86,7 @@ class Contact:
 
         Args:
             rows: of one kind.
-            trusted: whether each state is a result; one on the way to equilibrium is not.
+            trusted: whether each state is a result; one before equilibrium is not.
             moving: whether the motion itself is examined, so that nothing has to be at rest.
 
         Raises:

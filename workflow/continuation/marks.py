@@ -84,7 +84,7 @@ def _separation(branch: Trace, peak: Peak, scene: Scene, settings: Settings) -> 
 def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: float) -> Reading:
     """a at the force maximum; where that may be another one by `missed` [FU], the radius may be the one there.
 
-    A jump comes anywhere on the way to the next load step, and may leave nothing to read a radius off.
+    A jump comes anywhere before the next load step, and may leave nothing to read a radius off.
     """
     d, i = branch.displacement, peak.index
     jumps = i + 1 < len(d) and peak.position == d[i]

@@ -19,7 +19,7 @@ COARSE, FINE, ZOOMS = 100, 30, 2
 """Positions of the first look for the force maximum and of each closer one, and how many of these: none where the
 curve is smooth, since the model's forces are straight between the points of a grid, whose corners would move a top."""
 BETWEEN = 8
-"""Positions on the way to a force."""
+"""Intermediate positions towards a force."""
 LAST = 1e-9
 """How much of the path from F = 0 to the limit point is left before it."""
 MOST_NUMBERS = 400_000

@@ -14,7 +14,7 @@ from contact1d.workflow.continuation.trust import DigitsError, TensionError
 from contact1d.workflow.model.settings import Settings
 
 LOADING_STEPS = 24
-"""Load steps on the way to a force that is known beforehand."""
+"""Load steps up to a force that is known beforehand."""
 CURVE_STEPS, CURVE_NUMBERS = 100, 200_000
 """Increments of a load where rows are steps of one run, for the sake of its curve: they cost some tens of microseconds
 each. Of long chains there are so many that positions times load steps stay below the second."""

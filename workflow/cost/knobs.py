@@ -20,7 +20,7 @@ from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.scene.experiments import Span
 from contact1d.workflow.scene.tables import TIMED
-from contact1d.workflow.units import UNKNOWN, Quantity
+from contact1d.workflow.units import Quantity
 
 BASE_TOLERANCE = 1e-5
 """Of the base of a quasistatic scene; in time the scene's own is taken, since time costs by the tolerance."""
@@ -161,7 +161,7 @@ def _knob(
 ) -> Knob:
     """A setting of these values, the first of them the scene's own; others than `keys` are changed from the base."""
     keys = keys or (lambda value: (*base_keys(scene), f"{name}={value!r}"))
-    words = (scales_of(scene, {}) or UNKNOWN).in_words
+    words = scales_of(scene, {}).in_words
     levels = tuple(Level(h(value), words(f"{value:g}{unit}"), keys(value)) for value in dict.fromkeys(values))
     return Knob(name, levels[0].value, levels[0].h, levels, **more)
 

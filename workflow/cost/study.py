@@ -36,7 +36,7 @@ from contact1d.workflow.model.settings import Settings, SettingsError, settings_
 from contact1d.workflow.runs.report import versions
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import Scene, SceneError
-from contact1d.workflow.units import UNKNOWN, Quantity
+from contact1d.workflow.units import Quantity
 
 REFERENCE_TOLERANCES = (1e-7, 1e-6, 1e-5)
 """Tried in turn, without time where the scene is at rest without it."""
@@ -218,4 +218,4 @@ def choice(scene: Scene, settings: Settings) -> str:
         if not scene.experiment.way_is_given:
             step = settings.smooth_step if settings.is_smooth else settings.displacement_step
             words.append(f"increment {step:.3g} LU")
-    return (scales_of(scene, {}) or UNKNOWN).in_words(", ".join(words))
+    return scales_of(scene, {}).in_words(", ".join(words))

@@ -128,7 +128,7 @@ class Deck:
         """in.lammps: the head and a loop for each phase.
 
         Raises:
-            DeckError: if fragments and variables do not fit together, in the head or on the way through the phases.
+            DeckError: if fragments and variables do not fit together, in the head or in a phase.
         """
         passed = [phase for phase in phases if phase.rows]
         self._check_schedule(passed)

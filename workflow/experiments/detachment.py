@@ -33,7 +33,7 @@ from contact1d.workflow.scene import PullOff, Scene
 from contact1d.workflow.units import FORCE
 
 INCREMENTS = 400
-"""Load steps on the way to the force maximum of the predictor: the load is a staircase of so many steps."""
+"""Load steps up to the force maximum of the predictor: the load is a staircase of so many steps."""
 FEWEST_STEPS = 10
 MOST_TENSION = 10.0
 """Tension over that of the predictor at which the bodies must have separated."""

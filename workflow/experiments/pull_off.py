@@ -25,7 +25,7 @@ from contact1d.workflow.scene import PullOff, Scene
 from contact1d.workflow.units import FORCE, LENGTH
 
 UNLOADING_STEPS, TENSIONS = 80, 12
-"""Load steps of a planned way back, and tensions of a planned pull, where a run would search."""
+"""Load steps of a planned unloading, and tensions of a planned pull, where a run would search."""
 LARGEST_TENSION = 1.2
 """The last of these tensions over the expected pull-off force."""
 

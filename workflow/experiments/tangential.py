@@ -102,9 +102,7 @@ class TangentialExperiment(Scripted):
         }  # fmt: skip
         assert isinstance(scene.experiment, Tangential)
         if scene.experiment.cycles:
-            start = max(
-                i for i, row in enumerate(rows[1:]) if row.direction < rows[i].direction
-            )  # of the last way back
+            start = max(i for i, row in enumerate(rows[1:]) if row.direction < rows[i].direction)  # of the last cycle
             found["dissipated_energy_per_cycle"] = _energy(rows[start:], 4.0 * lost)  # its path is 4 u_m
         return found
 
@@ -259,7 +257,7 @@ def stretches(way: Sequence[tuple[Stop, bool]]) -> list[tuple[str, list[tuple[St
 
 
 def _moved_too_far(scene: Scene, settings: Settings) -> float:
-    """By how much [FU] tangential forces may be off: of particles that begin to touch between two rows on the way."""
+    """By how much [FU] tangential forces may be off: of particles that begin to touch between two load steps."""
     assert isinstance(scene.experiment, Tangential)
     chain, most, error = _chain(scene, settings), _most(settings), 0.0
     for before, stop in pairwise(stops(scene.experiment, chain)):

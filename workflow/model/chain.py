@@ -153,7 +153,7 @@ MOST_PARTICLES = 10_000_000
 MOST_PARTNERS = 5_000
 """Opposite particles within reach of one."""
 MOST_ROWS = 1_000_000
-"""Rows of a prescribed path, those on the way between two positions included."""
+"""Load steps of a prescribed path, intermediate ones included."""
 PER_PARTICLE = 2_000.0
 """Memory for each particle of a body, its opposite and both anchors [bytes]: measured, 2 GB at 10⁶."""
 PER_PAIR = 8.0

@@ -25,7 +25,7 @@ SWING = 0.5
 DRAG_STEP = 0.2
 """Time step over the time m/γ in which drag stops a particle, or the plate: explicit integration needs it below 1."""
 CALM_STEP = 0.4
-"""The same on the way to rest, whose drag is no part of what is examined."""
+"""The same during relaxation, whose drag is no part of what is examined."""
 CREEPING = 10.0
 """Drag over the critical one from which on the relaxation of a plate is too slow."""
 NOISE_BIAS = 0.4

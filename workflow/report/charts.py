@@ -27,6 +27,8 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#9
 """Okabe and Ito's, which the colour-blind can tell apart."""
 WIDER = 1.15
 """Half-width of a picture over that of what carries."""
+GAP = (math.nan, math.nan)
+"""Between the parts of a line."""
 DASHES = {"-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
 """Plotly's names of line styles."""
 INDEX = re.compile(r"(?<!\w)([^\W\d_][\u0303\u0304]?)_(\w{1,3})(?!\w)")
@@ -66,15 +68,20 @@ def charts_of(drawn: Mapping[str, tuple[Mapping[str, Figure], Scales]]) -> list[
                 ends = np.asarray([axes.get_xlim(), axes.get_ylim()]) * np.transpose([factors])
                 made.setdefault("ends", []).append(ends)
                 for trace in _traces(axes, factors, scales.in_words):
-                    if len(drawn) > 1 and trace["line"]["color"] not in (THEORY, BLACK):
-                        trace["line"]["color"] = trace["fillcolor"] = colour
-                        bars = trace.get("opacity") == 1.0
-                        trace["name"] = f"{run}, {trace['name']}" if trace["name"] else run * bars
-                        trace |= {"opacity": 0.5} if bars else {}
+                    own = _of_a_run(trace, run, colour) if len(drawn) > 1 else trace
                     named = [other["name"] for other in made["data"]]
-                    trace["showlegend"] = bool(trace["name"]) and trace["name"] not in named
-                    made["data"].append(trace)
+                    made["data"].append(own | {"showlegend": bool(own["name"]) and own["name"] not in named})
     return [_with_prefixes(made) for made in found.values()]
+
+
+def _of_a_run(trace: Chart, run: str, colour: str) -> Chart:
+    """The trace among those of other runs: in the colour and name of its run; theories as they are."""
+    if trace["line"]["color"] in (THEORY, BLACK):
+        return trace
+    bars = trace.get("opacity") == 1.0
+    name = f"{run}, {trace['name']}" if trace["name"] else run * bars
+    own = {"name": name, "line": trace["line"] | {"color": colour}, "fillcolor": colour}
+    return trace | own | ({"opacity": 0.5} if bars else {})
 
 
 def _chart(
@@ -92,9 +99,8 @@ def _chart(
     }  # fmt: skip
     for key, values in zip("xy", ends, strict=False):
         low, high = float(np.min(values)), float(np.max(values))
-        layout[f"{key}axis"]["range"] = (
-            [low, high] if key == "x" else [low - 0.06 * (high - low), high + 0.06 * (high - low)]
-        )
+        margin = 0.06 * (high - low) * (key == "y")
+        layout[f"{key}axis"]["range"] = [low - margin, high + margin]
     return {"title": heading, "data": data, "layout": layout}
 
 
@@ -109,9 +115,8 @@ def _traces(axes: Axes, factors: Sequence[float], in_words: Callable[[str], str]
     }
 
     def trace(artist: Any, transform: Any, parts: Iterable[Any], colour: Any, **more: Any) -> dict[str, Any]:
-        points = np.concatenate([np.vstack([np.asarray(part, dtype=float), [math.nan, math.nan]]) for part in parts])[
-            :-1
-        ]
+        separate = [np.vstack([np.asarray(part, dtype=float), GAP]) for part in parts]
+        points = np.concatenate(separate)[:-1]
         for column, (limits, within) in enumerate(
             ((axes.get_xlim(), axes.get_yaxis_transform()), (axes.get_ylim(), axes.get_xaxis_transform()))
         ):
@@ -137,9 +142,8 @@ def _traces(axes: Axes, factors: Sequence[float], in_words: Callable[[str], str]
             fill = {"fillcolor": to_hex(colour), "opacity": one.get_alpha() or 1.0}
             yield trace(one, one.get_transform(), [path.vertices for path in one.get_paths()], colour) | filled | fill
     for line in axes.lines:
-        mode = "+".join(
-            ["lines"] * (line.get_linestyle() in DASHES) + ["markers"] * (line.get_marker() in ("o", ".", "x"))
-        )
+        marks = ["markers"] * (line.get_marker() in ("o", ".", "x"))
+        mode = "+".join(["lines"] * (line.get_linestyle() in DASHES) + marks)
         points = np.column_stack(line.get_data())
         if mode and points.size:
             made = trace(line, line.get_transform(), [points], line.get_color(), mode=mode)

@@ -124,7 +124,7 @@ def _attempt(scene: Scene) -> None:
 def _in_si(scene: Scene, edit: SceneEdit) -> SceneEdit:
     """The edit with units, "33.3pN", where LU and FU are known: a scene file that has them takes no plain number."""
     material, scales = scene.material, scales_of(scene, {})
-    if scales is None or material is None or material.length_unit is None or material.force_unit is None:
+    if not scales.known or material is None or material.length_unit is None or material.force_unit is None:
         return edit
     tables = scene.model_dump(by_alias=True, exclude_none=True)
     units = {".".join(map(str, place.keys)): place.unit.name for place in places(Scene, tables)}

@@ -34,7 +34,7 @@ from contact1d.workflow.runs.refinement import Refined, refined
 from contact1d.workflow.runs.report import FILES, FORMATS, failure, results, tables_of, write_results, write_tables
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import AnyScene, Scene, read_scene, scene_to_toml
-from contact1d.workflow.units import UNKNOWN, Scales
+from contact1d.workflow.units import Scales
 
 AnyPath = str | PathLike[str]
 LOCK = ".running"
@@ -109,10 +109,9 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
         context.left = last.outcome
         require_results(scene, last.outcome)
     except (EngineError, UntrustedError) as error:
-        words = (scales or UNKNOWN).in_words
-        error.message = words(error.message)
+        error.message = scales.in_words(error.message)
         if isinstance(error, UntrustedError):
-            error.advice = words(error.advice)
+            error.advice = scales.in_words(error.advice)
         facts = {
             "message": error.message if isinstance(error, EngineError) else str(error),
             "phase": context.phase,
@@ -139,7 +138,7 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
 @contextmanager
 def _in_its_units(scene: Scene) -> Iterator[Scales]:
     """The scales of a scene; an error of its numbers has these in SI where they are known."""
-    scales = scales_of(scene, {}) or UNKNOWN
+    scales = scales_of(scene, {})
     try:
         yield scales
     except SettingsError as error:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from contact1d.analysis import figures, plots
 from contact1d.analysis.atoms import atoms
 from contact1d.analysis.curve import DETACHMENTS, PROFILE_COLUMNS, SAMPLE_TABLE, Columns, by_state, read_columns
+from contact1d.analysis.named import Named
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.shear import stick_margin
 from contact1d.analysis.theory.indenters import Ellipsoid, PowerLaw
@@ -33,7 +34,7 @@ from contact1d.workflow.runs.report import FILES, in_units, quantities_in, read_
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
 from contact1d.workflow.scene.tables import SPHERES
-from contact1d.workflow.units import FORCE, LENGTH, MASS, UNKNOWN, Quantity, Scales
+from contact1d.workflow.units import FORCE, LENGTH, MASS, Quantity, Scales
 
 if TYPE_CHECKING:
     from ase import Atoms
@@ -54,23 +55,12 @@ CURVE_COLUMNS = ("displacement", "force", "contact_radius", "branch")
 """Without which a table is no curve."""
 
 
-class Results(dict[str, Quantity]):
+class Results(Named[Quantity]):
     """Quantities by name; each is also an attribute: `results.adhesion_force` is `results["adhesion_force"]`."""
 
     def __missing__(self, name: str) -> Quantity:
         """Say what there is. Raises KeyError."""
         raise KeyError(f"the run has no {name}, it has {', '.join(self) or 'no results'}")
-
-    def __getattr__(self, name: str) -> Quantity:
-        """Return the quantity of that name."""
-        try:
-            return self[name]
-        except KeyError as error:
-            raise AttributeError(error.args[0]) from None
-
-    def __dir__(self) -> list[str]:
-        """Names for completion, those of the quantities among them."""
-        return [*super().__dir__(), *self]
 
     def __repr__(self) -> str:
         """One line for each quantity."""
@@ -158,7 +148,7 @@ class Run:
         """What LU, FU and, where it is known, MU stand for in SI."""
         units = self.document.get("units")
         if units is None:
-            return scales_of(self.scene, {}) or UNKNOWN
+            return scales_of(self.scene, {})
         entries = (units[unit] for unit in (LENGTH, FORCE))
         (length, off_length), (force, off_force) = ((entry["value"], entry["uncertainty"]) for entry in entries)
         mass = units.get(MASS)

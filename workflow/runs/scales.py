@@ -12,17 +12,17 @@ import math
 from collections.abc import Mapping
 
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.units import Quantity, Scales
+from contact1d.workflow.units import UNKNOWN, Quantity, Scales
 
 UNIT_FIXING_RESULTS = ("adhesion_force", "zero_load_radius")
 """What a run must have found, and not as 0, for `surface_energy` to fix its units."""
 
 
-def scales_of(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales | None:
-    """The scales of a run; None without a [material], and where results that determine them (`unfound`) are missing."""
+def scales_of(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales:
+    """The scales of a run; UNKNOWN without a [material], and where results that fix them (`unfound`) are missing."""
     material = scene.material
     if material is None or unfound(scene, quantities):
-        return None
+        return UNKNOWN
     if material.surface_energy is not None:
         force, radius = (quantities[name] for name in UNIT_FIXING_RESULTS)
         curvature = scene.bodies.profile.curvature_radius

@@ -235,7 +235,7 @@ def _with_legs(data: dict[str, Any]) -> None:
 def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Problem]:
     """Set each of `overrides` in `data`, in order; returns the problems of invalid ones.
 
-    A value is read as TOML, or as bare text where it is not TOML; tables on the way that are absent are made.
+    A value is read as TOML, or as bare text where it is not TOML; absent tables are made.
     """
     form = "write table.key=value, for example experiment.method=dynamic"
     problems = []

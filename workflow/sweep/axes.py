@@ -12,6 +12,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
+from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -40,6 +41,7 @@ class Axis:
     key: str
     values: tuple[Any, ...]
 
+    @cached_property
     def numbers(self) -> tuple[tuple[float, ...], str]:
         """The values as numbers, of texts in SI, and the one unit of these; no numbers where some are words."""
         if all(map(_is_number, self.values)):
@@ -184,7 +186,7 @@ def _axis(table: Any, where: str, problems: list[Problem]) -> Axis:
 def _span(table: Mapping[str, Any], where: str, problems: list[Problem]) -> tuple[Any, ...]:
     """steps + 1 values, both ends exact; whole numbers where all of a linear span are; texts where the ends are."""
     given, steps, scale = (table["from"], table["to"]), table["steps"], table.get("scale", "linear")
-    ends, unit = Axis("", given).numbers()
+    ends, unit = Axis("", given).numbers
     texts = all(isinstance(end, str) for end in given)
     must = (
         'must have the same dimension at both ends, such as "500 µm" and "5 mm"' if texts else "must be a finite number"

@@ -87,7 +87,7 @@ def sweep_figures(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> It
 def lines_of(folder: Path, plan: SweepPlan, names: Iterable[str]) -> dict[str, list[Line]]:
     """The lines of each result in a sweep's table that has a value anywhere; seeds say the same of closed forms."""
     along, others = roles_of(plan)
-    words = {} if along.numbers()[0] else {str(cell(value)): place for place, value in enumerate(along.values)}
+    words = {} if along.numbers[0] else {str(cell(value)): place for place, value in enumerate(along.values)}
     known: dict[str, Any] = {name: defaultdict(lambda: defaultdict(list)) for name in names}
     said: dict[str, Any] = defaultdict(lambda: defaultdict(lambda: defaultdict(dict)))
     for row in read_table(folder):
@@ -143,7 +143,7 @@ def sweep_figure(plan: SweepPlan, name: str, unit: str, lines: Sequence[Line]) -
     words = name.replace("_", " ")
     describe(
         axis,
-        title_of(plan, along, along.numbers()[1]),
+        title_of(plan, along, along.numbers[1]),
         words if unit == "1" else f"{words} ({unit})",
         plan.title,
         zero=False,
@@ -181,7 +181,7 @@ def roles_of(plan: SweepPlan) -> tuple[Axis, list[Axis]]:
 
 def label_in(axis: Axis, cell: str) -> str:
     """A value of an axis in a legend: with its unit and a prefix where it has one."""
-    unit = axis.numbers()[1]
+    unit = axis.numbers[1]
     return str(Quantity(float(cell), 0.0, unit)) if unit else cell
 
 
@@ -200,7 +200,7 @@ def title_of(plan: SweepPlan, axis: Axis, unit: str) -> str:
 
 def _scale(axis: Axes, along: Axis, values: Array) -> None:
     """Logarithmic where the values span much; words under their places."""
-    numbers, _ = along.numbers()
+    numbers, _ = along.numbers
     if not numbers:
         axis.set_xticks(range(len(along.values)), [str(cell(value)) for value in along.values])
     elif min(numbers) > 0.0 and max(numbers) >= LOG_SPAN * min(numbers):

@@ -65,9 +65,9 @@ def write_table(
         The quantities: names, and the unit of each.
     """
     units = _units(folder, (answer for _, answer in rows()))
-    headers = {axis.key: unit for axis in axes if (unit := axis.numbers()[1])}
+    headers = {axis.key: unit for axis in axes if (unit := axis.numbers[1])}
     headers |= {column: unit for name in units for column in columns_of(name) if (unit := units[name]) not in SI}
-    known = [dict(zip(axis.values, axis.numbers()[0], strict=False)) if axis.key in headers else {} for axis in axes]
+    known = [dict(zip(map(str, axis.values), axis.numbers[0], strict=False)) for axis in axes]
     with whole(folder / TABLE) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         names = [*(axis.key for axis in axes), *FIXED, *(column for name in units for column in columns_of(name))]
@@ -75,11 +75,8 @@ def write_table(
         for values, answer in rows():
             found = quantities_of(folder, answer.run)
             own = (found[name] if name in found and found[name].unit == units[name] else None for name in units)
-            cells = [part for one in own for part in (("", "") if one is None else (one.value, one.uncertainty))]
-            places = (
-                cell(numbers.get(value, value)) if numbers else cell(value)
-                for value, numbers in zip(values, known, strict=True)
-            )
+            cells = [number for one in own for number in (("", "") if one is None else (one.value, one.uncertainty))]
+            places = (cell(numbers.get(str(value), value)) for value, numbers in zip(values, known, strict=True))
             writer.writerow([*places, answer.status, answer.reason, answer.run, *cells])
     return units
 

@@ -1,0 +1,26 @@
+"""A dictionary whose values are attributes, too, for the eye and for completion."""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+T = TypeVar("T")
+
+
+class Named(dict[str, T]):
+    """Values by name: `curve.force` is `curve["force"]`."""
+
+    def __missing__(self, name: str) -> T:
+        """Say what there is. Raises KeyError."""
+        raise KeyError(f"there is no {name}, there are {', '.join(self) or 'none'}")
+
+    def __getattr__(self, name: str) -> T:
+        """Return the value of that name."""
+        try:
+            return self[name]
+        except KeyError as error:
+            raise AttributeError(error.args[0]) from None
+
+    def __dir__(self) -> list[str]:
+        """Names for completion, those of the values among them."""
+        return [*super().__dir__(), *self]
