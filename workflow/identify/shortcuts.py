@@ -84,9 +84,9 @@ def punch(radius: str | float, **contact: Any) -> Contact:
 
 def profile(file: AnyPath | None = None, **contact: Any) -> Contact:
     """A measured profile from a CSV file, or from the lists `r` and `z`; further arguments as of `sphere`."""
-    given = {"file": None if file is None else str(file)}
-    given |= {key: contact.pop(key) for key in ("r", "z", "scale") if key in contact}
-    return _contact(contact, kind="table", **{key: value for key, value in given.items() if value is not None})
+    given = {key: contact.pop(key) for key in ("r", "z", "scale") if key in contact}
+    given |= {} if file is None else {"file": str(file)}
+    return _contact(contact, kind="table", **given)
 
 
 def _contact(contact: dict[str, Any], **profile: Any) -> Contact:
