@@ -84,7 +84,7 @@ def punch(radius: str | float, **contact: Any) -> Contact:
 
 def profile(file: AnyPath | None = None, **contact: Any) -> Contact:
     """A measured profile from a CSV file, or from the lists `r` and `z`; further arguments as of `sphere`."""
-    given = {key: contact.pop(key) for key in ("r", "z", "scale") if key in contact}
+    given: dict[str, Any] = {key: contact.pop(key) for key in ("r", "z", "scale") if key in contact}
     given |= {} if file is None else {"file": str(file)}
     return _contact(contact, kind="table", **given)
 
