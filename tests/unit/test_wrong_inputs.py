@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 from contact1d.workflow.cli.app import app
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.scene import Scene, SceneError, read_scene
-from contact1d.workflow.units import Scales
+from contact1d.workflow.units import UNKNOWN, Scales
 from tests.scenes import STEEL_ON_GLASS
 
 SHIPPED = (Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "pull_off.toml").read_text(encoding="utf-8")
@@ -210,7 +210,7 @@ def test_ways_that_are_tried_have_units_where_the_scene_has(wrong: str) -> None:
 def doubts(scene: Scene) -> str:
     """What is told of a scene when it runs."""
     known = scene.material is not None and scene.material.length_unit is not None
-    return "; ".join(implausible(scene, Scales(1.0, 1.0) if known else None, {}).values())
+    return "; ".join(implausible(scene, Scales(1.0, 1.0) if known else UNKNOWN, {}).values())
 
 
 @pytest.mark.parametrize("case", DOUBTFUL, ids=lambda case: case.sentence[:70])
