@@ -196,7 +196,7 @@ def rounded(value: float, uncertainty: float) -> str:
         return f"{value:.10g} ± {uncertainty:.2g}"
     place, power = 1 - math.floor(math.log10(uncertainty)), 0
     if -3 <= place < 0:
-        return f"{round(value, place):.0f} ± {round(uncertainty, place):.0f}"
+        return f"{round(value, place) + 0.0:.0f} ± {round(uncertainty, place):.0f}"
     if not 0 <= place <= 10:
         power = math.floor(math.log10(max(abs(value), uncertainty)))
     value, uncertainty = (round(number / 10.0**power, place + power) + 0.0 for number in (value, uncertainty))
