@@ -79,7 +79,7 @@ def test_a_plate_that_swings_past_a_tooth_has_no_pull_off_force(tmp_path: Path) 
     """With little drag it loses pairs that it would have held: F_A is uncertain by more than half, and not reported."""
     case = PairCase("tooth", 1.5, shaped("parabola", 9, reach(1.5)), 9, 3.0 * TENSION, 1e-2, dynamic=True)
     tables = {"title": "tooth"} | case.scene()
-    drag = 0.1 * settings_for(scene_from_dict(tables)).damping
+    drag = 0.1 * settings_for(scene_from_dict(tables)).motion.damping
     tables |= {"damping": {"coefficient": drag}, "plate": {"damping": 0.0}}
     with pytest.raises(RunError, match=r"not reported.*adhesion_force \(± 0\.05"):
         run(scene_from_dict(tables), tmp_path / "run", figures=False)

@@ -62,13 +62,17 @@ def test_settings_follow_their_share(share: str, field: str, make_scene: MakeSce
 def test_a_longer_share_of_the_law_or_of_the_pressure_shortens(make_scene: MakeScene) -> None:
     scene = make_scene(bodies={"particles": "auto"})
     usual = settings_for(scene)
-    assert settings_for(scene, calibration=replace(CALIBRATION, cutoff=10.0 * CALIBRATION.cutoff)).cutoff < usual.cutoff
     assert (
-        settings_for(scene, calibration=replace(CALIBRATION, chain=100.0 * CALIBRATION.chain)).particles
+        settings_for(scene, calibration=replace(CALIBRATION, cutoff=10.0 * CALIBRATION.cutoff)).forces.cutoff
+        < usual.cutoff
+    )
+    assert (
+        settings_for(scene, calibration=replace(CALIBRATION, chain=100.0 * CALIBRATION.chain)).chains.upper
         < usual.particles
     )
     fine, rough = (
-        settings_for(scene, calibration=replace(CALIBRATION, table=f * CALIBRATION.table)).table for f in (1e-4, 1.0)
+        settings_for(scene, calibration=replace(CALIBRATION, table=f * CALIBRATION.table)).forces.table
+        for f in (1e-4, 1.0)
     )
     assert fine is not None
     assert rough is not None

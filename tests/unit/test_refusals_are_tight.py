@@ -180,16 +180,16 @@ def test_the_stiffest_motion_of_two_chains_is_no_stiffer_than_what_the_timestep_
         tables["neighbours"] = {"stiffness": neighbours}
     scene = scene_from_dict(tables | {"horizontal": {}})
     settings = settings_for(scene)
-    assert settings.law is not None
-    pair = float(settings.law.stiffness(settings.closest))
+    assert settings.forces.law is not None
+    pair = float(settings.forces.law.stiffness(settings.forces.closest))
     between = 2.0 * np.eye(30) - np.eye(30, k=1) - np.eye(30, k=-1)
     chain = 1.1 * np.eye(30) + (neighbours or 0.0) * between
     matrix = np.block(
         [[chain + pair * np.eye(30), -pair * np.eye(30)], [-pair * np.eye(30), chain + pair * np.eye(30)]]
     )
     stiffest = float(np.linalg.eigvalsh(matrix).max())
-    assert stiffest <= stiffest_of(scene, settings.law, settings.closest, 0.0) <= 1.3 * stiffest
-    assert stiffest_of(scene, settings.law, settings.closest, 5.0) >= stiffest + 5.0 - 1e-9
+    assert stiffest <= stiffest_of(scene, settings.forces.law, settings.forces.closest, 0.0) <= 1.3 * stiffest
+    assert stiffest_of(scene, settings.forces.law, settings.forces.closest, 5.0) >= stiffest + 5.0 - 1e-9
 
 
 def test_a_large_system_is_told_with_how_many_each_particle_feels() -> None:
@@ -208,7 +208,7 @@ def test_a_rigid_plane_has_neither_snaps_nor_teeth() -> None:
     ):
         settings = settings_for(scene_from_dict(tables))
         assert settings.snaps == snaps
-        if snaps or settings.law is None:
+        if snaps or settings.forces.law is None:
             assert settings.is_toothed == snaps
 
 

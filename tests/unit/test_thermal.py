@@ -42,8 +42,8 @@ def test_a_motion_forgets_its_start_before_it_is_sampled() -> None:
     scene = scene_from_dict(noisy | {"noise": {"temperature": 1e-4, "seed": 1}})
     settings = settings_for(scene)
     settling, _ = planned_samples(settings, 1.0)
-    time = sum(getattr(row, "steps", 0) for row in settling.rows) * settings.time_step
-    assert time >= 8.0 * settings.settle_time
+    time = sum(getattr(row, "steps", 0) for row in settling.rows) * settings.motion.time_step
+    assert time >= 8.0 * settings.motion.settle_time
 
 
 def test_a_mean_force_that_misses_its_load_is_no_result(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -83,9 +83,13 @@ def implied(scene: Scene, settings: Settings, found: Mapping[str, Quantity]) -> 
         settings: that it ran with.
         found: its results; without a radius there is no W.
     """
-    if settings.law is None or settings.law.attraction is None:
+    if settings.forces.law is None or settings.forces.law.attraction is None:
         return {}
-    work, spacing, reduction = _work(settings.law, scene.bodies.spacing), scene.bodies.spacing, scene.bodies.reduction
+    work, spacing, reduction = (
+        _work(settings.forces.law, scene.bodies.spacing),
+        scene.bodies.spacing,
+        scene.bodies.reduction,
+    )
     line = product(1.0 / spacing, FORCE, (work, 1.0))
     quantities = {"separation_energy": line}
     radius, curvature = first_of(found, "zero_load_radius", "contact_radius"), scene.bodies.profile.curvature_radius

@@ -105,7 +105,7 @@ class Branch(ContactBranch):
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
         """Hold a displacement [LU] for a time [TU], in which particles move."""
         assert displacement is not None
-        moves = max(1, math.ceil(abs(displacement) / self.settings.longest_move - SAME))
+        moves = max(1, math.ceil(abs(displacement) / self.settings.increments.longest_move - SAME))
         rows = [DisplaceInTime(displacement * i / moves, APPROACH_STEPS) for i in range(1, moves)]
         count, steps = self.settings.rows_of(duration)
         held = [DisplaceInTime(displacement, 1), *[DisplaceInTime(displacement, steps)] * count]
@@ -159,7 +159,7 @@ class Branch(ContactBranch):
                 'force. Give a force outside the jump, use kind = "path" for the full curve, or stiffer '
                 "springs or a longer range, which avoid the instability"
             )
-        if falls and states[-1].smallest_distance > self.settings.cutoff:
+        if falls and states[-1].smallest_distance > self.settings.forces.cutoff:
             raise TensionError(force, max(-state.force for state in states))
         if len(states) > MOST_INCREMENTS:
             raise UntrustedError(
@@ -226,7 +226,7 @@ class Branch(ContactBranch):
         Returns the increment [LU].
         """
         estimate, zero = self.settings.estimate, self._last
-        tooth = estimate.tooth(self.settings.particles)
+        tooth = estimate.tooth(self.settings.chains.upper)
         densest = (zero.displacement - estimate.rest + float(estimate.gap[-1])) / MOST_TEETH
         step = min(self.settings.increment(), max(tooth, densest) / PER_TOOTH)
         through = tooth < math.inf or self.context.through
@@ -294,7 +294,7 @@ class Branch(ContactBranch):
     def _back_to(self, displacement: float) -> None:
         """Visit a displacement [LU]; bodies come nearer by RETURN_SHARE of their particles' distance at a time."""
         while displacement - self._last.displacement > (longest := RETURN_SHARE * self._last.smallest_distance):
-            longest = max(longest, self.settings.longest_move)
+            longest = max(longest, self.settings.increments.longest_move)
             self.falling.append(self._at(min(self._last.displacement + longest, displacement)))
         self.falling.append(self._at(displacement))
 
@@ -312,7 +312,7 @@ class Branch(ContactBranch):
                 step *= self._growth(state, largest)
             gone = abs(state.force) < SEPARATION_SHARE * largest
             if (gone and self._still_held(state) < SEPARATION_SHARE * largest) or (
-                state.smallest_distance > self.settings.cutoff
+                state.smallest_distance > self.settings.forces.cutoff
             ):
                 return
         raise UntrustedError(f"the bodies did not separate within {MOST_INCREMENTS} increments of the displacement")
@@ -323,7 +323,7 @@ class Branch(ContactBranch):
 
     def _unloading_step(self, start: float) -> float:
         """First increment [LU] of an unloading: soft springs follow the attraction farther than they were pressed."""
-        way = start - self.settings.rest + float(self.settings.estimate.gap[-1])
+        way = start - self.settings.forces.rest + float(self.settings.estimate.gap[-1])
         return max(self.settings.increment(), way / SEPARATION_ROWS)
 
     def _still_held(self, state: State) -> float:

@@ -149,7 +149,7 @@ def force_errors(
     scene: Scene, settings: Settings, states: Sequence[State], marked: Collection[State], left: float | None = None
 ) -> ForceErrors:
     """Of states, by their displacement between `marked` ones; `left`: in place of residual forces [FU]."""
-    count = float(settings.particles)
+    count = float(settings.chains.upper)
     law = {state.displacement: law_error(scene, settings, state) for state in marked}
     own = {
         state.displacement: law[state.displacement] + (count * state.residual if left is None else left)

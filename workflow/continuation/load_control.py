@@ -172,7 +172,7 @@ class LoadBranch(ContactBranch):
             with LoadBranch(self.context) as other:
                 other.begin("loading")
                 larger = force * (1.0 + FIRST_RISE * self.settings.tolerance)
-                other.reach(larger, max(-larger, self.settings.force_scale))
+                other.reach(larger, max(-larger, self.settings.forces.scale))
         except ThroughError:
             raise
         except UntrustedError:

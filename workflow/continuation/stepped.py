@@ -65,7 +65,7 @@ class SteppedBranch(Branch):
         self.visit(np.clip(before.position + step * np.asarray((0.5, -0.5, 0.25, -0.25)), end, zero))
         self.visit([min(max(self.peak.position, end), zero)])
         self.missed = abs(self.peak.smooth - before.smooth)
-        digits = self._last.residual * self.settings.particles
+        digits = self._last.residual * self.settings.chains.upper
         if self.peak.smooth <= digits:
             raise DigitsError(
                 f"the force maximum, about {self.scale:.2g} FU, is too small compared with {digits:.2g} FU, the "
@@ -80,4 +80,4 @@ class SteppedBranch(Branch):
 
 def curve_steps(settings: Settings) -> int:
     """Increments of a load's curve where load steps are steps of one run."""
-    return max(LOADING_STEPS, min(CURVE_STEPS, CURVE_NUMBERS // settings.particles))
+    return max(LOADING_STEPS, min(CURVE_STEPS, CURVE_NUMBERS // settings.chains.upper))

@@ -125,10 +125,10 @@ def ramp_of(scene: Scene, settings: Settings) -> Ramp:
     """The staircase: its steps are a share of the tension, or more where they would have too few timesteps."""
     estimate, spring = settings.estimate, spring_of(scene, settings)
     rate, tension = rate_of(scene, settings), settings.estimate.pull_off_force()
-    wanted = max(tension / INCREMENTS, rate * FEWEST_STEPS * settings.time_step)
-    steps = max(FEWEST_STEPS, round(wanted / rate / settings.time_step))
+    wanted = max(tension / INCREMENTS, rate * FEWEST_STEPS * settings.motion.time_step)
+    steps = max(FEWEST_STEPS, round(wanted / rate / settings.motion.time_step))
     slack = estimate.displacement_at(0.0) if spring else 0.0
-    ramp = Ramp(steps, rate * steps * settings.time_step, 0, spring, slack)
+    ramp = Ramp(steps, rate * steps * settings.motion.time_step, 0, spring, slack)
     barrier, none = estimate.parted(BARRIER), estimate.parted(GONE)
     far = spring * (barrier - none) + math.sqrt(2.0 * spring * _needed(scene, settings))
     return replace(ramp, most=ramp.until(MOST_TENSION * tension + 2.0 * far, barrier))
@@ -221,7 +221,7 @@ def _pull(context: RunContext, stop: threading.Event) -> Detachment:
         contact.write_state()
         contact.finish()
     held = max((n for n, one in enumerate(states[settled:], 1) if one.displacement > barrier), default=0)
-    time = (held + 0.5) * ramp.steps * settings.time_step
+    time = (held + 0.5) * ramp.steps * settings.motion.time_step
     force = ramp.tension(held + 0.5, barrier)
     return Detachment(scene.noise.seed, force, time, contact.phases, tuple(states), settled + held - 1)
 
@@ -289,9 +289,9 @@ def _load(row: Row, state: State) -> float:
 def _lagging(scene: Scene, settings: Settings) -> dict[str, str]:
     """A warning where the load grows by a share of F_A while drag Γ lets F_A move the plate by the range: Γ b Ḟ/F_A."""
     assert isinstance(scene.experiment, PullOff)
-    assert settings.law is not None
+    assert settings.forces.law is not None
     drag, largest = settings.drag(), settings.estimate.pull_off_force()
-    share = drag * settings.law.longest_range * rate_of(scene, settings) / largest**2
+    share = drag * settings.forces.law.longest_range * rate_of(scene, settings) / largest**2
     if share < LAGGING:
         return {}
     key, unit = ("velocity", "LU/TU") if scene.experiment.velocity else ("loading_rate", "FU/TU")

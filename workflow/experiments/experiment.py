@@ -101,7 +101,7 @@ class Scripted(Experiment):
             branch.finish()
         trace = branch.trace()
         # An error of the force changes its sign within half a range: it moves where a flat maximum lies.
-        length = 0.5 * settings.law.longest_range if settings.law is not None else 0.0
+        length = 0.5 * settings.forces.law.longest_range if settings.forces.law is not None else 0.0
         left = branch.unbalance if isinstance(branch, LoadBranch) else None
         errors = force_errors(scene, settings, branch.states, branch.marked.values(), left)
         results = budgeted(case, trace, errors, length=length)

@@ -57,4 +57,4 @@ class HoldExperiment(Scripted):
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
         """The time of each state, from when LAMMPS began."""
-        return replace(outcome, columns={"time": tuple(one.step * settings.time_step for one in outcome.states)})
+        return replace(outcome, columns={"time": tuple(one.step * settings.motion.time_step for one in outcome.states)})

@@ -52,7 +52,7 @@ class LoadExperiment(Scripted):
         """Press to the force, or pull to it from F = 0."""
         assert isinstance(scene.experiment, Load)
         force = scene.experiment.force
-        scale = max(abs(force), branch.settings.force_scale)
+        scale = max(abs(force), branch.settings.forces.scale)
         branch.begin("loading")
         branch.reach(max(force, 0.0), scale)
         if force < 0.0:
@@ -88,7 +88,7 @@ class LoadExperiment(Scripted):
         if scene.noise is not None:
             return planned_samples(settings, force)
         if scene.method == "dynamic":
-            scale = max(abs(force), settings.force_scale)
+            scale = max(abs(force), settings.forces.scale)
             return (held_phase("loading", scene, settings, (force,), scale, state=True),)
         steps = curve_steps(settings) if scene.is_stepped else LOADING_STEPS
         rows = displacements(np.linspace(0.0, settings.largest_displacement, steps + 1).tolist())

@@ -70,7 +70,7 @@ def motion_of(scene: Scene, settings: Settings, start: State, states: list[State
     assert scene.cantilever is not None
     assert isinstance(scene.experiment, Slide)
     normal_force = scene.experiment.normal_force
-    legs, every = settings.drive, [start, *states]
+    legs, every = settings.motion.drive, [start, *states]
     numbers = [i for i, leg in enumerate(legs) for _ in range(leg.rows)][: len(states)]
     span = np.asarray([legs[i].row_time for i in numbers])
     velocity = np.asarray([legs[i].velocity for i in numbers])
@@ -94,14 +94,14 @@ def motion_of(scene: Scene, settings: Settings, start: State, states: list[State
     speeds = read("vcm(plate,x)") ** 2 + read("vcm(plate,z)") ** 2
     force = summed_over_rows(1, pull)
     kinetic = summed_over_rows(2, read("cantilever_kinetic"))
-    bodies, mass, c = scene.bodies, settings.plate_mass, settings.plate_damping
-    drag = settings.particles * settings.damping
+    bodies, mass, c = scene.bodies, settings.motion.plate_mass, settings.motion.plate_damping
+    drag = settings.chains.upper * settings.motion.damping
     heavy, heavy_plate = inertia(scene, settings)
     squares = 2.0 / heavy_plate * summed_over_rows(3, 0.5 * heavy_plate * speeds)
-    momentum = settings.particles * bodies.mass * read("vcm(upper,x)") + mass * read("vcm(plate,x)")
+    momentum = settings.chains.upper * bodies.mass * read("vcm(upper,x)") + mass * read("vcm(plate,x)")
     carried, gone = np.diff(read("xcm(upper,x)")), np.diff(place)
     lag = velocity * span - carried, velocity * span - gone
-    lost = 2.0 * settings.damping / heavy * kinetic + c * squares
+    lost = 2.0 * settings.motion.damping / heavy * kinetic + c * squares
     told = [name for name in HEAT if name in states[-1].motion]
     if told:
         lost = np.asarray([sum(state.motion[name] for name in told) for state in states])

@@ -120,7 +120,7 @@ def _means(settings: Settings, states: list[State]) -> dict[str, tuple[float, ..
     return {
         "displacement": tuple(one.displacement for one in states),
         "force": tuple(one.force for one in states),
-        "force_standard_error": tuple(one.residual * settings.particles / CERTAIN for one in states),
+        "force_standard_error": tuple(one.residual * settings.chains.upper / CERTAIN for one in states),
     }
 
 
@@ -228,14 +228,14 @@ def way(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
     assert isinstance(experiment, Path)
     asked = experiment.places()
     if settings.snaps:
-        before = min(0.0, estimate.rest - estimate.joins - settings.longest_move)
+        before = min(0.0, estimate.rest - estimate.joins - settings.increments.longest_move)
     goals = [(value, True) for value in asked]
     if experiment.start == "contact":
         goals.insert(0, (max(asked), False))
     before = min(before, goals[0][0])
     found = [(before, False)] if before not in (0.0, goals[0][0]) else []
     for value, one in goals:
-        longest = settings.longest_move if value > before else _longest_drop(settings)
+        longest = settings.increments.longest_move if value > before else _longest_drop(settings)
         moves = max(1, math.ceil(abs(value - before) / longest - ROUND_OFF))
         found += [(before + (value - before) * i / moves, False) for i in range(1, moves)]
         found.append((value, one))
@@ -252,9 +252,11 @@ def _longest_drop(settings: Settings) -> float:
     With |G″| of the ratio of the stiffnesses over the range b, and a loop as wide as some of that ratio times b,
     h = √(8 tolerance) b leaves a share of `tolerance` of the loop.
     """
-    if settings.law is None or settings.is_smooth:
+    if settings.forces.law is None or settings.is_smooth:
         return math.inf
-    return min(settings.longest_move, math.sqrt(EARLINESS * settings.tolerance) * settings.law.longest_range)
+    return min(
+        settings.increments.longest_move, math.sqrt(EARLINESS * settings.tolerance) * settings.forces.law.longest_range
+    )
 
 
 def _rows(scene: Scene, settings: Settings, positions: Sequence[tuple[float, bool]]) -> tuple[Row, ...]:
@@ -262,11 +264,11 @@ def _rows(scene: Scene, settings: Settings, positions: Sequence[tuple[float, boo
         return thermal_rows(settings, _decay(scene, settings), positions)
     if scene.method == "quasistatic":
         return displacements([position for position, _ in positions])
-    steps = math.ceil(RELAXATIONS * _decay(scene, settings) / settings.time_step)
+    steps = math.ceil(RELAXATIONS * _decay(scene, settings) / settings.motion.time_step)
     return tuple(DisplaceInTime(float(position), steps) for position, _ in positions)
 
 
 def _decay(scene: Scene, settings: Settings) -> float:
     """Relaxation time [TU] of a particle on its bulk spring: 2m/γ, overdamped γ/k."""
     mass, stiffness = scene.bodies.mass, scene.bulk_stiffness
-    return max(2.0 * mass / settings.damping, settings.damping / stiffness)
+    return max(2.0 * mass / settings.motion.damping, settings.motion.damping / stiffness)

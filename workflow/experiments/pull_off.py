@@ -83,7 +83,7 @@ class PullOffExperiment(Scripted):
                 held_phase("unloading", scene, settings, (0.0,), max(preload, tension), state=True),
                 held_phase("pulling", scene, settings, tensions, tension, state=True),
             )
-        deepest, apart = settings.largest_displacement, settings.rest - settings.cutoff
+        deepest, apart = settings.largest_displacement, settings.forces.rest - settings.forces.cutoff
         if scene.is_stepped:
             apart = BEYOND_LIMIT * settings.estimate.parted(0.0)
         down = displacements(np.linspace(0.0, deepest, LOADING_STEPS + 1).tolist())

@@ -72,7 +72,7 @@ class SlideExperiment(Experiment):
             rested = loaded(contact, experiment.normal_force)
             states: list[State] = []
             try:
-                for number, leg in enumerate(settings.drive):
+                for number, leg in enumerate(settings.motion.drive):
                     contact.begin(leg_name(number), leg_begin(scene, number), expected_steps=leg.rows * leg.steps)
                     _drive(contact, experiment.normal_force, leg, states)
                 contact.write_state()
@@ -91,7 +91,7 @@ class SlideExperiment(Experiment):
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule, without the relaxation under the normal force."""
         assert isinstance(scene.experiment, Slide)
-        force, legs = scene.experiment.normal_force, settings.drive
+        force, legs = scene.experiment.normal_force, settings.motion.drive
         sliding = (
             Phase(
                 leg_name(i), (UnderLoad(force, leg.steps),) * leg.rows, state=i == len(legs) - 1,
@@ -168,7 +168,7 @@ def temperature(scene: Scene, settings: Settings, motion: Motion) -> dict[str, R
     time = motion.time[rows]
     length = (time[-1] - time[0]) / TEMPERATURE_BLOCKS
     squares, speeds = (friction.block_means(time, values[rows], length) for values in (motion.squares, motion.place))
-    blocks = settings.plate_mass * (squares - float(speeds.mean()) ** 2) / len(scene.plate.free)
+    blocks = settings.motion.plate_mass * (squares - float(speeds.mean()) ** 2) / len(scene.plate.free)
     return {"plate_temperature": Result(float(blocks.mean()), ENERGY, {"statistics": friction.interval(blocks)})}
 
 
@@ -227,8 +227,8 @@ def _swing(scene: Scene, settings: Settings, motion: Motion) -> str:
     if swing < motion.time[-1]:
         return ""
     return (
-        f". The plate of {settings.plate_mass:.3g} MU on its cantilever has a period of {swing:.3g} TU, and the drive "
-        f"moved for {motion.time[-1]:.3g} TU: a lower cantilever.velocity or a lighter plate.mass helps, too"
+        f". The plate of {settings.motion.plate_mass:.3g} MU on its cantilever has a period of {swing:.3g} TU, and the "
+        f"drive moved for {motion.time[-1]:.3g} TU: a lower cantilever.velocity or a lighter plate.mass helps, too"
     )
 
 
@@ -299,9 +299,9 @@ def loading_phase(scene: Scene, settings: Settings, force: float) -> Phase:
     """The planned application of the normal force."""
     if scene.noise is not None:
         return sampled_phase("loading", settings, force, SETTLING_LOOKS)
-    scale = abs(force) or settings.force_scale
+    scale = abs(force) or settings.forces.scale
     rows = [hold_row(scene, _calm(settings), force, scale, Start.KEPT)]
-    if settings.calm_damping != settings.damping:
+    if settings.motion.calm_damping != settings.motion.damping:
         rows.append(hold_row(scene, settings, force, scale, Start.HERE))
     return Phase("loading", tuple(rows))
 
@@ -319,25 +319,25 @@ def loaded(contact: Contact, force: float) -> State:
         contact.begin("loading", expected_steps=SETTLING_LOOKS * steps)
         return [contact.row(UnderLoad(force, steps), trusted=False) for _ in range(SETTLING_LOOKS)][-1]
     contact.begin("loading")
-    scale = abs(force) or settings.force_scale
+    scale = abs(force) or settings.forces.scale
     held = hold(contact, force, scale, settings=_calm(settings))
     if not held.held:
         raise PartedError(f"the contact does not sustain {force:.4g} FU: the bodies separate", "use a smaller tension")
     state = _settled_along(contact, force, scale, held.last)
-    if settings.calm_damping == settings.damping:
+    if settings.motion.calm_damping == settings.motion.damping:
         return state
     return contact.row(hold_row(scene, settings, force, scale, Start.HERE), trusted=False)
 
 
 def _calm(settings: Settings) -> Settings:
-    return replace(settings, damping=settings.calm_damping)
+    return replace(settings, motion=replace(settings.motion, damping=settings.motion.calm_damping))
 
 
 def _settled_along(contact: Contact, force: float, scale: float, state: State) -> State:
     """The state when the plate is at rest along x as well."""
     scene, settings = contact.scene, _calm(contact.settings)
     row = replace(hold_row(scene, settings, force, scale, Start.HERE), rest=0.0)
-    row = replace(row, steps=max(1, round(settings.settle_time / settings.time_step)))
+    row = replace(row, steps=max(1, round(settings.motion.settle_time / settings.motion.time_step)))
     near, drag = at_rest(settings, scale), settings.drag()
     for _ in range(MOST_HOLDS):
         friction = -scene.bodies.own_spacing * float(state.profile.shear.sum())
@@ -380,14 +380,14 @@ def _require_above(scene: Scene, settings: Settings, state: State) -> None:
     Raises:
         OffEndError, PartedError: where it is, with a suggested fix.
     """
-    if state.smallest_distance > settings.cutoff:
+    if state.smallest_distance > settings.forces.cutoff:
         raise PartedError(
             f"the bodies separated while sliding, with the plate at {state.plate_x:.4g} LU",
             "use a larger normal_force, or a smaller tensile one" + (", or a lower temperature" if scene.noise else ""),
         )
     if scene.bodies.periodic:
         return
-    end = 0.5 * settings.lower_particles * scene.bodies.spacing
+    end = 0.5 * settings.chains.lower * scene.bodies.spacing
     place = abs(state.plate_x + (scene.bodies.upper_offset or 0.0))
     half = contact_half_width(scene, settings)
     if place + half > end + scene.bodies.spacing:

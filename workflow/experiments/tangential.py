@@ -215,7 +215,7 @@ def _columns(rows: Sequence[Drawn]) -> dict[str, tuple[float, ...]]:
 
 def _chain(scene: Scene, settings: Settings) -> Sliders:
     """The sliders of the chain that runs."""
-    return sliders_of(scene, places(settings.particles, scene.bodies.spacing))
+    return sliders_of(scene, places(settings.chains.upper, scene.bodies.spacing))
 
 
 def passed(scene: Scene, chain: Sliders, settings: Settings, sparse: bool = False) -> list[tuple[Stop, bool]]:

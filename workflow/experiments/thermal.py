@@ -44,7 +44,7 @@ CERTAIN = 2.0
 
 def chunk_steps(settings: Settings) -> int:
     """Timesteps between two samples of a thermal contact."""
-    return max(FEWEST_STEPS, math.ceil(CHUNK * settings.settle_time / settings.time_step))
+    return max(FEWEST_STEPS, math.ceil(CHUNK * settings.motion.settle_time / settings.motion.time_step))
 
 
 def sampled_phase(name: str, settings: Settings, load: float, samples: int, state: bool = False) -> Phase:
@@ -76,7 +76,7 @@ def sample_columns(states: Sequence[State], loads: Sequence[float], settings: Se
     """
     radii = [state.radius for state in states]
     return {
-        "time": tuple(state.step * settings.time_step for state in states),
+        "time": tuple(state.step * settings.motion.time_step for state in states),
         "load": tuple(loads),
         "displacement": tuple(state.displacement for state in states),
         "force": tuple(state.force for state in states),
@@ -116,7 +116,7 @@ def thermal_load(context: RunContext) -> Outcome:
     scene, settings = context.deck.scene, context.deck.settings
     assert isinstance(scene.experiment, Load)
     load, steps = scene.experiment.force, chunk_steps(settings)
-    goal = settings.tolerance * max(settings.rest, abs(settings.largest_displacement))
+    goal = settings.tolerance * max(settings.forces.rest, abs(settings.largest_displacement))
     with context.contact() as contact:
         contact.begin("settling", expected_steps=SETTLING_LOOKS * steps)
         settling = _samples(contact, load, SETTLING_LOOKS)
@@ -150,7 +150,7 @@ def _samples(contact: Contact, load: float, count: int) -> list[State]:
     found = []
     for _ in range(count):
         state = contact.row(UnderLoad(load, chunk_steps(contact.settings)), trusted=False)
-        if contact.settings.law is not None and state.smallest_distance > contact.settings.cutoff:
+        if contact.settings.forces.law is not None and state.smallest_distance > contact.settings.forces.cutoff:
             raise UntrustedError(
                 "the bodies separated under the load and the noise: use a more compressive experiment.force or a lower "
                 "noise.temperature"
@@ -201,7 +201,7 @@ def thermal_rows(
         decay: time constant of a particle [TU].
         positions: displacement [LU], and whether the scene asks for it.
     """
-    look = max(chunk_steps(settings), math.ceil(APART * decay / settings.time_step))
+    look = max(chunk_steps(settings), math.ceil(APART * decay / settings.motion.time_step))
     return tuple(
         DisplaceInTime(float(position), look)
         for position, asked in positions

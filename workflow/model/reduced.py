@@ -248,8 +248,8 @@ def reduced(scene: Scene, settings: Settings) -> Reduced:
     """The model of the particles that run, as far as the contact reaches."""
     estimate, spacing = settings.estimate, settings.estimate.spacing
     deepest = settings.largest_displacement
-    phase = 0.5 if settings.particles % 2 == 0 else 0.0
-    half = 0.5 * (settings.particles - 1) * spacing
+    phase = 0.5 if settings.chains.upper % 2 == 0 else 0.0
+    half = 0.5 * (settings.chains.upper - 1) * spacing
     if isinstance(estimate, AdhesiveEstimate) and scene.adheres:
         reach = min(half, scene.bodies.reach)
         return AdheringCells(estimate, places_within(reach * (1.0 + 1e-12), spacing, phase), deepest)

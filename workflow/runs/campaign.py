@@ -93,7 +93,7 @@ def run(
 def _run(context: RunContext, started: float, figures: bool | str, refine: bool) -> Run:
     scene, settings, folder = context.deck.scene, context.deck.settings, context.folder
     scales = scales_of(scene, {})
-    if large := in_words(scene, settings.particles, settings.cutoff):
+    if large := in_words(scene, settings.chains.upper, settings.forces.cutoff):
         context.progress.note(large)
     for doubt in implausible(scene, scales, {}).values():
         context.progress.note(doubt)
