@@ -6,6 +6,7 @@
                      the model with these steps beside the model with dense ones
     discretisation   the reader on the model with its apex elsewhere between particles, or on three spacings; and on
                      radii changed by the error of interpolation between particles
+    time             of a motion: the reader on the same in longer timesteps, with larger masses where none are given
     instability      premature detachment of particles, and other maxima of the force (the reader's own)
 
 Nothing here depends on the experiment: whatever a script passes and a reader reads has all of these.
@@ -42,6 +43,8 @@ SHIFTS = (0.0, 0.25, 0.5, 0.75)
 """Shifts of a path's steps over their width, of which the worst counts where the model is no copy of the deck."""
 DENSE, FEWEST = 16, 200
 """Positions of the model in one step of a path; particles that the model of a plane keeps for so many."""
+FOLLOWED = 0.5
+"""Difference of the model from a motion, over the result, beyond which its lattice says nothing of that."""
 SLOWEST = 0.9
 """Ratio of two differences of three spacings above which they do not shrink."""
 
@@ -85,12 +88,21 @@ class Reduction:
         return self.scene.adhesion is not None and self.scene.adheres
 
     @cached_property
+    def own(self) -> Values:
+        """The results of the model of the chain that runs."""
+        return self.values(reduced(self.scene, self.settings))
+
+    def followed(self, values: Values) -> Values:
+        """`lattice` of results in time; where the model does not follow the motion, by how much they differ."""
+        off = {name: abs(values[name] - self.own.get(name, 0.0)) for name in values.keys() & self.lattice.keys()}
+        return {name: max(self.lattice[name], one * (one > FOLLOWED * abs(values[name]))) for name, one in off.items()}
+
+    @cached_property
     def lattice(self) -> Values:
         """By name of a result, its discretisation error; a result that another lattice does not have may be 0."""
         if not (self.on_lattice or self.converges):
             return {}
-        model = reduced(self.scene, self.settings)
-        own = self.values(model)
+        model, own = reduced(self.scene, self.settings), self.own
         if self.converges:
             others = [self.values(model.resized(0.5)), self.values(model.resized(0.25))]
             return {
@@ -169,6 +181,7 @@ def budgeted(
     force_error: ForceErrors,
     sampled: bool = False,
     length: float = 0.0,
+    slower: Trace | None = None,
 ) -> dict[str, Result]:
     """The results with their errors.
 
@@ -178,6 +191,7 @@ def budgeted(
         force_error: ε of each state.
         sampled: whether the scene gives the steps.
         length: over which a tilt of the force is ε [LU]; 0 for none.
+        slower: of a motion in time the same in longer timesteps.
     """
     readings = case.read(trace)
     values = _values(readings)
@@ -198,9 +212,14 @@ def budgeted(
     radii = [trace.perturbed(radius_shift=shift) for shift in (alike, -alike, other, -other)]
     read = _changes(case.read, values, radii)
     between = sampling_errors(case, trace) if sampled else {}
+    lattice, late = case.lattice, dict[str, float]()
+    if slower is not None:
+        lattice, late = case.followed(values), _changes(case.read, values, [slower], missing=True)
     found = {}
     for name, one in readings.items():
-        errors = {"solver": solver[name], LATTICE: case.lattice.get(name, 0.0) + read[name]}
+        errors = {"solver": solver[name], LATTICE: lattice.get(name, 0.0) + read[name]}
+        if name in late:
+            errors["time"] = late[name]
         for source, error in one.errors.items():
             errors[source] = errors.get(source, 0.0) + error
         if name in between:
@@ -209,14 +228,13 @@ def budgeted(
     return found
 
 
-def _changes(read: Reader, values: Values, perturbed: list[Trace]) -> Values:
-    """The largest change of each value."""
+def _changes(read: Reader, values: Values, perturbed: list[Trace], missing: bool = False) -> Values:
+    """The largest change of each value; where `missing` counts, one that a perturbed reader lacks is 0."""
     found = dict.fromkeys(values, 0.0)
     for trace in perturbed:
         others = _values(read(trace))
-        found = {
-            name: max(change, abs(others.get(name, values[name]) - values[name])) for name, change in found.items()
-        }
+        for name, value in values.items():
+            found[name] = max(found[name], abs(others.get(name, 0.0 if missing else value) - value))
     return found
 
 

@@ -40,7 +40,7 @@ def unloading(branch: Trace, scene: Scene, settings: Settings) -> dict[str, Read
     found: dict[str, Reading] = {}
     peak, last = peak_of(branch), len(branch) - 1
     if peak.tension > 0.0 and peak.index > 0 and (peak.index < last or _distance_from_limit(branch) <= LAST):
-        sampled = max(peak.uncertainty, branch.doubt.get("sampling", 0.0))
+        sampled = max(peak.uncertainty, branch.search.doubt.get("sampling", 0.0))
         errors = {"sampling": sampled, "instability": cut_short(branch, peak, settings)}
         found["adhesion_force"] = Reading(peak.smooth, FORCE, errors)
         if branch.radius(peak.index) is not None:

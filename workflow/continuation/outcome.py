@@ -11,7 +11,7 @@ from contact1d.workflow.continuation.state import State
 from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.units import Quantity
 
-SOURCES = ("solver", "sampling", "discretisation", "instability", "statistics", "input", "model")
+SOURCES = ("solver", "sampling", "discretisation", "time", "instability", "statistics", "input", "model")
 """What an error may come from. "input": results that a number is made of; "model": two readings of one quantity."""
 LATTICE = "discretisation"
 MODEL = "model"

@@ -6,7 +6,6 @@ import math
 from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
@@ -16,6 +15,7 @@ from contact1d.workflow.continuation.budget import (
     force_errors,
 )
 from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.marks import unloading
 from contact1d.workflow.continuation.model_branch import UNSEEN
 from contact1d.workflow.continuation.outcome import Outcome, Reading, Result
@@ -38,7 +38,7 @@ EARLINESS = 8.0
 """Square of the longest move of bodies that part over the range squared, per unit of tolerance."""
 
 
-class PathExperiment(Scripted):
+class PathExperiment(Scripted[Path]):
     """F_A, a₀ and a_cr, read off the branch that unloads last; the energy that a closed path dissipates."""
 
     main_results = ("adhesion_force", "zero_load_radius", "critical_radius", "largest_force", "largest_radius")
@@ -67,7 +67,7 @@ class PathExperiment(Scripted):
         tables = {} if scene.noise is None else {"means": _means(settings, reported)}
         return Outcome(results, tuple(reported), ends, phases, warnings, tables=tables)
 
-    def script(self, branch: Any, scene: Scene) -> None:
+    def script(self, branch: Driver, scene: Scene) -> None:
         """The approach, which is not evaluated, and the positions of the scene; where pairs snap also those between."""
         settings = branch.settings
         all_of_it = way(scene, settings)
@@ -252,11 +252,9 @@ def _longest_drop(settings: Settings) -> float:
     With |G″| of the ratio of the stiffnesses over the range b, and a loop as wide as some of that ratio times b,
     h = √(8 tolerance) b leaves a share of `tolerance` of the loop.
     """
-    if settings.forces.law is None or settings.is_smooth:
+    if not settings.snaps:
         return math.inf
-    return min(
-        settings.increments.longest_move, math.sqrt(EARLINESS * settings.tolerance) * settings.forces.law.longest_range
-    )
+    return min(settings.increments.longest_move, math.sqrt(EARLINESS * settings.tolerance) * settings.forces.range)
 
 
 def _rows(scene: Scene, settings: Settings, positions: Sequence[tuple[float, bool]]) -> tuple[Row, ...]:

@@ -51,7 +51,7 @@ CLOSED = 5e-3
 """Residual of the energy balance, over its largest term, from which on it is reported."""
 
 
-class SlideExperiment(Experiment):
+class SlideExperiment(Experiment[Slide]):
     """Static and mean friction: the force of the lower body on the upper one against +x.
 
     Where the run ends early, or slides steadily nowhere, what it has is left in `context.left`.

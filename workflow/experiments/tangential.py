@@ -11,7 +11,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import compress, pairwise
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +22,7 @@ from contact1d.workflow.continuation.budget import (
     force_errors,
 )
 from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import UntrustedError, doubts
@@ -30,6 +30,7 @@ from contact1d.workflow.deck.lattice import places
 from contact1d.workflow.deck.steps import Draw, Phase
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.model.friction import Sliders, Stop, sliders_of, stops, without_rests
+from contact1d.workflow.model.reduced import Sliding
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene, Tangential
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
@@ -44,7 +45,7 @@ AS_PREDICTED = 1e-8
 """How far a particle's tangential force may be from what spring and slider make of the row before, over its limit."""
 
 
-class TangentialExperiment(Scripted):
+class TangentialExperiment(Scripted[Tangential]):
     """F_N, F_x, a, c and the dissipated energy Σ ∫ |s_i| dδ_i of the last row; a particle has slipped by δ_i.
 
     Of cycles also what the last one dissipates, ∮ F_x du where it is closed.
@@ -62,7 +63,7 @@ class TangentialExperiment(Scripted):
             states = contact.replay(self.planned(scene, settings))
             phases = contact.phases
         asked = [one for _, one in passed(scene, _chain(scene, settings), settings)]
-        trace = of_states(states, asked)
+        trace = of_states(states)
         rows = drawn(trace, scene)
         _require_history(trace, rows)
         reported, kept = list(compress(states, asked)), list(compress(rows, asked))
@@ -73,12 +74,12 @@ class TangentialExperiment(Scripted):
         marked = {"farthest": reported[farthest], "final": reported[-1]}
         return Outcome(results, tuple(reported), marked, phases, warnings, columns=_columns(kept))
 
-    def script(self, branch: Any, scene: Scene) -> None:
+    def script(self, branch: Driver, scene: Scene) -> None:
         """The stops of the model's particles, those that change nothing left out."""
-        chain = branch.model.chain
-        for name, stretch in stretches(passed(scene, chain, branch.settings, sparse=True)):
+        assert isinstance(branch.model, Sliding)
+        for name, stretch in stretches(passed(scene, branch.model.chain, branch.settings, sparse=True)):
             branch.begin(name)
-            branch.draw([stop for stop, _ in stretch], [one for _, one in stretch])
+            branch.visit(*zip(*(stop for stop, _ in stretch), strict=True))
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """What the last row has; forces are compared with Σ |s_i|, the energy with the work of that."""
@@ -100,8 +101,7 @@ class TangentialExperiment(Scripted):
             ),
             "dissipated_energy": _energy(rows, lost),
         }  # fmt: skip
-        assert isinstance(scene.experiment, Tangential)
-        if scene.experiment.cycles:
+        if self.given(scene).cycles:
             start = max(i for i, row in enumerate(rows[1:]) if row.direction < rows[i].direction)  # of the last cycle
             found["dissipated_energy_per_cycle"] = _energy(rows[start:], 4.0 * lost)  # its path is 4 u_m
         return found

@@ -12,7 +12,7 @@ depends on it: it is a predictor, and it gives the discretisation error (`shifte
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -41,6 +41,26 @@ NEAREST = 1e-9
 """Distance from the limit point, over that to the largest displacement, from which positions are examined."""
 TOUCH = 1e-9
 """Distance over the spacing at which bodies touch: round-off of a displacement of 0."""
+
+
+@dataclass(frozen=True)
+class Path:
+    """What the plate does; arrays (m,).
+
+    Attributes:
+        displacement, along: [LU].
+        time: [TU]; 0 where the states are equilibria.
+    """
+
+    displacement: Array
+    along: Array
+    time: Array
+
+
+def path_of(displacement: Array) -> Path:
+    """Equilibria at displacements (m,) [LU]."""
+    none = np.zeros_like(displacement)
+    return Path(displacement, none, none)
 
 
 @dataclass(frozen=True)
@@ -75,8 +95,8 @@ class Reduced(ABC):
     deepest: float
 
     @abstractmethod
-    def follow(self, displacements: Array) -> Followed:
-        """Forces along a path that begins apart, (m,) [LU]."""
+    def follow(self, path: Path) -> Followed:
+        """Forces along a path that begins apart. Springs have no memory in time."""
 
     @abstractmethod
     def held(self, displacements: Array) -> Array:
@@ -85,7 +105,12 @@ class Reduced(ABC):
     @property
     @abstractmethod
     def apart(self) -> float:
-        """The limit point [LU]: nothing is held below it."""
+        """Displacement [LU] below which nothing is felt."""
+
+    @property
+    def limits(self) -> tuple[float, ...]:
+        """Limit points [LU], at which a contact that is unloaded is lost at once; none where its force falls to 0."""
+        return ()
 
     def shifted(self, phase: float) -> Reduced:
         """The same with the apex `phase` spacings off a particle."""
@@ -145,9 +170,9 @@ class Springs(Reduced):
         each = self._forces(heights - displacements[:, None], np.ones(heights.size, dtype=bool))
         return np.asarray(each @ np.bincount(own))
 
-    def follow(self, displacements: Array) -> Followed:
+    def follow(self, path: Path) -> Followed:
         """A pair that has snapped together stays so up to where it snaps apart; see `Reduced.follow`."""
-        heights, own = self.heights
+        (heights, own), displacements = self.heights, path.displacement
         counts = np.bincount(own)
         joined = np.zeros(heights.size, dtype=bool)
         total, memory = np.empty(displacements.size), []
@@ -190,8 +215,14 @@ class AdheringCells(Reduced):
         """F [FU] while it is held."""
         return np.asarray(self._cells.forces(displacements, self.estimate.stiffness))
 
-    def follow(self, displacements: Array) -> Followed:
+    @property
+    def limits(self) -> tuple[float, ...]:
+        """There."""
+        return (self.apart,)
+
+    def follow(self, path: Path) -> Followed:
         """Nothing is felt before touch; see `Reduced.follow`."""
+        displacements = path.displacement
         held = np.zeros(displacements.size, dtype=bool)
         now = False
         for i, displacement in enumerate(displacements.tolist()):
@@ -219,9 +250,9 @@ class Sliding(Springs):
         heights = np.asarray(self.estimate.profile.height(np.abs(self.x)), dtype=np.float64)
         return replace(self.sliders, x=self.x, heights=heights)
 
-    def drawn(self, stops: Sequence[tuple[float, float]]) -> Followed:
-        """Forces after each stop, a displacement and a position along x [LU]: straight from one to the next."""
-        chain = self.chain
+    def follow(self, path: Path) -> Followed:
+        """Straight from one state to the next; see `Reduced.follow`."""
+        chain, stops = self.chain, list(zip(path.displacement.tolist(), path.along.tolist(), strict=True))
         force = np.zeros_like(chain.heights)
         shears, normal = [force], [chain.normal_forces(stops[0][0])]
         for (before, start), (after, position) in pairwise(stops):

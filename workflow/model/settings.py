@@ -243,6 +243,11 @@ class Forces:
     scale: float = measured("FU")
     residual: float = measured("FU")
 
+    @property
+    def range(self) -> float:
+        """Longest range of the interaction [LU]; 0 without one."""
+        return 0.0 if self.law is None else self.law.longest_range
+
 
 @dataclass(frozen=True)
 class Chains:
@@ -395,6 +400,25 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
             "ranges, radius), its energies (amplitudes) and its stiffnesses with each other"
         ) from None
     return chosen
+
+
+INERTIA = 4.0
+"""Masses that the program chose, in the slower motion over the usual one: automatic drags, which go with the root, are
+twice as large. What is of first order in either changes by its own amount at least."""
+LONGER = 2.0
+"""Timesteps of that motion over the usual ones."""
+
+
+def slower(scene: Scene, settings: Settings) -> tuple[Scene, Settings]:
+    """A scene in time with the masses that it leaves open increased, and its settings with longer timesteps."""
+    bodies, plate = scene.bodies, scene.plate
+    if "mass" not in bodies.model_fields_set:
+        bodies = bodies.model_copy(update={"mass": INERTIA * bodies.mass})
+    if plate is not None and plate.mass == "auto":
+        plate = plate.model_copy(update={"mass": INERTIA * settings.motion.plate_mass})
+    heavier = scene.model_copy(update={"bodies": bodies, "plate": plate})
+    motion = settings_for(heavier, settings.tolerance).motion
+    return heavier, replace(settings, motion=replace(motion, time_step=LONGER * settings.motion.time_step))
 
 
 def _require_carried(scene: Scene) -> None:

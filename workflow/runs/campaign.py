@@ -100,8 +100,8 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
 
     def timing() -> dict[str, float]:
         total = time.perf_counter() - started
-        lammps = {"lammps_s": context.lammps_seconds, "lammps_cpu_s": context.lammps_cpu_seconds}
-        return {"total_s": total, **lammps, "rows_s": context.rows_seconds, "steps": context.steps}
+        lammps, cpu, rows, steps = context.clock.taken
+        return {"total_s": total, "lammps_s": lammps, "lammps_cpu_s": cpu, "rows_s": rows, "steps": steps}
 
     try:
         outcome = perform(context)

@@ -222,6 +222,8 @@ class PullOff(Kind):
     """with velocity: stiffness of that spring; absent: that of the contact at zero load"""
     repeats: RepeatCount | None = None
     """with [noise]: number of repeats, each with the next seed; absent: 1"""
+    cycles: CycleCount | None = None
+    """times that the bodies are pressed together and pulled off, without [noise]; results of the last; absent: 1"""
     method: AnyMethod = None
 
     @property

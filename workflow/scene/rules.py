@@ -431,6 +431,10 @@ def _declared_keys(d: Draft) -> Rows:
         yield (f"experiment.{key}", "noise" not in d and f"experiment.{key}" in d,
                "only with [noise]: without thermal fluctuations all repeats are equal",
                "remove it, or add [noise] with temperature and seed")
+    yield ("experiment.cycles", d.kind == "pull_off" and "noise" in d and "experiment.cycles" in d,
+           "not with [noise], whose pulls are repeated with other seeds", "remove it, and give experiment.repeats")
+    yield ("experiment.preload", d.kind == "pull_off" and "experiment.cycles" in d and d["experiment.preload"] == 0.0,
+           "must be greater than 0 (FU) with cycles, whose bodies are pressed together again", "raise it")
     for key in ("upper_particles", "upper_spacing", "upper_offset", "periodic"):
         path = f"bodies.{key}"
         yield (path, d.on_plane and path in d and d[path] is not False,
