@@ -135,10 +135,12 @@ def _pressure(scene: Scene, profile: Profile, radius: ContactRadius) -> BodyPres
     if not fine.has_apex:
         if _converges([float(level.pressure([0.0])[0]) for level in told], noise):
             bounded["central_pressure"] = 0
-        off_axis = top > 0 and len(told) == 3 and fine.at_edge <= noise * p[top] * fine.edge  # a jump is a pole
+        # A jump at the edge is a pole, and where the slope jumps inside p is a logarithm.
+        smooth = not any(kink < radius.value for kink in scene.bodies.kinks)
+        off_axis = smooth and top > 0 and len(told) == 3 and fine.at_edge <= noise * p[top] * fine.edge
         if off_axis:
             off_axis = _converges([float(level.pressure(r).max()) for level in told], noise)
-        if off_axis or top in bounded.values():
+        if off_axis or (smooth and top in bounded.values()):
             bounded["peak_pressure"] = top
     results = {name: Quantity(float(p[at]), float(spread[at]), MEAN_PRESSURE) for name, at in bounded.items()}
     if bounded.get("peak_pressure"):  # it lies between two particles

@@ -15,7 +15,8 @@ Nothing here depends on the experiment: whatever a script passes and a reader re
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -27,7 +28,7 @@ from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import law_error
 from contact1d.workflow.model.reduced import Reduced, reduced
-from contact1d.workflow.model.settings import Settings
+from contact1d.workflow.model.settings import Settings, SettingsError, settings_for
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
@@ -37,6 +38,8 @@ STEP_MARGIN, PATH_MARGIN = 1.25, 1.5
 """The same of the steps of a path: dense ones have errors, too; the second if the model's maximum is elsewhere."""
 PHASES = (0.25, 0.0)
 """Positions of the apex between particles, over the spacing, that an even chain is compared with."""
+UNEVEN = (0.93, 0.86)
+"""Spacings over the own one that put a kink of the profile elsewhere between particles, on both sides alike."""
 MORE_PHASES = (0.375, 0.25, 0.125, 0.0)
 """Such positions where friction makes several edges, the errors of which may cancel at two positions."""
 SHIFTS = (0.0, 0.25, 0.5, 0.75)
@@ -103,15 +106,33 @@ class Reduction:
         if not (self.on_lattice or self.converges):
             return {}
         model, own = reduced(self.scene, self.settings), self.own
+        kinks = self.scene.bodies.profile.kinks
+        beside = [model.resized(factor) for factor in UNEVEN if kinks]
+        if not self.converges or kinks:
+            phases = MORE_PHASES if self.scene.friction is not None or kinks else PHASES
+            beside += [model.shifted(phase) for phase in phases]
+        found = self._apart(beside)
         if self.converges:
-            others = [self.values(model.resized(0.5)), self.values(model.resized(0.25))]
-            return {
-                name: MARGIN * _extrapolated(value, *(one.get(name, 0.0) for one in others))
-                for name, value in own.items()
-            }
-        phases = MORE_PHASES if self.scene.friction is not None else PHASES
-        others = [self.values(model.shifted(phase)) for phase in phases]
-        return {name: MARGIN * max(abs(one.get(name, 0.0) - value) for one in others) for name, value in own.items()}
+            finer = [self.values(model.resized(0.5)), self.values(model.resized(0.25))]
+            for name, value in own.items():
+                found[name] = max(found[name], _extrapolated(value, *(one.get(name, 0.0) for one in finer)))
+        return {name: MARGIN * error for name, error in found.items()}
+
+    @cached_property
+    def inputs(self) -> Values:
+        """By name of a result, how much it may change with what the scene leaves open of its body."""
+        bodies, others = self.scene.bodies, []
+        for shape in bodies.profile.alternatives:
+            scene = self.scene.model_copy(update={"bodies": bodies.model_copy(update={"profile": shape})})
+            with suppress(SettingsError):
+                others.append(reduced(scene, replace(self.settings, estimate=settings_for(scene).estimate)))
+        return self._apart(others)
+
+    def _apart(self, models: Sequence[Reduced]) -> Values:
+        """How far results of other models are off, at most."""
+        others = [self.values(model) for model in models]
+        own = self.own.items()
+        return {name: max((abs(one.get(name, 0.0) - value) for one in others), default=0.0) for name, value in own}
 
 
 def _extrapolated(coarse: float, fine: float, finest: float) -> float:
@@ -215,6 +236,7 @@ def budgeted(
     lattice, late = case.lattice, dict[str, float]()
     if slower is not None:
         lattice, late = case.followed(values), _changes(case.read, values, [slower], missing=True)
+    inputs = case.inputs if case.scene.bodies.profile.alternatives else {}
     found = {}
     for name, one in readings.items():
         errors = {"solver": solver[name], LATTICE: lattice.get(name, 0.0) + read[name]}
@@ -222,6 +244,8 @@ def budgeted(
             errors["time"] = late[name]
         for source, error in one.errors.items():
             errors[source] = errors.get(source, 0.0) + error
+        if name in inputs:
+            errors["input"] = errors.get("input", 0.0) + inputs[name]
         if name in between:
             errors["sampling"] = max(errors.get("sampling", 0.0), between[name])
         found[name] = Result(one.value, one.unit, errors, one.scale, one.prescribed, read[name])

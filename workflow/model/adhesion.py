@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.model.chain import FARTHEST_RATIO, SettingsError
-from contact1d.workflow.model.pairs import ContactEstimate, Profile, plane_estimate
+from contact1d.workflow.model.pairs import ContactEstimate, Profile, beside_kinks, plane_estimate
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
@@ -108,6 +108,7 @@ class AdhesiveEstimate(ContactEstimate):
     def _grid(self) -> tuple[Array, Array, Array, int]:
         """Positions x [LU], h(x) [LU], F of a contact up to there [FU], and the index of the least h."""
         x = np.concatenate([[0.0], np.geomspace(FIRST * self.known, self.known, PLACES)])
+        x = beside_kinks(x, self.profile)
         g = self.profile.height(x)
         h = g - elongation(x, self.modulus, self.work)
         area = np.concatenate([[0.0], np.cumsum(0.5 * (g[1:] + g[:-1]) * np.diff(x))])
@@ -120,7 +121,8 @@ class AdhesiveEstimate(ContactEstimate):
     def end(self) -> tuple[float, float, float]:
         """Radius [LU], displacement [LU] and force [FU] of the widest contact that is known."""
         x, h, force, _ = self._grid
-        return float(x[PLACES]), float(h[PLACES]), float(force[PLACES])
+        last = int(np.searchsorted(x, x[-1]))
+        return float(x[last]), float(h[last]), float(force[last])
 
     @property
     def fixed_grips(self) -> tuple[float, float]:

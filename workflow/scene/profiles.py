@@ -70,6 +70,16 @@ class Shape(Table):
         return None
 
     @property
+    def kinks(self) -> tuple[float, ...]:
+        """Radii [LU] off the axis at which the slope jumps: a pressure there has no bound, and g′ is not finite."""
+        return ()
+
+    @property
+    def alternatives(self) -> tuple[Shape, ...]:
+        """What the body may be instead, by all that is known of it; a formula leaves nothing open."""
+        return ()
+
+    @property
     def steepest(self) -> Self:
         """The steeper one of the two bodies, whose slope and size limit the theory: this one on a plane."""
         return self
@@ -276,7 +286,8 @@ Heights = Annotated[tuple[Height, ...], Field(strict=False), MinLen(FEWEST_POINT
 class Measured(Shape):
     """Profile of the upper body: a measured axisymmetric one, from a file or from two lists.
 
-    Between its points it is a monotone cubic: no overshoot, a continuous slope, a paraboloid met exactly.
+    Between its points it is a monotone cubic: no overshoot, a paraboloid met exactly, and a continuous slope but at
+    points where that jumps, as at the edge of a land.
     """
 
     kind: Literal["table"]
@@ -313,7 +324,7 @@ class Measured(Shape):
         """
         import numpy as np
 
-        radii, p_0, p_1, p_2 = _slopes(self.r or (), self.z or ())
+        radii, p_0, p_1, p_2 = self._slopes()
         flat = np.minimum(np.abs(np.ravel(x)), self.reach)
         g = np.zeros_like(flat)
         chunk = max(1, CELLS // len(p_0))
@@ -333,8 +344,66 @@ class Measured(Shape):
         assert self.r is not None
         return self.r[-1]
 
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Points at which the slope jumps."""
+        return tuple((self.r or ())[i] for i in _corners(self.r or (), self.z or ()))
+
+    @property
+    def alternatives(self) -> tuple[Shape, ...]:
+        """Straight lines between the points, and the curve through every second one, or through the others."""
+        r, z = self.r or (), self.z or ()
+        fewer = [((r[0], *r[first:-1:2], r[-1]), (z[0], *z[first:-1:2], z[-1])) for first in (1, 2)]
+        thinned = [self.model_copy(update={"r": r, "z": z}) for r, z in fewer if len(r) >= FEWEST_POINTS]
+        return (Polygon.model_construct(**dict(self)), *thinned)
+
     def _spline(self) -> Any:
         return _spline(self.r or (), self.z or ())
+
+    def _slopes(self) -> tuple[Array, Array, Array, Array]:
+        return _slopes(self.r or (), self.z or ())
+
+
+class Polygon(Measured):
+    """A measured profile that is straight between its points."""
+
+    def _spline(self) -> Any:
+        return _straight(self.r or (), self.z or ())
+
+    def _slopes(self) -> tuple[Array, Array, Array, Array]:
+        import numpy as np
+
+        slope = _straight(self.r or (), self.z or ()).c[0]
+        return np.asarray(self.r), slope, 0.0 * slope, 0.0 * slope
+
+
+SHARP = 8.0
+"""Curvature at a point over that at both neighbours from which on the slope jumps there."""
+LEAST_JUMP = 1e-6
+"""Such a jump over the largest slope at least: others are round-off."""
+
+
+@lru_cache(maxsize=8)
+def _corners(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[int, ...]:
+    """Numbers of the inner points at which the slope jumps; the body goes on beyond the axis as a mirror image."""
+    import numpy as np
+
+    x, y = np.asarray((-r[1], *r)), np.asarray((z[1], *z))
+    slope = np.diff(y) / np.diff(x)
+    jump = np.abs(np.diff(slope))
+    curvature = jump / (x[2:] - x[:-2])
+    sharp = curvature[1:-1] > SHARP * np.maximum(curvature[:-2], curvature[2:])
+    return tuple((np.flatnonzero(sharp & (jump[1:-1] > LEAST_JUMP * np.abs(slope).max())) + 1).tolist())
+
+
+@lru_cache(maxsize=8)
+def _straight(r: tuple[float, ...], z: tuple[float, ...]) -> Any:
+    """Straight lines through the points, z(0) = 0."""
+    import numpy as np
+    from scipy.interpolate import PPoly
+
+    x, y = np.asarray(r), np.asarray(z) - z[0]
+    return PPoly(np.stack([np.diff(y) / np.diff(x), y[:-1]]), x, extrapolate=False)
 
 
 @lru_cache(maxsize=8)
@@ -343,12 +412,27 @@ def _spline(r: tuple[float, ...], z: tuple[float, ...]) -> Any:
 
     The slope at a point is that of the parabola through it and its neighbours, so that a sphere's paraboloid is met
     exactly, but no more than STEEPEST times the rise to either side, and 0 where that changes its sign: then no cubic
-    overshoots (F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238).
+    overshoots (F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238). Where the slope jumps, each side has
+    its own.
     """
+    import numpy as np
+    from scipy.interpolate import PPoly
+
+    ends = [0, *(corner for corner in _corners(r, z) if MIDDLE <= corner <= len(r) - 1 - MIDDLE), len(r) - 1]
+    x, y = np.asarray(r), np.asarray(z) - z[0]
+    pieces = [_cubics(x[first : last + 1], y[first : last + 1]) for first, last in pairwise(ends)]
+    return PPoly(np.concatenate(pieces, axis=1), x, extrapolate=False)
+
+
+MIDDLE = 2
+"""Points that a curve needs on either side of a jump of its slope, beside the one where it jumps."""
+
+
+def _cubics(x: Array, y: Array) -> Array:
+    """Coefficients of monotone cubics through the points (x, y), (4, n − 1), as `PPoly` has them."""
     import numpy as np
     from scipy.interpolate import CubicHermiteSpline
 
-    x, y = np.asarray(r), np.asarray(z) - z[0]
     step, rise = np.diff(x), np.diff(y) / np.diff(x)
     before, after = rise[:-1], rise[1:]
     inner = (step[1:] * before + step[:-1] * after) / (step[1:] + step[:-1])
@@ -359,7 +443,7 @@ def _spline(r: tuple[float, ...], z: tuple[float, ...]) -> Any:
     wanted = np.concatenate([[first], inner, [last]])
     limit = np.where(turns, 0.0, STEEPEST * np.abs(least))
     slopes = np.sign(least) * np.clip(np.sign(least) * wanted, 0.0, limit)
-    return CubicHermiteSpline(x, y, slopes, extrapolate=False)
+    return np.asarray(CubicHermiteSpline(x, y, slopes).c)
 
 
 @lru_cache(maxsize=8)

@@ -216,6 +216,11 @@ class Bodies(Table):
         return self.profile.reach
 
     @property
+    def kinks(self) -> tuple[float, ...]:
+        """Positions [LU] beside the apex at which the slope of the profile jumps."""
+        return self.profile.kinks
+
+    @property
     def spacing(self) -> float:
         """Distance [LU] of neighbouring particles; "auto" is a number once `settings.spacing.with_spacing` chose it."""
         assert self.given_spacing != "auto", "no spacing was chosen yet"
