@@ -155,9 +155,9 @@ def sampling_errors(case: Reduction, trace: Trace) -> Values:
         model = model.resized(2.0)  # steps miss the same on a coarser lattice
     for share in SHIFTS[:1] if is_copy else SHIFTS:
         dense, same = (case.values(model, between, share * step) for between in (DENSE, 1))
-        for name in same.keys() & dense.keys():
-            missed = (STEP_MARGIN if is_copy else PATH_MARGIN) * abs(same[name] - dense[name])
-            found[name] = max(found.get(name, 0.0), missed)
+        for name in same.keys() | dense.keys():
+            missed = abs(same.get(name, 0.0) - dense.get(name, 0.0))
+            found[name] = max(found.get(name, 0.0), (STEP_MARGIN if is_copy else PATH_MARGIN) * missed)
     return found
 
 
@@ -202,7 +202,7 @@ def budgeted(
     force_error: ForceErrors,
     sampled: bool = False,
     length: float = 0.0,
-    slower: Trace | None = None,
+    repeated: Mapping[str, Trace] | None = None,
 ) -> dict[str, Result]:
     """The results with their errors.
 
@@ -212,7 +212,7 @@ def budgeted(
         force_error: ε of each state.
         sampled: whether the scene gives the steps.
         length: over which a tilt of the force is ε [LU]; 0 for none.
-        slower: of a motion in time the same in longer timesteps.
+        repeated: by the source of the error that it shows, the same measured in other steps: "time" of a motion.
     """
     readings = case.read(trace)
     values = _values(readings)
@@ -233,15 +233,14 @@ def budgeted(
     radii = [trace.perturbed(radius_shift=shift) for shift in (alike, -alike, other, -other)]
     read = _changes(case.read, values, radii)
     between = sampling_errors(case, trace) if sampled else {}
-    lattice, late = case.lattice, dict[str, float]()
-    if slower is not None:
-        lattice, late = case.followed(values), _changes(case.read, values, [slower], missing=True)
+    repeated = repeated or {}
+    again = {source: _changes(case.read, values, [other], missing=True) for source, other in repeated.items()}
+    lattice = case.followed(values) if "time" in repeated else case.lattice
     inputs = case.inputs if case.scene.bodies.profile.alternatives else {}
     found = {}
     for name, one in readings.items():
         errors = {"solver": solver[name], LATTICE: lattice.get(name, 0.0) + read[name]}
-        if name in late:
-            errors["time"] = late[name]
+        errors |= {source: changes[name] for source, changes in again.items()}
         for source, error in one.errors.items():
             errors[source] = errors.get(source, 0.0) + error
         if name in inputs:

@@ -71,10 +71,17 @@ class ModelBranch:
         before = self._rows[-1].displacement if self._rows else float(wanted[0])
         self._turn(float(wanted[-1]) >= before)
         between = min(self.dense, max(1, MOST_NUMBERS // max(1, wanted.size * self.model.x.size)))
-        if between > 1 and self._rows:
-            ends = np.append(before, wanted)
-            wanted = np.concatenate([np.linspace(*pair, between + 1)[1:] for pair in pairwise(ends.tolist())])
-        self._add(wanted, np.zeros_like(wanted) if along is None else along)
+        if between == 1 or not self._rows:
+            self._add(wanted, along)
+            return
+        ends = np.append(before, wanted)
+        dense = [np.linspace(*pair, between + 1)[1:] for pair in pairwise(ends.tolist())]
+        own = self._phase
+        if self._rows[-1].phase == UNSEEN:  # what leads from there to the first state of a path is none of it either
+            self._phase = UNSEEN
+        self._add(dense[0][:-1])
+        self._phase = own
+        self._add(np.concatenate([dense[0][-1:], *dense[1:]]))
 
     def reach(self, force: float, scale: float) -> None:
         """Go to where a force [FU] is carried."""

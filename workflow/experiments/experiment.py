@@ -111,9 +111,8 @@ class Scripted(Experiment[K]):
         branch, trace = self._driven(context, case)
         # An error of the force changes its sign within half a range: it moves where a flat maximum lies.
         errors = force_errors(scene, settings, branch.states, branch.marked.values(), branch.unbalance)
-        results = budgeted(
-            case, trace, errors, length=0.5 * settings.forces.range, slower=self._slower(context, case, trace)
-        )
+        slower = self._slower(context, case, trace)
+        results = budgeted(case, trace, errors, length=0.5 * settings.forces.range, repeated=slower)
         warnings = doubts(scene, settings, tuple(branch.states))
         tables = self.tables(trace, scene, settings)
         outcome = Outcome(results, tuple(branch.states), branch.marked, branch.phases, warnings, tables=tables)
@@ -127,12 +126,12 @@ class Scripted(Experiment[K]):
             branch.finish()
         return branch, branch.trace()
 
-    def _slower(self, context: RunContext, case: Reduction, trace: Trace) -> Trace | None:
+    def _slower(self, context: RunContext, case: Reduction, trace: Trace) -> dict[str, Trace]:
         """A motion once more in longer timesteps, and slower where its inertia is the program's choice."""
         if not trace.time.any() or context.deck.scene.noise is not None:
-            return None
+            return {}
         with context.aside(Deck(*slower(context.deck.scene, context.deck.settings))) as other:
-            return self._driven(other, case)[1]
+            return {"time": self._driven(other, case)[1]}
 
     def reduction(self, scene: Scene, settings: Settings) -> Reduction:
         """Script and reader on the reduced model of a scene."""

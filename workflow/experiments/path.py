@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from bisect import bisect_left
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
-from contact1d.analysis.curve_marks import SAME_FORCE, Work, closes, work_of
+from contact1d.analysis.curve_marks import closes, work_of
 from contact1d.workflow.continuation.budget import (
     budgeted,
     force_errors,
@@ -22,7 +23,7 @@ from contact1d.workflow.continuation.outcome import Outcome, Reading, Result
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import doubts, require_trust
-from contact1d.workflow.deck.steps import DisplaceInTime, Phase, Row, displacements
+from contact1d.workflow.deck.steps import Displace, DisplaceInTime, Phase, Row, displacements
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.experiments.thermal import CERTAIN, averaged, thermal_rows
 from contact1d.workflow.model.settings import Settings
@@ -62,10 +63,34 @@ class PathExperiment(Scripted[Path]):
         ends = {"deepest": max(reported, key=lambda s: s.displacement), "final": reported[-1]}
         strongest = (ends["deepest"], min(seen, key=lambda s: s.force), ends["final"])
         errors = force_errors(scene, settings, seen, strongest)
-        results = budgeted(case, of_states(seen), errors, sampled=scene.noise is None)
+        trace = of_states(seen)
+        other = self._in_half_steps(context, seen)
+        repeated = {} if other is None else {"instability": other}
+        results = budgeted(case, trace, errors, sampled=scene.noise is None, repeated=repeated)
         warnings = self._missing(results, scene, phases) | doubts(scene, settings, tuple(reported))
+        warnings |= _buckling(trace, other, settings)
         tables = {} if scene.noise is None else {"means": _means(settings, reported)}
         return Outcome(results, tuple(reported), ends, phases, warnings, tables=tables)
+
+    def _in_half_steps(self, context: RunContext, seen: Sequence[State]) -> Trace | None:
+        """The same states of a second run with twice as many; None where no particle can move aside.
+
+        Chains that may buckle along x jump to another equilibrium between two load steps; to which depends on these.
+        """
+        scene, deck = context.deck.scene, context.deck
+        if scene.horizontal is None or scene.method != "quasistatic":
+            return None
+        phases, before = [], 0.0
+        for phase in schedule(scene, deck.settings):
+            rows = []
+            for row in phase.rows:
+                assert isinstance(row, Displace)
+                rows += [Displace(0.5 * (before + row.displacement)), row]
+                before = row.displacement
+            phases.append(replace(phase, rows=tuple(rows)))
+        with context.aside(deck) as other, other.contact("repeating the path in half the steps") as contact:
+            states = contact.replay(phases)[1::2]
+        return of_states(states[-len(seen) :])
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """The approach, which is not evaluated, and the positions of the scene; where pairs snap also those between."""
@@ -115,6 +140,23 @@ class PathExperiment(Scripted[Path]):
         return warnings
 
 
+def _buckling(trace: Trace, other: Trace | None, settings: Settings) -> dict[str, str]:
+    """A warning where forces at the same displacements differ between two widths of the load steps."""
+    if other is None:
+        return {}
+    off = np.abs(trace.force - other.force)
+    worst, largest = int(off.argmax()), float(np.abs(trace.force).max())
+    if off[worst] <= settings.tolerance * largest:
+        return {}
+    return {
+        "buckling": (
+            f"at displacement {trace.displacement[worst]:.4g} LU the force is {trace.force[worst]:.4g} FU, and "
+            f"{other.force[worst]:.4g} FU in half the steps: the chains buckle along x, and the state depends on the "
+            "steps of the path. Leave out [horizontal], or use stiffer [neighbours]"
+        )
+    }
+
+
 def _means(settings: Settings, states: list[State]) -> dict[str, tuple[float, ...]]:
     """Columns of means.csv: the mean force at each position, and its standard error."""
     return {
@@ -161,17 +203,16 @@ def _lost(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
     (d, force), noisy = trace.lists, scene.noise is not None
     same = noisy or (ends[0] is None) == (ends[1] is None)
     if same and closes(d, force, ANY_FORCE if noisy else settings.tolerance):
-        return {"dissipated_energy": Reading(work.area, ENERGY, errors, scale=_scale(work.area, work))}
+        # Springs lose nothing, nor does a contact that is held all along, where particles neither snap nor buckle.
+        held = not (_is_unstable(trace) or settings.snaps or scene.horizontal)
+        known = not noisy and (held or not scene.adheres)
+        scale = work.whole if known else None
+        return {"dissipated_energy": Reading(work.area, ENERGY, errors, scale=scale, prescribed=known)}
     first, last = (settings.estimate.energy(d[i], radius or 0.0) for i, radius in zip((0, -1), ends, strict=True))
     if first is None or last is None or not _is_unstable(trace):
         return {}
     lost = work.area - (last - first)
-    return {"instability_energy": Reading(lost, ENERGY, errors, scale=_scale(lost, work))}
-
-
-def _scale(energy: float, work: Work) -> float | None:
-    """All work of the path for an energy [FU·LU] that may be 0; None for one that is not."""
-    return work.whole if abs(energy) <= work.uncertainty + SAME_FORCE * work.whole else None
+    return {"instability_energy": Reading(lost, ENERGY, errors)}
 
 
 def _is_unstable(trace: Trace) -> bool:

@@ -23,7 +23,7 @@ from contact1d.workflow.continuation.budget import (
 )
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.driver import Driver
-from contact1d.workflow.continuation.outcome import Outcome, Reading
+from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Reading
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import UntrustedError, doubts
 from contact1d.workflow.deck.lattice import places
@@ -41,6 +41,8 @@ MOST_TOUCHES = 1.0
 """Rows between two of the scene, per 1/tolerance; a particle between two of them is moved from the first."""
 ROUND_OFF = 1e-13
 """Error of tangential forces over the largest of a path, for each row: a history is a sum over all of them."""
+STUCK = 3.0
+"""Spacings that may slip at both edges together where no particle does."""
 AS_PREDICTED = 1e-8
 """How far a particle's tangential force may be from what spring and slider make of the row before, over its limit."""
 
@@ -99,11 +101,11 @@ class TangentialExperiment(Scripted[Tangential]):
                 last.stick.value + trace.shift_of(last.state) * last.stick.uncertainty, LENGTH,
                 prescribed=last.stick.value == last.stick.uncertainty == 0.0,
             ),
-            "dissipated_energy": _energy(rows, lost),
+            "dissipated_energy": _energy(rows, lost, scene),
         }  # fmt: skip
         if self.given(scene).cycles:
             start = max(i for i, row in enumerate(rows[1:]) if row.direction < rows[i].direction)  # of the last cycle
-            found["dissipated_energy_per_cycle"] = _energy(rows[start:], 4.0 * lost)  # its path is 4 u_m
+            found["dissipated_energy_per_cycle"] = _energy(rows[start:], 4.0 * lost, scene)  # its path is 4 u_m
         return found
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
@@ -179,11 +181,23 @@ def drawn(trace: Trace, scene: Scene) -> list[Drawn]:
     return rows
 
 
-def _energy(rows: Sequence[Drawn], lost: float) -> Reading:
-    """What is dissipated from the first of the rows to the last, compared with Σ ∫ |s_i| du; `lost`: error [FU·LU]."""
+def _energy(rows: Sequence[Drawn], lost: float, scene: Scene) -> Reading:
+    """What is dissipated from the first of the rows to the last; `lost`: error of tangential forces [FU·LU].
+
+    Where no particle slips, the annulus that does ends within one spacing beyond the last particle but one, and what
+    it dissipates is less than its force k_t u at either edge over the whole path. A body with an edge sticks or slips
+    as a whole.
+    """
     dissipated = rows[-1].dissipated - rows[0].dissipated
-    work = sum(0.5 * (a.carried + b.carried) * abs(b.position - a.position) for a, b in pairwise(rows))
-    return Reading(dissipated, ENERGY, {"solver": lost}, scale=work if abs(dissipated) <= lost else None)
+    moved = [after.position - before.position for before, after in pairwise(rows)]
+    if abs(dissipated) > lost:
+        return Reading(dissipated, ENERGY, {"solver": lost})
+    farthest = max((abs(row.position) for row in rows), default=0.0)
+    most = STUCK * scene.tangential_stiffness * farthest * sum(map(abs, moved))
+    known = scene.bodies.profile.has_edge or most == 0.0
+    work = sum(0.5 * (a.carried + b.carried) * abs(by) for (a, b), by in zip(pairwise(rows), moved, strict=True))
+    errors = {"solver": lost, LATTICE: 0.0 if known else most}
+    return Reading(dissipated, ENERGY, errors, scale=work if known else None, prescribed=known)
 
 
 def _require_history(trace: Trace, rows: Sequence[Drawn]) -> None:
