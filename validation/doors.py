@@ -88,7 +88,7 @@ def finish(scenes: Mapping[str, Scene], folder: Path, workers: int) -> None:
 
 
 @contextmanager
-def contact_of(tables: dict[str, Any], folder: Path, **motion: float) -> Iterator[Contact]:
+def contact_of(tables: dict[str, Any], folder: Path, **motion: Any) -> Iterator[Contact]:
     """The contact of a scene, at displacement 0; numbers of its `motion` in place of the chosen ones."""
     scene = scene_from_dict({"title": folder.name} | tables)
     settings = settings_for(scene)
