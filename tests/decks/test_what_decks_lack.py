@@ -21,7 +21,7 @@ def test_on_a_rigid_plane_no_pair_style_and_no_lower_body(make_scene: MakeScene,
     more = TIMED | {"experiment": LOAD} if timed else {}
     scene = make_scene(**PLANE, **more)
     text = commands(text_of(scene))
-    for word in ("pair_style", "pair_coeff", "neighbor ", "binsize", "lower", "tally", "table", "bond", "anchor"):
+    for word in ("pair_style", "pair_coeff", "neighbor ", "binsize", "lower", "tally", "table", "bond_style"):
         assert word not in text
     assert len(re.findall(r"fix +rigid_plane_wall upper wall/harmonic ", text)) == 1
     write_system(Deck(scene, settings_for(scene)), tmp_path)
