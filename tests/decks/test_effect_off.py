@@ -95,7 +95,7 @@ class Unchecked(Deck):
 def decks(scene: Scene, effect: str) -> tuple[str, str]:
     """The deck with and without an effect; same settings, same schedule."""
     settings: Settings = settings_for(scene)
-    fewer = replace(settings, far=0.0) if effect == "horizontal" else settings
+    fewer = replace(settings, chains=replace(settings.chains, far=0.0)) if effect == "horizontal" else settings
     phases = planned(scene, settings)
     short = phases
     if effect == "cantilever":

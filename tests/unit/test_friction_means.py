@@ -23,7 +23,7 @@ SPACED = SimpleNamespace(bodies=SimpleNamespace(spacing=1.0, mass=MASS), cantile
 
 def weighing(plate: float) -> Any:
     """Settings, as far as they are asked: of a plate so heavy [MU] and three particles."""
-    return SimpleNamespace(plate_mass=plate, particles=3)
+    return SimpleNamespace(motion=SimpleNamespace(plate_mass=plate), chains=SimpleNamespace(upper=3))
 
 
 def test_a_mean_leaves_the_run_in_out() -> None:
@@ -42,7 +42,7 @@ def moved(place: Any, leg: DriveLeg) -> Motion:
 
 @pytest.mark.parametrize(("share", "steady"), [(1.0, True), (0.95, True), (0.5, False)])
 def test_a_plate_that_falls_behind_the_drive_does_not_slide_steadily(share: float, steady: bool) -> None:
-    leg = DriveLeg(VELOCITY, 40 * PERIODS, 10, 0.005)
+    leg = DriveLeg(rows=40 * PERIODS, steps=10, velocity=VELOCITY, time_step=0.005)
     told = is_steady(SPACED, weighing(1.0), moved(lambda time: share * VELOCITY * time, leg))
     assert (told == "") == steady
     assert "has a period of" not in told
@@ -50,7 +50,7 @@ def test_a_plate_that_falls_behind_the_drive_does_not_slide_steadily(share: floa
 
 def test_a_plate_that_swings_for_longer_than_the_way_is_named_as_why() -> None:
     """2π √((M + N m)/k) against 12 periods of 2 TU: the threshold is 0.5 (24/2π)² = 7.295 MU in all."""
-    leg = DriveLeg(VELOCITY, 40 * PERIODS, 10, 0.005)
+    leg = DriveLeg(rows=40 * PERIODS, steps=10, velocity=VELOCITY, time_step=0.005)
     for plate, said in ((1.29, False), (1.30, True)):
         told = is_steady(SPACED, weighing(plate), moved(lambda time: 0.5 * VELOCITY * time, leg))
         assert ("lighter plate.mass" in told) == said

@@ -162,11 +162,10 @@ def test_without_horizontal_a_particle_keeps_its_place(make_scene: MakeScene, op
     assert force[24, 2] == pytest.approx(-0.5 * (NORMAL + 2 * NEIGHBOURS), abs=ROUND_OFF)
 
 
-def test_particles_in_a_rigid_plane_have_the_series_stiffness(make_scene: MakeScene, open_deck: OpenDeck) -> None:
-    """A plate lowered by d: F_i = k max(0, d − x²/R) on every particle, with the scene's own k.
-
-    In time each particle moves by itself.
-    """
+def test_a_plane_in_time_has_the_scenes_own_spring_for_each_particle(
+    make_scene: MakeScene, open_deck: OpenDeck
+) -> None:
+    """A plate lowered by d: F_i = k max(0, d − x²/R) on every particle, which is fixed in its body."""
     still = {"experiment": {"kind": "path", "displacements": [0.0]}, "damping": {"coefficient": "auto"}}
     scene_tables = tables("curved", False, "equal", interaction=None, neighbours=None) | still
     scene_tables["bodies"]["lower"] = "rigid_plane"
@@ -192,7 +191,8 @@ def test_bodies_at_displacement_zero(make_scene: MakeScene) -> None:
     assert settings.forces.rest == pytest.approx(0.360437, abs=1e-6)
     assert upper.particles[:, 2] - settings.forces.rest == pytest.approx(lower.particles[:, 0] ** 2 / 200.0, abs=1e-14)
     assert np.array_equal(lower.particles[:, 0], upper.particles[:, 0])
-    assert bodies(scene, replace(settings, particles=5))[0].particles.shape == (5, 3)
+    fewer = replace(settings, chains=replace(settings.chains, upper=5, lower=5))
+    assert bodies(scene, fewer)[0].particles.shape == (5, 3)
 
 
 @pytest.mark.parametrize("particles", [4, 40, 401])

@@ -102,7 +102,7 @@ def test_tangential_springs_are_the_materials_share_unless_given() -> None:
     share = 2.0 * 0.7 / 1.7
     assert scene_from_dict(tables(both)).tangential_stiffness == pytest.approx(share * 0.83, rel=ROUND_OFF)
     automatic = scene_from_dict(tables(both | {"force_unit": 1e-6}, bulk_stiffness="auto"))
-    assert automatic.tangential_stiffness == pytest.approx(share * automatic.forces.bulk_stiffness, rel=ROUND_OFF)
+    assert automatic.tangential_stiffness == pytest.approx(share * automatic.bulk_stiffness, rel=ROUND_OFF)
     assert scene_from_dict(tables(both, bulk_stiffness_tangential=0.5)).tangential_stiffness == 0.5
     assert scene_from_dict(tables(E_STAR | {"length_unit": 1e-9})).tangential_stiffness == 0.83
     assert scene_from_dict(tables()).tangential_stiffness == 0.83

@@ -45,9 +45,9 @@ REPULSION = {"repulsion": {"amplitude": LAW[0], "range": LAW[1]}}
 def test_a_force_is_judged_by_the_largest_tension_of_a_pair_and_without_one_by_the_deepest_particle() -> None:
     assert settings_for(scene()).forces.scale == pytest.approx(-STRONGEST.fun, rel=GRID)
     alone = settings_for(scene(interaction=REPULSION))
-    assert alone.force_scale == pytest.approx(alone.largest_displacement * 0.5 * SPRING, rel=EXACT)
+    assert alone.forces.scale == pytest.approx(alone.largest_displacement * 0.5 * SPRING, rel=EXACT)
     apart = settings_for(scene(interaction=REPULSION, experiment={"kind": "path", "displacements": [-0.1]}))
-    assert apart.force_scale == pytest.approx(1e-3 * SPACING * 0.5 * SPRING, rel=EXACT)
+    assert apart.forces.scale == pytest.approx(1e-3 * SPACING * 0.5 * SPRING, rel=EXACT)
     assert settings_for(scene()).forces.residual == pytest.approx(
         CALIBRATION.residual * 1e-3 * -STRONGEST.fun, rel=GRID
     )
@@ -88,19 +88,21 @@ def test_bodies_are_never_moved_further_than_particles_stand_in_order(tables: di
 def test_steps_of_a_search_are_shares_of_the_way_and_of_the_longest_range() -> None:
     smooth = settings_for(scene())
     assert smooth.is_smooth
-    assert smooth.smooth_step == pytest.approx(CALIBRATION.smooth_increment * LAW[3], rel=EXACT)
+    steps = smooth.increments
+    assert steps.smooth_step == pytest.approx(CALIBRATION.smooth_increment * LAW[3], rel=EXACT)
     way = CALIBRATION.loading_increment * smooth.largest_displacement
-    assert smooth.loading_step == pytest.approx(min(way, 0.25 * LAW[3]), rel=EXACT)
-    assert smooth.displacement_step == min(smooth.loading_step, smooth.longest_move)
+    assert steps.loading_step == pytest.approx(min(way, 0.25 * LAW[3]), rel=EXACT)
+    assert steps.displacement_step == min(steps.loading_step, steps.longest_move)
     far = settings_for(scene(experiment={"kind": "path", "displacements": [60.0]}))
-    assert far.loading_step == pytest.approx(0.25 * LAW[3], rel=EXACT)
+    assert far.increments.loading_step == pytest.approx(0.25 * LAW[3], rel=EXACT)
     back = settings_for(scene(experiment={"kind": "path", "displacements": [-0.1]}))
-    assert back.loading_step == pytest.approx(0.25 * LAW[3], rel=EXACT)
+    assert back.increments.loading_step == pytest.approx(0.25 * LAW[3], rel=EXACT)
     plane = {"interaction": None, "bodies": {"lower": "rigid_plane"}}
     for deepest, step in ((1e3 * SPACING, 0.1 * SPACING), (-1.0, 0.1 * SPACING), (0.02, None)):
         on_plane = settings_for(scene(**plane, experiment={"kind": "path", "displacements": [deepest]}))
-        assert on_plane.loading_step == pytest.approx(step or CALIBRATION.loading_increment * 0.02, rel=EXACT)
-        assert on_plane.smooth_step == 0.0
+        wanted = step or CALIBRATION.loading_increment * 0.02
+        assert on_plane.increments.loading_step == pytest.approx(wanted, rel=EXACT)
+        assert on_plane.increments.smooth_step == 0.0
         assert not on_plane.is_smooth
 
 
@@ -115,39 +117,42 @@ def test_the_innermost_distance_is_that_of_a_pair_on_its_springs(displacement: f
 def test_a_table_follows_the_law_from_where_the_coldest_and_the_hottest_particles_come() -> None:
     """0.8 of the innermost distance; with heat five standard deviations √(2kT/k) nearer, down to `closest`."""
     cold = settings_for(scene())
-    near = innermost_distance(cold.estimate, cold.cutoff, cold.largest_displacement)
-    assert cold.table_from == pytest.approx(0.8 * near, rel=EXACT)
+    near = innermost_distance(cold.estimate, cold.forces.cutoff, cold.largest_displacement)
+    assert cold.forces.table_from == pytest.approx(0.8 * near, rel=EXACT)
     heat = {"damping": {"coefficient": 0.3}, "plate": {}, "experiment": LOAD | {"method": "dynamic"}}
     for temperature in (1e-5, 10.0):
         of = scene(noise={"temperature": temperature, "seed": 1}, **heat)
         warm = settings_for(of)
         motion = 5.0 * math.sqrt(2.0 * temperature / SPRING)
         assert thermal_motion(of) == pytest.approx(motion, rel=EXACT)
-        assert warm.table_from == pytest.approx(max(warm.closest, 0.8 * (near - motion)), rel=EXACT)
+        assert warm.forces.table_from == pytest.approx(max(warm.forces.closest, 0.8 * (near - motion)), rel=EXACT)
     pressed = settings_for(scene(experiment={"kind": "path", "displacements": [30.0]}))
-    assert pressed.table_from == pytest.approx(0.2 * pressed.closest, rel=EXACT)
+    assert pressed.forces.table_from == pytest.approx(0.2 * pressed.forces.closest, rel=EXACT)
 
 
-@pytest.mark.parametrize("in_time", [False, True])
-@pytest.mark.parametrize("neighbours", [None, 0.3, 40.0])
-def test_plane_and_bond_in_series_are_the_scenes_spring_and_neighbours_see_it_but_for_the_tolerance(
-    neighbours: float | None, in_time: bool
+ON_PLANE = {"interaction": None, "bodies": {"lower": "rigid_plane"}}
+TIMED = {"damping": {"coefficient": 0.3}, "plate": {"mass": 7.0}, "experiment": LOAD | {"method": "dynamic"}}
+HEAT = TIMED | {"noise": {"temperature": 1e-3, "seed": 1}}
+
+
+@pytest.mark.parametrize("timed", [{}, TIMED])
+def test_on_a_plane_the_plane_alone_has_the_scenes_spring(timed: dict[str, Any]) -> None:
+    """In time, too: nothing acts on a particle apart from its body."""
+    forces = settings_for(scene(**ON_PLANE, **timed)).forces
+    assert (forces.bulk_stiffness, forces.plane_stiffness) == (SPRING, SPRING)
+    assert settings_for(scene(**timed)).forces.plane_stiffness == 0.0
+
+
+@pytest.mark.parametrize(("neighbours", "timed"), [(0.3, {}), (40.0, {}), (0.3, TIMED), (0.3, HEAT), (None, HEAT)])
+def test_plane_and_bond_in_series_are_the_scenes_spring_and_neighbours_and_heat_see_it_but_for_the_tolerance(
+    neighbours: float | None, timed: dict[str, Any]
 ) -> None:
-    """In time and without neighbours both are alike: 2k each."""
     springs = None if neighbours is None else {"stiffness": neighbours}
-    timed = {"damping": {"coefficient": 0.3}, "plate": {"mass": 7.0}, "experiment": LOAD | {"method": "dynamic"}}
-    of = scene(interaction=None, bodies={"lower": "rigid_plane"}, neighbours=springs, **timed if in_time else {})
-    settings = settings_for(of)
-    if of.stands:
-        assert (settings.forces.bulk_stiffness, settings.forces.plane_stiffness) == (SPRING, SPRING)
-    else:
-        series = 1.0 / (1.0 / settings.forces.plane_stiffness + 1.0 / settings.forces.bulk_stiffness)
-        assert series == pytest.approx(SPRING, rel=EXACT)
-        softer = (SPRING + 4.0 * (neighbours or 0.0)) / settings.forces.plane_stiffness
-        assert softer == pytest.approx(1e-3 if neighbours else 0.5, rel=EXACT)
-        if neighbours is None:
-            assert settings.forces.bulk_stiffness == pytest.approx(2.0 * SPRING, rel=EXACT)
-    assert settings_for(scene()).forces.plane_stiffness == 0.0
+    forces = settings_for(scene(**ON_PLANE, **timed, neighbours=springs)).forces
+    series = 1.0 / (1.0 / forces.plane_stiffness + 1.0 / forces.bulk_stiffness)
+    assert series == pytest.approx(SPRING, rel=EXACT)
+    softer = (SPRING + 4.0 * (neighbours or 0.0)) / forces.plane_stiffness
+    assert softer == pytest.approx(1e-3, rel=EXACT)
 
 
 def test_a_long_bond_is_as_long_as_its_bend_allows_and_only_where_two_stiffnesses_differ() -> None:
@@ -225,7 +230,7 @@ def slid(rows: int, steps: int, time: float, drag: float) -> tuple[Scene, Settin
     settings = settings_for(of)
     step = time / rows / steps
     leg = replace(settings.motion.drive[0], rows=rows, steps=steps, time_step=step)
-    return of, replace(settings, drive=(leg,), time_step=step)
+    return of, replace(settings, motion=replace(settings.motion, drive=(leg,), time_step=step))
 
 
 def test_with_its_own_mass_a_drag_of_half_a_step_before_is_exact_to_second_order() -> None:

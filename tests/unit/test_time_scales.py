@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d.workflow.model.dynamics import stiffest_of
 from contact1d.workflow.model.settings import CALIBRATION, Settings, settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import chains
@@ -40,10 +39,17 @@ def slide(tolerance: float, cantilever: float = 0.5, **bodies: Any) -> Scene:
     )  # fmt: skip
 
 
+def stiffest(of: Scene, settings: Settings) -> float:
+    """Stiffness [FU/LU] of a particle and a row of opposite ones that move against it, at the closest distance."""
+    law = settings.forces.law
+    assert law is not None
+    row = (1.0 + 2.0 * law.repulsion.range / of.bodies.spacing) * float(law.stiffness(settings.forces.closest))
+    return max(of.bulk_stiffness, of.tangential_stiffness) + 2.0 * row
+
+
 def per_step(of: Scene, settings: Settings) -> float:
     """ω Δt of the stiffest motion of the particles."""
-    stiffest = stiffest_of(of, settings.forces.law, settings.forces.closest, settings.forces.plane_stiffness)
-    return settings.motion.time_step * math.sqrt(stiffest / of.bodies.mass)
+    return settings.motion.time_step * math.sqrt(stiffest(of, settings) / of.bodies.mass)
 
 
 def test_a_motion_that_comes_to_rest_has_the_steps_that_were_measured() -> None:
@@ -136,12 +142,12 @@ def test_without_a_plate_each_particle_is_damped_on_its_own_spring() -> None:
 def test_what_snaps_comes_to_rest_under_a_drag_that_is_critical_for_the_stiffest_motion() -> None:
     of = scene(damping={"coefficient": "auto"}, plate={})
     settings = settings_for(of)
-    stiffest = stiffest_of(of, settings.forces.law, settings.forces.closest, 0.0)
-    assert settings.motion.calm_damping == pytest.approx(2.0 * math.sqrt(stiffest * MASS), rel=EXACT)
+    critical = 2.0 * math.sqrt(stiffest(of, settings) * MASS)
+    assert settings.motion.calm_damping == pytest.approx(critical, rel=EXACT)
     assert settings.motion.calm_step == pytest.approx(
         min(settings.motion.time_step, 0.2 * MASS / settings.motion.calm_damping), rel=EXACT
     )
-    given = settings_for(of.with_({"damping.coefficient": 0.3}))
+    given = settings_for(of.with_({"damping.coefficient": 0.3})).motion
     assert (given.calm_damping, given.calm_step) == (given.damping, given.time_step)
 
 
@@ -194,13 +200,12 @@ def test_in_smaller_steps_a_chain_without_a_plate_is_stopped_by_drag_and_a_plate
     path = {"kind": "path", "method": "dynamic", "displacements": [0.05]}
     alone = settings_for(scene(damping={"coefficient": "auto"}, experiment=path))
     held = settings_for(scene(damping={"coefficient": "auto"}, plate={}))
-    for settings, damping in ((alone, alone.calm_damping), (held, held.damping)):
+    for settings, damping in ((alone, alone.motion.calm_damping), (held, held.motion.damping)):
         smaller = settings.in_smaller_steps(0.25)
-        assert (smaller.damping, smaller.time_step) == (damping, settings.motion.calm_step)
+        assert (smaller.motion.damping, smaller.motion.time_step) == (damping, settings.motion.calm_step)
         for name in ("displacement_step", "loading_step", "smooth_step", "longest_move"):
-            assert getattr(smaller, name) == 0.25 * getattr(settings, name)
-    assert alone.calm_damping > 2.0 * alone.damping
-    assert held.calm_damping > 2.0 * held.damping
+            assert getattr(smaller.increments, name) == 0.25 * getattr(settings.increments, name)
+        assert settings.motion.calm_damping > 2.0 * settings.motion.damping
 
 
 @pytest.mark.parametrize("spring", [2.0, 2000.0])
