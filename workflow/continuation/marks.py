@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import Peak, crossing, largest_tension, rivals, smooth_crossing
+from contact1d.analysis.polynomial import gauss
 from contact1d.workflow.continuation.outcome import Reading
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.model.reduced import reduced
@@ -69,7 +70,7 @@ def _separation(branch: Trace, peak: Peak, scene: Scene, settings: Settings) -> 
 
     def work(nodes: int, every: int) -> float:
         """By Gauss's quadrature over u, d = d_end + (d₀ − d_end) u²: a limit point has an infinite slope."""
-        u, weights = np.polynomial.legendre.leggauss(nodes)
+        u, weights = gauss(nodes)
         u = 0.5 * (u + 1.0)
         places = end + (start - end) * u**2
         others = [*range(0, len(at) - 1, every), len(at) - 1]
