@@ -72,7 +72,7 @@ class Branch(ContactBranch):
     @property
     def unloading(self) -> Trace:
         """The states of the leg under way that are held, by falling displacement."""
-        return of_states(self.leg, limits=self.limits).falling()
+        return of_states(self.leg, self.model).falling()
 
     @property
     def peak(self) -> Peak:

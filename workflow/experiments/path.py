@@ -26,6 +26,7 @@ from contact1d.workflow.continuation.trust import doubts, require_trust
 from contact1d.workflow.deck.steps import Displace, DisplaceInTime, Phase, Row, displacements
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.experiments.thermal import CERTAIN, averaged, thermal_rows
+from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Path, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
@@ -63,7 +64,7 @@ class PathExperiment(Scripted[Path]):
         ends = {"deepest": max(reported, key=lambda s: s.displacement), "final": reported[-1]}
         strongest = (ends["deepest"], min(seen, key=lambda s: s.force), ends["final"])
         errors = force_errors(scene, settings, seen, strongest)
-        trace = of_states(seen)
+        trace = of_states(seen, reduced(scene, settings))
         other = self._in_half_steps(context, seen)
         repeated = {} if other is None else {"instability": other}
         results = budgeted(case, trace, errors, sampled=scene.noise is None, repeated=repeated)
@@ -90,7 +91,7 @@ class PathExperiment(Scripted[Path]):
             phases.append(replace(phase, rows=tuple(rows)))
         with context.aside(deck) as other, other.contact("repeating the path in half the steps") as contact:
             states = contact.replay(phases)[1::2]
-        return of_states(states[-len(seen) :])
+        return of_states(states[-len(seen) :], reduced(scene, deck.settings))
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """The approach, which is not evaluated, and the positions of the scene; where pairs snap also those between."""
@@ -186,7 +187,7 @@ def _adhesion(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Readi
         return {}
     name = apart[-1] if apart else trace.phase[-1]
     branch = trace.chosen(np.flatnonzero([phase == name for phase in trace.phase]))
-    found = unloading(branch, scene, settings)
+    found = unloading(branch, settings)
     if scene.adhesion is not None:
         found |= _fixed_grips(branch)
     return found

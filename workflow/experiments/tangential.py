@@ -30,7 +30,7 @@ from contact1d.workflow.deck.lattice import places
 from contact1d.workflow.deck.steps import Draw, Phase
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.model.friction import Sliders, Stop, sliders_of, stops, without_rests
-from contact1d.workflow.model.reduced import Sliding
+from contact1d.workflow.model.reduced import Sliding, reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene, Tangential
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
@@ -65,7 +65,7 @@ class TangentialExperiment(Scripted[Tangential]):
             states = contact.replay(self.planned(scene, settings))
             phases = contact.phases
         asked = [one for _, one in passed(scene, _chain(scene, settings), settings)]
-        trace = of_states(states)
+        trace = of_states(states, reduced(scene, settings))
         rows = drawn(trace, scene)
         _require_history(trace, rows)
         reported, kept = list(compress(states, asked)), list(compress(rows, asked))
