@@ -120,7 +120,7 @@ class Reduction:
 
     @cached_property
     def inputs(self) -> Values:
-        """By name of a result, how much it may change with what the scene leaves open of its body."""
+        """By name of a result, how much it differs between the bodies that the scene may mean."""
         bodies, others = self.scene.bodies, []
         for shape in bodies.profile.alternatives:
             scene = self.scene.model_copy(update={"bodies": bodies.model_copy(update={"profile": shape})})

@@ -95,8 +95,8 @@ class ModelBranch:
 
         A transient is that of plate and particles on the contact's own force; see `motion.swing`.
         """
-        if displacement is not None:  # what follows from the beginning is as uncertain as the end
-            self._add(np.asarray([self.model.apart, displacement]), time=(0.0, duration))
+        if displacement is not None:
+            self._add(np.asarray([displacement, displacement]), time=(0.0, duration))
         elif force is not None:
             start = 0.0
             if force < 0.0:

@@ -38,20 +38,19 @@ MOST_STEPS = 20_000
 
 
 def swing(scene: Scene, settings: Settings, model: Reduced, start: float, load: float, duration: float) -> Array:
-    """Displacements [LU] of a plate under a load [FU] after the first timestep, and after a time [TU] besides, (2,).
+    """Displacements [LU] of a plate under a load [FU] after the first timestep, and after a time [TU], (2,).
 
         (M + N m) d″ = load − F(d) − c d′
 
     from rest at `start` [LU], with F(d) and limit points of the reduced model, in LAMMPS's own steps (velocity Verlet,
     drag half a step late).
     """
-    count, steps = settings.rows_of(duration)
-    total = 1 + count * steps
+    total = sum(settings.steps_of(duration))
     if total > MOST_STEPS:
         return np.full(2, model.displacement_at(load))
     particle, plate = inertia(scene, settings)
     mass, drag, step = plate + settings.chains.upper * particle, settings.drag(), settings.motion.time_step
-    path, place, velocity, is_lost = np.empty(total + 1), start, 0.0, False
+    path, place, velocity, is_lost = np.empty(total), start, 0.0, False
     force = load - float(model.held(np.asarray([place]))[0])
     for i in range(total):
         velocity += 0.5 * step * force / mass

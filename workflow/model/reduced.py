@@ -200,15 +200,15 @@ class Springs(Reduced):
 class AdheringCells(Reduced):
     """The cells of a chain on a rigid plane, which adhere from touch to where fixed grips lose all of it at once."""
 
+    estimate: AdhesiveEstimate
+
     @cached_property
     def _cells(self) -> Cells:
-        assert isinstance(self.estimate, AdhesiveEstimate)
         return self.estimate.cells(self.x, self.estimate.profile)
 
     @property
     def apart(self) -> float:
         """Where fixed grips lose the contact [LU]."""
-        assert isinstance(self.estimate, AdhesiveEstimate)
         return self.estimate.fixed_grips[1]
 
     def held(self, displacements: Array) -> Array:
