@@ -95,17 +95,20 @@ class PathExperiment(Scripted[Path]):
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """The approach, which is not evaluated, and the positions of the scene; where pairs snap also those between."""
-        settings = branch.settings
-        all_of_it = way(scene, settings)
-        first = [asked for _, asked in all_of_it].index(True)
-        if first:
-            branch.begin(UNSEEN)
-            branch.visit([position for position, _ in all_of_it[:first]])
-        passed = all_of_it[first:] if settings.estimate.snaps else [one for one in all_of_it if one[1]]
-        positions = [position for position, _ in passed]
-        for name, stretch in stretches(positions):
-            branch.begin(name)
-            branch.visit(stretch)
+        settings, passed = branch.settings, 0
+        whole = way(scene, settings)
+        first = [asked for _, asked in whole].index(True)
+        for name, stretch in stretches([position for position, _ in whole]):
+            rows = list(enumerate(whole[passed : passed + len(stretch)], passed))
+            passed += len(stretch)
+            parts = {
+                UNSEEN: [position for i, (position, _) in rows if i < first],
+                name: [position for i, (position, asked) in rows if i >= first and (asked or settings.estimate.snaps)],
+            }
+            for phase, positions in parts.items():
+                if positions:
+                    branch.begin(phase)
+                    branch.visit(positions)
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule that runs."""

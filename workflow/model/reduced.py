@@ -112,6 +112,11 @@ class Reduced(ABC):
         """Limit points [LU], at which a contact that is unloaded is lost at once; none where its force falls to 0."""
         return ()
 
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        """Displacements [LU] at which the force jumps, on the way in or out."""
+        return self.limits
+
     def shifted(self, phase: float) -> Reduced:
         """The same with the apex `phase` spacings off a particle."""
         return replace(self, x=places_within(self._reach, self.estimate.spacing, phase))
@@ -219,6 +224,11 @@ class AdheringCells(Reduced):
     def limits(self) -> tuple[float, ...]:
         """There."""
         return (self.apart,)
+
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        """There, and at touch."""
+        return (self.apart, 0.0)
 
     def follow(self, path: Path) -> Followed:
         """Nothing is felt before touch; see `Reduced.follow`."""
