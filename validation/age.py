@@ -86,5 +86,5 @@ def ages() -> Iterator[str]:
 def _age(when: Measured) -> str:
     since = git("rev-list", "--count", f"{when.commit.rstrip('+')}..HEAD", "--", *CODE)
     days = (datetime.date.today() - datetime.date.fromisoformat(when.date)).days if when.date else 0
-    commits = f"{since} commits to the program" if since else "at a commit that is not here"
-    return f"{commits}, {days} days ago"
+    commits = f"{since} commits to the program" if since else "a commit that is not here"
+    return f"{commits} and {days} days ago"

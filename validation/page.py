@@ -189,7 +189,7 @@ def speed_table(record: Record) -> str:
         for one in record.answers
         for row in one.rows
     ]
-    return table(("study", "measured", "found", "asked"), rows)
+    return f"{table(('study', 'measured', 'found', 'asked'), rows)}\nMeasured {_when(record.answers)}.\n"
 
 
 def write_between(page: Path, name: str, text: str) -> None:
@@ -236,7 +236,7 @@ def _class(answer: Answer) -> tuple[str, ...]:
         f"`{answer.name}`",
         f"{answer.title}: {answer.question}",
         rows,
-        number(min(margins), 3) if margins else "exact",
+        number(min(margins), 3) if margins else "nothing off",
         _when([answer]),
     )
 
