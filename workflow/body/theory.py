@@ -315,20 +315,18 @@ def tabor(case: Case) -> float | None:
     return None if case.with_range is None else case.with_range.tabor
 
 
-def _with_a_range(case: Case) -> str:
-    """µ and what follows from it, where the scene has a range, and where JKR does not hold with the assumed one."""
-    mu, adhesion = tabor(case), case.scene.adhesion
-    if mu is None or adhesion is None or case.kind != "parabola":
-        return ""
-    if adhesion.range is None and of_tabor(mu) is Theory.JKR:
-        return ""
-    return f"a paraboloid with a range; the Tabor parameter is {mu:.3g}, where {valid_theory(mu, 0.0).theory} holds"
+def _with_a_range(of_any: bool) -> Callable[[Case], str]:
+    """Applies to a paraboloid on a plane where JKR does not hold, and `of_any` µ where the scene gives the range."""
 
+    def applies(case: Case) -> str:
+        mu, adhesion = tabor(case), case.scene.adhesion
+        if mu is None or adhesion is None or case.kind != "parabola":
+            return ""
+        if of_tabor(mu) is Theory.JKR and not (of_any and adhesion.range):
+            return ""
+        return f"a paraboloid with a range; the Tabor parameter is {mu:.3g}, where {valid_theory(mu, 0.0).theory} holds"
 
-def _below_jkr(case: Case) -> str:
-    """The other limit, where JKR does not hold."""
-    mu = tabor(case)
-    return "" if mu is None or of_tabor(mu) is Theory.JKR else _with_a_range(case)
+    return applies
 
 
 def _by_tabor(theory: Theory) -> Callable[[Case], str]:
@@ -423,8 +421,8 @@ FORMS = (
                _adheres("circle", "a whole sphere that adheres, without a range"), _adhesive_values),
     ClosedForm("Kendall, flat punch", "K. Kendall, J. Phys. D 4 (1971) 1186",
                _adheres("flat_punch", "a flat punch that adheres, without a range"), _adhesive_punch_values),
-    ClosedForm("Maugis and Dugdale", MAUGIS, _with_a_range, _maugis_values, has_range=True),
-    ClosedForm("DMT", DMT, _below_jkr, _dmt_values),
+    ClosedForm("Maugis and Dugdale", MAUGIS, _with_a_range(True), _maugis_values, has_range=True),
+    ClosedForm("DMT", DMT, _with_a_range(False), _dmt_values),
     ClosedForm("JKR", JKR, _by_tabor(Theory.JKR), _jkr_values),
     ClosedForm("Maugis-Dugdale", MAUGIS, _by_tabor(Theory.MAUGIS), _maugis_values, has_range=True),
     ClosedForm("DMT", DMT, _by_tabor(Theory.DMT), _dmt_values),
