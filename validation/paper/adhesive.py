@@ -32,8 +32,8 @@ from validation.row import Known, Reference, Row, claim, judged, relative, verdi
 from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
 
 NAME = "adhesive"
-RADIUS = 6.1e-6
-"""R of the sphere of the second scene [m]: that of Table 1's first row."""
+RADIUS, PARTICLES = 6.1e-6, 200
+"""R of the sphere of the second scene [m] and particles of its chain: those of Table 1's first row."""
 ABOVE, BEYOND, STEPS = 1.2, 10.0, 160
 """Displacements of a parting: from JKR's zero-load place, times ABOVE, to BEYOND ranges past touch, in so many rows."""
 CRITICAL_RADIUS_RATIO, FIXED_GRIPS_RADIUS_RATIO = 4.0 ** (-1.0 / 3.0), 6.0 ** (-2.0 / 3.0)
@@ -61,9 +61,10 @@ SPHERE = Case("a sphere by the MDR", "sphere", "parting_sphere")
 
 @cache  # asked for twice
 def sphere(tolerance: float) -> Scene:
-    """The scene that `contact1d identify` begins with for a sphere of the paper's material."""
+    """The scene that `contact1d identify` begins with for a sphere of the paper's material, of PARTICLES."""
     target = jkr_target(CONTACT_MODULUS, SURFACE_ENERGY, RADIUS)
-    return estimated(*material_scene(CONTACT_MODULUS, RADIUS, target, tolerance=tolerance))
+    found = estimated(*material_scene(CONTACT_MODULUS, RADIUS, target, tolerance=tolerance))
+    return changed(found, f"bodies.particles={PARTICLES}")
 
 
 def parting(scene: Scene) -> Scene:

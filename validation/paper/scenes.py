@@ -26,7 +26,6 @@ from validation.doors import (
     load_run,
     read_scene,
     scene_from_dict,
-    settings_for,
     shipped,
     versions,
 )
@@ -153,8 +152,9 @@ def radius(scene: Scene) -> float:
 
 def chain_model(scene: Scene) -> ChainModel:
     """The scene for the independent solver; the transformed profile x²/R is that of half the radius as given."""
+    assert isinstance(scene.bodies.particles, int)
     return ChainModel(
-        settings_for(scene).particles,
+        scene.bodies.particles,
         scene.bulk_stiffness,
         interaction(scene),
         radius=radius(scene) / (2.0 if scene.bodies.reduction == "mdr" else 1.0),
