@@ -32,8 +32,9 @@ from validation.row import Known, Reference, Row, claim, judged, relative, verdi
 from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
 
 NAME = "adhesive"
-RADIUS, PARTICLES = 6.1e-6, 200
-"""R of the sphere of the second scene [m] and particles of its chain: those of Table 1's first row."""
+RADIUS, PARTICLES = 6.1e-6, 180
+"""R of the sphere of the second scene [m], that of Table 1's first row, and particles of its chain, as many as its
+contact needs and some more."""
 ABOVE, BEYOND, STEPS = 1.2, 10.0, 160
 """Displacements of a parting: from JKR's zero-load place, times ABOVE, to BEYOND ranges past touch, in so many rows."""
 CRITICAL_RADIUS_RATIO, FIXED_GRIPS_RADIUS_RATIO = 4.0 ** (-1.0 / 3.0), 6.0 ** (-2.0 / 3.0)
