@@ -142,7 +142,7 @@ def _pressure(scene: Scene, profile: Profile, radius: ContactRadius) -> BodyPres
         off_axis = smooth and top > 0 and len(told) == 3 and fine.at_edge <= noise * p[top] * fine.edge
         if off_axis:
             off_axis = _converges([float(level.pressure(r).max()) for level in told], noise)
-        if off_axis or (smooth and top in bounded.values()):
+        if p[top] > 0.0 and (off_axis or (smooth and top in bounded.values())):
             bounded["peak_pressure"] = top
     digits = ROUND_OFF * scene.bulk_stiffness / scene.bodies.spacing
     results = {name: Quantity(float(p[at]), float(spread[at]) + digits, MEAN_PRESSURE) for name, at in bounded.items()}

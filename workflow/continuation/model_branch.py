@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.continuation.state import RadiusRule
 from contact1d.workflow.continuation.trace import Trace, of_model
-from contact1d.workflow.model.motion import swing
-from contact1d.workflow.model.reduced import Path, Reduced
+from contact1d.workflow.model.reduced import Path, Reduced, swing
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
@@ -103,7 +102,7 @@ class ModelBranch:
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
         """A displacement [LU], or a plate that moves under a force [FU], for a time [TU]: the first and the last state.
 
-        A transient is that of plate and particles on the contact's own force; see `motion.swing`.
+        A transient is that of plate and particles on the contact's own force; see `reduced.swing`.
         """
         if displacement is not None:
             self._add(np.asarray([displacement, displacement]), time=(0.0, duration))

@@ -90,12 +90,13 @@ class TangentialExperiment(Scripted[Tangential]):
         strongest = max(row.carried for row in rows)
         error = ROUND_OFF * len(rows) * strongest + _moved_too_far(scene, settings)
         lost, force = error * scene.experiment.way, float(trace.force[last.state])
+        unseen = _unseen_slip(rows, scene)[0] if last.dissipated <= lost else 0.0
         radius = trace.radius(last.state) or 0.0
         found = {
             "normal_force": Reading(
                 force, FORCE, {"solver": ROUND_OFF * abs(force)}, prescribed=scene.experiment.compression is not None
             ),
-            "tangential_force": Reading(last.force, FORCE, {"solver": error}, scale=strongest),
+            "tangential_force": Reading(last.force, FORCE, {"solver": error, LATTICE: unseen}, scale=strongest),
             "contact_radius": Reading(radius, LENGTH, prescribed=radius == 0.0),
             "stick_radius": Reading(
                 last.stick.value + trace.shift_of(last.state) * last.stick.uncertainty, LENGTH,
@@ -191,17 +192,18 @@ def _energy(rows: Sequence[Drawn], lost: float, scene: Scene) -> Reading:
     if abs(dissipated) > lost:
         return Reading(dissipated, ENERGY, {"solver": lost})
     work = sum(0.5 * (a.carried + b.carried) * abs(b.position - a.position) for a, b in pairwise(rows))
-    most = 0.0 if scene.bodies.profile.has_edge else _unseen_slip(rows, scene)
+    force, way = _unseen_slip(rows, scene)
+    most = force * way
     known = most <= NOTHING * work
     return Reading(dissipated, ENERGY, {"solver": lost, LATTICE: most}, scale=work if known else None, prescribed=known)
 
 
-def _unseen_slip(rows: Sequence[Drawn], scene: Scene) -> float:
-    """Energy [FU·LU] that slip between the outermost particles may dissipate, where none of these slips.
+def _unseen_slip(rows: Sequence[Drawn], scene: Scene) -> tuple[float, float]:
+    """Force [FU] and distance [LU] of the slip between the outermost particles, at most, where none of these slips.
 
     The annulus that slips is as wide as k_t u/(μ Δf) spacings, with Δf the difference of the normal forces of the two
     outermost particles, and one at most; its forces are below k_t u and μ f, and it slips by as much as the sliders
-    are moved beyond what a rising load lets them carry, k_t |Δu| − μ k_n Δd.
+    are moved beyond what a rising load lets them carry, k_t |Δu| − μ k_n Δd. A body with an edge has none.
     """
     assert scene.friction is not None
     stiffness, coefficient = scene.tangential_stiffness, scene.friction.coefficient
@@ -211,11 +213,11 @@ def _unseen_slip(rows: Sequence[Drawn], scene: Scene) -> float:
     slipped = 0.0
     for before, after in pairwise(rows):
         deeper = after.trace.displacement[after.state] - before.trace.displacement[before.state]
-        moved = stiffness * abs(after.position - before.position) - coefficient * scene.bulk_stiffness * deeper
-        slipped += max(0.0, float(moved) / stiffness) if after.position != before.position or deeper < 0.0 else 0.0
+        moved = abs(after.position - before.position) - coefficient * scene.bulk_stiffness * deeper / stiffness
+        slipped += max(0.0, float(moved)) if after.position != before.position or deeper < 0.0 else 0.0
     force = stiffness * max(abs(row.position) for row in rows)
     share = min(1.0, force / rise) if rise > 0.0 else 1.0
-    return STUCK * share * min(force, limit) * slipped
+    return (0.0 if scene.bodies.profile.has_edge else STUCK * share * min(force, limit)), slipped
 
 
 def _require_history(trace: Trace, rows: Sequence[Drawn]) -> None:

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from contact1d.analysis.shear import slip
 from contact1d.workflow.model.adhesion import AdhesiveEstimate, Cells
 from contact1d.workflow.model.friction import Sliders
+from contact1d.workflow.model.motion import inertia
 from contact1d.workflow.model.pairs import ContactEstimate, places_within
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
@@ -303,3 +304,32 @@ def reduced(scene: Scene, settings: Settings) -> Reduced:
         return Springs(estimate, x, deepest)
     sliders = Sliders(x, x, scene.bulk_stiffness, scene.tangential_stiffness, scene.friction.coefficient)
     return Sliding(estimate, x, deepest, sliders)
+
+
+MOST_STEPS = 20_000
+"""Timesteps of a swing that is followed; a longer one ends in equilibrium."""
+
+
+def swing(scene: Scene, settings: Settings, model: Reduced, start: float, load: float, duration: float) -> Array:
+    """Displacements [LU] of a plate under a load [FU] after the first timestep, and after a time [TU], (2,).
+
+        (M + N m) d″ = load − F(d) − c d′
+
+    from rest at `start` [LU], with F(d) and limit points of the reduced model, in LAMMPS's own steps (velocity Verlet,
+    drag half a step late).
+    """
+    total = sum(settings.steps_of(duration))
+    if total > MOST_STEPS:
+        return np.full(2, model.displacement_at(load))
+    particle, plate = inertia(scene, settings)
+    mass, drag, step = plate + settings.chains.upper * particle, settings.drag(), settings.motion.time_step
+    path, place, velocity, is_lost = np.empty(total), start, 0.0, False
+    force = load - float(model.held(np.asarray([place]))[0])
+    for i in range(total):
+        velocity += 0.5 * step * force / mass
+        place += step * velocity
+        is_lost = place < model.apart or (is_lost and place < 0.0)
+        force = load - drag * velocity - (0.0 if is_lost else float(model.held(np.asarray([place]))[0]))
+        velocity += 0.5 * step * force / mass
+        path[i] = place
+    return path[[0, total - 1]]

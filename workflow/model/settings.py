@@ -453,7 +453,8 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     load = scene.experiment.compression
     largest = max(scene.experiment.places()) if load is None else estimate.displacement_at(load)
     chains = _chains(scene, estimate, forces, largest, calibration.chain * tolerance)
-    scale = force_scale_of(scene, forces.law, largest)
+    # A punch that adheres and carries nothing is not deep, and yet its springs hold it up to its limit.
+    scale = force_scale_of(scene, forces.law, max(largest, -estimate.parted(0.0)) if scene.adhesion else largest)
     require_digits(scene, chains.upper, forces.rest + largest, tolerance * scale)
     forces = replace(forces, scale=scale, residual=calibration.residual * tolerance * scale)
     if forces.law is not None:

@@ -352,11 +352,15 @@ class Measured(Shape):
 
     @property
     def alternatives(self) -> tuple[Shape, ...]:
-        """Straight lines between the points, and the curve through every second one, or through the others."""
+        """Chords, and the corners in which neighbouring ones meet: a body whose slope only rises is between them.
+
+        Of heights with few digits, also the apex half a digit lower.
+        """
         r, z = self.r or (), self.z or ()
-        fewer = [((r[0], *r[first:-1:2], r[-1]), (z[0], *z[first:-1:2], z[-1])) for first in (1, 2)]
-        thinned = [self.model_copy(update={"r": r, "z": z}) for r, z in fewer if len(r) >= FEWEST_POINTS]
-        return (Polygon.model_construct(**dict(self)), *thinned)
+        found: list[Shape] = [Polygon.model_construct(**dict(self) | points) for points in ({}, _cornered(r, z))]
+        if digit := _digit(z):
+            found.append(self.model_copy(update={"z": (z[0] - 0.5 * digit, *z[1:])}))
+        return tuple(found)
 
     def _spline(self) -> Any:
         return _spline(self.r or (), self.z or ())
@@ -380,6 +384,8 @@ class Polygon(Measured):
 
 SHARP = 8.0
 """Curvature at a point, or at two beside each other, over that at both neighbours from which on the slope jumps."""
+MOST_DIGITS, NEARLY = 10, 1e-4
+"""Digits of heights that are rounded, at most, and how near to a whole multiple one is one."""
 LEAST_JUMP = 1e-6
 """Such a jump over the largest slope at least: others are round-off."""
 FLANK = 3
@@ -406,14 +412,44 @@ def _points(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array, l
             found[x[i]] = y[i]
         elif i + 2 < len(curvature) and curvature[i : i + 2].sum() > SHARP * max(curvature[i - 1], curvature[i + 2]):
             left, right = slice(max(0, i + 1 - FLANK), i + 1), slice(i + 1, i + 1 + FLANK)
-            lines = [np.polyfit(x[own], y[own], min(2, len(x[own]) - 1)) for own in (left, right)]
+            step = x[i + 1] - x[i]
+            lines = [np.polyfit((x[own] - x[i]) / step, y[own], min(2, len(x[own]) - 1)) for own in (left, right)]
             roots = np.roots(np.polysub(*lines))
-            meet = [one.real for one in roots if abs(one.imag) == 0.0 and x[i] < one.real < x[i + 1]]
+            meet = [one.real for one in roots if one.imag == 0.0 and 0.0 < one.real < 1.0]
             if strong[i] and strong[i + 1] and len(meet) == 1:
-                found[meet[0]] = float(np.polyval(lines[0], meet[0]))
+                found[x[i] + step * meet[0]] = float(np.polyval(lines[0], meet[0]))
     every = dict(zip(x.tolist(), y.tolist(), strict=True)) | found
     places = sorted(every)
     return np.asarray(places), np.asarray([every[one] for one in places]), [places.index(one) for one in sorted(found)]
+
+
+def _cornered(r: tuple[float, ...], z: tuple[float, ...]) -> dict[str, tuple[float, ...]]:
+    """The points, and in each cell the one where the chords on both sides of it meet, if they do there."""
+    import numpy as np
+
+    x, y = np.asarray(r), np.asarray(z)
+    slope = np.diff(y) / np.diff(x)
+    before, after, start, end = slope[:-2], slope[2:], slice(1, -2), slice(2, -1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        meet = (y[end] - y[start] + before * x[start] - after * x[end]) / (before - after)
+    inside = (meet > x[start]) & (meet < x[end])
+    places = np.append(x, meet[inside])
+    heights = np.append(y, (y[start] + before * (meet - x[start]))[inside])
+    order = np.argsort(places)
+    return {"r": tuple(places[order].tolist()), "z": tuple(heights[order].tolist())}
+
+
+def _digit(z: tuple[float, ...]) -> float:
+    """The power of ten of which all heights are whole multiples; 0 where that is beyond MOST_DIGITS of the largest."""
+    import numpy as np
+
+    heights = np.asarray(z)
+    first = math.ceil(math.log10(np.abs(heights).max()))
+    for power in range(first, first - MOST_DIGITS, -1):
+        whole = heights / 10.0**power
+        if np.abs(whole - whole.round()).max() < NEARLY:
+            return float(10.0**power)
+    return 0.0
 
 
 @lru_cache(maxsize=8)
