@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.scene.check import BOLTZMANN
+from contact1d.workflow.scene.conversion import BOLTZMANN
 from contact1d.workflow.scene.quantities import places
 from contact1d.workflow.units import LENGTH, Quantity, Scales
 

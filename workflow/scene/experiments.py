@@ -368,6 +368,6 @@ class Hold(Kind):
 Experiment = Annotated[Load | Path | PullOff | Slide | Tangential | Hold, Discriminator("kind")]
 
 KINDS: dict[str, type[Kind]] = {
-    str(choice.kind): choice.type for choice in allowed_by(Experiment).choices if issubclass(choice.type, Kind)
+    kind: table for kind, table in allowed_by(Experiment).kinds.items() if issubclass(table, Kind)
 }
 """The experiments by their `kind`."""

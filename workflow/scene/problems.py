@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import Any
@@ -122,9 +122,16 @@ def nearest(word: str, allowed: Iterable[str]) -> str | None:
     """The one of `allowed` that a person who wrote `word` most likely meant, or None."""
     known, meant = list(allowed), plain(word)
     starting = [name for name in known if len(meant) > 2 and name.startswith(meant)]
-    if len(starting) == 1:
-        return starting[0]
+    if len(starting) == 1 or len(meant) > SHOWN_LENGTH:
+        return next(iter(starting), None)
     return next(iter(get_close_matches(meant, known, n=1, cutoff=0.7)), None)
+
+
+def suggestion(word: str, known: Collection[str], what: str = "allowed here") -> str:
+    """What to write in place of an unknown `word`: the one of the `known` that was meant, and all of these."""
+    meant = nearest(word, known)
+    begin = f'did you mean "{meant}"? ' if meant else ""
+    return f"{begin}{what}: {', '.join(known) or 'no keys'}"
 
 
 def plain(word: str) -> str:

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import math
 import re
-import sys
+from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import pairwise
+from fractions import Fraction
+from itertools import chain, pairwise
 from pathlib import Path
 
 from contact1d.files import read_text
+from contact1d.workflow.scene.conversion import positive, size
+from contact1d.workflow.scene.problems import Problem
 from contact1d.workflow.scene.profiles import FEWEST_POINTS
+from contact1d.workflow.scene.quantities import Place
+from contact1d.workflow.scene.schema import described
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
 
 RADII = ("r", "radius", "radii", "rho", "ρ")
@@ -36,11 +41,72 @@ class ProfileFileError(ValueError):
     """A file that is not a profile; the message has the line and the error."""
 
 
-class ScaleError(ValueError):
-    """A scale that is invalid for this file; the message says why."""
+class ProfileFile:
+    """The file that the profile of a scene names, if it does; its scale is a quantity of the scene like any other.
+
+    Attributes:
+        profile: its place in the scene.
+        lists, units: as `read_profile` gives them; none without a file that could be read.
+        problems: what is wrong with it.
+    """
+
+    def __init__(self, scene: Place, folder: Path) -> None:
+        """Read it, looked up in `folder`. Without a scale of the scene's the unit of the radii stands there."""
+        self.profile = scene.at("bodies", "profile")
+        self.lists: dict[str, list[float]] = {}
+        self.units: dict[str, str | None] = {}
+        self.problems: list[Problem] = []
+        if not self.profile or not self.profile.at("file"):
+            return
+        file, scale = (self.profile.inside[key] for key in ("file", "scale"))
+        listed = not {"r", "z"}.isdisjoint(self.profile.value)
+        wrong = file
+        if isinstance(file.value, str) and not listed:
+            try:
+                self.lists, self.units = read_profile(folder / file.value)
+                wrong = scale
+                if scale.absent:
+                    scale.put(self.units["r"] or 1.0)
+                    scale.source = file
+                elif any(self.units.values()):
+                    raise ValueError("not together with units in the file's names; remove it")
+                elif isinstance(scale.value, str):
+                    si_value(scale.value, MODEL)
+                elif not positive(scale.value):
+                    raise ValueError(f"must be {described(scale.allowed)}")
+            except ValueError as error:
+                self.problems = [wrong.fault(str(error))]
+        elif isinstance(file.value, str):
+            self.problems = [file.fault("not together with the lists r and z", "give one of the two")]
+        elif listed and not scale.absent:
+            beside = "not together with the lists r and z, which have units of their own"
+            self.problems = [scale.problem(beside, "it belongs to a file: remove it")]
+        if self.problems:
+            self._replace({})
+
+    def put(self, scales: Mapping[str, Fraction] | None) -> None:
+        """Put its points in its place, in LU; `scales` has the size of that in SI, where a unit is there."""
+        if not self.lists or not self.profile or not self.profile.sound:
+            return
+        scale = self.profile.inside["scale"]
+        sizes = {
+            key: float(si_value(unit, MODEL)[0] / size(MODEL, scales)) if unit and scales else scale.value
+            for key, unit in self.units.items()
+        }
+        lists = {key: [sizes[key] * value for value in values] for key, values in self.lists.items()}
+        if not all(map(math.isfinite, chain(*lists.values()))):
+            self.problems = [scale.fault("is too large for the numbers of the file")]
+        self.profile.source = self.profile.inside["file"]
+        self._replace({} if self.problems else lists)
+
+    def _replace(self, lists: Mapping[str, list[float]]) -> None:
+        """Put the lists in the place of the file."""
+        assert self.profile is not None
+        kept = {key: value for key, value in self.profile.value.items() if key not in ("file", "scale")}
+        self.profile.put(kept | lists)
 
 
-def read_profile(path: Path, scale: object = None) -> tuple[dict[str, list[float]], dict[str, str | None]]:
+def read_profile(path: Path) -> tuple[dict[str, list[float]], dict[str, str | None]]:
     """The lists r and z of a measured profile, from the axis out, and the unit of each, "1 µm"; None: in LU.
 
     Messages name lines and never quote them: a path in a scene may point at any file.
@@ -48,15 +114,10 @@ def read_profile(path: Path, scale: object = None) -> tuple[dict[str, list[float
     Lines that begin with # and empty ones are skipped; the first other line may be names. Columns of other names are
     ignored. Points may come from the edge in; those from −x to x are folded into the mean of both sides.
 
-    Args:
-        path: the file.
-        scale: size of one unit of its numbers by the scene: None, a number [LU], or "1 µm".
-
     Raises:
         UnreadableError: if there is no such file, or it is no text.
         ProfileFileError: if it has more than MOST_LINES, a cell is empty or no number, a line has one column, there
             are fewer than FEWEST_POINTS points, names are not known, or the two sides of a profile are not the same.
-        ScaleError: a scale that is no size, too large, or beside units of the file's own.
     """
     header, rows = _header(path.name, _rows(path))
     if not rows:
@@ -73,29 +134,7 @@ def read_profile(path: Path, scale: object = None) -> tuple[dict[str, list[float
         r, z = _folded(path, r, z)
     if len(r) < FEWEST_POINTS:
         raise ProfileFileError(f"{path} must have at least {FEWEST_POINTS} points from the axis out, not {len(r)}")
-    return _scaled({"r": r, "z": z}, dict(zip("rz", header.units, strict=True)), scale)
-
-
-def _scaled(
-    lists: dict[str, list[float]], units: dict[str, str | None], scale: object
-) -> tuple[dict[str, list[float]], dict[str, str | None]]:
-    """Lists and units by the scene's scale."""
-    if scale is None:
-        return lists, units
-    if any(units.values()):
-        raise ScaleError("not together with units in the file's names; remove it")
-    if isinstance(scale, str):
-        try:
-            si_value(scale, MODEL)
-        except UnitTextError as error:
-            raise ScaleError(str(error)) from None
-        return lists, dict.fromkeys(units, scale)
-    if isinstance(scale, bool) or not isinstance(scale, int | float) or not 0.0 < scale <= sys.float_info.max:
-        raise ScaleError("must be a number greater than 0 (LU), or text with a unit")
-    scaled = {key: [scale * value for value in values] for key, values in lists.items()}
-    if not all(map(math.isfinite, scaled["r"] + scaled["z"])):
-        raise ScaleError("is too large for the numbers of the file")
-    return scaled, units
+    return {"r": r, "z": z}, dict(zip("rz", header.units, strict=True))
 
 
 def _rows(path: Path) -> list[Row]:

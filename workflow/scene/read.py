@@ -13,13 +13,14 @@ from typing import Any
 from pydantic import ConfigDict
 
 from contact1d.files import UnreadableError, read_text
-from contact1d.workflow.scene.check import FILE, PROFILE, UNIT_KEYS, Conversion, PointsFile, check_tables, mend_words
-from contact1d.workflow.scene.problems import Problem, SceneError, nearest, path_of, shown
-from contact1d.workflow.scene.profile_file import ScaleError, read_profile
-from contact1d.workflow.scene.quantities import Table, keys_of
+from contact1d.workflow.scene.check import check_tables, mend_words
+from contact1d.workflow.scene.conversion import UNIT_KEYS, Conversion
+from contact1d.workflow.scene.problems import Problem, SceneError, shown, suggestion
+from contact1d.workflow.scene.profile_file import ProfileFile
+from contact1d.workflow.scene.quantities import Place, Table, keys_of
 from contact1d.workflow.scene.rules import check_fit
-from contact1d.workflow.scene.si_text import MODEL_UNITS, split
-from contact1d.workflow.scene.tables import EFFECTS, Tables
+from contact1d.workflow.scene.si_text import MODEL_UNITS
+from contact1d.workflow.scene.tables import EFFECTS, WHOLE, Tables
 from contact1d.workflow.units import Scales
 
 DEEPEST = 100
@@ -148,88 +149,30 @@ def scene_from_dict(
 
 def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -> Scene:
     """The scene of `plain`, which is corrected meanwhile; `problems` are those found so far."""
-    problems += mend_words(plain, Scene)
-    source, unread = _with_points(plain, folder)
-    _with_legs(plain)
-    converted = Conversion(plain, source)
-    scene, wrong, unsound = check_tables(plain, Scene, converted.reported)
-    found = (*unread, *converted.problems, *wrong, *check_fit(plain, unsound))
-    problems += [_as_written(problem, converted.texts, source, plain) for problem in found]
+    tables = Place(plain, WHOLE)
+    problems += mend_words(tables)
+    file = ProfileFile(tables, folder)
+    conversion = Conversion(tables)
+    file.put(conversion.scales)
+    scene, wrong = check_tables(tables, Scene)
+    found = [*file.problems, *conversion.problems, *wrong, *check_fit(tables)]
+    problems += _in_si(found, plain.get("material"), bool(conversion.texts))
     if problems or scene is None:
         raise SceneError(sorted(problems, key=_rank))
     return scene
 
 
-def _as_written(
-    problem: Problem, texts: Mapping[str, str], source: PointsFile | None, data: Mapping[str, Any]
-) -> Problem:
-    """The problem with what stands in the scene: the text with its unit, the file in place of its points, and SI."""
-    material = data.get("material")
-    if isinstance(material, Mapping):
-        sizes = [size if isinstance(size := material.get(key), float) else None for key in UNIT_KEYS.values()]
-        if sizes[0] and sizes[1] and (texts or sizes[:2] == [1.0, 1.0]) and MODEL_UNITS not in problem.message:
-            words = Scales(sizes[0], sizes[1], mass=sizes[2]).in_words
-            problem = replace(problem, message=words(problem.message), hint=words(problem.hint))
-    if problem.path in texts:
-        ways = tuple({key: _with_unit(key, value, texts, data) for key, value in way.items()} for way in problem.ways)
-        hint = problem.hint
-        for way, written in zip(problem.ways, ways, strict=True):
-            for key, value in way.items():
-                hint = hint.replace(f" {value:g}", f" {written[key]}") if isinstance(value, float) else hint
-        return replace(problem, given=shown(texts[problem.path]), ways=ways, hint=hint)
-    if source and problem.path == path_of(PROFILE):
-        return replace(problem, path=path_of(FILE), given=shown(source.name))
-    return problem
-
-
-def _with_unit(key: str, value: object, texts: Mapping[str, str], data: Mapping[str, Any]) -> object:
-    """A number of the model for `key`, in the unit of the text that stands there now; else as it is."""
-    if key not in texts or not isinstance(value, float):
-        return value
-    now: Any = data
-    for part in key.split("."):
-        now = now[part]
-    number, unit = split(texts[key])
-    return f"{value / now * float(number):.6g}{unit}" if now else value
-
-
-def _with_points(data: dict[str, Any], folder: FilePath) -> tuple[PointsFile | None, list[Problem]]:
-    """Put the points of a profile's file, if it names one, in its place in `data`; says what their numbers are."""
-    bodies = data.get("bodies")
-    profile = bodies.get("profile") if isinstance(bodies, dict) else None
-    if not isinstance(profile, dict) or profile.get("kind") != "table":
-        return None, []
-    lists, key = "r" in profile or "z" in profile, "file"
-    if "file" not in profile and lists and "scale" in profile:
-        beside = "not together with the lists r and z, which have units of their own"
-        given, hint = shown(profile.pop("scale")), "it belongs to a file: remove it"
-        return None, [Problem("bodies.profile.scale", beside, given, hint)]
-    if not isinstance(profile.get("file"), str):
-        return None, []
-    file, scale = profile.pop("file"), profile.pop("scale", None)
-    message, hint = "not together with the lists r and z", "give one of the two"
-    if not lists:
-        try:
-            points, units = read_profile(folder / file, scale)
-            profile |= points
-            return PointsFile(file, units), []
-        except ValueError as error:
-            message, hint, key = str(error), "", "scale" if isinstance(error, ScaleError) else "file"
-    problem = Problem(f"bodies.profile.{key}", message, shown(scale if key == "scale" else file), hint)
-    profile |= {"r": [0.0, 1.0, 2.0, 3.0], "z": [0.0, 1.0, 4.0, 9.0]}  # so that the rest of the scene is still checked
-    return PointsFile(file, {}), [problem]
-
-
-def _with_legs(data: dict[str, Any]) -> None:
-    """Put tables in the place of a slide's legs [velocity, distance] in `data`."""
-    experiment = data.get("experiment")
-    if not isinstance(experiment, dict):
-        return
-    path = experiment.get("path")
-    if isinstance(path, list):
-        names = ("velocity", "distance")
-        legs = [dict(zip(names, leg, strict=True)) if isinstance(leg, list) and len(leg) == 2 else leg for leg in path]
-        experiment["path"] = legs
+def _in_si(problems: list[Problem], material: Any, has_texts: bool) -> list[Problem]:
+    """The problems with SI in place of LU, FU and MU, where the scene's numbers are written in it."""
+    sizes = [material.get(key) for key in UNIT_KEYS.values()] if isinstance(material, Mapping) else [None]
+    length, force, mass = (size if isinstance(size, float) else None for size in (*sizes, None, None)[:3])
+    if not (length and force and (has_texts or length == force == 1.0)):
+        return problems
+    words = Scales(length, force, mass=mass).in_words
+    return [
+        one if MODEL_UNITS in one.message else replace(one, message=words(one.message), hint=words(one.hint))
+        for one in problems
+    ]
 
 
 def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Problem]:
@@ -260,9 +203,7 @@ def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
     problems = []
     for name in dict.fromkeys(names):
         there = [effect for effect in EFFECTS if effect in data]
-        meant = nearest(name, EFFECTS)
-        message = "not an effect that can be removed"
-        hint = (f'did you mean "{meant}"? ' if meant else "") + f"effects: {', '.join(EFFECTS)}"
+        message, hint = "not an effect that can be removed", suggestion(name, EFFECTS, "effects")
         if name in EFFECTS:
             message, hint = "the scene has no such table", f"effects there: {', '.join(there) or 'none'}"
         if name in there:

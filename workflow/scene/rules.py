@@ -18,13 +18,13 @@ from typing import Any
 
 from contact1d.workflow.scene.experiments import KINDS, Cycles, Kind, Span
 from contact1d.workflow.scene.problems import Problem, shown
-from contact1d.workflow.scene.quantities import Keys, Table, keys_of
+from contact1d.workflow.scene.quantities import Place, Table, keys_of
+from contact1d.workflow.scene.si_text import split
 from contact1d.workflow.scene.tables import (
     ALIKE,
     EFFECT_TABLES,
     SPHERES,
     TIMED,
-    WHOLE,
     Bodies,
     default_method,
     default_reduction,
@@ -45,7 +45,7 @@ Rows = Iterator[Row]
 
 
 class Draft:
-    """A scene that may have wrong values: `data` as in the file, and the keys at which a value is `unsound`.
+    """A scene that may have wrong values.
 
     A dotted path is `in` it where anything stands, right or wrong. By a path it gives what stands there or counts where
     nothing does, and None where that is not known or there is no such table.
@@ -57,40 +57,36 @@ class Draft:
         effects: those whose tables are there.
     """
 
-    def __init__(self, data: Mapping[str, Any], unsound: frozenset[Keys]) -> None:
-        """Keep both."""
-        self.data, self.unsound = data, unsound
+    def __init__(self, scene: Place) -> None:
+        """Keep the scene."""
+        self.scene = scene
         self.kind, self.lower, self.profile = self["experiment.kind"], self["bodies.lower"], self["bodies.profile.kind"]
         self.experiment = KINDS.get(self.kind, Kind)
         self.on_plane = self.lower == "rigid_plane"
         self.on_chain = not self.on_plane and self.lower is not None
-        self.effects = tuple(name for name in EFFECT_TABLES if name in data)
+        self.effects = tuple(name for name in EFFECT_TABLES if name in self)
 
-    def written(self, path: str) -> Any:
-        """The value at `path`, right or wrong; None without one."""
-        value: Any = self.data
-        for key in path.split("."):
-            value = value.get(key) if isinstance(value, Mapping) else None
-        return value
+    def place(self, path: str) -> Place | None:
+        """The place at a dotted path; None where nothing may stand."""
+        return self.scene.at(*path.split("."))
 
     def __contains__(self, path: str) -> bool:
         """Whether something stands at `path`."""
-        return self.written(path) is not None
+        place = self.place(path)
+        return place is not None and not place.absent
 
     def __getitem__(self, path: str) -> Any:
         """See above."""
-        keys = tuple(path.split("."))
-        if any(bad[: len(keys)] == keys[: len(bad)] for bad in self.unsound):
-            return None
-        value: Any = self.data
-        allowed = WHOLE
-        for name in keys:
-            table = allowed.table_for(value) if isinstance(value, Mapping) else None
-            key = keys_of(table).get(name) if table else None
-            if key is None:
-                return None
-            value, allowed = value.get(name, key.default), key.allowed
-        return value
+        place = self.place(path)
+        return place.value if place and place.sound else None
+
+    def written(self, path: str, number: float) -> float | str:
+        """A number for `path` to six digits, in the unit of the text that stands there."""
+        place = self.place(path)
+        if not place or not place.source or not place.value:
+            return float(f"{number:.6g}")
+        given, unit = split(place.source.value)
+        return f"{number / place.value * float(given):.6g}{unit}"
 
 
 # fmt: off
@@ -129,7 +125,7 @@ def _interaction(d: Draft) -> Rows:
         return
     yield (f"{attraction}.range", b <= a,
            f"must be greater than the range of the repulsion, {a:g} (LU), else the bodies never attract each other",
-           f"raise it to {2.0 * a:g}, or lower {repulsion}.range to {0.5 * b:g}",
+           f"raise it to {{}}, or lower {repulsion}.range to {{}}",
            {f"{attraction}.range": 2.0 * a, f"{repulsion}.range": 0.5 * b})
     if b <= a:
         return
@@ -137,7 +133,7 @@ def _interaction(d: Draft) -> Rows:
     ratio = math.log(A) - math.log(a) - math.log(B) + math.log(b)
     yield (f"{attraction}.amplitude", ratio <= 0.0,
            f"must be less than {most:.6g} (FU·LU), so that A/a > B/b and particles repel when they touch",
-           f"lower it to {0.25 * most:g}, or raise {repulsion}.amplitude to {4.0 * least:g}",
+           f"lower it to {{}}, or raise {repulsion}.amplitude to {{}}",
            {f"{attraction}.amplitude": 0.25 * most, f"{repulsion}.amplitude": 4.0 * least})
     cutoff, r_0 = d["interaction.cutoff"], ratio * a * b / (b - a)
     yield ("interaction.cutoff", ratio > 0.0 and cutoff not in (None, "auto") and cutoff <= r_0,
@@ -194,8 +190,8 @@ def _normal_loads(d: Draft) -> Rows:
     load = d[given[0]] if d.experiment.goes_along and len(given) == 1 and not points % 4 else None
     if load is None:
         return
-    loads, rows = load if isinstance(load, list) else [load], d["experiment.cycles"] or d["experiment.displacements"]
-    table = Cycles if "experiment.cycles" in d else Span
+    loads, cycles = load if isinstance(load, list) else [load], d["experiment.cycles"]
+    rows, table = (cycles, Cycles) if cycles else (d["experiment.displacements"], Span)
     count = len(table.model_validate(rows).values() if isinstance(rows, Mapping) else rows or loads)
     yield (given[0], loads is load and len(loads) != count,
            f"must be one number or as many as there are displacements, {count}; these are {len(loads)}",
@@ -360,7 +356,7 @@ def _periodic(d: Draft) -> Rows:
                "lower it: a larger one needs distant anchors along x, which a periodic body cannot have")
     count, spacing = d["bodies.particles"], d["bodies.spacing"]
     upper, pitch = (
-        below if d.written(f"bodies.upper_{key}") is None else d[f"bodies.upper_{key}"]
+        d[f"bodies.upper_{key}"] if f"bodies.upper_{key}" in d else below
         for key, below in (("particles", count), ("spacing", spacing))
     )
     yield ("bodies.particles", count == "auto",
@@ -464,14 +460,16 @@ RULES = (
 )
 
 
-def check_fit(data: Mapping[str, Any], unsound: frozenset[Keys] = frozenset()) -> list[Problem]:
-    """Every violation of a rule across the tables of `data` that does not depend on its `unsound` values."""
-    draft, problems = Draft(data, unsound), []
+def check_fit(scene: Place) -> list[Problem]:
+    """Every violation of a rule across the tables of a scene that does not depend on values that are doubted."""
+    draft, problems = Draft(scene), []
     for key, broken, message, fix, *ways in (row for rows in RULES for row in rows(draft)):
         if broken:
-            value = draft.written(key)
-            given = None if value is None or isinstance(value, Mapping) else shown(value)
+            place = draft.place(key)
             # to six digits, as the message says them
-            changes = tuple({path: float(f"{number:.6g}")} for way in ways for path, number in way.items())
-            problems.append(Problem(key, message, given, fix, changes))
+            changes = tuple({path: draft.written(path, number)} for way in ways for path, number in way.items())
+            texts = (f"{one:g}" if isinstance(one, float) else one for way in changes for one in way.values())
+            fix = fix.format(*texts) if ways else fix
+            table = place is None or isinstance(place.value, Mapping)
+            problems.append(Problem(key, message, None if table else place.given, fix, changes))
     return problems

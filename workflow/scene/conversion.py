@@ -1,0 +1,138 @@
+"""Numbers with units in a scene, "10 mm", as numbers in the scene's own units LU, FU, MU, TU = √(MU·LU/FU).
+
+What LU, FU and MU are stands in [material]; where it gives none and no plain number of the scene needs it, it is 1 m,
+1 N or 1 kg, so that the results' model units are those of SI. It is then written into [material], and the scene that
+is kept says what it means.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+from contact1d.workflow.scene.problems import Problem
+from contact1d.workflow.scene.quantities import Place, numbers_in
+from contact1d.workflow.scene.si_text import UnitTextError, example, si_value
+from contact1d.workflow.units import SI
+
+BOLTZMANN = Fraction(1380649, 10**29)
+"""k_B [J/K], exact since 2019."""
+UNIT_KEYS = {"LU": "length_unit", "FU": "force_unit", "MU": "mass_unit"}
+"""Keys of [material] that say what a unit of the model is in SI."""
+ELASTIC = frozenset({"upper", "lower", "contact_modulus"})
+"""Keys of [material] that say how stiff the bodies are."""
+LISTED = 3
+"""Places that a message names before it counts the rest."""
+
+
+class Conversion:
+    """The texts with units of one scene, as its numbers.
+
+    Attributes:
+        problems: what is wrong with the texts; their places, and those whose numbers are unknown by that, are doubted.
+        texts: the places of the texts.
+        scales: LU, FU and MU in SI, as far as the texts need them; None where they cannot be known.
+    """
+
+    def __init__(self, scene: Place) -> None:
+        """Convert them: those in SI first, since they say what LU, FU and MU are."""
+        self.scene = scene
+        self.problems: list[Problem] = []
+        self.texts = [place for place in numbers_in(scene) if place.is_text]
+        read = {place: value for place in self.texts if (value := self._si(place)) is not None}
+        for place, value in read.items():
+            if not place.unit.bases:
+                self._put(place, value)
+        self.scales = self._scales([place for place in self.texts if place.unit.bases])
+        for place, value in read.items():
+            if place.unit.bases and self.scales is None:
+                place.doubt()
+            elif place.unit.bases and self.scales is not None:
+                self._put(place, value / size(place.unit.name, self.scales))
+
+    def _si(self, place: Place) -> Fraction | None:
+        """The quantity that the text says, in SI, a temperature as k_B T; None, and reported, where it is none."""
+        try:
+            value, dimension = si_value(place.value, *place.unit.texts)
+        except UnitTextError as error:
+            self.problems.append(place.fault(str(error)))
+            return None
+        return value * BOLTZMANN if dimension == "K" and place.unit.name != "K" else value
+
+    def _put(self, place: Place, value: Fraction) -> None:
+        """Put the number in the text's place."""
+        try:
+            place.convert(float(value))
+        except OverflowError:
+            self.problems.append(place.fault("exceeds the range of floating-point numbers"))
+
+    def _scales(self, texts: list[Place]) -> dict[str, Fraction] | None:
+        """What LU, FU and MU are in SI, those that `texts` need; chosen and put into the scene where they are open."""
+        material, own = self.scene.at("material"), self.scene.at("bodies", "bulk_stiffness")
+        assert material is not None
+        given: Any = material.value or {}
+        if not texts:
+            return {}
+        if not isinstance(given, dict):
+            return None  # reported where tables are checked
+        first, stiffness = texts[0], own.value if own else "auto"
+        if "surface_energy" in given:
+            message = "LU and FU follow from the run (material.surface_energy), so that units are not known before it"
+            self.problems.append(first.fault(message, f"write a number in {first.unit.name}"))
+            return None
+        needed = frozenset[str]().union(*(place.unit.bases for place in texts))
+        elastic = bool(ELASTIC & given.keys())
+        if stiffness == "auto" or not elastic or "MU" in needed:
+            needed |= {"LU", "FU"}
+        units = {base: positive(given[key]) for base, key in UNIT_KEYS.items() if key in given}
+        known = {base: value for base, value in units.items() if value is not None}
+        chosen = needed - units.keys()
+        fixed = "FU" in chosen and elastic and stiffness != "auto"
+        plain = [place for place in numbers_in(self.scene) if place.is_number and place.unit.bases & chosen]
+        if fixed and own and own.sound:
+            self.problems.append(own.problem("follows from the material here", 'write "auto"'))
+        elif plain and not fixed:
+            self.problems.append(self._mixed(plain, first, chosen, elastic))
+        # also where a problem was reported, so that the rules across tables don't report its consequences
+        if material.absent:
+            material.put({})
+        for base in sorted(chosen - ({"FU"} if fixed else set())):
+            material.inside[UNIT_KEYS[base]].put(1.0)
+        return None if plain or fixed or len(known) < len(units) else known | dict.fromkeys(chosen, Fraction(1))
+
+    def _mixed(self, plain: list[Place], text: Place, chosen: frozenset[str], elastic: bool) -> Problem:
+        """Plain numbers beside numbers with a unit, and nothing says what the units of the model are."""
+        first = plain[0]
+        open_ = {base for place in plain for base in place.unit.bases} & chosen
+        if not elastic:
+            open_ |= {"LU", "FU"} & chosen
+        bases = [base for base in UNIT_KEYS if base in open_]
+        what = f"what {' and '.join(bases)} stand{'s' * (len(bases) == 1)} for"
+        others = ", ".join(place.path for place in plain[1:LISTED])
+        more = f" and {len(plain) - LISTED} more" if len(plain) > LISTED else ""
+        unit = f'give it a unit as well, such as "{example(first.unit.texts[0])}"'
+        if first.source:
+            unit = 'name its columns with their units, r [µm], z [µm], or write scale = "1 µm"'
+        return first.problem(
+            f"is {'by default ' if first.absent else ''}in {first.unit.name}, while {text.path} = {text.given} has "
+            f"a unit, and nothing says {what}",
+            f"{unit}{f'; so too {others}{more}' if others else ''}; "
+            f"or give {' and '.join(f'material.{UNIT_KEYS[base]}' for base in bases)}",
+        )
+
+
+def positive(value: Any) -> Fraction | None:
+    """A number as the exact decimal given; None for what is no finite one greater than 0."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value <= sys.float_info.max:
+        return None
+    return Fraction(repr(value))
+
+
+def size(unit: str, scales: Mapping[str, Fraction]) -> Fraction:
+    """One unit of the model in SI; exact where that is a fraction."""
+    square = math.prod((scales[base] ** int(2 * power) for base, power in SI[unit].powers.items()), start=Fraction(1))
+    root = Fraction(math.isqrt(square.numerator), math.isqrt(square.denominator))
+    return root if root**2 == square else Fraction(math.sqrt(square))
