@@ -153,7 +153,7 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
     problems += mend_words(tables)
     file = ProfileFile(tables, folder)
     conversion = Conversion(tables)
-    file.put(conversion.scales)
+    file.put()
     scene, wrong = check_tables(tables, Scene)
     found = [*file.problems, *conversion.problems, *wrong, *check_fit(tables)]
     problems += _in_si(found, plain.get("material"), bool(conversion.texts))

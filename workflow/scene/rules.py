@@ -427,6 +427,11 @@ def _declared_keys(d: Draft) -> Rows:
         yield (f"experiment.{key}", "noise" not in d and f"experiment.{key}" in d,
                "only with [noise]: without thermal fluctuations all repeats are equal",
                "remove it, or add [noise] with temperature and seed")
+    listed = "bodies.profile.r" in d or "bodies.profile.z" in d
+    yield ("bodies.profile.file", listed and "bodies.profile.file" in d,
+           "not together with the lists r and z", "give one of the two")
+    yield ("bodies.profile.scale", listed and "bodies.profile.file" not in d and "bodies.profile.scale" in d,
+           "not together with the lists r and z, which have units of their own", "it belongs to a file: remove it")
     for key in ("upper_particles", "upper_spacing", "upper_offset", "periodic"):
         path = f"bodies.{key}"
         yield (path, d.on_plane and path in d and d[path] is not False,
