@@ -40,7 +40,7 @@ def _mended(place: Place) -> Iterator[Problem]:
         if "kind" not in value and similar in value:
             value["kind"] = value.pop(similar)
             yield Problem(path_of((*place.keys, similar)), "unknown key", hint='did you mean "kind"?')
-        yield from _mended_word(Place(value.get("kind"), allowed.kind, "kind", place))
+        yield from _mended_word(place.kind)
     if table := allowed.table_for(value):
         for key in [key for key in value if key not in keys_of(table)]:
             yield _mended_key(place, table, key)

@@ -101,7 +101,7 @@ def read_profile(path: Path) -> tuple[dict[str, list[float]], str | None]:
             are fewer than FEWEST_POINTS points, names are not known, or the two sides of a profile are not the same.
     """
     rows = _rows(path)
-    columns, units = _header(rows)
+    columns, unit, ratio = _header(rows)
     points = [_point(f"line {line}", cells, columns) for line, cells in rows]
     if not points:
         raise ProfileFileError("has no points")
@@ -116,13 +116,7 @@ def read_profile(path: Path) -> tuple[dict[str, list[float]], str | None]:
         r, z = _folded(r, z)
     if len(r) < FEWEST_POINTS:
         raise ProfileFileError(f"must have at least {FEWEST_POINTS} points from the axis out, not {len(r)}")
-    if not units:
-        return {"r": r, "z": z}, None
-    try:
-        width, height = (si_value(f"1 {unit}", MODEL)[0] for unit in units)
-    except UnitTextError:
-        raise ProfileFileError(f"the unit in the names is not a known length, such as µm; {FORM}") from None
-    return {"r": r, "z": [float(height / width) * value for value in z]}, f"1 {units[0]}"
+    return {"r": r, "z": [ratio * value for value in z]}, unit
 
 
 def _rows(path: Path) -> list[Row]:
@@ -136,41 +130,50 @@ def _rows(path: Path) -> list[Row]:
     return [(i, line.split(next((one for one in ";,\t" if one in line), None))) for i, line in full]
 
 
-def _header(rows: list[Row]) -> tuple[Sequence[int], Sequence[str]]:
-    """The columns of radius and height, and their units, if they have any; takes the lines of both from the rows."""
+def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
+    """The columns of radius and height, the unit of the radii, and that of the heights over it, where there are units.
+
+    Takes the lines of names and units from the rows.
+    """
     line, names = rows[0] if rows else (0, ["0"])
     if any(_number(name) is not None for name in names):
         many = sum(bool(cell.strip()) for cell in names)
         if many > 2:
             raise ProfileFileError(f"has {many} columns without names; {FORM}")
-        return (0, 1), ()
+        return (0, 1), None, 1.0
     del rows[0]
     found = [NAME.match(name.strip().strip('"')) for name in names]
     words = [match[1].lower() if match else "" for match in found]
     sides = RADII if set(words) & set(RADII) else SIDES
-    columns = [_only(f"line {line}", words, allowed) for allowed in (sides, HEIGHTS)]
+    columns = [_only(line, words, allowed) for allowed in (sides, HEIGHTS)]
     units = [match[2].strip() for column in columns if (match := found[column])]
     below = rows[0][1] if rows and not any(units) and len(rows[0][1]) == len(names) else [""]
-    if not any(not cell.strip() or any(map(str.isdigit, cell)) for cell in below):
+    if all(cell.strip() and not any(map(str.isdigit, cell)) for cell in below):
         units = [below[column].strip().strip('[]()"') for column in columns]
         del rows[0]
-    units = [unit for unit in units if unit not in ("", MODEL)]
-    if len(units) == 1:
-        raise ProfileFileError(
-            f"line {line}: only one of radius and height has a unit; give both the same way, r [µm], z [µm]"
-        )
-    return columns, units
+    sizes = []
+    for unit in units:
+        if unit not in ("", MODEL):
+            try:
+                sizes.append(si_value(f"1 {unit}", MODEL)[0])
+            except UnitTextError:
+                what = "the unit in the names is not a known length, such as µm"
+                raise ProfileFileError(f"line {line}: {what}; {FORM}") from None
+    if len(sizes) == 1:
+        what = "only one of radius and height has a unit"
+        raise ProfileFileError(f"line {line}: {what}; give both the same way, r [µm], z [µm]")
+    return columns, *((f"1 {units[0]}", float(sizes[1] / sizes[0])) if sizes else (None, 1.0))
 
 
-def _only(at: str, words: list[str], allowed: tuple[str, ...]) -> int:
+def _only(line: int, words: list[str], allowed: tuple[str, ...]) -> int:
     """Where the one column of an allowed name is."""
     found = [i for i, word in enumerate(words) if word in allowed]
+    if len(found) == 1:
+        return found[0]
+    what = f"{len(found)} columns match {allowed[0]}; give this name to one of them"
     if not found:
-        what = f"the names of its {len(words)} columns are not known"
-        raise ProfileFileError(f"{at}: {what}; {FORM}, or leave them out")
-    if len(found) > 1:
-        raise ProfileFileError(f"{at}: {len(found)} columns match {allowed[0]}; give this name to one of them")
-    return found[0]
+        what = f"the names of its {len(words)} columns are not known; {FORM}, or leave them out"
+    raise ProfileFileError(f"line {line}: {what}")
 
 
 def _rising(values: list[float]) -> bool:

@@ -19,6 +19,7 @@ from annotated_types import Ge, Gt, Le, MinLen
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from contact1d.workflow.scene.problems import Problem, path_of, shown
+from contact1d.workflow.scene.si_text import NUMBER
 from contact1d.workflow.units import SI
 
 Keys = tuple[str | int, ...]
@@ -77,40 +78,42 @@ class Table(BaseModel):
         return [name for name in super().__dir__() if name[0] != "_" and name not in vars(BaseModel)]
 
 
-Length = Annotated[float, Gt(0), Unit("LU")]
+POSITIVE, DIMENSIONLESS = Gt(0), Unit("1")
+
+Length = Annotated[float, POSITIVE, Unit("LU")]
 Height = Annotated[float, Unit("LU")]
 SignedRadius = Annotated[float, Unit("LU")]
-Ratio = Annotated[float, Gt(0), Unit("1")]
-RatioOrZero = Annotated[float, Ge(0), Unit("1")]
-Stiffness = Annotated[float, Gt(0), Unit("FU/LU")]
-Mass = Annotated[float, Gt(0), Unit("MU")]
-Energy = Annotated[float, Gt(0), Unit("FU·LU")]
+Ratio = Annotated[float, POSITIVE, DIMENSIONLESS]
+RatioOrZero = Annotated[float, Ge(0), DIMENSIONLESS]
+Stiffness = Annotated[float, POSITIVE, Unit("FU/LU")]
+Mass = Annotated[float, POSITIVE, Unit("MU")]
+Energy = Annotated[float, POSITIVE, Unit("FU·LU")]
 LineEnergy = Annotated[float, Ge(0), Unit("FU/LU", text=("J/m²",))]
-Temperature = Annotated[float, Gt(0), Unit("FU·LU", text=("K", "J"))]
-Velocity = Annotated[float, Gt(0), Unit("LU/TU")]
-LoadingRate = Annotated[float, Gt(0), Unit("FU/TU")]
-Duration = Annotated[float, Gt(0), Unit("TU")]
+Temperature = Annotated[float, POSITIVE, Unit("FU·LU", text=("K", "J"))]
+Velocity = Annotated[float, POSITIVE, Unit("LU/TU")]
+LoadingRate = Annotated[float, POSITIVE, Unit("FU/TU")]
+Duration = Annotated[float, POSITIVE, Unit("TU")]
 DriveVelocity = Annotated[float, Unit("LU/TU")]
-DampingCoefficient = Annotated[float, Gt(0), Unit("FU·TU/LU")]
+DampingCoefficient = Annotated[float, POSITIVE, Unit("FU·TU/LU")]
 DampingCoefficientOrZero = Annotated[float, Ge(0), Unit("FU·TU/LU")]
 Force = Annotated[float, Unit("FU")]
-Compression = Annotated[float, Gt(0), Unit("FU")]
+Compression = Annotated[float, POSITIVE, Unit("FU")]
 CompressionOrNone = Annotated[float, Ge(0), Unit("FU")]
 Displacement = Annotated[float, Unit("LU")]
-RelativeTolerance = Annotated[float, Ge(1e-7), Le(0.1), Unit("1")]
-ParticleCount = Annotated[int, Ge(3), Le(10_000_000), Unit("1")]
-RepeatCount = Annotated[int, Ge(1), Le(100_000), Unit("1")]
-AnyParticleCount = Annotated[int, Ge(1), Le(10_000_000), Unit("1")]
-StepCount = Annotated[int, Ge(1), Le(1_000_000), Unit("1")]
-CycleCount = Annotated[int, Ge(1), Le(1000), Unit("1")]
-StateCount = Annotated[int, Ge(2), Le(1_000_000), Unit("1")]
-Seed = Annotated[int, Ge(1), Le(2**31 - 1), Unit("1")]
-Pascal = Annotated[float, Gt(0), Unit("Pa")]
-SurfaceEnergy = Annotated[float, Gt(0), Unit("J/m²")]
-Metre = Annotated[float, Gt(0), Unit("m")]
-Newton = Annotated[float, Gt(0), Unit("N")]
-Kilogram = Annotated[float, Gt(0), Unit("kg")]
-Poisson = Annotated[float, Gt(-1), Le(0.5), Unit("1")]
+RelativeTolerance = Annotated[float, Ge(1e-7), Le(0.1), DIMENSIONLESS]
+ParticleCount = Annotated[int, Ge(3), Le(10_000_000), DIMENSIONLESS]
+RepeatCount = Annotated[int, Ge(1), Le(100_000), DIMENSIONLESS]
+AnyParticleCount = Annotated[int, Ge(1), Le(10_000_000), DIMENSIONLESS]
+StepCount = Annotated[int, Ge(1), Le(1_000_000), DIMENSIONLESS]
+CycleCount = Annotated[int, Ge(1), Le(1000), DIMENSIONLESS]
+StateCount = Annotated[int, Ge(2), Le(1_000_000), DIMENSIONLESS]
+Seed = Annotated[int, Ge(1), Le(2**31 - 1), DIMENSIONLESS]
+Pascal = Annotated[float, POSITIVE, Unit("Pa")]
+SurfaceEnergy = Annotated[float, POSITIVE, Unit("J/m²")]
+Metre = Annotated[float, POSITIVE, Unit("m")]
+Newton = Annotated[float, POSITIVE, Unit("N")]
+Kilogram = Annotated[float, POSITIVE, Unit("kg")]
+Poisson = Annotated[float, Gt(-1), Le(0.5), DIMENSIONLESS]
 
 
 T = TypeVar("T")
@@ -161,10 +164,10 @@ class Allowed:
         """The table that it must be, None if there are others or none."""
         return None if self.items else self.tables.get("")
 
-    @cached_property
-    def kinds(self) -> dict[str, type[Table]]:
+    @property
+    def kinds(self) -> Mapping[str, type[Table]]:
         """The tables of a union by their `kind`."""
-        return {kind: table for kind, table in self.tables.items() if kind}
+        return {} if "" in self.tables else self.tables
 
     @cached_property
     def unit(self) -> Unit | None:
@@ -176,14 +179,10 @@ class Allowed:
         """The unit of a number that may have a dimension: counts have none."""
         return self.unit if self.type is float else None
 
-    @cached_property
-    def kind(self) -> Allowed:
-        """What the `kind` of a table may be."""
-        return Allowed(words=(*self.kinds,))
-
     def table_for(self, value: Mapping[str, Any]) -> type[Table] | None:
         """The table that `value` is meant to be, by its kind where there are several."""
-        return next((table for kind, table in self.tables.items() if kind in ("", value.get("kind"))), None)
+        alone = len(self.tables) == 1
+        return next((table for kind, table in self.tables.items() if alone or kind == value.get("kind")), None)
 
 
 @dataclass(frozen=True)
@@ -260,22 +259,23 @@ class Place:
     def inside(self) -> dict[str | int, Place]:
         """The places of its keys or items; of a table whose kind is not known that of the kind alone."""
         if self._inside is None:
-            self._inside = self._places() if isinstance(self.value, dict | list | tuple) else {}
+            value, allowed, self._inside = self.value, self.allowed, {}
+            if isinstance(value, dict):
+                table = allowed.table_for(value)
+                self._inside = {
+                    name: Place(value.get(name, key.default), key.allowed, name, self, name not in value)
+                    for name, key in (keys_of(table) if table else {}).items()
+                }
+                if allowed.kinds:
+                    self._inside["kind"] = self.kind
+            elif allowed.items and isinstance(value, list | tuple):
+                self._inside = {i: Place(item, allowed.items, i, self) for i, item in enumerate(value)}
         return self._inside
 
-    def _places(self) -> dict[str | int, Place]:
-        value, allowed = self.value, self.allowed
-        if not isinstance(value, dict):
-            items = allowed.items
-            return {i: Place(item, items, i, self) for i, item in enumerate(value)} if items else {}
-        table = allowed.table_for(value)
-        keys = {name: (key.allowed, key.default) for name, key in keys_of(table).items()} if table else {}
-        if allowed.kinds:
-            keys["kind"] = allowed.kind, None
-        return {
-            name: Place(value.get(name, default), inner, name, self, name not in value)
-            for name, (inner, default) in keys.items()
-        }
+    @property
+    def kind(self) -> Place:
+        """The place that says which one of several tables it is."""
+        return Place(self.value.get("kind"), Allowed(words=(*self.allowed.kinds,)), "kind", self, "kind" not in self.value)
 
     @property
     def keys(self) -> Keys:
@@ -310,13 +310,9 @@ class Place:
     @property
     def is_text(self) -> bool:
         """Whether it is a text that can only have meant a number with a unit: one with digits, and no plain number."""
-        if not isinstance(self.value, str) or self.value in self.allowed.words or not any(map(str.isdigit, self.value)):
-            return False
-        try:
-            float(self.value)
-        except ValueError:
-            return True
-        return False
+        value = self.value
+        digits = isinstance(value, str) and value not in self.allowed.words and any(map(str.isdigit, value))
+        return digits and not NUMBER.fullmatch(value.strip())
 
     @property
     def is_number(self) -> bool:
@@ -324,20 +320,14 @@ class Place:
         return isinstance(self.value, int | float) and not isinstance(self.value, bool) and self.value != 0
 
     @property
-    def written(self) -> Place:
-        """What was written: the place itself, if its value follows from nothing else."""
-        return self.source or self
-
-    @property
     def path(self) -> str:
         """The dotted path of what was written."""
-        return path_of(self.written.keys)
+        return path_of((self.source or self).keys)
 
     @property
     def given(self) -> str | None:
         """What was written, or a number by default, as TOML; None where there is neither."""
-        there = not self.written.absent or self.is_number
-        return shown(self.written.value) if there else None
+        return None if self.absent and not self.is_number else shown((self.source or self).value)
 
     def problem(self, message: str, hint: str = "") -> Problem:
         """What is wrong with it."""
@@ -363,8 +353,7 @@ def places(table: type[Table], data: Mapping[str, Any]) -> Iterator[Place]:
 def numbers_in(whole: Place) -> Iterator[Place]:
     """Every place of a number, or of what stands there in its stead; an absent key where it is a number by default."""
     for place in whole:
-        nothing = place.absent and not isinstance(place.value, float)
-        if place.allowed.quantity and not nothing and not isinstance(place.value, Mapping | list | tuple):
+        if place.allowed.quantity and not place.inside and (isinstance(place.value, float) or not place.absent):
             yield place
 
 

@@ -246,9 +246,11 @@ def _punch(d: Draft) -> Rows:
 
 
 def _material(d: Draft) -> Rows:
-    """One elasticity, and one way to the units."""
-    modulus, upper, lower = (f"material.{key}" in d for key in ("contact_modulus", "upper", "lower"))
-    length, force, energy = (f"material.{key}" in d for key in ("length_unit", "force_unit", "surface_energy"))
+    """One elasticity, and one way to the units: given, or by F_A and a₀ of the run with γ and E*."""
+    upper, lower, modulus, length, force, energy = (
+        f"material.{key}" in d
+        for key in ("upper", "lower", "contact_modulus", "length_unit", "force_unit", "surface_energy")
+    )
     elastic, auto = modulus or upper or lower, d["bodies.bulk_stiffness"] == "auto"
     yield ("bodies.bulk_stiffness", auto and not elastic,
            "must be given (FU/LU): the scene has no elastic moduli from which it follows",
@@ -261,38 +263,29 @@ def _material(d: Draft) -> Rows:
     for body, absent in (("upper", not upper), ("lower", upper and not lower)):
         yield (f"material.{body}", absent and not modulus,
                "missing", "write upper and lower, each with youngs_modulus and poisson_ratio, or contact_modulus")
-    yield from (_units_by_run if energy else _units_given)(d, auto)
-
-
-def _units_given(d: Draft, auto: bool) -> Rows:
-    length, force = (f"material.{key}" in d for key in ("length_unit", "force_unit"))
-    yield ("material.length_unit", not length,
-           "missing", "give one LU in metres, or surface_energy, from which a pull_off finds both units")
-    yield ("material.force_unit", force and not auto and "bodies.bulk_stiffness" in d,
-           "not together with a given bulk_stiffness, from which it follows",
-           'remove it, or write bodies.bulk_stiffness = "auto"')
-    yield ("material.force_unit", auto and not force,
-           'missing, needed by bulk_stiffness = "auto"', "give one FU in newtons")
-
-
-def _units_by_run(d: Draft, auto: bool) -> Rows:
-    """γ and E* fix both units by F_A and a₀ of the run."""
-    for unit in ("length_unit", "force_unit"):
-        yield (f"material.{unit}", f"material.{unit}" in d,
+    for unit, given in (("length_unit", length), ("force_unit", force)):
+        yield (f"material.{unit}", energy and given,
                "not together with surface_energy, with which both units follow from F_A and a₀ of the run",
                "remove one of the two")
-    yield ("bodies.bulk_stiffness", auto,
+    yield ("material.length_unit", not energy and not length,
+           "missing", "give one LU in metres, or surface_energy, from which a pull_off finds both units")
+    yield ("material.force_unit", not energy and force and not auto and "bodies.bulk_stiffness" in d,
+           "not together with a given bulk_stiffness, from which it follows",
+           'remove it, or write bodies.bulk_stiffness = "auto"')
+    yield ("material.force_unit", not energy and auto and not force,
+           'missing, needed by bulk_stiffness = "auto"', "give one FU in newtons")
+    yield ("bodies.bulk_stiffness", energy and auto,
            "must be a number: LU and FU are not known before the run",
            "give the stiffness (FU/LU), or length_unit and force_unit in place of surface_energy")
     key = "material.surface_energy"
-    yield (key, d.kind is not None and not d.experiment.finds_pull_off,
+    yield (key, energy and d.kind is not None and not d.experiment.finds_pull_off,
            "not in this experiment, which finds no F_A and a₀",
            'use kind = "pull_off", whose results give length_unit and force_unit')
     nothing = "adhesion" not in d if d.on_plane else "interaction" in d and "interaction.attraction" not in d
-    yield (key, d.kind == "path" and nothing,
+    yield (key, energy and d.kind == "path" and nothing,
            "has no effect without attraction: there is no F_A and no a₀",
            'use length_unit, or lower = "particles" with an interaction.attraction')
-    yield (key, d.profile not in (None, *SPHERES),
+    yield (key, energy and d.profile not in (None, *SPHERES),
            "not with this profile: JKR is for a sphere", "use a parabola or a circle, or length_unit")
 
 

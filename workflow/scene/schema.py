@@ -23,6 +23,7 @@ DIALECT = "http://json-schema.org/draft-07/schema#"
 SIMPLE = {bool: "true or false", str: "text in quotes", int: "a whole number", float: "a number"}
 TYPES = {bool: "boolean", str: "string", int: "integer", float: "number"}
 RANGES = {Gt: "exclusiveMinimum", Ge: "minimum", Le: "maximum"}
+IN_WORDS = {"exclusiveMinimum": "greater than", "minimum": "of at least", "maximum": "at most"}
 LENGTHS = {MinLen: "minItems"}
 TEXT_PATTERN = r"^[ \t]*[+\-−]?[0-9]*\.?[0-9]+.*[A-Za-zµμÅ°%]"
 """Of a text that is a number with a unit."""
@@ -34,7 +35,7 @@ def statement(allowed: Allowed) -> str:
     parts = []
     if allowed.type:
         unit = allowed.unit
-        parts += [SIMPLE[allowed.type] + _range(allowed.marks) + (f" ({unit.name})" if unit and unit.name != "1" else "")]
+        parts += [SIMPLE[allowed.type] + _range(allowed) + (f" ({unit.name})" if unit and unit.name != "1" else "")]
     if allowed.items:
         parts += [f"a list, each item {statement(allowed.items)}"]
     if allowed.kinds:
@@ -119,12 +120,8 @@ def _either(words: tuple[str, ...]) -> str:
     return f"{', '.join(others)} or {last}" if others else last
 
 
-def _range(marks: tuple[Any, ...]) -> str:
-    above = [f"greater than {mark.gt:g}" for mark in marks if isinstance(mark, Gt)]
-    least = [f"{mark.ge:.10g}" for mark in marks if isinstance(mark, Ge)]
-    most = [f"{mark.le:.10g}" for mark in marks if isinstance(mark, Le)]
-    if least and most:
-        return f" from {least[0]} to {most[0]}"
-    parts = [*above, *(f"of at least {bound}" for bound in least)]
-    parts += [f"at most {bound}" if parts else f"of at most {bound}" for bound in most]
-    return f" {' and '.join(parts)}" if parts else ""
+def _range(allowed: Allowed) -> str:
+    bounds = _bounds(allowed, RANGES)
+    if {"minimum", "maximum"} <= bounds.keys():
+        return f" from {bounds['minimum']:.10g} to {bounds['maximum']:.10g}"
+    return " and".join(f" {IN_WORDS[name]} {bound:.10g}" for name, bound in bounds.items())
