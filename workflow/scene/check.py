@@ -91,17 +91,22 @@ def check_tables(scene: Place, model: type[AnyTables]) -> tuple[AnyTables | None
 
     Returns the scene if all tables are right, and what is wrong.
     """
-    problems = []
     try:
         return model.model_validate(scene.value), []
     except ValidationError as error:
-        for details in error.errors(include_url=False):
-            place = scene
-            for step in (*details["loc"], "kind" if details["type"].startswith("union_tag") else ""):
-                place = place.at(step) or place  # the location names the kinds of tables as well
-            if place.sound:
-                problems.append(_fault(place, details))
-    return None, problems
+        faults = [(_place(scene, details), details) for details in error.errors(include_url=False)]
+    # of a value that may be of several types each says what it is not: what is wrong inside comes first, and last that
+    # it is of another type
+    faults.sort(key=lambda fault: (-len(fault[0].keys), fault[1]["type"].endswith("_type")))
+    return None, [_fault(place, details) for place, details in faults if place.sound]
+
+
+def _place(scene: Place, details: ErrorDetails) -> Place:
+    """Where an error of pydantic's is, whose location names types as well."""
+    place = scene
+    for step in (*details["loc"], "kind" if details["type"].startswith("union_tag") else ""):
+        place = place.at(step) or place
+    return place
 
 
 def _fault(place: Place, details: ErrorDetails) -> Problem:

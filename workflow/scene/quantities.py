@@ -16,7 +16,7 @@ from operator import or_
 from typing import Annotated, Any, ClassVar, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from annotated_types import Ge, Gt, Le, MinLen
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import BaseModel, ConfigDict, Field
 
 from contact1d.workflow.scene.problems import Problem, path_of, shown
 from contact1d.workflow.scene.si_text import NUMBER
@@ -120,19 +120,11 @@ T = TypeVar("T")
 Other = TypeVar("Other")
 
 
-def either(special: str, types: Any, otherwise: str) -> Discriminator:
-    """Which of two tagged types a value is meant to be, so that one mistake is one error."""
-    return Discriminator(lambda value: special if isinstance(value, types) else otherwise)
-
-
-_NumberOr = Annotated[Annotated[T, Tag("number")] | Annotated[Other, Tag("word")], either("word", str, "number")]
-Auto = _NumberOr[T, Literal["auto"]]
-AllOr = _NumberOr[T, Literal["all"]]
+Auto = T | Literal["auto"]
+AllOr = T | Literal["all"]
 # strict=False on the tuple alone: TOML has lists, a frozen table holds a tuple. Its items stay strict.
 Listed = Annotated[tuple[T, ...], Field(strict=False), MinLen(1)]
-OneOrMore = Annotated[
-    Annotated[T, Tag("number")] | Annotated[Listed[Other], Tag("list")], either("list", (list, tuple), "number")
-]
+OneOrMore = T | Listed[Other]
 
 
 @dataclass(frozen=True)

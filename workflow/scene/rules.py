@@ -95,9 +95,9 @@ def _lower_body(d: Draft) -> Rows:
     # a rigid plane neither drags a slide nor holds a pull-off without adhesion
     inert = d.on_plane and (slides or (pulls_off and "adhesion" not in d))
     touched = d.on_plane and not inert
-    yield ("interaction", d.on_chain and "interaction" not in d,
+    yield ("interaction", d.on_chain,
            "missing, needed by a lower body of particles", f"add [interaction], or use {PLANE}")
-    yield ("interaction", touched and "interaction" in d,
+    yield ("interaction", touched,
            f"not with {PLANE}, which is touched directly", f"remove it, or use {PARTICLES}")
     yield ("horizontal", touched and "horizontal" in d,
            "has no effect on a rigid plane, which exerts no tangential force on a particle",
@@ -110,10 +110,10 @@ def _lower_body(d: Draft) -> Rows:
     yield ("bodies.lower", d.on_chain and along,
            'must be "rigid_plane" with kind = "tangential", whose friction is Coulomb\'s',
            'between two chains friction comes from the interaction: use kind = "slide"')
-    yield ("friction", d.on_chain and "friction" in d and not along,
+    yield ("friction", d.on_chain and not along,
            "not between two chains, whose friction comes from the interaction",
            f'remove it, or use {PLANE} and kind = "tangential"')
-    yield ("adhesion", d.on_chain and "adhesion" in d,
+    yield ("adhesion", d.on_chain,
            "not between two chains, which attract each other by the interaction",
            f"use interaction.attraction, or {PLANE}")
 
@@ -145,7 +145,7 @@ def _attraction(d: Draft) -> Rows:
     held = attracts or ("adhesion" in d and "adhesion" not in d.experiment.excludes)
     force = d[f"experiment.{d.experiment.load_key}"]
     yield ("interaction.attraction",
-           pulls_off and d.lower == "particles" and "interaction" in d and not attracts and "adhesion" not in d,
+           pulls_off and d.lower == "particles" and "interaction" in d and "adhesion" not in d,
            "missing, needed by a pull_off", "add interaction.attraction with amplitude and range")
     for key, tensile in (
         ("force", "a tensile force needs interaction.attraction, or on a rigid plane [adhesion]"),
@@ -161,7 +161,7 @@ def _attraction(d: Draft) -> Rows:
     yield ("bodies.reduction", adheres and d["bodies.reduction"] == "geike_popov",
            'must be "mdr" with [adhesion], whose contact edge is that of a contact of three dimensions',
            'write reduction = "mdr"')
-    yield ("damping", adheres and d.kind == "path" and "damping" in d,
+    yield ("damping", adheres and d.kind == "path",
            "not with [adhesion] in a path, which under displacement control has no dynamics",
            'remove it: method = "quasistatic" is the same without time')
 
@@ -170,13 +170,13 @@ def _plate(d: Draft) -> Rows:
     slides, free = d.experiment.motion_is_result, d["plate.free"]
     yield ("plate.free", slides and free is not None and "x" not in free,
            'must contain "x" in a slide', 'write free = ["x", "z"]')
-    yield ("horizontal", not slides and "x" in (free or ()) and "horizontal" not in d,
+    yield ("horizontal", not slides and "x" in (free or ()),
            'missing, needed by plate.free with "x"',
            f'write plate.free = ["z"], or add {EFFECT_TABLES["horizontal"].how}')
     held = d.kind == "hold"
-    yield ("plate", held and "plate" in d and "experiment.displacement" in d,
+    yield ("plate", held and "experiment.displacement" in d,
            "not with a displacement that is held: the plate has no motion of its own", "remove it, or give a force")
-    yield ("plate", held and "plate" not in d and "experiment.force" in d,
+    yield ("plate", held and "experiment.force" in d,
            "missing, needed by a force that is held", f"add {EFFECT_TABLES['plate'].how}")
 
 
@@ -213,7 +213,7 @@ def _open_spacing(d: Draft) -> Rows:
     yield ("bodies.bulk_stiffness", d["bodies.bulk_stiffness"] not in (None, "auto"),
            'must be "auto" with spacing = "auto": the stiffness of a particle is E* times the spacing',
            f"write it, and {ELASTICITY}; or {GIVE_SPACING}")
-    yield ("bodies.bulk_stiffness_tangential", "bodies.bulk_stiffness_tangential" in d,
+    yield ("bodies.bulk_stiffness_tangential", True,
            'not with spacing = "auto": it is a property of one particle',
            f"remove it: it follows from ν of material.upper and lower; or {GIVE_SPACING}")
     yield ("bodies.spacing", d.profile == "flat",
@@ -258,34 +258,34 @@ def _material(d: Draft) -> Rows:
     units_alone = length and force and not energy
     if "material" not in d or (not elastic and (auto or units_alone)):
         return
-    yield ("material.contact_modulus", modulus and (upper or lower),
+    yield ("material.contact_modulus", upper or lower,
            "not together with upper or lower", "give E*, or E and ν of both bodies")
-    for body, absent in (("upper", not upper), ("lower", upper and not lower)):
-        yield (f"material.{body}", absent and not modulus,
+    for body, needed in (("upper", not modulus), ("lower", upper and not modulus)):
+        yield (f"material.{body}", needed,
                "missing", "write upper and lower, each with youngs_modulus and poisson_ratio, or contact_modulus")
-    for unit, given in (("length_unit", length), ("force_unit", force)):
-        yield (f"material.{unit}", energy and given,
+    for unit in ("length_unit", "force_unit"):
+        yield (f"material.{unit}", energy,
                "not together with surface_energy, with which both units follow from F_A and a₀ of the run",
                "remove one of the two")
-    yield ("material.length_unit", not energy and not length,
+    yield ("material.length_unit", not energy,
            "missing", "give one LU in metres, or surface_energy, from which a pull_off finds both units")
-    yield ("material.force_unit", not energy and force and not auto and "bodies.bulk_stiffness" in d,
+    yield ("material.force_unit", not energy and not auto and "bodies.bulk_stiffness" in d,
            "not together with a given bulk_stiffness, from which it follows",
            'remove it, or write bodies.bulk_stiffness = "auto"')
-    yield ("material.force_unit", not energy and auto and not force,
+    yield ("material.force_unit", not energy and auto,
            'missing, needed by bulk_stiffness = "auto"', "give one FU in newtons")
     yield ("bodies.bulk_stiffness", energy and auto,
            "must be a number: LU and FU are not known before the run",
            "give the stiffness (FU/LU), or length_unit and force_unit in place of surface_energy")
     key = "material.surface_energy"
-    yield (key, energy and d.kind is not None and not d.experiment.finds_pull_off,
+    yield (key, d.kind is not None and not d.experiment.finds_pull_off,
            "not in this experiment, which finds no F_A and a₀",
            'use kind = "pull_off", whose results give length_unit and force_unit')
     nothing = "adhesion" not in d if d.on_plane else "interaction" in d and "interaction.attraction" not in d
     yield (key, energy and d.kind == "path" and nothing,
            "has no effect without attraction: there is no F_A and no a₀",
            'use length_unit, or lower = "particles" with an interaction.attraction')
-    yield (key, energy and d.profile not in (None, *SPHERES),
+    yield (key, d.profile not in (None, *SPHERES),
            "not with this profile: JKR is for a sphere", "use a parabola or a circle, or length_unit")
 
 
@@ -322,11 +322,11 @@ def _pull_off(d: Draft) -> Rows:
         return
     rate, velocity, stiffness = (f"experiment.{key}" in d for key in ("loading_rate", "velocity", "stiffness"))
     thermal = "noise" in d and d["experiment.method"] != "quasistatic"
-    yield ("experiment.loading_rate", thermal and not rate and not velocity,
+    yield ("experiment.loading_rate", thermal and not velocity,
            "missing, needed by a pull_off with [noise]",
            "give the rate (FU/TU) at which the load decreases, or the velocity (LU/TU) of a spring that retracts the "
            "plate, or remove [noise]")
-    yield ("experiment.velocity", rate and velocity, "not together with a loading_rate", "remove one of the two")
+    yield ("experiment.velocity", rate, "not together with a loading_rate", "remove one of the two")
     yield ("experiment.stiffness", stiffness and not velocity,
            "only with a velocity: it is that of the spring",
            "remove it, or give the velocity of its far end")
@@ -373,8 +373,8 @@ def _periodic(d: Draft) -> Rows:
 # What an experiment or an effect declares
 
 
-def _needed(d: Draft, name: str, by: str) -> Row:
-    return name, name not in d, f"missing, needed by {by}", f"add {EFFECT_TABLES[name].how}"
+def _needed(name: str, by: str) -> Row:
+    return name, True, f"missing, needed by {by}", f"add {EFFECT_TABLES[name].how}"
 
 
 def _methods(d: Draft) -> Rows:
@@ -382,24 +382,24 @@ def _methods(d: Draft) -> Rows:
     kind, experiment, given = d.kind, d.experiment, d["experiment.method"]
     if kind is None:
         if "noise" in d:
-            yield _needed(d, "damping", "[noise]")
+            yield _needed("damping", "[noise]")
         return
     excluded = experiment.excludes
     others = (one for one, table in KINDS.items() if not table.excludes.keys() & {*d.effects})
     other = next((f', or use kind = "{one}"' for one in others), "")
     for name, why in excluded.items():
-        yield (name, name in d, f"not in a {kind}: {why}", f"remove it{other}")
+        yield (name, True, f"not in a {kind}: {why}", f"remove it{other}")
     if given is None and "experiment.method" in d:
         return
     rest = tuple(name for name in d.effects if name not in excluded)
     method = experiment.only_method or given or default_method(rest)
     for name in experiment.needs:
-        yield _needed(d, name, f"a {kind}")
+        yield _needed(name, f"a {kind}")
     if method == "dynamic" and experiment.only_method is None:
         cause = "" if given else ", made dynamic by " + ", ".join(f"[{name}]" for name in rest if name in TIMED)
         for name in experiment.needs_in_time:
             also = " and by [noise]" if given and name == "damping" and "noise" in rest else ""
-            yield _needed(d, name, f"a dynamic {kind}{cause}{also}")
+            yield _needed(name, f"a dynamic {kind}{cause}{also}")
     for name in TIMED:
         yield (name, method == "quasistatic" and name in rest,
                f"not in a quasistatic {kind}, which does not depend on time",
@@ -421,13 +421,13 @@ def _declared_keys(d: Draft) -> Rows:
                "only with [noise]: without thermal fluctuations all repeats are equal",
                "remove it, or add [noise] with temperature and seed")
     listed = "bodies.profile.r" in d or "bodies.profile.z" in d
-    yield ("bodies.profile.file", listed and "bodies.profile.file" in d,
+    yield ("bodies.profile.file", listed,
            "not together with the lists r and z", "give one of the two")
-    yield ("bodies.profile.scale", listed and "bodies.profile.file" not in d and "bodies.profile.scale" in d,
+    yield ("bodies.profile.scale", listed and "bodies.profile.file" not in d,
            "not together with the lists r and z, which have units of their own", "it belongs to a file: remove it")
     for key in ("upper_particles", "upper_spacing", "upper_offset", "periodic"):
         path = f"bodies.{key}"
-        yield (path, d.on_plane and path in d and d[path] is not False,
+        yield (path, d.on_plane and d[path] is not False,
                f"not with {PLANE}, which has no particles", f"remove it, or use {PARTICLES}")
 
 
@@ -435,7 +435,7 @@ def _beside_effects(d: Draft) -> Rows:
     """Effects that another one cannot have beside it, on the lower body that this one belongs to."""
     for effect in d.effects if d.on_plane else ():
         for name, why in EFFECT_TABLES[effect].excludes.items():
-            yield (name, name in d, f"not with [{effect}]: {why}", f"remove [{name}], or [{effect}]")
+            yield (name, True, f"not with [{effect}]: {why}", f"remove [{name}], or [{effect}]")
 # fmt: on
 
 
@@ -462,8 +462,9 @@ def check_fit(scene: Place) -> list[Problem]:
     """Every violation of a rule across the tables of a scene that does not depend on values that are doubted."""
     draft, problems = Draft(scene), []
     for key, broken, message, fix, *ways in (row for rows in RULES for row in rows(draft)):
-        if broken:
-            place = draft.place(key)
+        place, begin = draft.place(key), message.partition(" ")[0].strip(",")
+        there = place is not None and not place.absent
+        if broken and {"missing": not there, "not": there}.get(begin, True):
             # to six digits, as the message says them
             changes = tuple({path: draft.written(path, number)} for way in ways for path, number in way.items())
             texts = (f"{one:g}" if isinstance(one, float) else one for way in changes for one in way.values())
