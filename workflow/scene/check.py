@@ -105,7 +105,7 @@ def _place(scene: Place, details: ErrorDetails) -> Place:
     """Where an error of pydantic's is, whose location names types as well."""
     place = scene
     for step in (*details["loc"], "kind" if details["type"].startswith("union_tag") else ""):
-        place = place.at(step) or place
+        place = place.inside.get(step, place)
     return place
 
 

@@ -71,7 +71,7 @@ class Conversion:
 
     def _scales(self, texts: list[Place]) -> dict[str, Fraction] | None:
         """What LU, FU and MU are in SI, those that `texts` need; chosen and put into the scene where they are open."""
-        material, own = self.scene.at("material"), self.scene.at("bodies", "bulk_stiffness")
+        material, own = self.scene.at("material"), self.scene.at("bodies.bulk_stiffness")
         assert material is not None
         given: Any = material.value or {}
         if not texts:

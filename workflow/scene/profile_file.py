@@ -51,7 +51,7 @@ class ProfileFile:
         """Read it, looked up in `folder`. The unit of its numbers becomes the scale, where the scene gives none."""
         self.lists: dict[str, list[float]] = {}
         self.problems: list[Problem] = []
-        self.profile, file, scale = (scene.at("bodies", "profile", *key) for key in ((), ("file",), ("scale",)))
+        self.profile, file, scale = (scene.at(f"bodies.profile{key}") for key in ("", ".file", ".scale"))
         if not self.profile or not file or not scale or not isinstance(file.value, str):
             return
         if not {"r", "z"}.isdisjoint(self.profile.value):

@@ -274,10 +274,10 @@ class Place:
         """The keys from the top of the scene down to it."""
         return (*self._above.keys, self.key) if self._above else ()
 
-    def at(self, *keys: str | int) -> Place | None:
-        """The place at these keys from here; None where nothing may stand."""
+    def at(self, path: str) -> Place | None:
+        """The place at a dotted path from here; None where nothing may stand."""
         place: Place | None = self
-        for key in keys:
+        for key in path.split("."):
             place = place.inside.get(key) if place else None
         return place
 

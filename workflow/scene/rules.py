@@ -42,6 +42,8 @@ ELASTICITY = "material.upper and material.lower with E and ν, or material.conta
 
 Row = tuple[str, object, str, str] | tuple[str, object, str, str, Mapping[str, float]]
 Rows = Iterator[Row]
+SAID_OF = {"miss": True, "not ": False, "only": False}
+"""Whether messages that begin so are about a key that is absent; others may be about any."""
 
 
 class Draft:
@@ -66,23 +68,19 @@ class Draft:
         self.on_chain = not self.on_plane and self.lower is not None
         self.effects = tuple(name for name in EFFECT_TABLES if name in self)
 
-    def place(self, path: str) -> Place | None:
-        """The place at a dotted path; None where nothing may stand."""
-        return self.scene.at(*path.split("."))
-
     def __contains__(self, path: str) -> bool:
         """Whether something stands at `path`."""
-        place = self.place(path)
+        place = self.scene.at(path)
         return place is not None and not place.absent
 
     def __getitem__(self, path: str) -> Any:
         """See above."""
-        place = self.place(path)
+        place = self.scene.at(path)
         return place.value if place and place.sound else None
 
     def written(self, path: str, number: float) -> float | str:
         """A number for `path` to six digits, in the unit of the text that stands there."""
-        place = self.place(path)
+        place = self.scene.at(path)
         if not place or not place.source or not place.value:
             return float(f"{number:.6g}")
         given, unit = split(place.source.value)
@@ -320,14 +318,14 @@ def _reduction(d: Draft) -> Rows:
 def _pull_off(d: Draft) -> Rows:
     if d.kind != "pull_off":
         return
-    rate, velocity, stiffness = (f"experiment.{key}" in d for key in ("loading_rate", "velocity", "stiffness"))
+    rate, velocity = "experiment.loading_rate" in d, "experiment.velocity" in d
     thermal = "noise" in d and d["experiment.method"] != "quasistatic"
     yield ("experiment.loading_rate", thermal and not velocity,
            "missing, needed by a pull_off with [noise]",
            "give the rate (FU/TU) at which the load decreases, or the velocity (LU/TU) of a spring that retracts the "
            "plate, or remove [noise]")
     yield ("experiment.velocity", rate, "not together with a loading_rate", "remove one of the two")
-    yield ("experiment.stiffness", stiffness and not velocity,
+    yield ("experiment.stiffness", not velocity,
            "only with a velocity: it is that of the spring",
            "remove it, or give the velocity of its far end")
 
@@ -417,7 +415,7 @@ def _declared_keys(d: Draft) -> Rows:
             for key in given[1:]:
                 yield (f"{name}.{key}", True, f"not together with {given[0]}", fix)
     for key in d.experiment.only_with_noise:
-        yield (f"experiment.{key}", "noise" not in d and f"experiment.{key}" in d,
+        yield (f"experiment.{key}", "noise" not in d,
                "only with [noise]: without thermal fluctuations all repeats are equal",
                "remove it, or add [noise] with temperature and seed")
     listed = "bodies.profile.r" in d or "bodies.profile.z" in d
@@ -462,13 +460,12 @@ def check_fit(scene: Place) -> list[Problem]:
     """Every violation of a rule across the tables of a scene that does not depend on values that are doubted."""
     draft, problems = Draft(scene), []
     for key, broken, message, fix, *ways in (row for rows in RULES for row in rows(draft)):
-        place, begin = draft.place(key), message.partition(" ")[0].strip(",")
-        there = place is not None and not place.absent
-        if broken and {"missing": not there, "not": there}.get(begin, True):
+        place = scene.at(key)
+        if broken and place and SAID_OF.get(message[:4], place.absent) == place.absent:
             # to six digits, as the message says them
             changes = tuple({path: draft.written(path, number)} for way in ways for path, number in way.items())
             texts = (f"{one:g}" if isinstance(one, float) else one for way in changes for one in way.values())
             fix = fix.format(*texts) if ways else fix
-            table = place is None or isinstance(place.value, Mapping)
-            problems.append(Problem(key, message, None if table else place.given, fix, changes))
+            given = None if isinstance(place.value, Mapping) else place.given
+            problems.append(Problem(key, message, given, fix, changes))
     return problems

@@ -44,9 +44,8 @@ DIMENSIONS = {
 }
 """Each dimension in words, with an example, by its unit in SI."""
 COMMON = (
-    "m", "mm", "µm", "nm", "pm", "cm", "Å", "N", "kN", "mN", "µN", "nN", "Pa", "kPa", "MPa", "GPa", "J", "J/m²",
-    "mJ/m²", "N/m", "mN/m", "kg", "g", "mg", "K", "s", "ms", "µs", "ns", "m/s", "mm/s", "µm/s", "nm/s",
-)  # fmt: skip
+    "m mm µm nm pm cm Å N kN mN µN nN Pa kPa MPa GPa J J/m² mJ/m² N/m mN/m kg g mg K s ms µs ns m/s mm/s µm/s nm/s"
+).split()
 """Units among which a misspelt one is looked for."""
 OFFSET = frozenset({"degree_Celsius", "degree_Fahrenheit"})
 """Units of temperature whose zero is not the absolute one, by pint's name."""
