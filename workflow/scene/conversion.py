@@ -11,7 +11,6 @@ import math
 import sys
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any
 
 from contact1d.workflow.scene.problems import Problem
 from contact1d.workflow.scene.quantities import Place, numbers_in
@@ -33,8 +32,7 @@ class Conversion:
 
     Attributes:
         problems: what is wrong with the texts; their places, and those whose numbers are unknown by that, are doubted.
-        texts: the places of the texts.
-        scales: LU, FU and MU in SI, as far as the texts need them; None where they cannot be known.
+        texts: their places.
     """
 
     def __init__(self, scene: Place) -> None:
@@ -46,12 +44,13 @@ class Conversion:
         for place, value in read.items():
             if not place.unit.bases:
                 self._put(place, value)
-        self.scales = self._scales([place for place in self.texts if place.unit.bases])
-        for place, value in read.items():
-            if place.unit.bases and self.scales is None:
+        in_model_units = [place for place in self.texts if place.unit.bases]
+        scales = self._scales(in_model_units) if in_model_units else {}
+        for place in in_model_units:
+            if scales is None:
                 place.doubt()
-            elif place.unit.bases and self.scales is not None:
-                self._put(place, value / size(place.unit.name, self.scales))
+            elif place in read:
+                self._put(place, read[place] / size(place.unit.name, scales))
 
     def _si(self, place: Place) -> Fraction | None:
         """The quantity that the text says, in SI, a temperature as k_B T; None, and reported, where it is none."""
@@ -60,7 +59,7 @@ class Conversion:
         except UnitTextError as error:
             self.problems.append(place.fault(str(error)))
             return None
-        return value * BOLTZMANN if dimension == "K" and place.unit.name != "K" else value
+        return value * BOLTZMANN if dimension == "K" else value
 
     def _put(self, place: Place, value: Fraction) -> None:
         """Put the number in the text's place."""
@@ -70,26 +69,27 @@ class Conversion:
             self.problems.append(place.fault("exceeds the range of floating-point numbers"))
 
     def _scales(self, texts: list[Place]) -> dict[str, Fraction] | None:
-        """What LU, FU and MU are in SI, those that `texts` need; chosen and put into the scene where they are open."""
-        material, own = self.scene.at("material"), self.scene.at("bodies.bulk_stiffness")
-        assert material is not None
-        given: Any = material.value or {}
-        if not texts:
-            return {}
-        if not isinstance(given, dict):
+        """What LU, FU and MU are in SI, those that `texts` need; chosen and put into the scene where they are open.
+
+        None, and reported, where they cannot be known.
+        """
+        material, own = self.scene.inside["material"], self.scene.at("bodies.bulk_stiffness")
+        if material.absent:
+            material.put({})
+        if not isinstance(material.value, dict):
             return None  # reported where tables are checked
         first, stiffness = texts[0], own.value if own else "auto"
-        if "surface_energy" in given:
+        if "surface_energy" in material.value:
             message = "LU and FU follow from the run (material.surface_energy), so that units are not known before it"
             self.problems.append(first.fault(message, f"write a number in {first.unit.name}"))
             return None
         needed = frozenset[str]().union(*(place.unit.bases for place in texts))
-        elastic = bool(ELASTIC & given.keys())
+        elastic = not ELASTIC.isdisjoint(material.value)
         if stiffness == "auto" or not elastic or "MU" in needed:
             needed |= {"LU", "FU"}
-        units = {base: positive(given[key]) for base, key in UNIT_KEYS.items() if key in given}
-        known = {base: value for base, value in units.items() if value is not None}
-        chosen = needed - units.keys()
+        units = {base: material.inside[key] for base, key in UNIT_KEYS.items()}
+        scales = {base: Fraction(repr(unit.value)) for base, unit in units.items() if is_positive(unit)}
+        chosen = frozenset(base for base in needed if units[base].absent)
         fixed = "FU" in chosen and elastic and stiffness != "auto"
         plain = [place for place in numbers_in(self.scene) if place.is_number and place.unit.bases & chosen]
         if fixed and own and own.sound:
@@ -97,11 +97,11 @@ class Conversion:
         elif plain and not fixed:
             self.problems.append(self._mixed(plain, first, chosen, elastic))
         # also where a problem was reported, so that the rules across tables don't report its consequences
-        if material.absent:
-            material.put({})
-        for base in sorted(chosen - ({"FU"} if fixed else set())):
-            material.inside[UNIT_KEYS[base]].put(1.0)
-        return None if plain or fixed or len(known) < len(units) else known | dict.fromkeys(chosen, Fraction(1))
+        for base in sorted(chosen):
+            if base != "FU" or not fixed:
+                units[base].put(1.0)
+        scales |= dict.fromkeys(chosen, Fraction(1))
+        return None if plain or fixed or not needed <= scales.keys() else scales
 
     def _mixed(self, plain: list[Place], text: Place, chosen: frozenset[str], elastic: bool) -> Problem:
         """Plain numbers beside numbers with a unit, and nothing says what the units of the model are."""
@@ -124,11 +124,9 @@ class Conversion:
         )
 
 
-def positive(value: Any) -> Fraction | None:
-    """A number as the exact decimal given; None for what is no finite one greater than 0."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value <= sys.float_info.max:
-        return None
-    return Fraction(repr(value))
+def is_positive(place: Place) -> bool:
+    """Whether a finite number greater than 0 stands there."""
+    return place.is_number and 0.0 < place.value <= sys.float_info.max
 
 
 def size(unit: str, scales: Mapping[str, Fraction]) -> Fraction:

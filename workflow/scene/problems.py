@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -68,11 +67,11 @@ def as_toml(value: object) -> str:
     Anything else, which a scene cannot hold, comes out as Python shows it.
     """
     if isinstance(value, bool):
-        return "true" if value else "false"
+        return str(value).lower()
     if isinstance(value, str):
         return '"' + "".join(_escaped(c) for c in value) + '"'
     if isinstance(value, float):
-        return repr(float(value)) if math.isfinite(value) else f"{value}"
+        return repr(float(value))
     if isinstance(value, list | tuple):
         return "[" + ", ".join(as_toml(item) for item in value) + "]"
     if isinstance(value, Mapping):
@@ -101,13 +100,12 @@ def as_key(key: str) -> str:
 
 def tables_as_toml(tables: Mapping[str, Any]) -> str:
     """The `tables` of a scene as a TOML file: one [table] each, nested ones inline."""
-    top = "\n".join(f"{as_key(key)} = {as_toml(value)}" for key, value in tables.items() if not isinstance(value, dict))
-    blocks = (
-        "\n".join([f"[{name}]", *(f"{as_key(key)} = {as_toml(value)}" for key, value in table.items())])
-        for name, table in tables.items()
-        if isinstance(table, dict)
+    inside = {f"[{name}]\n": table for name, table in tables.items() if isinstance(table, dict)}
+    above = {key: value for key, value in tables.items() if not isinstance(value, dict)}
+    return "\n".join(
+        head + "".join(f"{as_key(key)} = {as_toml(value)}\n" for key, value in table.items())
+        for head, table in {"": above, **inside}.items()
     )
-    return "\n\n".join((top, *blocks)) + "\n"
 
 
 def path_of(keys: Iterable[str | int]) -> str:

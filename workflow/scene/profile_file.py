@@ -9,7 +9,7 @@ from itertools import chain, pairwise
 from pathlib import Path
 
 from contact1d.files import read_text
-from contact1d.workflow.scene.conversion import positive
+from contact1d.workflow.scene.conversion import is_positive
 from contact1d.workflow.scene.problems import Problem
 from contact1d.workflow.scene.profiles import FEWEST_POINTS
 from contact1d.workflow.scene.quantities import Place
@@ -68,7 +68,7 @@ class ProfileFile:
                 raise ValueError("not together with units in the file's names; remove it")
             elif isinstance(scale.value, str):
                 si_value(scale.value, MODEL)
-            elif not positive(scale.value):
+            elif not is_positive(scale):
                 raise ValueError(f"must be {described(scale.allowed)}")
         except ValueError as error:
             self.problems = [wrong.fault(str(error))]
@@ -182,10 +182,9 @@ def _rising(values: list[float]) -> bool:
 
 def _folded(x: list[float], z: list[float]) -> tuple[list[float], list[float]]:
     """The mean of both sides of a profile from −x to x. Raises ProfileFileError where they are not the same."""
-    step, height = (x[-1] - x[0]) / (len(x) - 1), max(z) - min(z)
-    pairs = list(zip(x, z, x[::-1], z[::-1], strict=True))
-    apart, what = max(abs(left - right) for _, left, _, right in pairs), ""
-    if any(abs(left + right) > PLACE_DIFFERENCE * step for left, _, right, _ in pairs):
+    places, heights = (list(zip(values, values[::-1], strict=True))[len(x) // 2 :] for values in (x, z))
+    apart, height, what = max(abs(right - left) for right, left in heights), max(z) - min(z), ""
+    if max(abs(right + left) for right, left in places) > PLACE_DIFFERENCE * (x[-1] - x[0]) / (len(x) - 1):
         what = "their positions differ"
     elif apart > HEIGHT_DIFFERENCE * height:
         what = f"these differ by {apart / height:.0%} of its height, but the model is a body of revolution"
@@ -193,8 +192,7 @@ def _folded(x: list[float], z: list[float]) -> tuple[list[float], list[float]]:
         raise ProfileFileError(
             f"has both sides of 0, and {what}; shift it so that the apex is at 0, or give one side, r from 0 on"
         )
-    half = pairs[len(x) // 2 :]
-    return [0.5 * (right - left) for right, _, left, _ in half], [0.5 * (right + left) for _, right, _, left in half]
+    return [0.5 * (right - left) for right, left in places], [0.5 * (right + left) for right, left in heights]
 
 
 def _point(at: str, cells: list[str], columns: Sequence[int]) -> list[float]:
@@ -204,13 +202,12 @@ def _point(at: str, cells: list[str], columns: Sequence[int]) -> list[float]:
         raise ProfileFileError(f"{at}: {many}; r and z are needed")
     values = []
     for name, cell in zip("rz", (cells[column] for column in columns), strict=True):
-        value, what, hint = _number(cell), "is empty", "leave out a line that has no value, or interpolate it"
-        if cell.strip():
-            what = "is not a number" if value is None else f"is {value}"
-        if _number(cell.replace(",", ".")) is not None:
-            hint = "leave out a line that has no value" if value is not None else "write it with a decimal point"
+        value, hint = _number(cell), "leave out a line that has no value, or interpolate it"
+        if value is None and _number(cell.replace(",", ".")) is not None:
+            hint = "write it with a decimal point"
         if value is None or not math.isfinite(value):
-            raise ProfileFileError(f"{at}: {name} {what}; {hint}")
+            what = "empty" if not cell.strip() else "not a number" if value is None else value
+            raise ProfileFileError(f"{at}: {name} is {what}; {hint}")
         values.append(value)
     return values
 

@@ -79,7 +79,7 @@ class Scene(Tables):
             raise SceneError([Problem("changes", "must be a mapping of dotted keys to values", shown(given), form)])
         named = {key.replace("__", "."): value for key, value in keywords.items()}
         data: dict[str, Any] = plain_data(self)
-        problems = set_values(data, {str(key): value for key, value in {**given, **named}.items()})
+        problems = set_values(data, {**given, **named})
         problems += remove_effects(data, _listed(without))
         return _checked(plain_data(data), problems, FilePath())
 
@@ -150,22 +150,22 @@ def scene_from_dict(
 def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -> Scene:
     """The scene of `plain`, which is corrected meanwhile; `problems` are those found so far."""
     tables = Place(plain, WHOLE)
-    problems += mend_words(tables)
+    spelling = mend_words(tables)
     file = ProfileFile(tables, folder)
     conversion = Conversion(tables)
     file.put()
     scene, wrong = check_tables(tables, Scene)
-    found = [*file.problems, *conversion.problems, *wrong, *check_fit(tables)]
-    problems += _in_si(found, plain.get("material"), bool(conversion.texts))
+    found = [*spelling, *file.problems, *conversion.problems, *wrong, *check_fit(tables)]
+    problems += sorted(_in_si(found, tables, bool(conversion.texts)), key=_rank)
     if problems or scene is None:
-        raise SceneError(sorted(problems, key=_rank))
+        raise SceneError(problems)
     return scene
 
 
-def _in_si(problems: list[Problem], material: Any, has_texts: bool) -> list[Problem]:
+def _in_si(problems: list[Problem], tables: Place, has_texts: bool) -> list[Problem]:
     """The problems with SI in place of LU, FU and MU, where the scene's numbers are written in it."""
-    sizes = [material.get(key) for key in UNIT_KEYS.values()] if isinstance(material, Mapping) else [None]
-    length, force, mass = (size if isinstance(size, float) else None for size in (*sizes, None, None)[:3])
+    units = (tables.at(f"material.{key}") for key in UNIT_KEYS.values())
+    length, force, mass = (unit.value if unit and isinstance(unit.value, float) else None for unit in units)
     if not (length and force and (has_texts or length == force == 1.0)):
         return problems
     words = Scales(length, force, mass=mass).in_words
@@ -195,7 +195,7 @@ def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Prob
 def set_values(data: dict[str, Any], values: Mapping[str, Any]) -> list[Problem]:
     """Set the value of each dotted key in `data`; None removes the key. Returns the problems."""
     form = "write table.key, for example experiment.method"
-    return [problem for path, value in values.items() for problem in _set(data, path, value, f"set {path}", form)]
+    return [problem for path, value in values.items() for problem in _set(data, str(path), value, f"set {path}", form)]
 
 
 def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
@@ -256,11 +256,8 @@ def plain_data(value: Any, levels: int = DEEPEST) -> Any:
 
 
 def _rank(problem: Problem) -> int:
-    """Place of a problem in a report: changes from outside, the tables in the order of a scene, what is unknown."""
-    order = list(Scene.model_fields)
-    table = re.split(r"[.\[]", problem.path)[0]
-    if problem.path.startswith(("set ", "without ")):
-        return -1
+    """Place of a problem in a report: the tables in the order of a scene, then what is unknown."""
+    order, table = list(Scene.model_fields), re.split(r"[.\[]", problem.path)[0]
     return order.index(table) if table in order else len(order)
 
 

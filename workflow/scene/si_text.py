@@ -16,33 +16,50 @@ from typing import Any
 from contact1d.workflow.units import SI
 
 DIMENSIONS = {
-    "m": ("a length", "10 mm"),
-    "N": ("a force", "10 N"),
-    "Pa": ("a pressure", "210 GPa"),
-    "kg": ("a mass", "1 ng"),
-    "s": ("a time", "1 µs"),
-    "K": ("a temperature", "300 K"),
-    "J": ("an energy", "1 aJ"),
-    "N/m": ("a force per length or energy per area", "100 N/m"),
-    "J/m²": ("an energy per area", "50 mJ/m²"),
-    "m/s": ("a velocity", "1 µm/s"),
-    "N·s/m": ("a drag coefficient", "1 mN·s/m"),
-    "N/s": ("a force per time", "1 mN/s"),
-    "m²": ("an area", "1 mm²"),
-    "m³": ("a volume", "1 mm³"),
-    "m/s²": ("an acceleration", "9.81 m/s²"),
-    "kg/m³": ("a density", "7.8 g/cm³"),
-    "W": ("a power", "1 W"),
-    "Hz": ("a frequency", "1 kHz"),
-    "Pa·s": ("a viscosity", "1 mPa·s"),
-    "V": ("a voltage", "1 V"),
-    "A": ("a current", "1 A"),
-    "mol": ("an amount of substance", "1 mol"),
-    "C": ("an electric charge", "1 C"),
-    "1": ("a number without a unit", "0.3"),
-    "rad": ("an angle", "80°"),
+    "m": "a length",
+    "N": "a force",
+    "Pa": "a pressure",
+    "kg": "a mass",
+    "s": "a time",
+    "K": "a temperature",
+    "J": "an energy",
+    "N/m": "a force per length or energy per area",
+    "J/m²": "an energy per area",
+    "m/s": "a velocity",
+    "N·s/m": "a drag coefficient",
+    "N/s": "a force per time",
+    "m²": "an area",
+    "m³": "a volume",
+    "m/s²": "an acceleration",
+    "kg/m³": "a density",
+    "W": "a power",
+    "Hz": "a frequency",
+    "Pa·s": "a viscosity",
+    "V": "a voltage",
+    "A": "a current",
+    "mol": "an amount of substance",
+    "C": "an electric charge",
+    "1": "a number without a unit",
+    "rad": "an angle",
 }
-"""Each dimension in words, with an example, by its unit in SI."""
+"""Each dimension in words, by its unit in SI."""
+EXAMPLES = {
+    "m": "10 mm",
+    "N": "10 N",
+    "Pa": "210 GPa",
+    "kg": "1 ng",
+    "s": "1 µs",
+    "K": "300 K",
+    "J": "1 aJ",
+    "N/m": "100 N/m",
+    "J/m²": "50 mJ/m²",
+    "m/s": "1 µm/s",
+    "N·s/m": "1 mN·s/m",
+    "N/s": "1 mN/s",
+    "1": "0.3",
+    "rad": "80°",
+}
+"""A text of those that a scene has."""
 COMMON = (
     "m mm µm nm pm cm Å N kN mN µN nN Pa kPa MPa GPa J J/m² mJ/m² N/m mN/m kg g mg K s ms µs ns m/s mm/s µm/s nm/s"
 ).split()
@@ -89,12 +106,12 @@ class Unit:
 
 def in_words(unit: str) -> str:
     """What a quantity in `unit` (of SI or of the model) is, with an example: "a force, such as 10 N"."""
-    return f"{DIMENSIONS[in_si(unit)][0]}, such as {example(unit)}"
+    return f"{DIMENSIONS[in_si(unit)]}, such as {example(unit)}"
 
 
 def example(unit: str) -> str:
     """A text that a quantity in `unit` may be: "10 mm"."""
-    return DIMENSIONS[in_si(unit)][1]
+    return EXAMPLES[in_si(unit)]
 
 
 def in_si(unit: str) -> str:
@@ -141,7 +158,7 @@ def si_value(text: str, unit: str, *also: str) -> tuple[Fraction, str]:
         for name in (unit, *also):
             if found.measures(in_si(name)):
                 return value, name
-        what = next((words for name, (words, _) in DIMENSIONS.items() if found.measures(name)), "another quantity")
+        what = next((words for name, words in DIMENSIONS.items() if found.measures(name)), "another quantity")
         if found.angular and in_si(unit) == "1":
             slope = math.tan(value)
             half = math.degrees(math.atan2(1.0, slope))
