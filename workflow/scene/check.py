@@ -31,7 +31,12 @@ def _mended(place: Place) -> Iterator[Problem]:
     """Report and correct the words of a place: its own, or of a table its kind and its keys."""
     yield from _mended_word(place)
     value, allowed = place.value, place.allowed
-    if allowed.table and allowed.table.as_list and isinstance(value, list) and len(value) == len(keys_of(allowed.table)):
+    if (
+        allowed.table
+        and allowed.table.as_list
+        and isinstance(value, list)
+        and len(value) == len(keys_of(allowed.table))
+    ):
         place.put(dict(zip(keys_of(allowed.table), value, strict=True)))
     if not isinstance(value, dict):
         return

@@ -267,7 +267,9 @@ class Place:
     @property
     def kind(self) -> Place:
         """The place that says which one of several tables it is."""
-        return Place(self.value.get("kind"), Allowed(words=(*self.allowed.kinds,)), "kind", self, "kind" not in self.value)
+        return Place(
+            self.value.get("kind"), Allowed(words=(*self.allowed.kinds,)), "kind", self, "kind" not in self.value
+        )
 
     @property
     def keys(self) -> Keys:

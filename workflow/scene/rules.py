@@ -17,7 +17,7 @@ from fractions import Fraction
 from typing import Any
 
 from contact1d.workflow.scene.experiments import KINDS, Cycles, Kind, Span
-from contact1d.workflow.scene.problems import Problem, shown
+from contact1d.workflow.scene.problems import Problem
 from contact1d.workflow.scene.quantities import Place, Table, keys_of
 from contact1d.workflow.scene.si_text import split
 from contact1d.workflow.scene.tables import (

@@ -43,7 +43,9 @@ def statement(allowed: Allowed) -> str:
     elif table := allowed.tables.get(""):
         keys = ", ".join(keys_of(table))
         name = f", or a name such as {as_toml(next(iter(table.by_name)))}" if table.by_name else ""
-        parts += [f"a list [{keys}]" if table.as_list else f"a table {f'with {keys}' if keys else 'without keys'}{name}"]
+        parts += [
+            f"a list [{keys}]" if table.as_list else f"a table {f'with {keys}' if keys else 'without keys'}{name}"
+        ]
     if allowed.words:
         parts += [_either(allowed.words)]
     return ", or ".join(parts)

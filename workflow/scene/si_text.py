@@ -61,8 +61,9 @@ EXAMPLES = {
 }
 """A text of those that a scene has."""
 COMMON = (
-    "m mm µm nm pm cm Å N kN mN µN nN Pa kPa MPa GPa J J/m² mJ/m² N/m mN/m kg g mg K s ms µs ns m/s mm/s µm/s nm/s"
-).split()
+    "m", "mm", "µm", "nm", "pm", "cm", "Å", "N", "kN", "mN", "µN", "nN", "Pa", "kPa", "MPa", "GPa", "J", "J/m²",
+    "mJ/m²", "N/m", "mN/m", "kg", "g", "mg", "K", "s", "ms", "µs", "ns", "m/s", "mm/s", "µm/s", "nm/s",
+)  # fmt: skip
 """Units among which a misspelt one is looked for."""
 OFFSET = frozenset({"degree_Celsius", "degree_Fahrenheit"})
 """Units of temperature whose zero is not the absolute one, by pint's name."""
