@@ -222,8 +222,8 @@ def require_travel(scene: Scene, largest: float, cutoff: float) -> None:
     if abs(largest) > most:
         digits = digits_apart(abs(largest), most)
         raise SettingsError(
-            f"the displacement would reach {largest:.{digits}g} LU, at most {most:.{digits}g} LU are possible with this "
-            f"range of forces: use a larger bodies.bulk_stiffness, or a smaller load or displacement. {MIX_UP}"
+            f"the displacement would reach {largest:.{digits}g} LU, at most {most:.{digits}g} LU are possible with "
+            f"this range of forces: use a larger bodies.bulk_stiffness, or a smaller load or displacement. {MIX_UP}"
         )
 
 

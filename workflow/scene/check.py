@@ -116,7 +116,7 @@ def _place(scene: Place, details: ErrorDetails) -> Place:
 
 def _fault(place: Place, details: ErrorDetails) -> Problem:
     """What an error of pydantic's at a place means for the person who wrote the scene."""
-    kind, given, must = details["type"], place.value, f"must be {statement(place.allowed)}"
+    kind, must = details["type"], f"must be {statement(place.allowed)}"
     if place.absent:
         return place.fault("missing", must)
     if kind == "scene":

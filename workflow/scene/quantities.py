@@ -120,11 +120,11 @@ T = TypeVar("T")
 Other = TypeVar("Other")
 
 
-Auto = T | Literal["auto"]
-AllOr = T | Literal["all"]
+Auto = Annotated[T | Literal["auto"], Field()]
+AllOr = Annotated[T | Literal["all"], Field()]
 # strict=False on the tuple alone: TOML has lists, a frozen table holds a tuple. Its items stay strict.
 Listed = Annotated[tuple[T, ...], Field(strict=False), MinLen(1)]
-OneOrMore = T | Listed[Other]
+OneOrMore = Annotated[T | Listed[Other], Field()]
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,8 @@ class Allowed:
     @cached_property
     def unit(self) -> Unit | None:
         """The unit of a number, or of the items of a list of numbers."""
-        return next((mark for mark in self.marks if isinstance(mark, Unit)), self.items and self.items.unit)
+        own = (mark for mark in self.marks if isinstance(mark, Unit))
+        return next(own, self.items.unit if self.items else None)
 
     @cached_property
     def quantity(self) -> Unit | None:
@@ -238,7 +239,8 @@ class Place:
         """The position `key` in the table or list `above`; without one the whole of something."""
         self.value, self.allowed, self.key, self._above, self.absent = value, allowed, key, above, absent
         self.source: Place | None = None
-        self.sound, self._inside = True, None
+        self._inside: dict[Any, Place] | None = None
+        self.sound = True
 
     def __iter__(self) -> Iterator[Place]:
         """All places in it, a table before its content, which may be corrected meanwhile; absent keys, too."""
@@ -248,20 +250,22 @@ class Place:
                 yield from place
 
     @property
-    def inside(self) -> dict[str | int, Place]:
+    def inside(self) -> dict[Any, Place]:
         """The places of its keys or items; of a table whose kind is not known that of the kind alone."""
         if self._inside is None:
-            value, allowed, self._inside = self.value, self.allowed, {}
+            value, allowed = self.value, self.allowed
+            found: dict[Any, Place] = {}
             if isinstance(value, dict):
                 table = allowed.table_for(value)
-                self._inside = {
+                found = {
                     name: Place(value.get(name, key.default), key.allowed, name, self, name not in value)
                     for name, key in (keys_of(table) if table else {}).items()
                 }
                 if allowed.kinds:
-                    self._inside["kind"] = self.kind
+                    found["kind"] = self.kind
             elif allowed.items and isinstance(value, list | tuple):
-                self._inside = {i: Place(item, allowed.items, i, self) for i, item in enumerate(value)}
+                found = {i: Place(item, allowed.items, i, self) for i, item in enumerate(value)}
+            self._inside = found
         return self._inside
 
     @property

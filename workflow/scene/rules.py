@@ -347,8 +347,8 @@ def _periodic(d: Draft) -> Rows:
                "lower it: a larger one needs distant anchors along x, which a periodic body cannot have")
     count, spacing = d["bodies.particles"], d["bodies.spacing"]
     upper, pitch = (
-        d[f"bodies.upper_{key}"] if f"bodies.upper_{key}" in d else below
-        for key, below in (("particles", count), ("spacing", spacing))
+        d[path] if path in d else below  # noqa: SIM401 (a draft is no dict)
+        for path, below in (("bodies.upper_particles", count), ("bodies.upper_spacing", spacing))
     )
     yield ("bodies.particles", count == "auto",
            "must be a number with bodies.periodic",

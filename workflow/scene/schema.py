@@ -94,7 +94,7 @@ def _nodes(allowed: Allowed) -> Node:
     return nodes[0] if len(nodes) == 1 else {"oneOf": nodes}
 
 
-def _bounds(allowed: Allowed, names: Mapping[type, str]) -> Node:
+def _bounds(allowed: Allowed, names: Mapping[Any, str]) -> Node:
     return {names[type(mark)]: next(iter(astuple(mark))) for mark in allowed.marks if type(mark) in names}
 
 
