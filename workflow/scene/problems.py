@@ -14,6 +14,8 @@ SHOWN_LENGTH = 60
 """Characters of a given value that a message shows."""
 LONGEST = 1000
 """Characters of a path that a message shows."""
+BARE = re.compile(r"[A-Za-z0-9_-]+")
+"""A key that TOML has without quotes."""
 MOST_PROBLEMS = 20
 """Most problems that are listed; the number of the others is added."""
 
@@ -95,7 +97,7 @@ def _cut(text: str, most: int) -> str:
 
 def as_key(key: str) -> str:
     """`key` as TOML writes it: bare where it can be, else in quotes."""
-    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else as_toml(key)
+    return key if BARE.fullmatch(key) else as_toml(key)
 
 
 def tables_as_toml(tables: Mapping[str, Any]) -> str:

@@ -15,7 +15,7 @@ from pydantic import ConfigDict
 from contact1d.files import UnreadableError, read_text
 from contact1d.workflow.scene.check import check_tables, mend_words
 from contact1d.workflow.scene.conversion import UNIT_KEYS, Conversion
-from contact1d.workflow.scene.problems import Problem, SceneError, shown, suggestion
+from contact1d.workflow.scene.problems import BARE, Problem, SceneError, shown, suggestion
 from contact1d.workflow.scene.profile_file import ProfileFile
 from contact1d.workflow.scene.quantities import Place, Table, keys_of
 from contact1d.workflow.scene.rules import check_fit
@@ -186,16 +186,36 @@ def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Prob
         path, _, text = override.partition("=")
         where = f"set {shown(override)}"
         if text.strip():
-            problems += _set(data, path, _toml_value(text.strip()), where, form)
+            problems += set_values(data, {path: _toml_value(text.strip())}, where, form)
         else:
             problems.append(Problem(where, "no value", hint=form))
     return problems
 
 
-def set_values(data: dict[str, Any], values: Mapping[str, Any]) -> list[Problem]:
-    """Set the value of each dotted key in `data`; None removes the key. Returns the problems."""
-    form = "write table.key, for example experiment.method"
-    return [problem for path, value in values.items() for problem in _set(data, str(path), value, f"set {path}", form)]
+def set_values(
+    data: dict[str, Any],
+    values: Mapping[str, Any],
+    where: str = "",
+    form: str = "write table.key, for example experiment.method",
+) -> list[Problem]:
+    """Set the value of each dotted key in `data`; None removes the key. Returns the problems, by `where` they are from.
+
+    `form`: what to write instead of what is no path of keys.
+    """
+    problems = []
+    for path, value in values.items():
+        table, at, keys = data, where or f"set {path}", [key.strip() for key in str(path).split(".")]
+        if len(keys) > DEEPEST or not all(map(BARE.fullmatch, keys)):
+            problems.append(Problem(at, "not a path of keys", hint=form))
+            continue
+        for depth, key in enumerate(keys[:-1], start=1):
+            table = table.setdefault(key, {})
+            if not isinstance(table, dict):
+                problems.append(Problem(at, f"{'.'.join(keys[:depth])} is not a table", hint="set it as a whole"))
+                break
+        else:
+            table[keys[-1]] = value
+    return problems
 
 
 def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
@@ -211,19 +231,6 @@ def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
         else:
             problems.append(Problem(f"without {name}", message, hint=hint))
     return problems
-
-
-def _set(data: dict[str, Any], path: str, value: Any, where: str, form: str) -> list[Problem]:
-    keys = [key.strip() for key in path.split(".")]
-    if len(keys) > DEEPEST or not all(re.fullmatch(r"[A-Za-z0-9_-]+", key) for key in keys):
-        return [Problem(where, "not a path of keys", hint=form)]
-    table = data
-    for depth, key in enumerate(keys[:-1], start=1):
-        table = table.setdefault(key, {})
-        if not isinstance(table, dict):
-            return [Problem(where, f"{'.'.join(keys[:depth])} is not a table", hint="set it as a whole")]
-    table[keys[-1]] = value
-    return []
 
 
 def _toml_value(text: str) -> Any:

@@ -16,6 +16,7 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import Any
 
+from contact1d.digits import apart
 from contact1d.workflow.scene.experiments import KINDS, Cycles, Kind, Span
 from contact1d.workflow.scene.problems import Problem
 from contact1d.workflow.scene.quantities import Place, Table, keys_of
@@ -35,6 +36,8 @@ WHOLE_NUMBER_ERROR = 1e-9
 """Relative error of a quotient of two decimals up to which it counts as whole, or two lengths as equal."""
 LONGEST_CELL = 1000
 """Most particles of a pair of chains that is suggested in place of one that does not close."""
+DIGITS = 6
+"""Of a number in a message, at least."""
 PLANE = 'bodies.lower = "rigid_plane"'
 PARTICLES = 'bodies.lower = "particles"'
 GIVE_SPACING = "give bodies.spacing as a length (LU)"
@@ -82,9 +85,14 @@ class Draft:
         """A number for `path` to six digits, in the unit of the text that stands there."""
         place = self.scene.at(path)
         if not place or not place.source or not place.value:
-            return float(f"{number:.6g}")
+            return float(f"{number:.{DIGITS}g}")
         given, unit = split(place.source.value)
-        return f"{number / place.value * float(given):.6g}{unit}"
+        return f"{number / place.value * float(given):.{DIGITS}g}{unit}"
+
+
+def limit(value: float, of: float) -> str:
+    """The limit of a value that lies beyond it, as text that shows that."""
+    return apart(value, of, DIGITS)[1]
 
 
 # fmt: off
@@ -122,7 +130,8 @@ def _interaction(d: Draft) -> Rows:
     if None in (A, a, B, b):
         return
     yield (f"{attraction}.range", b <= a,
-           f"must be greater than the range of the repulsion, {a:g} (LU), else the bodies never attract each other",
+           f"must be greater than the range of the repulsion, {limit(b, a)} (LU), else the bodies never attract each "
+           "other",
            f"raise it to {{}}, or lower {repulsion}.range to {{}}",
            {f"{attraction}.range": 2.0 * a, f"{repulsion}.range": 0.5 * b})
     if b <= a:
@@ -130,12 +139,13 @@ def _interaction(d: Draft) -> Rows:
     most, least = A / a * b, B / b * a
     ratio = math.log(A) - math.log(a) - math.log(B) + math.log(b)
     yield (f"{attraction}.amplitude", ratio <= 0.0,
-           f"must be less than {most:.6g} (FU·LU), so that A/a > B/b and particles repel when they touch",
+           f"must be less than {limit(B, most)} (FU·LU), so that A/a > B/b and particles repel when they touch",
            f"lower it to {{}}, or raise {repulsion}.amplitude to {{}}",
            {f"{attraction}.amplitude": 0.25 * most, f"{repulsion}.amplitude": 4.0 * least})
     cutoff, r_0 = d["interaction.cutoff"], ratio * a * b / (b - a)
-    yield ("interaction.cutoff", ratio > 0.0 and cutoff not in (None, "auto") and cutoff <= r_0,
-           f"must be greater than the force-free distance, {r_0:.6g} (LU)", 'raise it, or use "auto"')
+    if cutoff not in (None, "auto"):
+        yield ("interaction.cutoff", ratio > 0.0 and cutoff <= r_0,
+               f"must be greater than the force-free distance, {limit(cutoff, r_0)} (LU)", 'raise it, or use "auto"')
 
 
 def _attraction(d: Draft) -> Rows:
@@ -294,7 +304,8 @@ def _counter_body(d: Draft) -> Rows:
     if None in (radius, counter):
         return
     yield (key, -radius <= counter <= 0.0,
-           f"must be greater than 0 (convex), or less than {-radius:g} (LU) (concave), else the bodies conform",
+           f"must be greater than 0 (convex), or less than {limit(counter, -radius)} (LU) (concave), else the "
+           "bodies conform",
            "a cup is wider than the ball in it; leave it out for a plane")
     chosen = d["bodies.reduction"] or default_reduction("material" in d, d.lower or "", "parabola")
     yield (key, chosen == "geike_popov",
@@ -343,7 +354,7 @@ def _periodic(d: Draft) -> Rows:
     normal, tangential = d["bodies.bulk_stiffness"], d["bodies.bulk_stiffness_tangential"]
     if normal not in (None, "auto") and tangential is not None:
         yield ("bodies.bulk_stiffness_tangential", tangential > normal,
-               f"must be at most bulk_stiffness, {normal:g} (FU/LU), with bodies.periodic",
+               f"must be at most bulk_stiffness, {limit(tangential, normal)} (FU/LU), with bodies.periodic",
                "lower it: a larger one needs distant anchors along x, which a periodic body cannot have")
     count, spacing = d["bodies.particles"], d["bodies.spacing"]
     upper, pitch = (
@@ -363,8 +374,9 @@ def _periodic(d: Draft) -> Rows:
             f", or particles = {cells * ratio.numerator} and upper_particles = {cells * ratio.denominator} with "
             f"upper_spacing = {ratio.numerator / ratio.denominator * spacing:.10g}"
         )
+    one, other = apart(spacing, pitch, DIGITS)
     yield ("bodies.upper_spacing", abs(count * spacing - upper * pitch) > WHOLE_NUMBER_ERROR * count * spacing,
-           f"the periodic chains differ in length: {count} · {spacing:g} LU below and {upper} · {pitch:g} LU above",
+           f"the periodic chains differ in length: {count} · {one} LU below and {upper} · {other} LU above",
            f"the nearest equal lengths: {nearest}")
 
 
@@ -462,7 +474,6 @@ def check_fit(scene: Place) -> list[Problem]:
     for key, broken, message, fix, *ways in (row for rows in RULES for row in rows(draft)):
         place = scene.at(key)
         if broken and place and SAID_OF.get(message[:4], place.absent) == place.absent:
-            # to six digits, as the message says them
             changes = tuple({path: draft.written(path, number)} for way in ways for path, number in way.items())
             texts = (f"{one:g}" if isinstance(one, float) else one for way in changes for one in way.values())
             fix = fix.format(*texts) if ways else fix
