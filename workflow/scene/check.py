@@ -6,7 +6,7 @@ and the rules across tables are checked as well.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection
 from itertools import chain
 from typing import TypeVar
 
@@ -14,50 +14,40 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from contact1d.workflow.scene.experiments import Kind
-from contact1d.workflow.scene.problems import Problem, as_toml, nearest, path_of, plain, suggestion
-from contact1d.workflow.scene.quantities import OutOfRange, Place, Table, keys_of, tables_in
+from contact1d.workflow.scene.problems import as_toml, nearest, plain, suggestion
+from contact1d.workflow.scene.quantities import Allowed, OutOfRange, Place, keys_of, tables_in
 from contact1d.workflow.scene.schema import statement, text_of
 from contact1d.workflow.scene.tables import Tables
 
 AnyTables = TypeVar("AnyTables", bound=Tables)
 
 
-def mend_words(scene: Place) -> list[Problem]:
+def mend_words(scene: Place) -> None:
     """Report and correct every word that is misspelt or unknown; put tables where names and lists stand for them."""
-    return [problem for place in chain((scene,), scene) for problem in _mended(place)]
+    for place in chain((scene,), scene):
+        _mend_word(place)
+        value, allowed, listed = place.value, place.allowed, place.allowed.table
+        if listed and listed.as_list and isinstance(value, list) and len(value) == len(keys_of(listed)):
+            place.put(dict(zip(keys_of(listed), value, strict=True)))
+        if not isinstance(value, dict):
+            continue
+        if allowed.kinds and "kind" not in value:
+            for similar in [key for key in value if nearest(key, ["kind"])][:1]:
+                _mend_key(place, ["kind"], similar)
+        if allowed.kinds:
+            _mend_word(place.kind)
+        if table := allowed.table_for(value):
+            for key in [key for key in value if key not in keys_of(table)]:
+                _mend_key(place, keys_of(table), key)
 
 
-def _mended(place: Place) -> Iterator[Problem]:
-    """Report and correct the words of a place: its own, or of a table its kind and its keys."""
-    yield from _mended_word(place)
-    value, allowed = place.value, place.allowed
-    if (
-        allowed.table
-        and allowed.table.as_list
-        and isinstance(value, list)
-        and len(value) == len(keys_of(allowed.table))
-    ):
-        place.put(dict(zip(keys_of(allowed.table), value, strict=True)))
-    if not isinstance(value, dict):
-        return
-    if allowed.kinds:
-        similar = next((key for key in value if nearest(key, ["kind"])), "kind")
-        if "kind" not in value and similar in value:
-            value["kind"] = value.pop(similar)
-            yield Problem(path_of((*place.keys, similar)), "unknown key", hint='did you mean "kind"?')
-        yield from _mended_word(place.kind)
-    if table := allowed.table_for(value):
-        for key in [key for key in value if key not in keys_of(table)]:
-            yield _mended_key(place, table, key)
-
-
-def _mended_word(place: Place) -> Iterator[Problem]:
+def _mend_word(place: Place) -> None:
     value, allowed = place.value, place.allowed
     names = allowed.table.by_name if allowed.table else {}
     meant = nearest(value, (*allowed.words, *names)) if isinstance(value, str) and value not in allowed.words else None
     if meant:
         if plain(value) not in names:
-            yield place.problem(f"must be {statement(allowed)}", f'did you mean "{meant}"?{_names(place)}')
+            place.report(f"must be {statement(allowed)}", f'did you mean "{meant}"?{_names(place)}')
         place.put(dict(names[meant]) if meant in names else meant)
 
 
@@ -67,19 +57,18 @@ def _names(place: Place) -> str:
     return f" names: {', '.join(table.by_name)}" if table and table.by_name else ""
 
 
-def _mended_key(place: Place, table: type[Table], key: str) -> Problem:
-    """Report a key that the `table` does not know, and take it away or put it where it was meant to be."""
-    known, value = keys_of(table), place.value.pop(key)
-    what = "unknown table" if isinstance(value, dict) else "unknown key"
-    method = table.only_method if key == "method" and issubclass(table, Kind) else None
-    begin = ""
+def _mend_key(place: Place, known: Collection[str], key: str) -> None:
+    """Report a key that a table does not know, and take it away or put it where it was meant to be."""
+    value, table, begin = place.value.pop(key), place.allowed.table_for(place.value), ""
+    method = table.only_method if key == "method" and table and issubclass(table, Kind) else None
     if meant := nearest(key, known):
         place.value.setdefault(meant, value)
     elif method is not None:
         begin = f"a {place.value['kind']} is always {method}: remove it; "
     elif homes := _homes(key):
         begin = f"it belongs in {' or '.join(homes)}; "
-    return Problem(path_of((*place.keys, key)), what, hint=begin + suggestion(key, known))
+    what = "unknown table" if isinstance(value, dict) else "unknown key"
+    Place(None, Allowed(), key, place, absent=True).report(what, begin + suggestion(key, known))
 
 
 def _homes(key: str) -> list[str]:
@@ -91,19 +80,19 @@ def _homes(key: str) -> list[str]:
     ]
 
 
-def check_tables(scene: Place, model: type[AnyTables]) -> tuple[AnyTables | None, list[Problem]]:
-    """Check every table of a scene whose words were corrected; of places that are doubted nothing is reported again.
-
-    Returns the scene if all tables are right, and what is wrong.
-    """
+def check_tables(scene: Place, model: type[AnyTables]) -> AnyTables | None:
+    """The scene, if every table is right; else None, and reported what is wrong at places that are not doubted yet."""
     try:
-        return model.model_validate(scene.value), []
+        return model.model_validate(scene.value)
     except ValidationError as error:
         faults = [(_place(scene, details), details) for details in error.errors(include_url=False)]
     # of a value that may be of several types each says what it is not: what is wrong inside comes first, and last that
     # it is of another type
     faults.sort(key=lambda fault: (-len(fault[0].keys), fault[1]["type"].endswith("_type")))
-    return None, [_fault(place, details) for place, details in faults if place.sound]
+    for place, details in faults:
+        if place.sound:
+            _report(place, details)
+    return None
 
 
 def _place(scene: Place, details: ErrorDetails) -> Place:
@@ -114,22 +103,23 @@ def _place(scene: Place, details: ErrorDetails) -> Place:
     return place
 
 
-def _fault(place: Place, details: ErrorDetails) -> Problem:
-    """What an error of pydantic's at a place means for the person who wrote the scene."""
+def _report(place: Place, details: ErrorDetails) -> None:
+    """Report what an error of pydantic's at a place means for the person who wrote the scene."""
     kind, must = details["type"], f"must be {statement(place.allowed)}"
+    hint = _hint(place)
     if place.absent:
-        return place.fault("missing", must)
-    if kind == "scene":
-        return place.fault(details["msg"])
-    if kind == "too_short":
+        must, hint = "missing", must
+    elif kind == "scene":
+        must = details["msg"]
+    elif kind == "too_short":
         least = details["ctx"]["min_length"]
-        return place.fault(f"must have at least {'one item' if least == 1 else f'{least} items'}")
-    if kind.startswith(("greater_than", "less_than")):
-        hints = (mark.hint for mark in place.allowed.marks if isinstance(mark, OutOfRange))
-        return place.fault(must.replace("be a number ", "be ", 1).replace("be of ", "be ", 1), next(hints, ""))
-    if kind == "finite_number":
+        must = f"must have at least {'one item' if least == 1 else f'{least} items'}"
+    elif kind.startswith(("greater_than", "less_than")):
+        must = must.replace("be a number ", "be ", 1).replace("be of ", "be ", 1)
+        hint = next((mark.hint for mark in place.allowed.marks if isinstance(mark, OutOfRange)), "")
+    elif kind == "finite_number":
         must = must.replace("a number", "a finite number", 1)
-    return place.fault(must, _hint(place))
+    place.fault(must, hint)
 
 
 def _hint(place: Place) -> str:

@@ -10,7 +10,6 @@ from pathlib import Path
 
 from contact1d.files import read_text
 from contact1d.workflow.scene.conversion import is_positive
-from contact1d.workflow.scene.problems import Problem
 from contact1d.workflow.scene.profiles import FEWEST_POINTS
 from contact1d.workflow.scene.quantities import Place
 from contact1d.workflow.scene.schema import described
@@ -39,52 +38,49 @@ class ProfileFileError(ValueError):
     """A file that is not a profile; the message has the line and the error."""
 
 
-class ProfileFile:
-    """The file that the profile of a scene names, if it does; its `scale` is a quantity of the scene like any other.
+def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
+    """The points of the file, looked up in `folder`, that the profile of a scene names; none without one, or reported.
 
-    Attributes:
-        lists: r and z as in the file; none where there is no file that can be read.
-        problems: what is wrong with it.
+    Its scale is a quantity of the scene like any other: where none is given, the unit of the numbers stands there.
     """
+    profile, file, scale = (scene.at(f"bodies.profile{key}") for key in ("", ".file", ".scale"))
+    if not profile or not file or not scale or not isinstance(file.value, str):
+        return {}
+    if not {"r", "z"}.isdisjoint(profile.value):
+        file.doubt()  # a rule reports it
+        return {}
+    wrong = file
+    try:
+        lists, unit = read_profile(folder / file.value)
+        wrong = scale
+        if scale.absent:
+            scale.put(unit or 1.0)
+            scale.source = file
+        elif unit:
+            raise ValueError("not together with units in the file's names; remove it")
+        elif isinstance(scale.value, str):
+            si_value(scale.value, MODEL)
+        elif not is_positive(scale):
+            raise ValueError(f"must be {described(scale.allowed)}")
+    except ValueError as error:
+        wrong.fault(str(error))
+        profile.put({"kind": profile.value["kind"]})
+        return {}
+    return lists
 
-    def __init__(self, scene: Place, folder: Path) -> None:
-        """Read it, looked up in `folder`. The unit of its numbers becomes the scale, where the scene gives none."""
-        self.lists: dict[str, list[float]] = {}
-        self.problems: list[Problem] = []
-        self.profile, file, scale = (scene.at(f"bodies.profile{key}") for key in ("", ".file", ".scale"))
-        if not self.profile or not file or not scale or not isinstance(file.value, str):
-            return
-        if not {"r", "z"}.isdisjoint(self.profile.value):
-            file.doubt()  # a rule reports it
-            return
-        wrong = file
-        try:
-            self.lists, unit = read_profile(folder / file.value)
-            wrong = scale
-            if scale.absent:
-                scale.put(unit or 1.0)
-                scale.source = file
-            elif unit:
-                raise ValueError("not together with units in the file's names; remove it")
-            elif isinstance(scale.value, str):
-                si_value(scale.value, MODEL)
-            elif not is_positive(scale):
-                raise ValueError(f"must be {described(scale.allowed)}")
-        except ValueError as error:
-            self.problems = [wrong.fault(str(error))]
-            self.profile.put({"kind": self.profile.value["kind"]})
 
-    def put(self) -> None:
-        """Put its points in its place in the scene, whose scale is a number by now."""
-        if not self.lists or not self.profile or not self.profile.sound:
-            return
-        scale = self.profile.inside["scale"]
-        lists = {key: [scale.value * value for value in values] for key, values in self.lists.items()}
-        if all(map(math.isfinite, chain(*lists.values()))):
-            self.profile.source = self.profile.inside["file"]
-            self.profile.put({"kind": self.profile.value["kind"], **lists})
-        else:
-            self.problems = [scale.fault("is too large for the numbers of the file")]
+def put_points(scene: Place, lists: dict[str, list[float]]) -> None:
+    """Put the points of a file in its place in a scene, whose scale is a number by now."""
+    profile = scene.at("bodies.profile")
+    if not lists or not profile or not profile.sound:
+        return
+    scale = profile.inside["scale"]
+    scaled = {key: [scale.value * value for value in values] for key, values in lists.items()}
+    if all(map(math.isfinite, chain(*scaled.values()))):
+        profile.source = profile.inside["file"]
+        profile.put({"kind": profile.value["kind"], **scaled})
+    else:
+        scale.fault("is too large for the numbers of the file")
 
 
 def read_profile(path: Path) -> tuple[dict[str, list[float]], str | None]:

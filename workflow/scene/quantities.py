@@ -227,17 +227,19 @@ class Place:
         allowed: what may stand there.
         key: the last of its `keys`.
         absent: whether nothing stands there.
-        sound: whether no problem is in it.
+        sound: whether its value, and all in it, can be relied on.
+        problems: what is wrong in the scene.
         source: what was written, where the value follows from that: a text with a unit, or the name of a file.
     """
 
-    __slots__ = ("_above", "_inside", "absent", "allowed", "key", "sound", "source", "value")
+    __slots__ = ("_above", "_inside", "absent", "allowed", "key", "problems", "sound", "source", "value")
 
     def __init__(
         self, value: Any, allowed: Allowed, key: str | int = "", above: Place | None = None, absent: bool = False
     ) -> None:
         """The position `key` in the table or list `above`; without one the whole of something."""
         self.value, self.allowed, self.key, self._above, self.absent = value, allowed, key, above, absent
+        self.problems: list[Problem] = above.problems if above else []
         self.source: Place | None = None
         self._inside: dict[Any, Place] | None = None
         self.sound = True
@@ -324,12 +326,14 @@ class Place:
 
     @property
     def given(self) -> str | None:
-        """What was written, or a number by default, as TOML; None where there is neither."""
-        return None if self.absent and not self.is_number else shown((self.source or self).value)
+        """What was written, or a number by default, as TOML; None where there is neither, or a table as may be."""
+        written = (self.source or self).value
+        table = self.allowed.tables and isinstance(written, dict)
+        return None if table or (self.absent and not self.is_number) else shown(written)
 
-    def problem(self, message: str, hint: str = "") -> Problem:
-        """What is wrong with it."""
-        return Problem(self.path, message, self.given, hint)
+    def report(self, message: str, hint: str = "", ways: tuple[Mapping[str, object], ...] = ()) -> None:
+        """Add what is wrong with it to the problems."""
+        self.problems.append(Problem(self.path, message, self.given, hint, ways))
 
     def doubt(self) -> None:
         """Take its value for no basis of anything else."""
@@ -337,10 +341,10 @@ class Place:
         if self._above:
             self._above.doubt()
 
-    def fault(self, message: str, hint: str = "") -> Problem:
-        """Doubt it, and say what is wrong."""
+    def fault(self, message: str, hint: str = "") -> None:
+        """Doubt it, and report what is wrong."""
         self.doubt()
-        return self.problem(message, hint)
+        self.report(message, hint)
 
 
 def places(table: type[Table], data: Mapping[str, Any]) -> Iterator[Place]:

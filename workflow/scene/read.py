@@ -14,9 +14,9 @@ from pydantic import ConfigDict
 
 from contact1d.files import UnreadableError, read_text
 from contact1d.workflow.scene.check import check_tables, mend_words
-from contact1d.workflow.scene.conversion import UNIT_KEYS, Conversion
+from contact1d.workflow.scene.conversion import UNIT_KEYS, convert
 from contact1d.workflow.scene.problems import BARE, Problem, SceneError, shown, suggestion
-from contact1d.workflow.scene.profile_file import ProfileFile
+from contact1d.workflow.scene.profile_file import put_points, take_points
 from contact1d.workflow.scene.quantities import Place, Table, keys_of
 from contact1d.workflow.scene.rules import check_fit
 from contact1d.workflow.scene.si_text import MODEL_UNITS
@@ -150,28 +150,28 @@ def scene_from_dict(
 def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -> Scene:
     """The scene of `plain`, which is corrected meanwhile; `problems` are those found so far."""
     tables = Place(plain, WHOLE)
-    spelling = mend_words(tables)
-    file = ProfileFile(tables, folder)
-    conversion = Conversion(tables)
-    file.put()
-    scene, wrong = check_tables(tables, Scene)
-    found = [*spelling, *file.problems, *conversion.problems, *wrong, *check_fit(tables)]
-    problems += sorted(_in_si(found, tables, bool(conversion.texts)), key=_rank)
+    mend_words(tables)
+    points = take_points(tables, folder)
+    has_texts = convert(tables)
+    put_points(tables, points)
+    scene = check_tables(tables, Scene)
+    check_fit(tables)
+    problems += sorted(_in_si(tables, has_texts), key=_rank)
     if problems or scene is None:
         raise SceneError(problems)
     return scene
 
 
-def _in_si(problems: list[Problem], tables: Place, has_texts: bool) -> list[Problem]:
-    """The problems with SI in place of LU, FU and MU, where the scene's numbers are written in it."""
+def _in_si(tables: Place, has_texts: bool) -> list[Problem]:
+    """The problems of a scene with SI in place of LU, FU and MU, where its numbers are written in it."""
     units = (tables.at(f"material.{key}") for key in UNIT_KEYS.values())
     length, force, mass = (unit.value if unit and isinstance(unit.value, float) else None for unit in units)
     if not (length and force and (has_texts or length == force == 1.0)):
-        return problems
+        return tables.problems
     words = Scales(length, force, mass=mass).in_words
     return [
         one if MODEL_UNITS in one.message else replace(one, message=words(one.message), hint=words(one.hint))
-        for one in problems
+        for one in tables.problems
     ]
 
 

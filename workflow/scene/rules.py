@@ -18,7 +18,6 @@ from typing import Any
 
 from contact1d.digits import apart
 from contact1d.workflow.scene.experiments import KINDS, Cycles, Kind, Span
-from contact1d.workflow.scene.problems import Problem
 from contact1d.workflow.scene.quantities import Place, Table, keys_of
 from contact1d.workflow.scene.si_text import split
 from contact1d.workflow.scene.tables import (
@@ -468,15 +467,12 @@ RULES = (
 )
 
 
-def check_fit(scene: Place) -> list[Problem]:
-    """Every violation of a rule across the tables of a scene that does not depend on values that are doubted."""
-    draft, problems = Draft(scene), []
+def check_fit(scene: Place) -> None:
+    """Report every violation of a rule across the tables of a scene that does not depend on values that are doubted."""
+    draft = Draft(scene)
     for key, broken, message, fix, *ways in (row for rows in RULES for row in rows(draft)):
         place = scene.at(key)
         if broken and place and SAID_OF.get(message[:4], place.absent) == place.absent:
             changes = tuple({path: draft.written(path, number)} for way in ways for path, number in way.items())
             texts = (f"{one:g}" if isinstance(one, float) else one for way in changes for one in way.values())
-            fix = fix.format(*texts) if ways else fix
-            given = None if isinstance(place.value, Mapping) else place.given
-            problems.append(Problem(key, message, given, fix, changes))
-    return problems
+            place.report(message, fix.format(*texts) if ways else fix, changes)
