@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from itertools import chain
-from typing import TypeVar
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
@@ -18,8 +17,6 @@ from contact1d.workflow.scene.problems import as_toml, nearest, plain, suggestio
 from contact1d.workflow.scene.quantities import Allowed, OutOfRange, Place, keys_of, tables_in
 from contact1d.workflow.scene.schema import statement, text_of
 from contact1d.workflow.scene.tables import Tables
-
-AnyTables = TypeVar("AnyTables", bound=Tables)
 
 
 def mend_words(scene: Place) -> None:
@@ -80,19 +77,15 @@ def _homes(key: str) -> list[str]:
     ]
 
 
-def check_tables(scene: Place, model: type[AnyTables]) -> AnyTables | None:
-    """The scene, if every table is right; else None, and reported what is wrong at places that are not doubted yet."""
-    try:
-        return model.model_validate(scene.value)
-    except ValidationError as error:
-        faults = [(_place(scene, details), details) for details in error.errors(include_url=False)]
+def report_faults(scene: Place, error: ValidationError) -> None:
+    """Report each error of pydantic's once, and not at places that are doubted already."""
+    faults = [(_place(scene, details), details) for details in error.errors(include_url=False)]
     # of a value that may be of several types each says what it is not: what is wrong inside comes first, and last that
     # it is of another type
     faults.sort(key=lambda fault: (-len(fault[0].keys), fault[1]["type"].endswith("_type")))
     for place, details in faults:
         if place.sound:
             _report(place, details)
-    return None
 
 
 def _place(scene: Place, details: ErrorDetails) -> Place:
@@ -105,8 +98,7 @@ def _place(scene: Place, details: ErrorDetails) -> Place:
 
 def _report(place: Place, details: ErrorDetails) -> None:
     """Report what an error of pydantic's at a place means for the person who wrote the scene."""
-    kind, must = details["type"], f"must be {statement(place.allowed)}"
-    hint = _hint(place)
+    kind, must, hint = details["type"], f"must be {statement(place.allowed)}", _hint(place)
     if place.absent:
         must, hint = "missing", must
     elif kind == "scene":

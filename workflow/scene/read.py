@@ -10,10 +10,10 @@ from os import PathLike, fspath
 from pathlib import Path as FilePath
 from typing import Any
 
-from pydantic import ConfigDict
+from pydantic import ConfigDict, ValidationError
 
 from contact1d.files import UnreadableError, read_text
-from contact1d.workflow.scene.check import check_tables, mend_words
+from contact1d.workflow.scene.check import mend_words, report_faults
 from contact1d.workflow.scene.conversion import UNIT_KEYS, convert
 from contact1d.workflow.scene.problems import BARE, Problem, SceneError, shown, suggestion
 from contact1d.workflow.scene.profile_file import put_points, take_points
@@ -154,7 +154,11 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
     points = take_points(tables, folder)
     has_texts = convert(tables)
     put_points(tables, points)
-    scene = check_tables(tables, Scene)
+    scene = None
+    try:
+        scene = Scene.model_validate(plain)
+    except ValidationError as error:
+        report_faults(tables, error)
     check_fit(tables)
     problems += sorted(_in_si(tables, has_texts), key=_rank)
     if problems or scene is None:
