@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import Any
 
@@ -9,7 +10,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from contact1d import run
+from contact1d import SceneError, read_scene, run
 from contact1d.digits import apart, cleaned
 from contact1d.workflow.units import Scales
 
@@ -67,6 +68,20 @@ def test_a_tabor_parameter_just_below_its_limit_is_stated_below_it() -> None:
     tabor, limit = stated("tabor", experiment={"kind": "pull_off", "preload": 1e-5}, adhesion=adhesion)[:2]
     assert tabor == pytest.approx(TABOR, rel=1e-3)
     assert tabor < limit
+
+
+@given(by=st.floats(1e-12, 1e-3))
+def test_a_cutoff_just_below_its_limit_is_refused_with_a_limit_above_it(by: float) -> None:
+    law = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
+    least = math.log(4.0) * 0.26  # r₀ = ln(A b/(B a)) a b/(b − a)
+    cutoff = least * (1.0 - by)
+    bodies = {"particles": 20, "spacing": 1.0, "bulk_stiffness": 0.83, "profile": {"kind": "parabola", "radius": 9.0}}
+    experiment = {"kind": "load", "force": 1.0}
+    scene = {"title": "near", "bodies": bodies, "interaction": law | {"cutoff": cutoff}, "experiment": experiment}
+    with pytest.raises(SceneError, match=r"the force-free distance, ([\d.]+) \(LU\)") as caught:
+        read_scene(scene)
+    (limit,) = re.findall(r"distance, ([\d.]+)", str(caught.value))
+    assert cutoff < float(limit) == pytest.approx(least, rel=1e-5)  # six digits at least
 
 
 def test_a_text_in_si_keeps_the_digits_that_it_had() -> None:

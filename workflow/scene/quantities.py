@@ -326,14 +326,14 @@ class Place:
 
     @property
     def given(self) -> str | None:
-        """What was written, or a number by default, as TOML; None where there is neither, or a table as may be."""
-        written = (self.source or self).value
-        table = self.allowed.tables and isinstance(written, dict)
-        return None if table or (self.absent and not self.is_number) else shown(written)
+        """What was written, or a number by default, as TOML; None where there is neither."""
+        return None if self.absent and not self.is_number else shown((self.source or self).value)
 
-    def report(self, message: str, hint: str = "", ways: tuple[Mapping[str, object], ...] = ()) -> None:
-        """Add what is wrong with it to the problems."""
-        self.problems.append(Problem(self.path, message, self.given, hint, ways))
+    def report(
+        self, message: str, hint: str = "", ways: tuple[Mapping[str, object], ...] = (), shows: bool = True
+    ) -> None:
+        """Add what is wrong with it to the problems; `shows`: with what was written."""
+        self.problems.append(Problem(self.path, message, self.given if shows else None, hint, ways))
 
     def doubt(self) -> None:
         """Take its value for no basis of anything else."""

@@ -475,4 +475,4 @@ def check_fit(scene: Place) -> None:
         if broken and place and SAID_OF.get(message[:4], place.absent) == place.absent:
             changes = tuple({path: draft.written(path, number)} for way in ways for path, number in way.items())
             texts = (f"{one:g}" if isinstance(one, float) else one for way in changes for one in way.values())
-            place.report(message, fix.format(*texts) if ways else fix, changes)
+            place.report(message, fix.format(*texts) if ways else fix, changes, not isinstance(place.value, Mapping))
