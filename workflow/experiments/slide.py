@@ -15,6 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from contact1d.analysis import friction
+from contact1d.digits import apart
 from contact1d.workflow.continuation.contact import TOLD, Contact
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.holding import MOST_HOLDS, Start, at_rest, hold, hold_row
@@ -265,9 +266,10 @@ def _doubts(
     fastest = max(abs(leg.velocity) for leg in motion.legs)
     top = float(np.max(np.abs(motion.friction)))
     if drag * fastest > top:
+        dragged, most = apart(drag * fastest, top)
         found["drag"] = (
-            f"the viscous drag at the drive's velocity, {drag * fastest:.3g} FU, exceeds the friction of the contact, "
-            f"at most {top:.3g} FU, and suppresses slips of the plate. Use "
+            f"the viscous drag at the drive's velocity, {dragged} FU, exceeds the friction of the contact, "
+            f"at most {most} FU, and suppresses slips of the plate. Use "
             "a lower cantilever.velocity, or less [damping] and [plate] damping"
         )
     energy = results["cantilever_work"].uncertainty
