@@ -69,7 +69,7 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
             needed, possible = apart(largest, deepest, 4)
             raise SettingsError(
                 f"the contact would cover the profile, which ends at {bodies.reach:.6g} LU: the experiment "
-                f"needs a displacement of about {needed} LU, less than {possible} LU is possible"
+                f"needs a displacement of about {needed} LU, at most {possible} LU is possible"
             )
     places = np.linspace(0.0, half, 2001)
     heights = bodies.height(places)

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from contact1d.workflow.scene.experiments import Kind
-from contact1d.workflow.scene.problems import as_toml, nearest, plain, suggestion
+from contact1d.workflow.scene.problems import MOST_PROBLEMS, as_toml, nearest, plain, suggestion
 from contact1d.workflow.scene.quantities import Allowed, OutOfRange, Place, keys_of, tables_in
 from contact1d.workflow.scene.schema import statement, text_of
 from contact1d.workflow.scene.tables import Tables
@@ -34,8 +34,12 @@ def mend_words(scene: Place) -> None:
         if allowed.kinds:
             _mend_word(place.kind)
         if table := allowed.table_for(value):
-            for key in [key for key in value if key not in keys_of(table)]:
+            unknown = [key for key in value if key not in keys_of(table)]
+            for key in unknown[:MOST_PROBLEMS]:
                 _mend_key(place, keys_of(table), key)
+            for key in unknown[MOST_PROBLEMS:]:  # they are counted only
+                del value[key]
+                Place(None, Allowed(), key, place, absent=True).report("unknown key")
 
 
 def _mend_word(place: Place) -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Mapping
+from copy import copy
 from fractions import Fraction
 
 from contact1d.workflow.scene.quantities import Place, numbers_in
@@ -58,10 +59,12 @@ def _si(place: Place) -> Fraction | None:
 
 def _put(place: Place, value: Fraction) -> None:
     """Put the number in the text's place."""
+    text = copy(place)
     try:
-        place.convert(float(value))
+        place.put(float(value))
     except OverflowError:
         place.fault("exceeds the range of floating-point numbers")
+    place.source = place.source or text
 
 
 def _scales(scene: Place, texts: list[Place]) -> dict[str, Fraction] | None:

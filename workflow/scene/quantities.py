@@ -295,11 +295,6 @@ class Place:
         self._above.value[self.key] = self.value = value
         self.absent, self._inside = False, None
 
-    def convert(self, number: float) -> None:
-        """Put a number in the place of the text that means it."""
-        self.source = self.source or Place(self.value, self.allowed, self.key, self._above)
-        self.put(number)
-
     @property
     def unit(self) -> Unit:
         """The unit of a number."""
@@ -329,11 +324,9 @@ class Place:
         """What was written, or a number by default, as TOML; None where there is neither."""
         return None if self.absent and not self.is_number else shown((self.source or self).value)
 
-    def report(
-        self, message: str, hint: str = "", ways: tuple[Mapping[str, object], ...] = (), shows: bool = True
-    ) -> None:
-        """Add what is wrong with it to the problems; `shows`: with what was written."""
-        self.problems.append(Problem(self.path, message, self.given if shows else None, hint, ways))
+    def report(self, message: str, hint: str = "") -> None:
+        """Add what is wrong with it to the problems."""
+        self.problems.append(Problem(self.path, message, self.given, hint))
 
     def doubt(self) -> None:
         """Take its value for no basis of anything else."""

@@ -18,6 +18,7 @@ from typing import Any
 
 from contact1d.digits import apart
 from contact1d.workflow.scene.experiments import KINDS, Cycles, Kind, Span
+from contact1d.workflow.scene.problems import Problem
 from contact1d.workflow.scene.quantities import Place, Table, keys_of
 from contact1d.workflow.scene.si_text import split
 from contact1d.workflow.scene.tables import (
@@ -479,4 +480,5 @@ def check_fit(scene: Place) -> None:
         if broken and place and SAID_OF.get(message[:4], place.absent) == place.absent:
             changes = tuple({path: draft.written(path, number)} for way in ways for path, number in way.items())
             texts = (f"{one:g}" if isinstance(one, float) else one for way in changes for one in way.values())
-            place.report(message, fix.format(*texts) if ways else fix, changes, not isinstance(place.value, Mapping))
+            given = None if isinstance(place.value, Mapping) else place.given
+            scene.problems.append(Problem(key, message, given, fix.format(*texts) if ways else fix, changes))
