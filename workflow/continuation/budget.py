@@ -203,7 +203,7 @@ def budgeted(
     force_error: ForceErrors,
     sampled: bool = False,
     length: float = 0.0,
-    repeated: Mapping[str, Trace] | None = None,
+    repeated: Mapping[str, Sequence[Trace]] | None = None,
 ) -> dict[str, Result]:
     """The results with their errors.
 
@@ -213,7 +213,7 @@ def budgeted(
         force_error: ε of each state.
         sampled: whether the scene gives the steps.
         length: over which a tilt of the force is ε [LU]; 0 for none.
-        repeated: by the source of the error that it shows, the same measured in other steps: "time" of a motion.
+        repeated: by the source of the error that they show, the same measured in other ways: "time" of a motion.
     """
     readings = case.read(trace)
     values = _values(readings)
@@ -235,13 +235,16 @@ def budgeted(
     read = _changes(case.read, values, radii)
     between = sampling_errors(case, trace) if sampled else {}
     repeated = repeated or {}
-    again = {source: _changes(case.read, values, [other], missing=True) for source, other in repeated.items()}
+    again = {
+        source: [_changes(case.read, values, [other], missing=True) for other in others]
+        for source, others in repeated.items()
+    }
     lattice = case.followed(values) if "time" in repeated else case.lattice
     inputs = case.inputs if case.scene.bodies.profile.alternatives else {}
     found = {}
     for name, one in readings.items():
         errors = {"solver": solver[name], LATTICE: lattice.get(name, 0.0) + read[name]}
-        errors |= {source: changes[name] for source, changes in again.items()}
+        errors |= {source: MARGIN * sum(one[name] for one in changes) for source, changes in again.items()}
         for source, error in one.errors.items():
             errors[source] = errors.get(source, 0.0) + error
         if name in inputs:

@@ -126,12 +126,15 @@ class Scripted(Experiment[K]):
             branch.finish()
         return branch, branch.trace()
 
-    def _slower(self, context: RunContext, case: Reduction, trace: Trace) -> dict[str, Trace]:
-        """A motion once more in longer timesteps, and slower where its inertia is the program's choice."""
+    def _slower(self, context: RunContext, case: Reduction, trace: Trace) -> dict[str, list[Trace]]:
+        """A motion once more in longer timesteps, and slower where inertia or drag is the program's choice."""
         if not trace.time.any() or context.deck.scene.noise is not None:
             return {}
-        with context.aside(Deck(*slower(context.deck.scene, context.deck.settings))) as other:
-            return {"time": self._driven(other, case)[1]}
+        found = []
+        for scene, settings in slower(context.deck.scene, context.deck.settings):
+            with context.aside(Deck(scene, settings)) as other:
+                found.append(self._driven(other, case)[1])
+        return {"time": found}
 
     def reduction(self, scene: Scene, settings: Settings) -> Reduction:
         """Script and reader on the reduced model of a scene."""

@@ -66,7 +66,7 @@ class PathExperiment(Scripted[Path]):
         errors = force_errors(scene, settings, seen, strongest)
         trace = of_states(seen, reduced(scene, settings))
         other = self._in_half_steps(context, seen)
-        repeated = {} if other is None else {"instability": other}
+        repeated = {} if other is None else {"instability": [other]}
         results = budgeted(case, trace, errors, sampled=scene.noise is None, repeated=repeated)
         warnings = self._missing(results, scene, phases) | doubts(scene, settings, tuple(reported))
         warnings |= _buckling(trace, other, settings)

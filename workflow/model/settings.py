@@ -405,30 +405,39 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
 
 
 INERTIA, LONGER = 4.0, 2.0
-"""Masses that the program chose, in the slower motion over the usual one; its drags, which go with the root, and its
-timesteps. What is of first order in these changes by its own amount at least."""
+"""Masses that the program chose, in a slower motion over the usual one; its drags, which go with the root, and the
+timesteps of a coarser one. What is of first order in these changes by its own amount at least."""
 
 
-def slower(scene: Scene, settings: Settings) -> tuple[Scene, Settings]:
-    """A scene in time with the masses that it leaves open increased, and its settings with longer timesteps.
-
-    Automatic drags are larger, too.
-    """
-    bodies, plate = scene.bodies, scene.plate
+def slower(scene: Scene, settings: Settings) -> list[tuple[Scene, Settings]]:
+    """A motion in longer timesteps, on a less rigid plane; and with more mass and drag where these are not given."""
+    own, forces, duration = settings.motion, settings.forces, scene.experiment.lasts
+    longer = whole_steps(LONGER * own.time_step, duration)
+    if not scene.stands and forces.plane_stiffness > 0.0:
+        plane = forces.plane_stiffness / LONGER
+        forces = replace(forces, plane_stiffness=plane, bulk_stiffness=_beside_plane(scene.bulk_stiffness, plane))
+    found = [(scene, replace(settings, forces=forces, motion=replace(own, time_step=longer)))]
+    bodies, plate, damping = scene.bodies, scene.plate, scene.damping
     if "mass" not in bodies.model_fields_set:
         bodies = bodies.model_copy(update={"mass": INERTIA * bodies.mass})
     if plate is not None and plate.mass == "auto":
-        plate = plate.model_copy(update={"mass": INERTIA * settings.motion.plate_mass})
+        plate = plate.model_copy(update={"mass": INERTIA * own.plate_mass})
+    drags = {
+        "damping": own.damping * (LONGER if damping is not None and damping.coefficient == "auto" else 1.0),
+        "plate_damping": own.plate_damping * (LONGER if plate is not None and plate.damping == "auto" else 1.0),
+    }
     heavier = scene.model_copy(update={"bodies": bodies, "plate": plate})
-    motion, own = settings_for(heavier, settings.tolerance).motion, settings.motion
-    duration = scene.experiment.lasts
-    step = LONGER * own.time_step
-    motion = replace(motion, time_step=whole_steps(step, duration))
-    if scene.damping is not None and scene.damping.coefficient == "auto":
-        motion = replace(motion, damping=LONGER * own.damping)
-    if plate is not None and plate.damping == "auto":
-        motion = replace(motion, plate_damping=LONGER * own.plate_damping)
-    return heavier, replace(settings, motion=motion)
+    motion = settings_for(heavier, settings.tolerance).motion
+    motion = replace(
+        motion, damping=drags["damping"], plate_damping=drags["plate_damping"],
+        time_step=whole_steps(motion.time_step, duration),
+    )  # fmt: skip
+    return [*found, (heavier, replace(settings, motion=motion))] if motion != own else found
+
+
+def _beside_plane(stiffness: float, plane: float) -> float:
+    """Stiffness of a bond [FU/LU] that in series with the plane has the particle's."""
+    return 1.0 / (1.0 / stiffness - 1.0 / plane)
 
 
 def _require_carried(scene: Scene) -> None:
@@ -477,7 +486,7 @@ def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[F
     shape: Profile = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
     if law is None:
         plane = plane_stiffness_of(scene, tolerance)
-        bond = spring if scene.stands else 1.0 / (1.0 / spring - 1.0 / plane)
+        bond = spring if scene.stands else _beside_plane(spring, plane)
         return Forces(None, None, 0.0, 0.0, 0.0, 0.0, bond, plane, 0.0, 0.0), estimate_on_plane(scene, shape)
     cutoff = cutoff_for(scene, law, calibration.cutoff * tolerance, tolerance)
     require_reach(scene, cutoff)
