@@ -194,6 +194,8 @@ class Branch(ContactBranch):
             beside, cuts = 0.5 * beside, cuts + 1
             surprise = self._halve((found.position + beside, found.position - beside))
             expected = self.peak
+            if (moved := abs(expected.position - found.position)) > 2.0 * beside:
+                beside = moved  # another maximum is higher: nothing is known beside it
             changed = max(surprise, abs(expected.smooth - found.smooth))
         raise UntrustedError(f"no force maximum is found near {expected.position:.6g} LU: {JUMPS}")
 
