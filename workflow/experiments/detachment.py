@@ -182,7 +182,7 @@ def _apart(context: RunContext, experiment: PullOff, number: int, stop: threadin
     scene, folder = context.deck.scene, context.folder / FOLDER / str(number) if number else context.folder
     assert scene.noise is not None
     seeded = scene.model_copy(update={"noise": scene.noise.model_copy(update={"seed": scene.noise.seed + number})})
-    own = replace(context, deck=Deck(seeded, context.deck.settings), folder=folder, progress=Silent())
+    own = replace(context, deck=Deck(seeded, context.deck.settings), folder=folder, progress=Silent(), ranks=1)
     if number:
         folder.mkdir(parents=True, exist_ok=True)
         write_system(own.deck, folder)

@@ -129,6 +129,7 @@ class Motion:
         velocity, leg = self.moving[-1]
         if len(self.periods) < friction.FEWEST_PERIODS:
             return {}
+        share = SETTINGS_SHARE * self.settings.tolerance
         run_in, by_half = slice(self.steady.first, None), leg.every_second().periods(self.period)
         steady = {**self.periods.chosen(run_in).columns, "friction": self.steady.blocks}
         sparse = by_half.chosen(run_in).columns
@@ -137,7 +138,7 @@ class Motion:
 
         def read(blocks: Series) -> dict[str, Reading]:
             values = {f"mean_{name}": math.copysign(1.0, velocity) * float(blocks.mean(name)) for name in FORCES}
-            return {name: Reading(value, FORCE, self._solver(value)) for name, value in values.items()}
+            return {name: Reading(value, FORCE, {"solver": share * abs(value)}) for name, value in values.items()}
 
         return measured(Series(steady), read, friction.interval, {"sampling": Series(sparse)})
 
@@ -148,15 +149,11 @@ class Motion:
         place = sign * leg["plate_x"]
         if others or place[-1] - place[0] < spacing:
             return {}
-        found = {name: friction.largest_before(sign * leg[name], place, spacing) for name in FORCES}
-        return {
-            f"static_{name}": Result(top, FORCE, {"sampling": missed} | self._solver(top))
-            for name, (top, missed) in found.items()
-        }
-
-    def _solver(self, force: float) -> dict[str, float]:
-        """Error of a force [FU] by cutoff and timesteps."""
-        return {"solver": SETTINGS_SHARE * self.settings.tolerance * abs(force)}
+        share, found = SETTINGS_SHARE * self.settings.tolerance, {}
+        for name in FORCES:
+            top, missed = friction.largest_before(sign * leg[name], place, spacing)
+            found[f"static_{name}"] = Result(top, FORCE, {"sampling": missed, "solver": share * abs(top)})
+        return found
 
     def _temperature(self) -> dict[str, Result]:
         """M ⟨(V − ⟨V⟩)²⟩ of the plate's free directions in the last leg [FU·LU]; slips are part of it."""
