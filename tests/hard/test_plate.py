@@ -45,9 +45,8 @@ def test_a_long_chain_has_few_bins(make_scene: MakeScene) -> None:
     """LAMMPS bins the whole box, and the plate's anchors widen it with the chain's length."""
     scene = make_scene(experiment=LOAD, **TIMED)
     short = settings_for(scene)
-    texts = [
-        Deck(scene, replace(short, particles=count)).text(planned(scene, short)) for count in (short.particles, 10**6)
-    ]
+    long = replace(short, chains=replace(short.chains, upper=10**6, lower=10**6))
+    texts = [Deck(scene, settings).text(planned(scene, short)) for settings in (short, long)]
     assert "binsize" not in texts[0]
     found = re.search(r"variable\s+wide_bin index (\S+)", texts[1])
     assert found is not None

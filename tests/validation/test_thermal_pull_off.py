@@ -7,6 +7,7 @@ its density is followed in time as the load grows.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from contact1d import Run, run, run_many
 from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.runs.processors import pool
 from contact1d.workflow.scene import read_scene
+from tests.kept_runs import KeptBench
 from validation.paper import detachment
 from validation.references.detachment import detachment as quasi_stationary
 from validation.references.detachment import detachment_in_time, drag_of_pairs
@@ -68,7 +70,8 @@ def test_three_decades_of_the_loading_rate(tmp_path: Path) -> None:
     with pool(2) as executor:
         runs = run_many([(scene, tmp_path / name) for name, scene in scenes.items()], executor)
     done = {name: one for name, one in zip(scenes, runs, strict=True) if isinstance(one, Run)}
-    rows = detachment.judge(paper, done, tmp_path).checks
+    bench: Any = KeptBench(done, paper)
+    rows = detachment.judge(bench).rows
     assert [row.name for row in rows if row.verdict != "PASS"] == []
 
 

@@ -40,6 +40,8 @@ RADII = ("contact_radius", "largest_radius", "zero_load_radius")
 ERRORS = ("displacement", "largest_force", *RADII)
 """Results whose relative uncertainty, that of the lattice included, is the pressure's, too; of springs on a plane,
 whose pressure is a function of the radius, that of the radius alone."""
+SWING = 2.0
+"""Relative change of a pressure over those of the results, where nothing is known of the shape."""
 WIDER = {"mdr": 1.0, "geike_popov": 4.0}
 """W π s a/w."""
 EFFECTIVE = {"mdr": 1.0, "geike_popov": 0.5}
@@ -161,7 +163,7 @@ def _swing(pressure: BodyPressure, name: str, radius: float, every: float) -> fl
     """What the relative errors of the radius, or of every result, make of a pressure [FU/LU²]."""
     if name in pressure.swings:
         return radius * pressure.swings[name]
-    return every * abs(pressure.results[name].value)
+    return SWING * every * abs(pressure.results[name].value)
 
 
 def _of_the_contact(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:

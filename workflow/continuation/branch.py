@@ -72,7 +72,7 @@ class Branch(ContactBranch):
     @property
     def unloading(self) -> Trace:
         """The states of the leg under way that are held, by falling displacement."""
-        return of_states(self.leg, limits=self.limits).falling()
+        return of_states(self.leg, self.model).falling()
 
     @property
     def peak(self) -> Peak:
@@ -98,9 +98,8 @@ class Branch(ContactBranch):
         if approach := [DisplaceInTime(displacement * i / moves, APPROACH_STEPS) for i in range(1, moves)]:
             self.begin("approaching")
             self._move(approach)
-        count, steps = self.settings.rows_of(duration)
         self.begin(name)
-        self._move([DisplaceInTime(displacement, 1), *[DisplaceInTime(displacement, steps)] * count])
+        self._move([DisplaceInTime(displacement, steps) for steps in self.settings.steps_of(duration)])
 
     def _move(self, rows: Sequence[DisplaceInTime]) -> None:
         self._enter()

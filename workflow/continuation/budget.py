@@ -120,13 +120,14 @@ class Reduction:
 
     @cached_property
     def inputs(self) -> Values:
-        """By name of a result, how much it may change with what the scene leaves open of its body."""
+        """By name of a result, by how much the bodies that the scene may mean differ from the one that runs, in sum."""
         bodies, others = self.scene.bodies, []
         for shape in bodies.profile.alternatives:
             scene = self.scene.model_copy(update={"bodies": bodies.model_copy(update={"profile": shape})})
             with suppress(SettingsError):
                 others.append(reduced(scene, replace(self.settings, estimate=settings_for(scene).estimate)))
-        return self._apart(others)
+        each = [self._apart([other]) for other in others]
+        return {name: sum(one[name] for one in each) for name in self.own}
 
     def _apart(self, models: Sequence[Reduced]) -> Values:
         """How far results of other models are off, at most."""

@@ -175,11 +175,6 @@ class ContactBranch:
         return [state for state, leg in zip(self.states, self.legs, strict=True) if leg == self._number]
 
     @property
-    def limits(self) -> tuple[float, ...]:
-        """Limit points that are known beforehand [LU]."""
-        return ()
-
-    @property
     def scale(self) -> float:
         """The force maximum that is expected [FU]."""
         return self.settings.estimate.pull_off_force()
@@ -187,7 +182,7 @@ class ContactBranch:
     def trace(self) -> Trace:
         """What a reader sees."""
         step = self.settings.motion.time_step if self.moves else 0.0
-        return of_states(self.states, self.legs, self.limits, self.searches, step)
+        return of_states(self.states, self.model, self.legs, self.searches, step)
 
     def begin(self, name: str) -> None:
         """Begin a phase with the next load step: "loading" for the second time is "loading_2"."""

@@ -153,9 +153,9 @@ class LoadBranch(ContactBranch):
             self.reach(0.0, self.scale)
         self.begin(name)
         self._enter()
-        count, steps = self.settings.rows_of(duration)
         self._turn(rises=force >= 0.0)
-        self._keep(self.contact.rows([UnderLoad(force, 1), *[UnderLoad(force, steps)] * count], moving=True))
+        rows = [UnderLoad(force, steps) for steps in self.settings.steps_of(duration)]
+        self._keep(self.contact.rows(rows, moving=True))
 
     def holds_more(self, force: float) -> bool:
         """Whether a tensile load larger by FIRST_RISE tolerances is sustained, too, tried with a contact of its own.

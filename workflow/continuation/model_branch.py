@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.continuation.state import RadiusRule
 from contact1d.workflow.continuation.trace import Trace, of_model
-from contact1d.workflow.model.motion import swing
-from contact1d.workflow.model.reduced import Path, Reduced
+from contact1d.workflow.model.reduced import Path, Reduced, swing
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
@@ -24,6 +23,8 @@ BETWEEN = 8
 """Intermediate positions towards a force."""
 LAST = 1e-9
 """How much of the path from F = 0 to the limit point is left before it."""
+NEAR = 1e-6
+"""Distance over the spacing from a jump of the force at which it has jumped, or not yet."""
 MOST_NUMBERS = 400_000
 """Forces that are worked out in a path with dense positions."""
 UNSEEN = ""
@@ -75,13 +76,21 @@ class ModelBranch:
             self._add(wanted, along)
             return
         ends = np.append(before, wanted)
-        dense = [np.linspace(*pair, between + 1)[1:] for pair in pairwise(ends.tolist())]
+        dense = [self._between(*pair, between) for pair in pairwise(ends.tolist())]
         own = self._phase
         if self._rows[-1].phase == UNSEEN:  # what leads from there to the first state of a path is none of it either
             self._phase = UNSEEN
         self._add(dense[0][:-1])
         self._phase = own
         self._add(np.concatenate([dense[0][-1:], *dense[1:]]))
+
+    def _between(self, start: float, end: float, count: int) -> Array:
+        """So many positions [LU] of a step, its end the last, and others on both sides of each jump."""
+        near = NEAR * self.model.estimate.spacing
+        beside = [at + side for at in self.model.jumps for side in (-near, near)]
+        inner = [at for at in beside if min(start, end) < at < max(start, end)]
+        found = np.unique([*np.linspace(start, end, count + 1)[1:], *inner])
+        return found if end > start else found[::-1]
 
     def reach(self, force: float, scale: float) -> None:
         """Go to where a force [FU] is carried."""
@@ -93,10 +102,10 @@ class ModelBranch:
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
         """A displacement [LU], or a plate that moves under a force [FU], for a time [TU]: the first and the last state.
 
-        A transient is that of plate and particles on the contact's own force; see `motion.swing`.
+        A transient is that of plate and particles on the contact's own force; see `reduced.swing`.
         """
-        if displacement is not None:  # what follows from the beginning is as uncertain as the end
-            self._add(np.asarray([self.model.apart, displacement]), time=(0.0, duration))
+        if displacement is not None:
+            self._add(np.asarray([displacement, displacement]), time=(0.0, duration))
         elif force is not None:
             start = 0.0
             if force < 0.0:

@@ -27,11 +27,6 @@ BEYOND_LIMIT = 1.05
 class SteppedBranch(Branch):
     """States on a rigid plane."""
 
-    @property
-    def limits(self) -> tuple[float, ...]:
-        """Those of the reduced model."""
-        return self.model.limits
-
     def _first_rows(self, force: float, direction: int) -> None:
         """Load steps up to where the model has the force [FU].
 
@@ -46,7 +41,7 @@ class SteppedBranch(Branch):
         if direction * (end - start) <= 0.0:
             super()._first_rows(force, direction)
             return
-        steps = LOADING_STEPS if self.limits else curve_steps(self.settings)
+        steps = LOADING_STEPS if self.model.limits else curve_steps(self.settings)
         rows = np.linspace(start, end, steps + 1)
         self._visit(rows[1:] if self.states else rows)
 

@@ -60,7 +60,7 @@ class Trace:
         profile: pressure and shear of a state, by its number.
         contact: radius of a state as it is read off its profile; None where the bodies do not touch.
         rule: what a contact radius is.
-        limits: displacements [LU] of the limit points, at which all of a contact is lost at once; mostly none.
+        model: the reduced model of the particles, with the limit points of its contact.
         searches: of the legs on which a force maximum was searched for.
         perturbation: forces are changed by it already, radii as they are read.
     """
@@ -74,7 +74,7 @@ class Trace:
     profile: Callable[[int], Profile] = field(repr=False)
     contact: Callable[[int], ContactRadius | None] = field(repr=False)
     rule: RadiusRule = field(repr=False)
-    limits: tuple[float, ...] = ()
+    model: Reduced = field(repr=False)
     searches: Mapping[int, Search] = field(default_factory=dict)
     perturbation: Perturbation = Perturbation()
 
@@ -104,7 +104,7 @@ class Trace:
     @property
     def limit(self) -> float:
         """The first limit point below the first state [LU]; −inf where there is none."""
-        return max((one for one in self.limits if one < self.displacement[0]), default=-np.inf)
+        return max((one for one in self.model.limits if one < self.displacement[0]), default=-np.inf)
 
     def radius(self, state: int) -> float | None:
         """Contact radius [LU]; None where the bodies do not touch."""
@@ -138,7 +138,7 @@ class Trace:
         """The states that are held, by falling displacement, each once, the last that was measured there."""
         _, last = np.unique(self.displacement[::-1], return_index=True)
         falling = (len(self) - 1 - last)[::-1]
-        limit = max((one for one in self.limits if one < self.displacement.max()), default=-np.inf)
+        limit = max((one for one in self.model.limits if one < self.displacement.max()), default=-np.inf)
         return self.chosen(falling[self.displacement[falling] >= limit])
 
     def chosen(self, states: Sequence[int] | NDArray[np.intp]) -> Trace:
@@ -175,8 +175,8 @@ def legs_by_phase(phases: Sequence[str]) -> NDArray[np.int64]:
 
 def of_states(
     states: Sequence[State],
+    model: Reduced,
     leg: Sequence[int] | None = None,
-    limits: tuple[float, ...] = (),
     searches: Mapping[int, Search] | None = None,
     time_step: float = 0.0,
 ) -> Trace:
@@ -184,8 +184,9 @@ def of_states(
 
     Args:
         states: in order.
+        model: of their particles.
         leg: number of the leg of each; None: each phase is one.
-        limits, searches: see `Trace`.
+        searches: see `Trace`.
         time_step: [TU], of a motion in time.
     """
     phases = tuple(state.phase for state in states)
@@ -199,7 +200,7 @@ def of_states(
         lambda i: states[i].profile,
         lambda i: states[i].radius,
         states[0].rule,
-        limits,
+        model,
         searches or {},
     )
 
@@ -228,5 +229,5 @@ def of_model(
         profile,
         cache(lambda state: rule.of(profile(state))),
         rule,
-        model.limits,
+        model,
     )

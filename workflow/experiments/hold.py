@@ -9,7 +9,7 @@ from dataclasses import replace
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.trace import Trace
-from contact1d.workflow.deck.steps import DisplaceInTime, Phase, UnderLoad
+from contact1d.workflow.deck.steps import DisplaceInTime, Phase, Row, UnderLoad
 from contact1d.workflow.experiments.experiment import Scripted
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Hold, Scene
@@ -47,11 +47,13 @@ class HoldExperiment(Scripted[Hold]):
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The load steps that run."""
         held = self.given(scene)
-        count, steps = settings.rows_of(held.duration)
-        if held.force is not None:
-            return (Phase("holding", (UnderLoad(held.force, steps),) * count, state=True),)
-        assert held.displacement is not None
-        return (Phase("holding", (DisplaceInTime(held.displacement, steps),) * count, state=True),)
+        rows: list[Row] = []
+        for steps in settings.steps_of(held.duration):
+            if held.force is not None:
+                rows.append(UnderLoad(held.force, steps))
+            elif held.displacement is not None:
+                rows.append(DisplaceInTime(held.displacement, steps))
+        return (Phase("holding", tuple(rows), state=True),)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
         """The time of each state, from when LAMMPS began."""

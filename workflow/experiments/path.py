@@ -26,6 +26,7 @@ from contact1d.workflow.continuation.trust import doubts, require_trust
 from contact1d.workflow.deck.steps import Displace, DisplaceInTime, Phase, Row, displacements
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.experiments.thermal import CERTAIN, averaged, thermal_rows
+from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Path, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
@@ -63,7 +64,7 @@ class PathExperiment(Scripted[Path]):
         ends = {"deepest": max(reported, key=lambda s: s.displacement), "final": reported[-1]}
         strongest = (ends["deepest"], min(seen, key=lambda s: s.force), ends["final"])
         errors = force_errors(scene, settings, seen, strongest)
-        trace = of_states(seen)
+        trace = of_states(seen, reduced(scene, settings))
         other = self._in_half_steps(context, seen)
         repeated = {} if other is None else {"instability": other}
         results = budgeted(case, trace, errors, sampled=scene.noise is None, repeated=repeated)
@@ -90,21 +91,24 @@ class PathExperiment(Scripted[Path]):
             phases.append(replace(phase, rows=tuple(rows)))
         with context.aside(deck) as other, other.contact("repeating the path in half the steps") as contact:
             states = contact.replay(phases)[1::2]
-        return of_states(states[-len(seen) :])
+        return of_states(states[-len(seen) :], reduced(scene, deck.settings))
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """The approach, which is not evaluated, and the positions of the scene; where pairs snap also those between."""
-        settings = branch.settings
-        all_of_it = way(scene, settings)
-        first = [asked for _, asked in all_of_it].index(True)
-        if first:
-            branch.begin(UNSEEN)
-            branch.visit([position for position, _ in all_of_it[:first]])
-        passed = all_of_it[first:] if settings.estimate.snaps else [one for one in all_of_it if one[1]]
-        positions = [position for position, _ in passed]
-        for name, stretch in stretches(positions):
-            branch.begin(name)
-            branch.visit(stretch)
+        settings, passed = branch.settings, 0
+        whole = way(scene, settings)
+        first = [asked for _, asked in whole].index(True)
+        for name, stretch in stretches([position for position, _ in whole]):
+            rows = list(enumerate(whole[passed : passed + len(stretch)], passed))
+            passed += len(stretch)
+            parts = {
+                UNSEEN: [position for i, (position, _) in rows if i < first],
+                name: [position for i, (position, asked) in rows if i >= first and (asked or settings.estimate.snaps)],
+            }
+            for phase, positions in parts.items():
+                if positions:
+                    branch.begin(phase)
+                    branch.visit(positions)
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule that runs."""
@@ -186,7 +190,7 @@ def _adhesion(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Readi
         return {}
     name = apart[-1] if apart else trace.phase[-1]
     branch = trace.chosen(np.flatnonzero([phase == name for phase in trace.phase]))
-    found = unloading(branch, scene, settings)
+    found = unloading(branch, settings)
     if scene.adhesion is not None:
         found |= _fixed_grips(branch)
     return found

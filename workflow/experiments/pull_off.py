@@ -122,12 +122,12 @@ def _marks(falling: Trace, scene: Scene, settings: Settings, preload: float) -> 
     """Of one unloading, under load or under displacement control."""
     if falling.search.bracket:
         return _under_load(falling, scene, settings, preload)
-    return _held(falling.falling(), scene, settings)
+    return _held(falling.falling(), settings)
 
 
-def _held(falling: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
+def _held(falling: Trace, settings: Settings) -> dict[str, Reading]:
     """The marks of an unloading under displacement control, which begins at F = 0 where there was no preload."""
-    found, least = unloading(falling, scene, settings), int(np.argmin(np.abs(falling.force)))
+    found, least = unloading(falling, settings), int(np.argmin(np.abs(falling.force)))
     return (
         found
         if "zero_load_radius" in found

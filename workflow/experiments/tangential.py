@@ -30,7 +30,7 @@ from contact1d.workflow.deck.lattice import places
 from contact1d.workflow.deck.steps import Draw, Phase
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.model.friction import Sliders, Stop, sliders_of, stops, without_rests
-from contact1d.workflow.model.reduced import Sliding
+from contact1d.workflow.model.reduced import Sliding, reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene, Tangential
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
@@ -41,8 +41,8 @@ MOST_TOUCHES = 1.0
 """Rows between two of the scene, per 1/tolerance; a particle between two of them is moved from the first."""
 ROUND_OFF = 1e-13
 """Error of tangential forces over the largest of a path, for each row: a history is a sum over all of them."""
-STUCK = 3.0
-"""Spacings that may slip at both edges together where no particle does."""
+STUCK, NOTHING = 3.0, 1e-6
+"""Spacings that may slip at both edges together where no particle does, and a loss over all work that is none."""
 AS_PREDICTED = 1e-8
 """How far a particle's tangential force may be from what spring and slider make of the row before, over its limit."""
 
@@ -65,7 +65,7 @@ class TangentialExperiment(Scripted[Tangential]):
             states = contact.replay(self.planned(scene, settings))
             phases = contact.phases
         asked = [one for _, one in passed(scene, _chain(scene, settings), settings)]
-        trace = of_states(states)
+        trace = of_states(states, reduced(scene, settings))
         rows = drawn(trace, scene)
         _require_history(trace, rows)
         reported, kept = list(compress(states, asked)), list(compress(rows, asked))
@@ -90,12 +90,13 @@ class TangentialExperiment(Scripted[Tangential]):
         strongest = max(row.carried for row in rows)
         error = ROUND_OFF * len(rows) * strongest + _moved_too_far(scene, settings)
         lost, force = error * scene.experiment.way, float(trace.force[last.state])
+        unseen = _unseen_slip(rows, scene)[0] if last.dissipated <= lost else 0.0
         radius = trace.radius(last.state) or 0.0
         found = {
             "normal_force": Reading(
                 force, FORCE, {"solver": ROUND_OFF * abs(force)}, prescribed=scene.experiment.compression is not None
             ),
-            "tangential_force": Reading(last.force, FORCE, {"solver": error}, scale=strongest),
+            "tangential_force": Reading(last.force, FORCE, {"solver": error, LATTICE: unseen}, scale=strongest),
             "contact_radius": Reading(radius, LENGTH, prescribed=radius == 0.0),
             "stick_radius": Reading(
                 last.stick.value + trace.shift_of(last.state) * last.stick.uncertainty, LENGTH,
@@ -184,20 +185,39 @@ def drawn(trace: Trace, scene: Scene) -> list[Drawn]:
 def _energy(rows: Sequence[Drawn], lost: float, scene: Scene) -> Reading:
     """What is dissipated from the first of the rows to the last; `lost`: error of tangential forces [FU·LU].
 
-    Where no particle slips, the annulus that does ends within one spacing beyond the last particle but one, and what
-    it dissipates is less than its force k_t u at either edge over the whole path. A body with an edge sticks or slips
+    Where no particle slips, less is lost than `_unseen_slip`; that is 0 of a body with an edge, which sticks or slips
     as a whole.
     """
     dissipated = rows[-1].dissipated - rows[0].dissipated
-    moved = [after.position - before.position for before, after in pairwise(rows)]
     if abs(dissipated) > lost:
         return Reading(dissipated, ENERGY, {"solver": lost})
-    farthest = max((abs(row.position) for row in rows), default=0.0)
-    most = STUCK * scene.tangential_stiffness * farthest * sum(map(abs, moved))
-    known = scene.bodies.profile.has_edge or most == 0.0
-    work = sum(0.5 * (a.carried + b.carried) * abs(by) for (a, b), by in zip(pairwise(rows), moved, strict=True))
-    errors = {"solver": lost, LATTICE: 0.0 if known else most}
-    return Reading(dissipated, ENERGY, errors, scale=work if known else None, prescribed=known)
+    work = sum(0.5 * (a.carried + b.carried) * abs(b.position - a.position) for a, b in pairwise(rows))
+    force, way = _unseen_slip(rows, scene)
+    most = force * way
+    known = most <= NOTHING * work
+    return Reading(dissipated, ENERGY, {"solver": lost, LATTICE: most}, scale=work if known else None, prescribed=known)
+
+
+def _unseen_slip(rows: Sequence[Drawn], scene: Scene) -> tuple[float, float]:
+    """Force [FU] and distance [LU] of the slip between the outermost particles, at most, where none of these slips.
+
+    The annulus that slips is as wide as k_t u/(μ Δf) spacings, with Δf the difference of the normal forces of the two
+    outermost particles, and one at most; its forces are below k_t u and μ f, and it slips by as much as the sliders
+    are moved beyond what a rising load lets them carry, k_t |Δu| − μ k_n Δd. A body with an edge has none.
+    """
+    assert scene.friction is not None
+    stiffness, coefficient = scene.tangential_stiffness, scene.friction.coefficient
+    outer = [np.sort(row.trace.profile(row.state).pressure) for row in rows]
+    second, first = max(((p[p > 0.0][1], p[p > 0.0][0]) for p in outer if (p > 0.0).sum() > 1), default=(0.0, 0.0))
+    limit, rise = (scene.bodies.spacing * coefficient * one for one in (second, second - first))
+    slipped = 0.0
+    for before, after in pairwise(rows):
+        deeper = after.trace.displacement[after.state] - before.trace.displacement[before.state]
+        moved = abs(after.position - before.position) - coefficient * scene.bulk_stiffness * deeper / stiffness
+        slipped += max(0.0, float(moved)) if after.position != before.position or deeper < 0.0 else 0.0
+    force = stiffness * max(abs(row.position) for row in rows)
+    share = min(1.0, force / rise) if rise > 0.0 else 1.0
+    return (0.0 if scene.bodies.profile.has_edge else STUCK * share * min(force, limit)), slipped
 
 
 def _require_history(trace: Trace, rows: Sequence[Drawn]) -> None:

@@ -138,8 +138,13 @@ def motion_of(
         calm, calm_step = damping if enough <= damping <= CREEPING * enough else enough, step
     damped = SOFTENING * contact if is_automatic and not moves else 0.0
     drive = drive_steps(scene, step)
-    first = drive[0].time_step if drive else step
+    first = drive[0].time_step if drive else whole_steps(step, scene.experiment.lasts)
     return Motion(first, damping, damped, plate_damping, settle_time, calm, calm_step, plate_mass, drive)
+
+
+def whole_steps(longest: float, duration: float | None) -> float:
+    """The longest time step [TU] of which a motion's duration [TU] is a whole number, two at least."""
+    return longest if duration is None else duration / max(2, math.ceil(duration / longest - ROUND_OFF))
 
 
 def longest_step(product: float, stiffness: float, mass: float, drag: float) -> float:

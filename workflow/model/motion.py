@@ -10,16 +10,10 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from contact1d.workflow.errors import SceneEdit
 from contact1d.workflow.model.chain import SettingsError, felt_up_to
-from contact1d.workflow.model.reduced import Reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene, Slide
-
-Array = NDArray[np.float64]
 
 
 def inertia(scene: Scene, settings: Settings) -> tuple[float, float]:
@@ -31,36 +25,6 @@ def inertia(scene: Scene, settings: Settings) -> tuple[float, float]:
     if motion.drive and scene.noise is None:
         late = 0.5 * motion.time_step * (1.0 - 0.5 / motion.drive[0].steps)
     return scene.bodies.mass + motion.damping * late, motion.plate_mass + motion.plate_damping * late
-
-
-MOST_STEPS = 20_000
-"""Timesteps of a swing that is followed; a longer one ends in equilibrium."""
-
-
-def swing(scene: Scene, settings: Settings, model: Reduced, start: float, load: float, duration: float) -> Array:
-    """Displacements [LU] of a plate under a load [FU] after the first timestep, and after a time [TU] besides, (2,).
-
-        (M + N m) d″ = load − F(d) − c d′
-
-    from rest at `start` [LU], with F(d) and limit points of the reduced model, in LAMMPS's own steps (velocity Verlet,
-    drag half a step late).
-    """
-    count, steps = settings.rows_of(duration)
-    total = 1 + count * steps
-    if total > MOST_STEPS:
-        return np.full(2, model.displacement_at(load))
-    particle, plate = inertia(scene, settings)
-    mass, drag, step = plate + settings.chains.upper * particle, settings.drag(), settings.motion.time_step
-    path, place, velocity, is_lost = np.empty(total + 1), start, 0.0, False
-    force = load - float(model.held(np.asarray([place]))[0])
-    for i in range(total):
-        velocity += 0.5 * step * force / mass
-        place += step * velocity
-        is_lost = place < model.apart or (is_lost and place < 0.0)
-        force = load - drag * velocity - (0.0 if is_lost else float(model.held(np.asarray([place]))[0]))
-        velocity += 0.5 * step * force / mass
-        path[i] = place
-    return path[[0, total - 1]]
 
 
 SHORTEST = 4.0

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from contact1d.analysis.shear import slip
 from contact1d.workflow.model.adhesion import AdhesiveEstimate, Cells
 from contact1d.workflow.model.friction import Sliders
+from contact1d.workflow.model.motion import inertia
 from contact1d.workflow.model.pairs import ContactEstimate, places_within
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
@@ -112,6 +113,11 @@ class Reduced(ABC):
         """Limit points [LU], at which a contact that is unloaded is lost at once; none where its force falls to 0."""
         return ()
 
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        """Displacements [LU] at which the force jumps, on the way in or out."""
+        return self.limits
+
     def shifted(self, phase: float) -> Reduced:
         """The same with the apex `phase` spacings off a particle."""
         return replace(self, x=places_within(self._reach, self.estimate.spacing, phase))
@@ -200,15 +206,15 @@ class Springs(Reduced):
 class AdheringCells(Reduced):
     """The cells of a chain on a rigid plane, which adhere from touch to where fixed grips lose all of it at once."""
 
+    estimate: AdhesiveEstimate
+
     @cached_property
     def _cells(self) -> Cells:
-        assert isinstance(self.estimate, AdhesiveEstimate)
         return self.estimate.cells(self.x, self.estimate.profile)
 
     @property
     def apart(self) -> float:
         """Where fixed grips lose the contact [LU]."""
-        assert isinstance(self.estimate, AdhesiveEstimate)
         return self.estimate.fixed_grips[1]
 
     def held(self, displacements: Array) -> Array:
@@ -219,6 +225,11 @@ class AdheringCells(Reduced):
     def limits(self) -> tuple[float, ...]:
         """There."""
         return (self.apart,)
+
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        """There, and at touch."""
+        return (self.apart, 0.0)
 
     def follow(self, path: Path) -> Followed:
         """Nothing is felt before touch; see `Reduced.follow`."""
@@ -293,3 +304,32 @@ def reduced(scene: Scene, settings: Settings) -> Reduced:
         return Springs(estimate, x, deepest)
     sliders = Sliders(x, x, scene.bulk_stiffness, scene.tangential_stiffness, scene.friction.coefficient)
     return Sliding(estimate, x, deepest, sliders)
+
+
+MOST_STEPS = 20_000
+"""Timesteps of a swing that is followed; a longer one ends in equilibrium."""
+
+
+def swing(scene: Scene, settings: Settings, model: Reduced, start: float, load: float, duration: float) -> Array:
+    """Displacements [LU] of a plate under a load [FU] after the first timestep, and after a time [TU], (2,).
+
+        (M + N m) d″ = load − F(d) − c d′
+
+    from rest at `start` [LU], with F(d) and limit points of the reduced model, in LAMMPS's own steps (velocity Verlet,
+    drag half a step late).
+    """
+    total = sum(settings.steps_of(duration))
+    if total > MOST_STEPS:
+        return np.full(2, model.displacement_at(load))
+    particle, plate = inertia(scene, settings)
+    mass, drag, step = plate + settings.chains.upper * particle, settings.drag(), settings.motion.time_step
+    path, place, velocity, is_lost = np.empty(total), start, 0.0, False
+    force = load - float(model.held(np.asarray([place]))[0])
+    for i in range(total):
+        velocity += 0.5 * step * force / mass
+        place += step * velocity
+        is_lost = place < model.apart or (is_lost and place < 0.0)
+        force = load - drag * velocity - (0.0 if is_lost else float(model.held(np.asarray([place]))[0]))
+        velocity += 0.5 * step * force / mass
+        path[i] = place
+    return path[[0, total - 1]]

@@ -41,7 +41,7 @@ from contact1d.workflow.model.chain import (
     require_rows,
     require_travel,
 )
-from contact1d.workflow.model.dynamics import Motion, measured, motion_of
+from contact1d.workflow.model.dynamics import Motion, measured, motion_of, whole_steps
 from contact1d.workflow.model.pairs import ContactEstimate, NotCarriedError, Profile, particles_estimate, tabulated
 from contact1d.workflow.scene import Measured, Scene
 from contact1d.workflow.scene.remedies import less_compression
@@ -351,11 +351,11 @@ class Settings:
             return min(own.loading_step, max(own.displacement_step, near))
         return min(own.smooth_step, max(NEAR_SHARE * own.longest_move, MOVE_SHARE * smallest_distance))
 
-    def rows_of(self, duration: float) -> tuple[int, int]:
-        """Load steps of a motion of this duration [TU], and timesteps of each."""
-        total = max(1, math.ceil(duration / self.motion.time_step))
-        rows = min(ROWS_IN_TIME, total)
-        return rows, math.ceil(total / rows)
+    def steps_of(self, duration: float) -> list[int]:
+        """Timesteps of each load step of a motion of this duration [TU], the first of which is one timestep."""
+        total = round(duration / self.motion.time_step)
+        ends = np.unique(np.linspace(1, total, min(ROWS_IN_TIME, total - 1) + 1).round())
+        return [int(steps) for steps in np.diff(ends, prepend=0.0)]
 
     def let_go_early(self, move: float) -> float:
         """Premature detachment [LU] of a pair under displacement increments `move` [LU]."""
@@ -402,23 +402,31 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
     return chosen
 
 
-INERTIA = 4.0
-"""Masses that the program chose, in the slower motion over the usual one: automatic drags, which go with the root, are
-twice as large. What is of first order in either changes by its own amount at least."""
-LONGER = 2.0
-"""Timesteps of that motion over the usual ones."""
+INERTIA, LONGER = 4.0, 2.0
+"""Masses that the program chose, in the slower motion over the usual one; its drags, which go with the root, and its
+timesteps. What is of first order in these changes by its own amount at least."""
 
 
 def slower(scene: Scene, settings: Settings) -> tuple[Scene, Settings]:
-    """A scene in time with the masses that it leaves open increased, and its settings with longer timesteps."""
+    """A scene in time with the masses that it leaves open increased, and its settings with longer timesteps.
+
+    Automatic drags are larger, too.
+    """
     bodies, plate = scene.bodies, scene.plate
     if "mass" not in bodies.model_fields_set:
         bodies = bodies.model_copy(update={"mass": INERTIA * bodies.mass})
     if plate is not None and plate.mass == "auto":
         plate = plate.model_copy(update={"mass": INERTIA * settings.motion.plate_mass})
     heavier = scene.model_copy(update={"bodies": bodies, "plate": plate})
-    motion = settings_for(heavier, settings.tolerance).motion
-    return heavier, replace(settings, motion=replace(motion, time_step=LONGER * settings.motion.time_step))
+    motion, own = settings_for(heavier, settings.tolerance).motion, settings.motion
+    duration = scene.experiment.lasts
+    step = LONGER * own.time_step
+    motion = replace(motion, time_step=whole_steps(step, duration))
+    if scene.damping is not None and scene.damping.coefficient == "auto":
+        motion = replace(motion, damping=LONGER * own.damping)
+    if plate is not None and plate.damping == "auto":
+        motion = replace(motion, plate_damping=LONGER * own.plate_damping)
+    return heavier, replace(settings, motion=motion)
 
 
 def _require_carried(scene: Scene) -> None:
@@ -445,7 +453,8 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     load = scene.experiment.compression
     largest = max(scene.experiment.places()) if load is None else estimate.displacement_at(load)
     chains = _chains(scene, estimate, forces, largest, calibration.chain * tolerance)
-    scale = force_scale_of(scene, forces.law, largest)
+    # A punch that adheres and carries nothing is not deep, and yet its springs hold it up to its limit.
+    scale = force_scale_of(scene, forces.law, max(largest, -estimate.parted(0.0)) if scene.adhesion else largest)
     require_digits(scene, chains.upper, forces.rest + largest, tolerance * scale)
     forces = replace(forces, scale=scale, residual=calibration.residual * tolerance * scale)
     if forces.law is not None:

@@ -151,6 +151,11 @@ class Kind(Table):
         return 0.0
 
     @property
+    def lasts(self) -> float | None:
+        """How long a motion lasts that the scene gives [TU]; None of what comes to rest, or of a drive."""
+        return None
+
+    @property
     def compression(self) -> float | None:
         """Largest force [FU] that presses the bodies together; None where displacements are prescribed."""
         force = getattr(self, self.load_key or "", None)
@@ -361,6 +366,11 @@ class Hold(Kind):
     """in place of the displacement: normal force held, compression positive; with [plate]"""
     duration: Duration
     """how long it is held"""
+
+    @property
+    def lasts(self) -> float:
+        """The duration."""
+        return self.duration
 
     def places(self) -> list[float]:
         """The displacement, if it is given."""

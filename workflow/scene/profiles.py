@@ -346,16 +346,21 @@ class Measured(Shape):
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Points at which the slope jumps."""
-        return tuple((self.r or ())[i] for i in _corners(self.r or (), self.z or ()))
+        """Where the points show that."""
+        x, _, corners = _points(self.r or (), self.z or ())
+        return tuple(x[corners].tolist())
 
     @property
     def alternatives(self) -> tuple[Shape, ...]:
-        """Straight lines between the points, and the curve through every second one, or through the others."""
+        """Chords, and the corners in which neighbouring ones meet: a body whose slope only rises is between them.
+
+        Of heights with few digits, also the apex half a digit lower.
+        """
         r, z = self.r or (), self.z or ()
-        fewer = [((r[0], *r[first:-1:2], r[-1]), (z[0], *z[first:-1:2], z[-1])) for first in (1, 2)]
-        thinned = [self.model_copy(update={"r": r, "z": z}) for r, z in fewer if len(r) >= FEWEST_POINTS]
-        return (Polygon.model_construct(**dict(self)), *thinned)
+        found: list[Shape] = [Polygon.model_construct(**dict(self) | points) for points in ({}, _cornered(r, z))]
+        if digit := _digit(z):
+            found.append(self.model_copy(update={"z": (z[0] - 0.5 * digit, *z[1:])}))
+        return tuple(found)
 
     def _spline(self) -> Any:
         return _spline(self.r or (), self.z or ())
@@ -378,22 +383,73 @@ class Polygon(Measured):
 
 
 SHARP = 8.0
-"""Curvature at a point over that at both neighbours from which on the slope jumps there."""
+"""Curvature at a point, or at two beside each other, over that at both neighbours from which on the slope jumps."""
+MOST_DIGITS, NEARLY = 10, 1e-4
+"""Digits of heights that are rounded, at most, and how near to a whole multiple one is one."""
 LEAST_JUMP = 1e-6
 """Such a jump over the largest slope at least: others are round-off."""
+FLANK = 3
+"""Points on either side of a jump whose parabola goes on to where it meets the other one."""
 
 
 @lru_cache(maxsize=8)
-def _corners(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[int, ...]:
-    """Numbers of the inner points at which the slope jumps; the body goes on beyond the axis as a mirror image."""
+def _points(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array, list[int]]:
+    """Radii and heights with a point where the slope jumps between two, and the numbers of all at which it does.
+
+    It jumps at a point whose curvature is SHARP times that of its neighbours, or between two of which that holds: where
+    the parabolas of either side meet. The body goes on beyond the axis as a mirror image.
+    """
     import numpy as np
 
-    x, y = np.asarray((-r[1], *r)), np.asarray((z[1], *z))
-    slope = np.diff(y) / np.diff(x)
+    x, y = np.asarray(r), np.asarray(z) - z[0]
+    slope = np.diff(np.append(y[1], y)) / np.diff(np.append(-x[1], x))
     jump = np.abs(np.diff(slope))
-    curvature = jump / (x[2:] - x[:-2])
-    sharp = curvature[1:-1] > SHARP * np.maximum(curvature[:-2], curvature[2:])
-    return tuple((np.flatnonzero(sharp & (jump[1:-1] > LEAST_JUMP * np.abs(slope).max())) + 1).tolist())
+    curvature = jump / np.append(2.0 * x[1], x[2:] - x[:-2])
+    strong = jump > LEAST_JUMP * np.abs(slope).max()
+    found: dict[float, float] = {}
+    for i in range(1, len(curvature) - 1):
+        if strong[i] and curvature[i] > SHARP * max(curvature[i - 1], curvature[i + 1]):
+            found[x[i]] = y[i]
+        elif i + 2 < len(curvature) and curvature[i : i + 2].sum() > SHARP * max(curvature[i - 1], curvature[i + 2]):
+            left, right = slice(max(0, i + 1 - FLANK), i + 1), slice(i + 1, i + 1 + FLANK)
+            step = x[i + 1] - x[i]
+            lines = [np.polyfit((x[own] - x[i]) / step, y[own], min(2, len(x[own]) - 1)) for own in (left, right)]
+            roots = np.roots(np.polysub(*lines))
+            meet = [one.real for one in roots if one.imag == 0.0 and 0.0 < one.real < 1.0]
+            if strong[i] and strong[i + 1] and len(meet) == 1:
+                found[x[i] + step * meet[0]] = float(np.polyval(lines[0], meet[0]))
+    every = dict(zip(x.tolist(), y.tolist(), strict=True)) | found
+    places = sorted(every)
+    return np.asarray(places), np.asarray([every[one] for one in places]), [places.index(one) for one in sorted(found)]
+
+
+def _cornered(r: tuple[float, ...], z: tuple[float, ...]) -> dict[str, tuple[float, ...]]:
+    """The points, and in each cell the one where the chords on both sides of it meet, if they do there."""
+    import numpy as np
+
+    x, y = np.asarray(r), np.asarray(z)
+    slope = np.diff(y) / np.diff(x)
+    before, after, start, end = slope[:-2], slope[2:], slice(1, -2), slice(2, -1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        meet = (y[end] - y[start] + before * x[start] - after * x[end]) / (before - after)
+    inside = (meet > x[start]) & (meet < x[end])
+    places = np.append(x, meet[inside])
+    heights = np.append(y, (y[start] + before * (meet - x[start]))[inside])
+    order = np.argsort(places)
+    return {"r": tuple(places[order].tolist()), "z": tuple(heights[order].tolist())}
+
+
+def _digit(z: tuple[float, ...]) -> float:
+    """The power of ten of which all heights are whole multiples; 0 where that is beyond MOST_DIGITS of the largest."""
+    import numpy as np
+
+    heights = np.asarray(z)
+    first = math.ceil(math.log10(np.abs(heights).max()))
+    for power in range(first, first - MOST_DIGITS, -1):
+        whole = heights / 10.0**power
+        if np.abs(whole - whole.round()).max() < NEARLY:
+            return float(10.0**power)
+    return 0.0
 
 
 @lru_cache(maxsize=8)
@@ -418,14 +474,18 @@ def _spline(r: tuple[float, ...], z: tuple[float, ...]) -> Any:
     import numpy as np
     from scipy.interpolate import PPoly
 
-    ends = [0, *(corner for corner in _corners(r, z) if MIDDLE <= corner <= len(r) - 1 - MIDDLE), len(r) - 1]
-    x, y = np.asarray(r), np.asarray(z) - z[0]
+    x, y, corners = _points(r, z)
+    ends = [0]
+    for corner in corners:
+        if corner - ends[-1] >= MIDDLE and corner <= len(x) - 1 - MIDDLE:
+            ends.append(corner)
+    ends.append(len(x) - 1)
     pieces = [_cubics(x[first : last + 1], y[first : last + 1]) for first, last in pairwise(ends)]
     return PPoly(np.concatenate(pieces, axis=1), x, extrapolate=False)
 
 
 MIDDLE = 2
-"""Points that a curve needs on either side of a jump of its slope, beside the one where it jumps."""
+"""Points that a curve needs beside the one where its slope jumps."""
 
 
 def _cubics(x: Array, y: Array) -> Array:
@@ -449,11 +509,11 @@ def _cubics(x: Array, y: Array) -> Array:
 @lru_cache(maxsize=8)
 def _slopes(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array, Array, Array]:
     """Radii, shape (n,), and p₀, p₁, p₂ of the slope p₀ + p₁ r + p₂ r² between them, each of shape (n − 1,)."""
-    import numpy as np
 
-    square, linear, constant = _spline(r, z).derivative().c
-    start = np.asarray(r)[:-1]
-    return np.asarray(r), constant - linear * start + square * start**2, linear - 2.0 * square * start, square
+    curve = _spline(r, z)
+    square, linear, constant = curve.derivative().c
+    start = curve.x[:-1]
+    return curve.x, constant - linear * start + square * start**2, linear - 2.0 * square * start, square
 
 
 GAP = 10.0
