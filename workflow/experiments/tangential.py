@@ -41,7 +41,7 @@ MOST_TOUCHES = 1.0
 """Rows between two of the scene, per 1/tolerance; a particle between two of them is moved from the first."""
 ROUND_OFF = 1e-13
 """Error of tangential forces over the largest of a path, for each row: a history is a sum over all of them."""
-STUCK, NOTHING = 3.0, 1e-6
+STUCK, NOTHING = 3.0, 1e-5
 """Spacings that may slip at both edges together where no particle does, and a loss over all work that is none."""
 AS_PREDICTED = 1e-8
 """How far a particle's tangential force may be from what spring and slider make of the row before, over its limit."""
@@ -208,8 +208,9 @@ def _unseen_slip(rows: Sequence[Drawn], scene: Scene) -> tuple[float, float]:
     assert scene.friction is not None
     stiffness, coefficient = scene.tangential_stiffness, scene.friction.coefficient
     outer = [np.sort(row.trace.profile(row.state).pressure) for row in rows]
-    second, first = max(((p[p > 0.0][1], p[p > 0.0][0]) for p in outer if (p > 0.0).sum() > 1), default=(0.0, 0.0))
-    limit, rise = (scene.bodies.spacing * coefficient * one for one in (second, second - first))
+    # Both edges are alike: the next particle is the third.
+    second, first = max(((p[p > 0.0][2], p[p > 0.0][0]) for p in outer if (p > 0.0).sum() > 2), default=(0.0, 0.0))
+    limit, rise = (scene.bodies.spacing * coefficient * float(one) for one in (second, second - first))
     slipped = 0.0
     for before, after in pairwise(rows):
         deeper = after.trace.displacement[after.state] - before.trace.displacement[before.state]

@@ -315,7 +315,7 @@ class Measured(Shape):
         """z(|x|) − z(0)."""
         import numpy as np
 
-        return np.asarray(self._spline()(np.minimum(np.abs(x), self.reach)))
+        return np.asarray(self._curve()(np.minimum(np.abs(x), self.reach)))
 
     def transformed(self, x: Array) -> Array:
         """g, exactly: the slope is a parabola p₀ + p₁ r + p₂ r² between two points.
@@ -324,7 +324,7 @@ class Measured(Shape):
         """
         import numpy as np
 
-        radii, p_0, p_1, p_2 = self._slopes()
+        radii, p_0, p_1, p_2 = _slopes(self._curve())
         flat = np.minimum(np.abs(np.ravel(x)), self.reach)
         g = np.zeros_like(flat)
         chunk = max(1, CELLS // len(p_0))
@@ -352,36 +352,36 @@ class Measured(Shape):
 
     @property
     def alternatives(self) -> tuple[Shape, ...]:
-        """Chords, and the corners in which neighbouring ones meet: a body whose slope only rises is between them.
+        """Where the points show no smooth curve, chords, and the corners in which neighbouring chords meet.
 
-        Of heights with few digits, also the apex half a digit lower.
+        A body whose slope only rises is between the two. Of heights with few digits, also the apex half a digit lower.
         """
-        r, z = self.r or (), self.z or ()
-        found: list[Shape] = [Polygon.model_construct(**dict(self) | points) for points in ({}, _cornered(r, z))]
-        if digit := _digit(z):
-            found.append(self.model_copy(update={"z": (z[0] - 0.5 * digit, *z[1:])}))
+        found: list[Shape] = [kind.model_construct(**dict(self)) for kind in (Chords, Corners)]
+        if digit := _digit(self.z or ()):
+            found.append(self.model_copy(update={"z": ((self.z or ())[0] - 0.5 * digit, *(self.z or ())[1:])}))
         return tuple(found)
 
-    def _spline(self) -> Any:
+    def _curve(self) -> Any:
         return _spline(self.r or (), self.z or ())
 
-    def _slopes(self) -> tuple[Array, Array, Array, Array]:
-        return _slopes(self.r or (), self.z or ())
+
+class Chords(Measured):
+    """A measured profile that is straight between its points, where these show no smooth curve."""
+
+    def _curve(self) -> Any:
+        return _angular(self.r or (), self.z or (), False)
 
 
-class Polygon(Measured):
-    """A measured profile that is straight between its points."""
+class Corners(Measured):
+    """The same with a corner in each such cell where the chords on both sides of it meet in it."""
 
-    def _spline(self) -> Any:
-        return _straight(self.r or (), self.z or ())
-
-    def _slopes(self) -> tuple[Array, Array, Array, Array]:
-        import numpy as np
-
-        slope = _straight(self.r or (), self.z or ()).c[0]
-        return np.asarray(self.r), slope, 0.0 * slope, 0.0 * slope
+    def _curve(self) -> Any:
+        return _angular(self.r or (), self.z or (), True)
 
 
+ROUGH, BESIDE = 3.0, 2
+"""Ratio of the curvatures at the four points around a cell from which on they show no smooth curve, and how many cells
+on either side do not, either."""
 SHARP = 8.0
 """Curvature at a point, or at two beside each other, over that at both neighbours from which on the slope jumps."""
 MOST_DIGITS, NEARLY = 10, 1e-4
@@ -453,13 +453,36 @@ def _digit(z: tuple[float, ...]) -> float:
 
 
 @lru_cache(maxsize=8)
-def _straight(r: tuple[float, ...], z: tuple[float, ...]) -> Any:
-    """Straight lines through the points, z(0) = 0."""
+def _angular(r: tuple[float, ...], z: tuple[float, ...], corners: bool) -> Any:
+    """The curve through the points, straight in rough cells, or with a corner there."""
     import numpy as np
     from scipy.interpolate import PPoly
 
-    x, y = np.asarray(r), np.asarray(z) - z[0]
-    return PPoly(np.stack([np.diff(y) / np.diff(x), y[:-1]]), x, extrapolate=False)
+    own, points = _spline(r, z), _cornered(r, z) if corners else {"r": r, "z": z}
+    x, y = np.asarray(points["r"]), np.asarray(points["z"]) - z[0]
+    places = np.union1d(own.x, x)
+    start, cell = places[:-1], np.searchsorted(np.asarray(r), places[:-1], side="right") - 1
+    smooth = [own.derivative(k)(start) / math.factorial(k) for k in (3, 2, 1)]
+    chord = (np.diff(y) / np.diff(x))[np.searchsorted(x, start, side="right") - 1]
+    straight = [0.0 * start, 0.0 * start, chord]
+    curve = np.where(_is_rough(r, z)[cell], straight, smooth)
+    heights = np.where(_is_rough(r, z)[cell], np.interp(start, x, y), own(start))
+    return PPoly(np.vstack([curve, heights]), places, extrapolate=False)
+
+
+def _is_rough(r: tuple[float, ...], z: tuple[float, ...]) -> NDArray[np.bool_]:
+    """Of each cell, whether the curvatures at the points around it, or near by, differ by more than ROUGH, (n − 1,)."""
+    import numpy as np
+
+    x, y = np.asarray((-r[1], *r)), np.asarray((z[1], *z))
+    slope = np.diff(y) / np.diff(x)
+    bend = np.diff(slope) / (x[2:] - x[:-2])
+    bend = np.concatenate([bend[1:2], bend, bend[-1:], bend[-1:]])  # of the points from −1 to n
+    around = np.lib.stride_tricks.sliding_window_view(bend, 4)
+    low, high = around.min(axis=1), around.max(axis=1)
+    least = LEAST_JUMP * np.abs(slope).max() / x[-1]
+    rough = (np.abs(around).max(axis=1) > least) & ((low <= 0.0) | (high > ROUGH * low))
+    return np.asarray(np.convolve(rough, np.ones(2 * BESIDE + 1), mode="same") > 0.0)
 
 
 @lru_cache(maxsize=8)
@@ -506,11 +529,8 @@ def _cubics(x: Array, y: Array) -> Array:
     return np.asarray(CubicHermiteSpline(x, y, slopes).c)
 
 
-@lru_cache(maxsize=8)
-def _slopes(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array, Array, Array]:
+def _slopes(curve: Any) -> tuple[Array, Array, Array, Array]:
     """Radii, shape (n,), and p₀, p₁, p₂ of the slope p₀ + p₁ r + p₂ r² between them, each of shape (n − 1,)."""
-
-    curve = _spline(r, z)
     square, linear, constant = curve.derivative().c
     start = curve.x[:-1]
     return curve.x, constant - linear * start + square * start**2, linear - 2.0 * square * start, square
