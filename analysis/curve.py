@@ -45,6 +45,12 @@ HEADER = re.compile(r"(.+) \[(.+)\]")
 """Of a column with a unit: `force [N]`."""
 WORDS = ("branch", "state")
 """Columns that are no numbers."""
+FIRST = "=+@\t\r\n\uff1d\uff0b\uff0d\uff20-"
+"""With which a text begins that a spreadsheet takes for a formula; four are the wide ones of an Asian font."""
+FORMULA = re.compile(rf"(?![+-][\d.]+(?:[eE][+-]?\d+)?$)'*[{FIRST}]")
+"""Of a text that begins so, after any apostrophes, and is no number."""
+MARKED = f"^'('*[{FIRST}])"
+"""Of such a text as a cell: with one apostrophe more, by which a spreadsheet knows a text."""
 
 
 def write_columns(path: Path, columns: Mapping[str, Column], units: Mapping[str, str] | None = None) -> None:
@@ -62,10 +68,20 @@ def headed(names: Iterable[str], units: Mapping[str, str]) -> list[str]:
     return [f"{name} [{units[name]}]" if name in units else name for name in names]
 
 
+def as_text(cell: Any) -> Any:
+    """A text as a cell that no spreadsheet takes for a formula, `'=1+1`; others as they are. `plain` takes it back."""
+    return f"'{cell}" if isinstance(cell, str) and FORMULA.match(cell) else cell
+
+
+def plain(cell: str) -> str:
+    """The text that `as_text` made a cell of."""
+    return re.sub(MARKED, r"\1", cell)
+
+
 def _cells(column: Column) -> Sequence[str]:
     """The cells of a column; one `%` operation for all numbers."""
     if len(column) and isinstance(column[0], str):
-        return [str(word) for word in column]
+        return [as_text(str(word)) for word in column]
     numbers = np.asarray(column, dtype=np.float64).tolist()
     cells = ("%.17g\n" * len(numbers) % tuple(numbers)).split()
     return ["" if cell == "nan" else cell for cell in cells]
@@ -86,7 +102,10 @@ def read_columns(path: Path, needed: Iterable[str] = ()) -> Columns:
         raise ValueError(f"{path}: no column {', '.join(missing)}")
     columns = zip((name for name, _ in parts), zip(*rows, strict=True) if rows else [()] * len(header), strict=True)
     return Columns(
-        {name: cells if name in WORDS else [float(cell or "nan") for cell in cells] for name, cells in columns},
+        {
+            name: [*map(plain, cells)] if name in WORDS else [float(cell or "nan") for cell in cells]
+            for name, cells in columns
+        },
         {name: unit for name, unit in parts if unit},
     )
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.plots import THEORY, new_figure, save_figure
+from contact1d.analysis.chart import THEORY
+from contact1d.analysis.plots import new_figure, save_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

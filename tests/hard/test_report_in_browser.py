@@ -64,7 +64,7 @@ def test_the_slider_moves_force_profile_and_words_by_mouse_and_keyboard(browser:
 
     def state() -> tuple[Any, ...]:
         return (
-            page.evaluate("document.getElementById('path-0').data[1].y[0]"),
+            page.evaluate("document.getElementById('path-0').data.at(-1).y[0]"),
             page.evaluate("document.getElementById('path-1').data[0].y.join()"),
             page.evaluate("document.getElementById('path-2').data[0].y.join()"),
             page.locator("#words").inner_text(),

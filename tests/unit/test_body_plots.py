@@ -1,16 +1,17 @@
-"""Figures of the body, and units of SI at the axes of any figure."""
+"""Figures of the body, and units of SI, words and ends of the axes of any figure."""
 
 from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from contact1d import Run, run
-from contact1d.analysis.figures import body_pressure_figure
-from contact1d.analysis.plots import in_si, new_figure
+from contact1d.analysis import figures, plots
+from contact1d.analysis.chart import Axis, Chart, Panel, Series
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.units import Scales, scale_of
 
@@ -19,30 +20,48 @@ FORMATS = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}
 """How a file of each format begins."""
 
 
+def drawn(chart: Chart) -> list[Any]:
+    """The panels of a chart with units of SI, as they are drawn."""
+    figure = plots.draw(chart.written(SCALES.written, SCALES.in_words))
+    figure.draw_without_rendering()
+    return list(figure.axes)
+
+
 def test_axes_words_and_ticks_are_in_si() -> None:
-    figure = new_figure((4.0, 3.0))
-    axis = figure.subplots()
-    axis.plot([0.0, 40.0], [0.0, 5.0])
-    axis.set_xlabel("displacement (LU), compression positive")
-    axis.set_ylabel("pressure (FU/LU²)")
-    axis.set_title("a = 15 LU, F = 2e-05 FU", loc="left")
-    in_si(figure, SCALES)
+    """What a figure holds are the numbers that its ticks show."""
+    line = Series(np.array([0.0, 40.0]), np.array([0.0, 5.0]), "W = 1 FU/LU")
+    panel = Panel(Axis("pressure", "FU/LU²"), [line], "a = 15 LU, F = 2e-05 FU")
+    (axis,) = drawn(Chart(Axis("displacement", "LU", ", compression positive"), [panel]))
     assert axis.get_xlabel() == "displacement (nm), compression positive"
     assert axis.get_ylabel() == "pressure (TPa)"
     assert axis.get_title(loc="left") == "a = 30 nm, F = 60 pN"
-    figure.draw_without_rendering()
+    assert axis.get_legend().get_texts()[0].get_text() == "W = 1.5 kN/m"
     labels = [float(text.get_text().replace("\N{MINUS SIGN}", "-")) for text in axis.get_xticklabels()]
-    assert labels == pytest.approx([2.0 * place for place in axis.get_xticks()])
-    line = axis.get_lines()[0]
-    assert list(line.get_xdata()) == [0.0, 40.0]
+    assert labels == pytest.approx(list(axis.get_xticks()))
+    assert list(axis.get_lines()[0].get_xdata()) == pytest.approx([0.0, 80.0])
 
 
 def test_axes_without_a_unit_stay_as_they_are() -> None:
-    figure = new_figure((4.0, 3.0))
-    axis = figure.subplots()
-    axis.set_xlabel(r"contact radius $a/a_0$")
-    in_si(figure, SCALES)
+    panel = Panel(Axis("force $F/F_A$"), [Series(np.ones(2), np.ones(2))])
+    (axis,) = drawn(Chart(Axis(r"contact radius $a/a_0$"), [panel]))
     assert axis.get_xlabel() == r"contact radius $a/a_0$"
+
+
+def test_a_title_is_drawn_as_it_is_written() -> None:
+    """Marks of TeX in it are signs like others."""
+    line = Series(np.arange(2.0), np.arange(2.0))
+    (axis,) = drawn(Chart(Axis("x"), [Panel(Axis("y"), [line], "5 $ or \\frac{ $")], "cost: 3 $\\x$"))
+    assert axis.figure.get_suptitle() == "cost: 3 $\\x$"
+
+
+@pytest.mark.parametrize(("log", "numbers"), [(False, (-3.0, 5.0)), (True, (0.01, 300.0)), (False, (0.5, 0.5 + 1e-13))])
+def test_an_axis_ends_around_its_numbers_and_a_line_across_at_its_ends(log: bool, numbers: tuple[float, float]) -> None:
+    across = Series(np.array([-np.inf, np.inf]), np.full(2, numbers[0]))
+    line = Series(np.array(numbers), np.array(numbers))
+    (axis,) = drawn(Chart(Axis("x", log=log), [Panel(Axis("y"), [line, across])]))
+    low, high = axis.get_xlim()
+    assert low < numbers[0] <= numbers[1] < high
+    assert list(axis.get_lines()[1].get_xdata()) == [low, high]
 
 
 @pytest.mark.parametrize(
@@ -55,20 +74,27 @@ def test_a_number_is_written_with_the_prefix_of_its_size(value: float, unit: str
     assert (pytest.approx(factor, rel=1e-12), name) == written
 
 
+def pressure(r: np.ndarray[Any, Any], p: np.ndarray[Any, Any], **theory: figures.Theory) -> Any:
+    columns = {"r": r, "pressure": p, "pressure_uncertainty": 0.0 * r}
+    (axis,) = drawn(figures.body("pressure", {"final": columns}, {"final": {"contact radius a": 1.0}}, theory))
+    return axis
+
+
 def test_a_pressure_without_bound_does_not_hide_the_rest() -> None:
     r = np.linspace(0.0, 0.999, 200)
-    figure = body_pressure_figure({"final": (r, 1.0 / np.sqrt(1.0 - r**2), 0.0 * r, 1.0)}, {})
-    assert figure.axes[0].get_ylim()[1] < 10.0
-    assert figure.axes[0].get_xlim()[1] >= 1.0
+    axis = pressure(r, 1.0 / np.sqrt(1.0 - r**2))
+    factor = SCALES.written(10.0, "FU/LU²")[0]
+    assert axis.get_ylim()[1] < 10.0 * factor
+    assert axis.get_xlim()[1] >= 1.0 * SCALES.written(1.0, "LU")[0]
 
 
 def test_a_pressure_that_is_infinite_on_the_axis_is_drawn_without_it() -> None:
     r = np.linspace(0.0, 0.9, 20)
     with np.errstate(divide="ignore"):
         p = np.arccosh(1.0 / r)
-    figure = body_pressure_figure({"final": (r, p, 0.0 * r, 1.0)}, {"final": ("theory", r[1:], p[1:])})
-    assert np.isfinite(figure.axes[0].get_lines()[0].get_ydata()).all()
-    assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()][:2] == ["this run", "theory"]
+    axis = pressure(r, p, final=("theory", r[1:], p[1:]))
+    assert all(np.isfinite(line.get_ydata()).all() for line in axis.get_lines()[:2])
+    assert [text.get_text() for text in axis.get_legend().get_texts()][:2] == ["theory", "this run"]
 
 
 def pressed(folder: Path, form: bool | str) -> Run:

@@ -90,6 +90,18 @@ def test_columns_of_numbers_come_back_by_name_beside_words(tmp_path: Path) -> No
         read_columns(tmp_path / "table.csv", names)
 
 
+def test_a_text_is_no_formula_for_a_spreadsheet_and_numbers_stay_numbers(tmp_path: Path) -> None:
+    texts = ["=1+1", "+A1", "-a", "@now", "'=1", "''-a", "\t=1", "'", "it's", "-5", "+1.5e-3"]
+    write_columns(tmp_path / "table.csv", {"force": np.linspace(-5.0, 5.0, len(texts)), "state": texts})
+    with (tmp_path / "table.csv").open(newline="", encoding="utf-8") as file:
+        cells = [row["state"] for row in csv.DictReader(file)]
+    assert cells == [*(f"'{text}" for text in texts[:7]), *texts[7:]]
+    back = read_columns(tmp_path / "table.csv")
+    assert back.state.tolist() == texts
+    assert (tmp_path / "table.csv").read_text().splitlines()[1].startswith("-5,")
+    np.testing.assert_array_equal(back.force, np.linspace(-5.0, 5.0, len(texts)))
+
+
 def test_an_interrupted_write_leaves_the_old_table(curve: Columns, tmp_path: Path) -> None:
     path = tmp_path / "curve.csv"
     write_columns(path, curve)

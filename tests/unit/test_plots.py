@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from contact1d.analysis import figures, plots
+from contact1d.analysis.chart import Axis, Chart
 from contact1d.analysis.curve import Columns
 from contact1d.analysis.pressure import Profile
+from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import scene_from_dict
+from contact1d.workflow.units import scale_of
 from tests.scenes import chains
 
 ROUND_OFF = 1e-12  # relative; closed forms of a few operations
@@ -45,17 +50,26 @@ def curve() -> Columns:
 LEGS = [("loading", np.arange(30)), ("unloading", np.arange(30, 70))]
 
 
-def lines(axis: object) -> dict[str, np.ndarray]:
+def drawn(chart: Chart) -> list[Any]:
+    """The panels of a chart, as they are drawn."""
+    return list(plots.draw(chart.written(scale_of)).axes)
+
+
+def lines(axis: Any) -> dict[str, np.ndarray]:
     """Points of each line with a label."""
-    drawn = {line.get_label(): np.asarray(line.get_xydata()) for line in axis.get_lines()}
-    return {label: points for label, points in drawn.items() if not label.startswith("_")}
+    found = {line.get_label(): np.asarray(line.get_xydata()) for line in axis.get_lines()}
+    return {label: points for label, points in found.items() if label and not label.startswith("_")}
+
+
+def edges(radius: float) -> ContactRadius:
+    return ContactRadius(radius, 0.0, -radius, radius, False)
 
 
 def test_every_particle_that_carries_pressure_is_a_step_of_its_sign() -> None:
     shown = profile(0.05)
-    (axis,) = figures.pressure_figure({"zero_load": shown}, {"zero_load": 28.0}).axes
-    steps = [np.concatenate([path.vertices for path in part.get_paths()]) for part in axis.collections]
-    colours = [tuple(part.get_facecolor()[0]) for part in axis.collections]
+    (axis,) = drawn(figures.pressure({"zero_load": shown}, {"zero_load": edges(28.0)}))
+    steps = [np.asarray(part.get_xy()) for part in axis.patches]
+    colours = [tuple(part.get_facecolor()) for part in axis.patches]
     assert len(set(colours)) == len(steps) == 2  # compression, tension
     for x, p in zip(shown.x, shown.pressure, strict=True):
         if abs(p) > 0.01 * shown.pressure.max():
@@ -68,28 +82,38 @@ def test_every_particle_that_carries_pressure_is_a_step_of_its_sign() -> None:
 
 def test_the_contact_radius_is_marked_on_both_sides_and_named() -> None:
     radii = {"zero_load": 28.25, "critical": 15.5}
-    figure = figures.pressure_figure({"zero_load": profile(0.05), "critical": profile(-0.01)}, radii)
-    for axis, (name, radius) in zip(figure.axes, radii.items(), strict=True):
-        places = sorted(line.get_xdata()[0] for line in axis.get_lines() if len(set(line.get_xdata())) == 1)
-        assert places == [-radius, radius]
+    profiles = {"zero_load": profile(0.05), "critical": profile(-0.01)}
+    axes = drawn(figures.pressure(profiles, {name: edges(radius) for name, radius in radii.items()}))
+    for axis, (name, radius) in zip(axes, radii.items(), strict=True):
+        places = {place for line in axis.get_lines() if line.get_linestyle() == "--" for place in line.get_xdata()}
+        assert places == {-radius, radius}
         assert name.replace("_", " ") in axis.get_title(loc="left")
         assert f"{radius:.4g} LU" in axis.get_title(loc="left")
 
 
-@pytest.mark.parametrize("radii", [{}, {"final": math.nan}])
-def test_a_state_without_contact_says_so(radii: dict[str, float]) -> None:
+@pytest.mark.parametrize("radii", [{}, {"final": edges(0.0)}])
+def test_a_state_without_contact_says_so(radii: dict[str, ContactRadius]) -> None:
     x = np.arange(5.0)
-    (axis,) = figures.pressure_figure({"final": Profile(x, x, x, 0.0 * x, x)}, radii).axes
-    assert [text.get_text() for text in axis.texts] == ["no contact"]
+    (axis,) = drawn(figures.pressure({"final": Profile(x, x, x, 0.0 * x, x)}, radii))
+    assert axis.get_title(loc="left") == "final state, no contact"
+
+
+def test_states_that_part_are_left_out_and_the_others_shown_where_they_touch() -> None:
+    held = profile(0.05)
+    seen = figures.seen({"final": held, "parted": replace(held, pressure=1e-6 * held.pressure)})
+    assert list(seen) == ["final"]
+    carries = np.abs(held.pressure) > 0.01 * held.pressure.max()
+    assert np.abs(held.x[carries]).max() < seen["final"].x.max() < held.x.max()
 
 
 def test_the_branches_are_drawn_as_measured(curve: Columns) -> None:
-    (axis,) = figures.force_displacement_figure(curve, LEGS).axes
-    drawn = lines(axis)
-    assert set(drawn) == {"loading", "unloading"}
+    force = Axis("force", "FU"), curve.force, ()
+    (axis,) = drawn(figures.path(Axis("displacement", "LU"), curve.displacement, LEGS, force))
+    found = lines(axis)
+    assert set(found) == {"loading", "unloading"}
     points = np.column_stack([curve.displacement, curve.force])
-    np.testing.assert_array_equal(drawn["loading"], points[:30])
-    np.testing.assert_array_equal(drawn["unloading"], points[30:])
+    np.testing.assert_array_equal(found["loading"], points[:30])
+    np.testing.assert_array_equal(found["unloading"], points[30:])
     assert "(LU)" in axis.get_xlabel()
     assert "(FU)" in axis.get_ylabel()
 
@@ -130,13 +154,15 @@ def test_hertz_is_the_integral_of_the_springs_under_the_parabola(reduction: str,
 
 
 def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(curve: Columns) -> None:
-    (axis,) = figures.force_radius_figure(curve, ADHESION, ZERO_LOAD).axes
-    drawn = lines(axis)
-    run = drawn.pop("this run, unloading")
+    columns = curve.contact_radius, curve.force, LEGS, curve.contact_radius_uncertainty
+    (axis,) = drawn(figures.reduced_radius(*columns, ADHESION, ZERO_LOAD))
+    found = lines(axis)
+    run = found["unloading"]
+    run = run[np.isfinite(run[:, 0])]
     assert len(run) == 39
     np.testing.assert_allclose(run[:, 0] * ZERO_LOAD, curve.contact_radius[30:69], rtol=ROUND_OFF)
     np.testing.assert_allclose(run[:, 1] * ADHESION, curve.force[30:69], rtol=ROUND_OFF)
-    jkr, barquins = drawn["JKR"], drawn["Barquins (2D)"]
+    jkr, barquins = found["JKR"], found["Barquins (2D)"]
     np.testing.assert_allclose(jkr[:, 1], 4.0 * jkr[:, 0] ** 3 - 4.0 * jkr[:, 0] ** 1.5, atol=ROUND_OFF)
     assert jkr[:, 1].min() == pytest.approx(-1.0, abs=GRID)
     assert barquins[:, 1].min() == pytest.approx(-1.0, abs=GRID)
@@ -144,16 +170,14 @@ def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(curve
 
 
 def test_every_figure_is_a_whole_file(curve: Columns, tmp_path: Path) -> None:
-    columns = {"drive": [0.0, 1.0], "friction": [0.0, 1.0], "normal_force": [1.0, 1.0]}
-    for name, figure in {
-        "pressure": figures.pressure_figure({"final": profile(0.05)}, {"final": 28.0}),
-        "force_displacement": figures.force_displacement_figure(curve, LEGS, (ADHESION, 0.1)),
-        "force_radius": figures.force_radius_figure(curve, ADHESION, ZERO_LOAD),
-        "friction": figures.friction_figure(columns),
+    for name, chart in {
+        "pressure": figures.pressure({"final": profile(0.05)}, {"final": edges(28.0)}),
+        "force_time": figures.path(Axis("time", "TU"), curve.displacement, LEGS, (Axis("force"), curve.force, ())),
+        "detachments": figures.detachments(curve.force),
     }.items():
-        plots.save_figure(figure, tmp_path / f"{name}.png")
+        plots.save_figure(plots.draw(chart.written(scale_of)), tmp_path / f"{name}.png")
     files = sorted(tmp_path.iterdir())
-    assert [f.name for f in files] == ["force_displacement.png", "force_radius.png", "friction.png", "pressure.png"]
+    assert [f.name for f in files] == ["detachments.png", "force_time.png", "pressure.png"]
     for file in files:
         data = file.read_bytes()
         assert data.startswith(PNG)

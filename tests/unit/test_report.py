@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from html import unescape
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -82,10 +83,12 @@ def test_the_page_needs_nothing_beside_it_and_is_well_formed(finished: Run, tmp_
 def test_the_slider_moves_through_every_state_with_its_own_numbers(finished: Run, tmp_path: Path) -> None:
     way = data_on(report([finished.folder], tmp_path / "r.html").read_text())["path"]
     count = len(finished.curve.force)
-    assert len(way["words"]) == len(way["loads"][0]) == count
-    np.testing.assert_allclose(way["against"], finished.curve.force, rtol=SEVEN_DIGITS, atol=SEVEN_DIGITS)
+    curve, loads, bodies = (chart["data"] for chart in way["charts"])
+    assert len(way["words"]) == len(loads[0]["y"]) == len(bodies[0]["y"]) == len(bodies[1]["y"]) == count
+    against = [one for (one,) in curve[-1]["y"]]
+    np.testing.assert_allclose(against, finished.curve.force, rtol=SEVEN_DIGITS, atol=SEVEN_DIGITS)
     spacing = finished.scene.bodies.spacing
-    shown = [spacing * sum(row) for row in way["loads"][0]]
+    shown = [spacing * sum(row) for row in loads[0]["y"]]
     strong = np.argmax(np.abs(finished.curve.force))
     assert shown[strong] == pytest.approx(finished.curve.force[strong], rel=TAIL)
 
@@ -95,10 +98,29 @@ def test_several_runs_are_overlaid_and_a_failed_one_says_why(finished: Run, tmp_
     with pytest.raises(Exception, match="end of the chain"):
         run(chains(400.0, experiment={"kind": "load", "force": 0.5}, bodies={"particles": 7}), tmp_path / "f", False)
     page = report([finished.folder, other.folder, tmp_path / "f"], tmp_path / "r.html").read_text()
-    names = [trace["name"] for trace in data_on(page)["charts"][0]["data"]]
+    names = [unescape(trace["name"]) for trace in data_on(page)["charts"][0]["data"]]
     assert {name.partition(",")[0] for name in names} >= {finished.scene.title, "other"}
     assert "end of the chain" in page
     assert str(other.results.adhesion_force) in page
+
+
+def test_a_page_replaces_a_page_and_nothing_else(finished: Run, tmp_path: Path) -> None:
+    page = report([finished.folder], tmp_path / "r.html")
+    written = page.read_text()
+    older = written.replace('<meta name="generator" content="contact1d report">', "")  # as 0.1 wrote it
+    assert older != written
+    page.write_text(older)
+    assert report([finished.folder], page).read_text() == written
+    scene = tmp_path / "scene.toml"
+    scene.write_text("title = 'mine'")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "other.html").write_text("<!DOCTYPE html>\n<html></html>\n")
+    (tmp_path / "link.html").symlink_to(scene)
+    for name in ("scene.toml", "folder", "other.html", "link.html"):
+        with pytest.raises(FolderError, match=rf"{name} is no page of contact1d.*choose another file") as refused:
+            report([finished.folder], tmp_path / name)
+        assert refused.value.exit_code == 2
+    assert scene.read_text() == "title = 'mine'"
 
 
 def test_the_page_of_a_sweep_has_its_table_and_a_figure_for_each_result(tmp_path: Path) -> None:
@@ -127,7 +149,7 @@ def test_every_kind_of_run_has_a_page(name: str, tmp_path: Path) -> None:
     data = data_on(page)
     assert data["charts"]
     if len(kept.curve.force) > 1:
-        assert len(data["path"]["along"]) == len(data["path"]["words"])
+        assert len(data["path"]["charts"][0]["data"][-1]["x"]) == len(data["path"]["words"])
 
 
 def test_the_way_of_a_run_moves_a_picture_for_each_state(tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ import numpy as np
 
 from contact1d.analysis.theory.adhesion import JKR_TABOR, MaugisDugdale, Theory, of_tabor
 from contact1d.analysis.theory.indenters import Ellipsoid, PowerLaw
+from contact1d.digits import apart, digits_apart
 from contact1d.workflow.body.theory import ASSUMED_RANGE, Case
 from contact1d.workflow.body.traction import is_of_a_body
 from contact1d.workflow.scene import Scene
@@ -77,9 +78,10 @@ def _slope(case: Case, radius: float) -> Iterator[Check]:
     slope = float((high - low) / np.diff(around)[0])
     message, holds = "", slope <= SLOPE
     if not holds:
+        found, limit = apart(slope, SLOPE)
         message = (
-            f"the slope of the profile at the contact edge is {slope:.3g}, and the theory of the elastic half-space is "
-            f"for slopes below {SLOPE:g}{_beside_a_ball(case, radius)}"
+            f"the slope of the profile at the contact edge is {found}, and the theory of the elastic half-space is "
+            f"for slopes below {limit}{_beside_a_ball(case, radius)}"
         )
     yield Check("slope", "f'(a)", slope, SLOPE, holds, message)
 
@@ -103,9 +105,10 @@ def _half_width(case: Case, radius: float) -> Iterator[Check]:
     if not np.isfinite(profile.reach) or profile.has_edge:
         return
     share = radius / profile.reach
+    found, limit = apart(share, HALF_WIDTH)
     message = (
-        f"the contact radius is {share:.3g} of the half-width of the body, and the theory of the elastic half-space is "
-        f"for bodies much wider than the contact, here less than {HALF_WIDTH:g}"
+        f"the contact radius is {found} of the half-width of the body, and the theory of the elastic half-space is "
+        f"for bodies much wider than the contact, here less than {limit}"
     )
     yield Check("body_size", "a/half-width", share, HALF_WIDTH, share <= HALF_WIDTH, message)
 
@@ -116,9 +119,10 @@ def beyond_jkr(sphere: MaugisDugdale, assumed: bool) -> str:
     if held is Theory.JKR:
         return ""
     error = sphere.theories[Theory.JKR].pull_off_force() / sphere.pull_off_force() - 1.0
+    found, limit = apart(sphere.tabor, JKR_TABOR, 2)
     where = f" with an assumed range of the attraction of {prefixed(ASSUMED_RANGE, 'm')}" if assumed else ""
     return (
-        f"the Tabor parameter is {sphere.tabor:.2g}{where}, where {held} holds, and JKR above {JKR_TABOR:g}: the "
+        f"the Tabor parameter is {found}{where}, where {held} holds, and JKR above {limit}: the "
         f"results are JKR's, whose pull-off force is {abs(error):.1%} {'larger' if error > 0.0 else 'smaller'} than "
         "that of Maugis and Dugdale"
     )
@@ -141,11 +145,12 @@ def _yield(case: Case) -> Iterator[Check]:
     if case.radius is not None and "preload" in case.quantities:
         pressures.append(case.body.central_pressure(case.body.contact_radius(case.quantities["preload"].value)))
     pressure = max(pressures, default=0.0) * scales.factor(MEAN_PRESSURE)
-    share, reached = pressure / strength, f"the largest pressure is {prefixed(pressure, 'Pa')}"
+    share, digits = pressure / strength, digits_apart(pressure, YIELD * strength, 4)
+    reached = f"the largest pressure is {prefixed(pressure, 'Pa', digits)}"
     if case.kind in SINGULAR:
         share, reached = math.inf, "a tip or an edge yields at once"
     message = (
         f"{reached}, and a smooth elastic ball yields from {YIELD:g} times the yield strength on, "
-        f"{prefixed(YIELD * strength, 'Pa')} (Poisson's ratio near 0.3): pressures are those of an elastic body"
+        f"{prefixed(YIELD * strength, 'Pa', digits)} (Poisson's ratio near 0.3): pressures are those of an elastic body"
     )
     yield Check("yield", "largest pressure/Y", share, YIELD, share <= YIELD, message)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import Peak, promised, rivals
+from contact1d.digits import apart
 from contact1d.workflow.continuation.context import ContactBranch, RunContext
 from contact1d.workflow.continuation.marks import PLACE_FACTOR, peak_of, radius_rate
 from contact1d.workflow.continuation.state import State
@@ -128,8 +129,9 @@ class Branch(ContactBranch):
                 before = last
             before = before or next((s for s in states[::-1] if direction * (s.carried - force) <= 0), None)
             if before is None:
+                wanted, start = apart(force, last.carried, 4)
                 raise UntrustedError(
-                    f"{force:.4g} FU cannot be reached: the force starts at {last.carried:.4g} FU, already "
+                    f"{wanted} FU cannot be reached: the force starts at {start} FU, already "
                     f"{'above' if rises else 'below'} it. Give a force beyond that, or use "
                     'kind = "path" for the full curve'
                 )

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable
 
 from contact1d.analysis.pressure import Profile, end_pressure_share, left_out
+from contact1d.digits import apart
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.errors import ChainEndError as ChainEndError
 from contact1d.workflow.errors import DigitsError as DigitsError
@@ -53,15 +54,15 @@ def require_trust(scene: Scene, settings: Settings, state: State, moving: bool =
             against_passing(scene),
         )
     if not moving and scene.plate is None and scene.noise is None and not is_converged(settings, state):
-        limit = RESIDUAL_LIMIT * settings.tolerance * settings.forces.scale
+        residual, limit = apart(state.residual, RESIDUAL_LIMIT * settings.tolerance * settings.forces.scale, 2)
         if scene.is_stepped:
             raise DigitsError(
                 f"the forces are too small to resolve {at}: the round-off error of a position corresponds to "
-                f"{state.residual:.2g} FU, and a tolerance of {settings.tolerance:g} allows {limit:.2g} FU",
+                f"{residual} FU, and a tolerance of {settings.tolerance:g} allows {limit} FU",
                 "use a larger load or displacement, or a larger [accuracy] tolerance",
             )
         raise UntrustedError(
-            f"not converged {at}: a particle has a residual force of {state.residual:.2g} FU, above the {limit:.2g} FU "
+            f"not converged {at}: a particle has a residual force of {residual} FU, above the {limit} FU "
             f"that a tolerance of {settings.tolerance:g} allows. Use "
             + ("more [damping]" if scene.method == "dynamic" else "a smaller load or smaller displacements")
             + ", or a larger [accuracy] tolerance"

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 from pydantic import TypeAdapter, computed_field
 
-from contact1d.analysis.plots import THEORY, describe, new_figure, save_figure
+from contact1d.analysis.chart import THEORY
+from contact1d.analysis.plots import describe, new_figure, save_figure
 from contact1d.files import write_whole
 from contact1d.workflow.cost.knobs import Keys, Knob
 from contact1d.workflow.cost.measure import EffectCost, Measured

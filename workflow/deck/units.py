@@ -70,7 +70,7 @@ class DeckUnits:
         data = plain_data(scene.model_copy(update={"bodies": bodies, "material": None}))
         for place in places(Scene, data):
             if place.is_number and not place.absent:
-                place.put(data, self.to_deck(place.value, place.unit.name))
+                place.put(self.to_deck(place.value, place.unit.name))
         return Scene.model_validate(data)
 
     def settings(self, settings: Settings) -> Settings:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from contact1d.analysis.friction import FEWEST_PERIODS
+from contact1d.digits import apart
 from contact1d.workflow.continuation.contact import TOLD, Contact
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.holding import MOST_HOLDS, Start, at_rest, hold, hold_row
@@ -117,9 +118,10 @@ def _doubts(motion: Motion) -> dict[str, str]:
             f"it longer than {FEWEST_PERIODS} spacings"
         )
     if (drag := settings.drag() * fastest) > top:
+        dragged, most = apart(drag, top)
         found["drag"] = (
-            f"the viscous drag at the drive's velocity, {drag:.3g} FU, exceeds the friction of the contact, "
-            f"at most {top:.3g} FU, and suppresses slips of the plate. Use "
+            f"the viscous drag at the drive's velocity, {dragged} FU, exceeds the friction of the contact, "
+            f"at most {most} FU, and suppresses slips of the plate. Use "
             "a lower cantilever.velocity, or less [damping] and [plate] damping"
         )
     if work.share > CLOSED:

@@ -15,6 +15,7 @@ import numpy as np
 from contact1d.analysis.curve import PROFILE_COLUMNS, SAMPLE_TABLE
 from contact1d.analysis.friction import standard_error
 from contact1d.analysis.pressure import Profile, mean_pressure
+from contact1d.digits import apart
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Reading, Result
@@ -125,8 +126,9 @@ def thermal_load(context: RunContext, load: float) -> Outcome:
     require_balance(results["force"], load)
     warnings = doubts(scene, settings, tuple(samples))
     if error > goal:
+        found, wanted = apart(error, goal, 2)
         warnings["statistics"] = (
-            f"standard error of the displacement {error:.2g} LU after {MOST_SAMPLES} samples, above {goal:.2g} LU"
+            f"standard error of the displacement {found} LU after {MOST_SAMPLES} samples, above {wanted} LU"
         )
     if "contact_radius" not in results:
         warnings["no_radius"] = "the contact has no width, so there is no contact radius"

@@ -168,7 +168,7 @@ def _without_unit(data: Mapping[str, Any], folder: Path) -> Iterator[Problem]:
     profile = data.get("profile")
     if isinstance(profile, Mapping) and isinstance(profile.get("file"), str) and "scale" not in profile:
         with suppress(ProfileFileError):
-            if None in read_profile(folder / profile["file"])[1].values():
+            if read_profile(folder / profile["file"])[1] is None:
                 hint = 'write scale = "1 um", the length of one of its units, or name the columns r [µm] and z [nm]'
                 yield Problem("profile.scale", "missing: the file has no unit", hint=hint)
 

@@ -17,6 +17,7 @@ from functools import cached_property
 
 from contact1d.analysis.theory.adhesion import MaugisDugdale, Verdict, of_tabor, valid_theory
 from contact1d.analysis.theory.indenters import PowerLaw
+from contact1d.digits import apart
 from contact1d.workflow.body.validity import beyond_jkr
 from contact1d.workflow.identify.contact import AskedContact
 from contact1d.workflow.identify.interaction import LARGEST_RADIUS_SHARE, IdentifyError
@@ -135,8 +136,9 @@ def require_size(contact: AskedContact, radius: float) -> None:
         )
     sphere = contact.radius and contact.shape.steepest.curvature_radius
     if sphere and radius > LARGEST_RADIUS_SHARE * sphere:
+        share, most = apart(radius / sphere, LARGEST_RADIUS_SHARE, 2)
         raise IdentifyError(
-            f"the contact radius is {prefixed(radius, 'm')}, {radius / sphere:.2g} of the sphere's: the "
-            f"theory is for a << R, here up to {LARGEST_RADIUS_SHARE:g}. Use a larger "
+            f"the contact radius is {prefixed(radius, 'm')}, {share} of the sphere's: the "
+            f"theory is for a << R, here up to {most}. Use a larger "
             "radius, a larger contact modulus, a smaller load or less attraction"
         )

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 
+from contact1d.digits import apart
 from contact1d.workflow.errors import SceneEdit
 from contact1d.workflow.model.chain import SettingsError, felt_up_to
 from contact1d.workflow.model.settings import Settings
@@ -78,8 +79,9 @@ def too_fast(scene: Scene) -> str:
     own = math.sqrt(min(scene.bulk_stiffness, scene.tangential_stiffness) / bodies.mass)
     if 2.0 * math.pi * fastest / bodies.spacing <= own:
         return ""
+    passing, period = apart(bodies.spacing / fastest, 2.0 * math.pi / own)
     return (
-        f"the drive passes a particle in {bodies.spacing / fastest:.3g} TU, less than the period of a particle on its "
-        f"springs, {2.0 * math.pi / own:.3g} TU: the bodies cannot follow, and the friction is that of a shock. "
+        f"the drive passes a particle in {passing} TU, less than the period of a particle on its "
+        f"springs, {period} TU: the bodies cannot follow, and the friction is that of a shock. "
         f"Use a velocity below {own * bodies.spacing / (2.0 * math.pi):.3g} LU/TU"
     )

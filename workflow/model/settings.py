@@ -25,6 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.digits import apart
 from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.potentials.table import Table, table_for
 from contact1d.workflow.model.adhesion import estimate_on_plane
@@ -389,9 +390,10 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             chosen = _chosen(scene, tolerance or scene.accuracy.tolerance, calibration or CALIBRATION)
     except NotCarriedError as error:
+        load, most = apart(scene.experiment.compression or 0.0, error.most, 4)
         raise SettingsError(
-            f"a load of {scene.experiment.compression:.6g} FU exceeds what the repulsion of these particles can carry, "
-            f"about {error.most:.4g} FU. Lower the load, or use a stronger repulsion",
+            f"a load of {load} FU exceeds what the repulsion of these particles can carry, about {most} FU. "
+            "Lower the load, or use a stronger repulsion",
             changes=less_compression(scene, error.most),
         ) from None
     except (OverflowError, FloatingPointError, ZeroDivisionError, MemoryError) as error:

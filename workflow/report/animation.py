@@ -4,21 +4,22 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contact1d.analysis.chart import Chart, Panel
 from contact1d.analysis.curve import States, read_states
-from contact1d.analysis.plots import COMPRESSION, DPI, TENSION, describe, in_si, panels, plain_axes
+from contact1d.analysis.plots import DPI, WIDTH, describe, draw_panel, new_figure, plain_axes
 from contact1d.files import whole, write_whole
 from contact1d.workflow.deck.steps import STATES
 from contact1d.workflow.errors import Contact1dError, FolderError
-from contact1d.workflow.report.charts import window
+from contact1d.workflow.report.charts import moving
 from contact1d.workflow.runs.campaign import AnyPath
-from contact1d.workflow.runs.finished import Run, legs_of, load_run, main_curve
+from contact1d.workflow.runs.finished import Run, load_run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -79,67 +80,63 @@ def ovito_script(folder: AnyPath) -> Path:
 def _draw(run: Run, states: States, path: Path, frames_per_second: int) -> None:
     from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 
-    figure, (bodies, trace) = panels(2, HEIGHT, sharex=False, height_ratios=(2.0, 1.0))
-    moves = _bodies(bodies, run, states), _trace(trace, run, states)
-    plain_axes(in_si(figure, run.scales))
+    figure = new_figure((WIDTH, HEIGHT))
+    above, below = figure.subplots(2, 1, height_ratios=(2.0, 1.0))
+    curve, loads, bodies = moving(run, states)
+    moves = _bodies(above, run, bodies, loads.panels[0]), _trace(below, curve)
+    plain_axes(figure)
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # it is the same for all states
 
     def show(frame: int) -> list[Any]:
         return [artist for move in moves for artist in move(frame)]
 
-    moving = FuncAnimation(figure, show, frames=len(states.rows), blit=False)
+    moving_figure = FuncAnimation(figure, show, frames=len(states.rows), blit=False)
     writer = (PillowWriter if path.suffix == ".gif" else FFMpegWriter)(fps=frames_per_second)
     with whole(path) as part:
         named = part.with_suffix(part.suffix + path.suffix)  # the writer goes by the ending
-        moving.save(str(named), writer=writer, dpi=DPI)
+        moving_figure.save(str(named), writer=writer, dpi=DPI)
         named.replace(part)
 
 
-def _bodies(axis: Axes, run: Run, states: States) -> Callable[[int], list[Any]]:
+def _bodies(axes: Axes, run: Run, chart: Chart, loads: Panel) -> Callable[[int], list[Any]]:
     """Particles, coloured by pressure, with their bulk springs; returns what moves them. A plane has no particles."""
     from matplotlib.collections import LineCollection
 
-    half, view = window(states)
-    x, low, high, pressure = (a[:, view] for a in (states.x, states.z_lower, states.z_upper, states.pressure))
-    bottom, top = float(low.min()), float(high.max())
-    length = SPRING_LENGTH * ((top - bottom) or 1.0)
+    (panel,), pressure = chart.panels, loads.series[0].y
+    upper, lower = (np.stack(np.broadcast_arrays(one.x, one.y), axis=-1) for one in panel.series)
+    length, on_plane = SPRING_LENGTH * float(np.ptp(panel.y.view)), run.scene.bodies.lower == "rigid_plane"
+    chains = [(upper, length)] if on_plane else [(upper, length), (lower, -length)]
     scale = float(np.abs(pressure).max()) or 1.0
     springs = LineCollection([], colors="#bbbbbb", linewidths=0.6)
-    axis.add_collection(springs)
+    axes.add_collection(springs)
     look: dict[str, Any] = {"cmap": "coolwarm_r", "vmin": -scale, "vmax": scale, "s": 12, "zorder": 3}
-    chains = [(axis.scatter(x[0], high[0], c=pressure[0], **look), high, length)]
-    has_plane = run.scene.bodies.lower == "rigid_plane"
-    if not has_plane:
-        chains.append((axis.scatter(x[0], low[0], c=pressure[0], **look), low, -length))
-    axis.figure.colorbar(chains[0][0], ax=axis, label="line load (FU/LU), compression positive", shrink=0.9)
-    axis.set(xlim=(-half, half), ylim=(bottom - 1.1 * length, top + 1.1 * length))
-    describe(axis, "x (LU)", "z (LU), magnified", run.scene.title, zero=has_plane)
+    dots = [axes.scatter(places[0][:, 0], places[0][:, 1], c=pressure[0], **look) for places, _ in chains]
+    axes.figure.colorbar(dots[0], ax=axes, label=f"{loads.y.label}, compression positive", shrink=0.9)
+    low, high = panel.y.view
+    axes.set(xlim=chart.x.view, ylim=(low - length, high + length))
+    describe(axes, chart.x.label, panel.y.label, run.scene.title, zero=on_plane)
 
     def move(frame: int) -> list[Any]:
-        for dots, z, _ in chains:
-            dots.set_offsets(np.column_stack([x[frame], z[frame]]))
-            dots.set_array(pressure[frame])
-        if x.shape[1] <= SPRINGS_SHOWN:
-            springs.set_segments([line for _, z, end in chains for line in _segments(x[frame], z[frame], end)])
-        return [*(dots for dots, _, _ in chains), springs]
+        for own, (places, _) in zip(dots, chains, strict=True):
+            own.set_offsets(places[frame])
+            own.set_array(pressure[frame])
+        if upper.shape[1] <= SPRINGS_SHOWN:
+            springs.set_segments([(end, np.add(end, (0.0, up))) for places, up in chains for end in places[frame]])
+        return [*dots, springs]
 
     return move
 
 
-def _segments(x: NDArray[np.float32], z: NDArray[np.float32], length: float) -> list[Any]:
-    return [((a, b), (a, b + length)) for a, b in zip(x.tolist(), z.tolist(), strict=True)]
-
-
-def _trace(axis: Axes, run: Run, states: States) -> Callable[[int], list[Any]]:
+def _trace(axes: Axes, chart: Chart) -> Callable[[int], list[Any]]:
     """The main curve with a mark; returns what moves it."""
-    (x_name, (x_unit, x)), (y_name, (y_unit, y)) = main_curve(run.model).items()
-    for _, rows in legs_of(run, x):
-        axis.plot(x[rows], y[rows], color=COMPRESSION, linewidth=1.2)
-    describe(axis, f"{x_name} ({x_unit})", f"{y_name} ({y_unit})")
-    (mark,) = axis.plot([], [], "o", color=TENSION, markersize=8)
+    (panel,) = chart.panels
+    *curve, state = panel.series
+    draw_panel(axes, chart.x, replace(panel, series=curve))
+    (mark,) = axes.plot([], [], state.look, color=state.colour, markersize=8)
 
     def move(frame: int) -> list[Any]:
-        row = states.rows[frame]
-        mark.set_data([x[row]], [y[row]])
+        mark.set_data(state.x[frame], state.y[frame])
         return [mark]
 
     return move

@@ -20,18 +20,21 @@ document.querySelectorAll("input[data-axis]").forEach((box) => {
 });
 
 if (data.path) {
-  const path = data.path;
+  const { charts, words } = data.path;
   const slider = document.getElementById("state");
-  const words = document.getElementById("words");
-  path.charts.forEach((chart, i) => Plotly.newPlot(`path-${i}`, chart.data, chart.layout, config));
+  const output = document.getElementById("words");
+  // A series that moves has a list for each state.
+  const at = (values) => (Array.isArray(values[0]) ? values[Number(slider.value)] : values);
+  const moved = (chart) => chart.data.map((trace) => ({ ...trace, x: at(trace.x), y: at(trace.y) }));
+  charts.forEach((chart, i) => Plotly.newPlot(`path-${i}`, moved(chart), chart.layout, config));
   const show = () => {
-    const i = Number(slider.value);
-    const x = [path.x[i], path.x[i]];
-    Plotly.restyle("path-0", { x: [[path.along[i]]], y: [[path.against[i]]] }, [1]);
-    Plotly.restyle("path-1", { x, y: path.loads.map((states) => states[i]) }, [0, 1]);
-    Plotly.restyle("path-2", { x, y: path.bodies.map((states) => states[i]) }, [0, 1]);
-    words.textContent = `${i + 1} of ${path.words.length}: ${path.words[i]}`;
-    slider.setAttribute("aria-valuetext", path.words[i]);
+    charts.forEach((chart, i) => {
+      const traces = moved(chart);
+      Plotly.restyle(`path-${i}`, { x: traces.map((trace) => trace.x), y: traces.map((trace) => trace.y) });
+    });
+    const text = words[Number(slider.value)];
+    output.textContent = `${Number(slider.value) + 1} of ${words.length}: ${text}`;
+    slider.setAttribute("aria-valuetext", text);
   };
   slider.addEventListener("input", show);
   show();

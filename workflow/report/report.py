@@ -20,21 +20,26 @@ from contact1d.analysis.curve import read_states
 from contact1d.files import write_whole
 from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.errors import FolderError
-from contact1d.workflow.report.charts import Chart, charts_of, path_of, symbols
+from contact1d.workflow.report.charts import Data, charts_of, path_of, symbols
 from contact1d.workflow.runs.campaign import AnyPath
-from contact1d.workflow.runs.finished import Run, plain_drawings, read_run
+from contact1d.workflow.runs.finished import Run, charts, read_run
 from contact1d.workflow.runs.report import results_in
 from contact1d.workflow.scene import Scene, Table, scene_to_toml
 from contact1d.workflow.scene.quantities import keys_of
-from contact1d.workflow.sweep.figures import label_in, sweep_figures, title_of
+from contact1d.workflow.sweep.figures import label_in, sweep_charts, title_of
 from contact1d.workflow.sweep.table import RECORD, counts_in, read_record, read_table, units_in
-from contact1d.workflow.units import NUMBER, SI, UNKNOWN, Quantity, Scales
+from contact1d.workflow.units import NUMBER, SI, Quantity, Scales
 
 PACKAGE = files("contact1d.workflow.report")
 MOST_ROWS = 500
 """Rows of a sweep's table that the page shows; results.csv has all."""
 MOST_RUNS = 24
 """Runs on one page: more make neither a table nor a figure that can be read; that is what a sweep is for."""
+MARKS = (
+    b'<meta name="generator" content="contact1d report">',
+    b'<script type="application/json" id="data">{"charts": ',
+)
+"""What a page has that is ours: since 0.2.0, and always."""
 
 
 def report(folders: Sequence[AnyPath], out: AnyPath = "report.html") -> Path:
@@ -48,8 +53,11 @@ def report(folders: Sequence[AnyPath], out: AnyPath = "report.html") -> Path:
         The file's path.
 
     Raises:
-        FolderError: a folder holds neither a run nor a sweep, or there are too many.
+        FolderError: a folder holds neither a run nor a sweep, or there are too many; or the file is there and no page.
     """
+    path = Path(out)
+    if path.exists() and not (path.is_file() and any(mark in path.read_bytes() for mark in MARKS)):
+        raise FolderError(f"{path} is no page of contact1d: a page replaces an earlier page only; choose another file")
     places = [Path(folder) for folder in folders]
     sweeps = [place for place in places if (place / RECORD).is_file()]
     if sweeps and len(places) > 1:
@@ -62,18 +70,15 @@ def report(folders: Sequence[AnyPath], out: AnyPath = "report.html") -> Path:
         raise FolderError(
             f"a file in {' or '.join(map(str, places))} can't be read ({error}): start the run or the sweep again"
         ) from error
-    write_whole(Path(out), page)
-    return Path(out)
+    write_whole(path, page)
+    return path
 
 
 def _of_runs(runs: Sequence[Run]) -> str:
     """Runs in words for somebody who has not seen their scenes; one that failed says why."""
     names = _names(runs)
     done = {name: run for name, run in zip(names, runs, strict=True) if run.status == "done"}
-    drawn = {
-        name: ({figure: make() for figure, make in plain_drawings(run.model).items()}, run.scales)
-        for name, run in done.items()
-    }
+    drawn = {name: charts(run) for name, run in done.items()}
     moving = None
     if len(runs) == 1 and done and (states := runs[0].folder / "states.npz").is_file():
         moving = path_of(runs[0], read_states(states))
@@ -121,20 +126,20 @@ def _names(runs: Sequence[Run]) -> list[str]:
 
 def _of_sweep(folder: Path) -> str:
     plan, units = read_record(folder), units_in(folder)
-    drawn = {"": (dict(sweep_figures(folder, plan, units)), UNKNOWN)}
+    drawn = {"": sweep_charts(folder, plan, units)}
 
     def number(row: Mapping[str, str], name: str) -> str:
         return str(Quantity(float(row[name]), float(row[f"{name}_uncertainty"]), units[name])) if row[name] else "—"
 
     return _page(
         "sweep.html", charts_of(drawn), None, plan=plan, units=units, folder=folder, number=number, label=label_in,
-        titles={axis.key: title_of(plan, axis, "") for axis in plan.axes},
+        titles={axis.key: title_of(plan, axis) for axis in plan.axes},
         rows=list(islice(read_table(folder), MOST_ROWS)), counts=counts_in(folder),
         base=json.dumps(plan.base, indent=2, ensure_ascii=False),
     )  # fmt: skip
 
 
-def _page(template: str, charts: Sequence[Chart], moving: Mapping[str, Any] | None, **values: Any) -> str:
+def _page(template: str, charts: Sequence[Data], moving: Mapping[str, Any] | None, **values: Any) -> str:
     """A page without other files. Texts are plain; through `symbols` `F_A` and `R^0.5` become HTML."""
     from plotly.offline import get_plotlyjs
 

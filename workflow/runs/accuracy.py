@@ -41,7 +41,7 @@ def accuracy_warnings(scene: Scene, outcome: Outcome) -> dict[str, str]:
     if others:
         ended = f" ({outcome.refinement.ended})" if outcome.refinement and outcome.refinement.ended else ""
         warnings["tolerance"] = (
-            f"relative uncertainties above the tolerance of {tolerance:g}: {in_words(others)}{ended}. "
+            f"relative uncertainties above the tolerance of {tolerance:g}: {in_words(others, tolerance)}{ended}. "
             f"{_advice(scene, outcome, others)}"
         )
     return warnings
@@ -131,9 +131,10 @@ def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, fl
 
 
 def _lattice_message(scene: Scene, shares: Mapping[str, float]) -> str:
-    spacing = scene.bodies.spacing * np.sqrt(0.5 * scene.accuracy.tolerance / min(1.0, max(shares.values())))
+    tolerance = scene.accuracy.tolerance
+    spacing = scene.bodies.spacing * np.sqrt(0.5 * tolerance / min(1.0, max(shares.values())))
     return (
-        f"relative discretisation errors above the tolerance of {scene.accuracy.tolerance:g}: {in_words(shares)}. "
+        f"relative discretisation errors above the tolerance of {tolerance:g}: {in_words(shares, tolerance)}. "
         f"Use a smaller bodies.spacing, about {spacing:.2g} LU, at the same stiffness and energy per "
         "length, or give bodies.particles if this discrete chain is intended"
     )

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cached_property
 from html import escape
 from math import nan, pi
 from os import PathLike
@@ -17,24 +17,26 @@ from numpy.typing import NDArray
 
 from contact1d.analysis import figures, plots
 from contact1d.analysis.atoms import atoms
+from contact1d.analysis.chart import Axis, Chart, Series
 from contact1d.analysis.curve import DETACHMENTS, PROFILE_COLUMNS, SAMPLE_TABLE, Columns, by_state, read_columns
 from contact1d.analysis.named import Named
 from contact1d.analysis.pressure import Profile
+from contact1d.analysis.radius import ContactRadius
 from contact1d.analysis.shear import stick_margin
 from contact1d.analysis.theory.indenters import Ellipsoid, PowerLaw
 from contact1d.analysis.theory.mindlin import mindlin_path
 from contact1d.workflow.body.derived import REPORTED
-from contact1d.workflow.body.reading import IMAGE
+from contact1d.workflow.body.reading import IMAGE, stands_for_spheres
 from contact1d.workflow.body.theory import Case, applying, drawn_along, in_words, sliding_contact
-from contact1d.workflow.body.traction import body_pressures, body_shears, row_of
+from contact1d.workflow.body.traction import row_of
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.state import RadiusRule
 from contact1d.workflow.errors import FolderError, RunError
-from contact1d.workflow.runs.report import FILES, in_units, quantities_in, read_results
+from contact1d.workflow.runs.report import COLUMN_UNITS, FILES, in_units, quantities_in, read_results
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
-from contact1d.workflow.scene.tables import SPHERES
-from contact1d.workflow.units import FORCE, LENGTH, MASS, Quantity, Scales
+from contact1d.workflow.scene.tables import SPHERES, WIDER_THAN_SPHERES
+from contact1d.workflow.units import FORCE, LENGTH, MASS, Quantity, Scales, scale_of
 
 if TYPE_CHECKING:
     from ase import Atoms
@@ -42,9 +44,11 @@ if TYPE_CHECKING:
 
 
 Array = NDArray[np.float64]
-MEASURED = ("sampling", "unloading", "pulling")
-"""Branches of a thermal motion that are results; the others are run-in."""
-Drawings = dict[str, Callable[[], "Figure"]]
+CONTACT_RADIUS = "contact radius a"
+FROM_ZERO = ("contact_radius", "force", "friction", "tangential_force")
+"""Columns whose 0 a figure shows."""
+SAME_LOAD = 1e-9
+"""Relative change up to which a load is constant."""
 FINE = 300
 """Radii at which a closed form is drawn."""
 BETWEEN = 50
@@ -174,11 +178,11 @@ class Run:
         Raises:
             ValueError: the run has no such figure; the message says which it has.
         """
-        there = drawings(self)
+        there = charts(self)
         name = name or next(iter(there))
         if name not in there:
             raise ValueError(f"the run has no figure {name!r}, it has {', '.join(there)}")
-        return plots.plain_axes(there[name]())
+        return plots.draw(there[name].written(scale_of))
 
     def atoms(self, state: int = -1) -> Atoms:
         """Return a reported state as ase.Atoms, by default the last; see `contact1d.atoms`."""
@@ -230,41 +234,44 @@ def read_run(folder: Path) -> Run:
         raise FolderError(f"{folder} has no run readable by this version: {reason}. Run its scene again") from None
 
 
-def drawings(run: Run) -> Drawings:
-    """What draws each figure of a run, by the names of the files, the main one first; in SI where it is known."""
-    title, scales, reduction = run.scene.title, run.scales, run.scene.bodies.reduction
-    title += "" if reduction == "mdr" else f"\n(reduction {reduction})"
-
-    def dressed(draw: Callable[[], Figure]) -> Figure:
-        figure = draw()
-        figure.suptitle(title, fontsize=11)
-        return plots.in_si(figure, scales)
-
-    return {name: partial(dressed, draw) for name, draw in plain_drawings(run.model).items()}
+def charts(run: Run) -> dict[str, Chart]:
+    """What each figure of a run shows, by the names of the files, the main one first; in base units."""
+    scales, bodies = run.scales, run.scene.bodies
+    title = run.scene.title + ("" if bodies.reduction == "mdr" else f"\n(reduction {bodies.reduction})")
+    return {
+        name: replace(chart, title=title).written(lambda _, unit: scales.base(unit), scales.in_words)
+        for name, chart in _charts(run.model)
+    }
 
 
 def draw(run: Run, form: str) -> None:
     """Save every figure of a run in its folder; `form`: png, svg or pdf."""
-    for name, figure in drawings(run).items():
-        plots.save_figure(figure(), run.folder / f"{name}.{form}")
+    for name, chart in charts(run).items():
+        plots.save_figure(plots.draw(chart.written(scale_of)), run.folder / f"{name}.{form}")
 
 
-def main_curve(run: Run) -> dict[str, tuple[str, Array]]:
-    """What the path of a run is drawn in, along x and y: name, and unit and column of a run in units of the model.
+def axis_of(column: str) -> Axis:
+    """The axis of a column of the tables, in units of the model."""
+    remark = figures.COMPRESSIVE if column in CURVE_COLUMNS[:2] else ""
+    return Axis(column.replace("_", " "), COLUMN_UNITS[column], remark, zero=column in FROM_ZERO)
+
+
+def main_curve(run: Run) -> dict[str, Array]:
+    """What the path of a run is drawn over, and what is drawn over it: columns by their names, in units of the model.
 
     A row for each state: a slide begins with one under the load, before it is driven.
     """
-    names, columns = ("displacement", "force"), run.curve
+    names, columns = ["displacement", "force"], run.curve
     if run.scene.experiment.goes_along:
-        names = "tangential_displacement", "tangential_force"
+        names = ["tangential_displacement", "tangential_force"]
     elif run.friction:
-        names, columns = ("drive", "friction"), run.friction
+        names, columns = ["drive", "friction"], run.friction
+    elif "time" in columns:
+        names = ["time", "force" if run.scene.experiment.places() else "displacement"]
+    if "normal_force" in columns and np.ptp(load := columns["normal_force"]) > SAME_LOAD * np.abs(load).max():
+        names.append("normal_force")
     missing = np.full(len(run.curve.force) - len(columns[names[0]]), nan)
-    filled = (np.append(missing, columns[name]) for name in names)
-    return {
-        name.replace("_", " "): (unit, column)
-        for name, unit, column in zip(names, (LENGTH, FORCE), filled, strict=True)
-    }
+    return {name: np.append(missing, columns[name]) for name in names}
 
 
 def legs_of(run: Run, along: Array) -> list[tuple[str, NDArray[np.int64]]]:
@@ -280,44 +287,65 @@ def legs_of(run: Run, along: Array) -> list[tuple[str, NDArray[np.int64]]]:
     return [(str(branch[part[0]]), np.arange(max(part[0] - 1, 0), part[-1] + 1)) for part in parts]
 
 
-def plain_drawings(run: Run) -> Drawings:
-    """The figures of a run in units of the model, without title, by the names of the files, the main one first."""
-    found = _drawings(run)
-    if SAMPLE_TABLE in run.tables:
-        measured, mean = np.isin(run.curve.branch, MEASURED), _values(run).get("displacement")
-        traces = partial(figures.samples_figure, run.tables[SAMPLE_TABLE], measured, mean)
-        found = found | {SAMPLE_TABLE: traces} if DETACHMENTS in found else {SAMPLE_TABLE: traces} | found
-    return found
-
-
-def _drawings(run: Run) -> Drawings:
-    scene, curve, profiles = run.scene, run.curve, run.profiles
-    pressure: Drawings = {}
-    if all(profile.x.size > 1 for profile in profiles.values()):  # one particle has no pressure over x
-        radii = {state: _radius(scene, profile) for state, profile in profiles.items()}
-        pressure["pressure"] = partial(figures.pressure_figure, profiles, radii)
-    if scene.experiment.goes_along:
-        return _sheared(run) | pressure | _body_pressure(run)
-    if run.friction:
-        return {"friction": partial(figures.friction_figure, run.friction), **pressure}
+def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
+    """The charts of a run in units of the model, by their names."""
+    scene, profiles = run.scene, figures.seen(run.profiles)
+    over, up, *_ = main_curve(run)
+    rule = RadiusRule(scene, scene.accuracy.tolerance)
+    radii = {state: radius for state in profiles if (radius := rule.of(run.profiles[state]))}
     if run.detachments and run.detachments["force"].size > 1:
-        return {DETACHMENTS: partial(figures.detachments_figure, run.detachments["force"]), **pressure}
-    if scene.noise is not None and not scene.experiment.way_is_given:
-        return pressure
-    values = _values(run)
-    beside = _theory(run, values)
-    over_d = None if beside is None else (beside[0], *beside[1][1:])
-    tension = run.results.get("adhesion_force")
-    adhesion = (tension.value, tension.uncertainty) if tension and tension.value else None
-    legs = legs_of(run, curve.displacement)
-    found: Drawings = {"force_displacement": partial(figures.force_displacement_figure, curve, legs, adhesion, over_d)}
+        yield DETACHMENTS, figures.detachments(run.detachments["force"])
+    if SAMPLE_TABLE in run.tables:
+        yield SAMPLE_TABLE, _samples(run)
+    if scene.experiment.goes_along:
+        yield "tangential", path_chart(run, tangential_force=_mindlin(run))
+        yield "stick_slip", _stick_slip(run, profiles)
+    elif over != "displacement":
+        yield "friction" if run.friction else f"{up}_{over}", path_chart(run)
+    if "displacement" in (over, up) and (scene.noise is None or scene.experiment.way_is_given):
+        yield from _under_load(run)
+    if all(profile.x.size > 1 for profile in profiles.values()):  # one particle has no pressure over x
+        yield "pressure", figures.pressure(profiles, radii)
+    marks = _marks(run, radii)
+    if pressures := run.body_pressures:
+        yield "pressure_3d", figures.body("pressure", pressures, marks, _body_theory(run, marks))
+    if shears := run.body_shears:
+        yield "shear_3d", figures.body("shear_stress", shears, marks, {})
+
+
+def path_chart(run: Run, columns: Mapping[str, Array] | None = None, **beside: Sequence[Series]) -> Chart:
+    """Columns over the first one, by default the main curve, with what is beside each; in units of the model."""
+    (over, along), *upwards = (columns or main_curve(run)).items()
+    panels = [(axis_of(name), column, beside.get(name, ())) for name, column in upwards]
+    return figures.path(axis_of(over), along, legs_of(run, along), *panels)
+
+
+def _samples(run: Run) -> Chart:
+    """The motion of a contact with noise, and the load on it."""
+    table, mean = run.tables[SAMPLE_TABLE], run.results.get("displacement")
+    beside = {"force": figures.lines(("load", table["time"], table["load"]))}
+    if mean is not None:
+        beside["displacement"] = figures.level(mean.value, mean.uncertainty, "mean")
+    return path_chart(run, {name: table[name] for name in ("time", "displacement", "force")}, **beside)
+
+
+def _under_load(run: Run) -> Iterator[tuple[str, Chart]]:
+    """Force over displacement and, where that changes, over the contact radius."""
+    scene, curve, values = run.scene, run.curve, _values(run)
+    theory, tension = _theory(run, values), run.results.get("adhesion_force")
+    beside = [] if theory is None else figures.lines((theory[0], *theory[1][1:]))
+    if tension and tension.value:
+        beside += figures.level(-tension.value, tension.uncertainty, f"$F_A$ = {tension.value:.4g} FU")
+    yield "force_displacement", path_chart(run, {name: curve[name] for name in CURVE_COLUMNS[:2]}, force=beside)
+    radius, spread = np.where(curve.contact_radius > 0.0, curve.contact_radius, nan), curve.contact_radius_uncertainty
+    legs = legs_of(run, radius)
     if _adheres_over_a_width(values) and scene.bodies.profile.kind in SPHERES:
-        marks = values["adhesion_force"], values["zero_load_radius"]
-        found["force_radius"] = partial(figures.force_radius_figure, curve, *marks)
-    elif np.unique(curve.contact_radius[curve.contact_radius > 0.0]).size > 1:
-        over_a = (beside[0], *beside[1][::2]) if beside is not None and not scene.adheres else None
-        found["force_radius"] = partial(figures.load_radius_figure, curve, over_a)
-    return found | pressure | _body_pressure(run)
+        scale = values["adhesion_force"], values["zero_load_radius"]
+        yield "force_radius", figures.reduced_radius(radius, curve.force, legs, spread, *scale)
+    elif np.unique(radius[np.isfinite(radius)]).size > 1:
+        beside = [] if theory is None or scene.adheres else figures.lines((theory[0], *theory[1][::2]))
+        panel = axis_of("force"), curve.force, beside
+        yield "force_radius", figures.path(axis_of("contact_radius"), radius, legs, panel, spread=spread)
 
 
 def _values(run: Run) -> dict[str, float]:
@@ -326,56 +354,50 @@ def _values(run: Run) -> dict[str, float]:
     return values | {name.removeprefix(IMAGE): value for name, value in values.items() if name.startswith(IMAGE)}
 
 
-def _sheared(run: Run) -> Drawings:
-    """Force over displacement along x, the stick zone and q(r)."""
-    loop = partial(figures.tangential_figure, run.friction, legs_of(run, run.curve.displacement), _mindlin(run))
-    found: Drawings = {"tangential": loop, "stick_slip": _stick_slip(run)}
-    if shears := body_shears(run.scene, run.profiles, run.friction, run.curve.contact_radius):
-        lines = {name: (one.r, one.shear, one.uncertainty, one.edge, one.stick) for name, one in shears.items()}
-        found["shear_3d"] = partial(figures.body_shear_figure, lines)
-    return found
+def _marks(run: Run, radii: Mapping[str, ContactRadius]) -> dict[str, dict[str, float]]:
+    """What has a radius on the body, by state."""
+    wider = WIDER_THAN_SPHERES if stands_for_spheres(run.scene) else 1.0
+    marks = {state: {CONTACT_RADIUS: radius.value / wider} for state, radius in radii.items()}
+    if run.scene.experiment.goes_along:
+        for state, own in marks.items():
+            own["stick radius c"] = float(run.friction["stick_radius"][row_of(state, run.friction)])
+    return marks
 
 
-def _body_pressure(run: Run) -> Drawings:
-    """p(r) of the body, where there is one, and the closed form beside it for the state that it speaks of."""
-    pressures, case = body_pressures(run.scene, run.profiles), Case(run.scene, run.results)
-    theories: dict[str, tuple[str, Array, Array]] = {}
-    state = next((name for name in REPORTED if name in pressures), None)
-    forms = [form for form in applying(case) if form.pressure is not None] if state is not None else []
-    if state is not None and forms and (pressure := forms[0].pressure):
-        r = pressures[state].contact_radius * np.sin(np.linspace(0.005, 0.4999 * np.pi, FINE))
-        theories[state] = forms[0].name, r, pressure(case, r)
-    drawn = {name: (one.r, one.pressure, one.uncertainty, one.contact_radius) for name, one in pressures.items()}
-    return {"pressure_3d": partial(figures.body_pressure_figure, drawn, theories)} if drawn else {}
+def _body_theory(run: Run, marks: Mapping[str, Mapping[str, float]]) -> dict[str, figures.Theory]:
+    """The closed form of p(r), by the state that it speaks of."""
+    case = Case(run.scene, run.results)
+    for state in (name for name in REPORTED if name in marks):
+        for form in applying(case):
+            if form.pressure is not None:
+                r = marks[state][CONTACT_RADIUS] * np.sin(np.linspace(0.005, 0.4999 * np.pi, FINE))
+                return {state: (form.name, r, form.pressure(case, r))}
+    return {}
 
 
-def _stick_slip(run: Run) -> Callable[[], Figure]:
+def _stick_slip(run: Run, profiles: Mapping[str, Profile]) -> Chart:
     """The stick zone of each state, as the row at its place has it."""
     assert run.scene.friction is not None
     places, coefficient = run.friction["tangential_displacement"], run.scene.friction.coefficient
     states = {}
-    for name, profile in run.profiles.items():
+    for name, profile in profiles.items():
         row = row_of(name, run.friction)
         moves = np.diff(places[: row + 1], prepend=0.0)
         direction = int(np.sign(moves[moves != 0.0][-1])) if moves.any() else 0
         margin = stick_margin(profile, coefficient, direction)
         states[name] = profile, margin, float(run.friction["stick_radius"][row]), float(places[row])
-    return partial(figures.stick_slip_figure, states, coefficient)
+    return figures.stick_slip(states, coefficient)
 
 
-def _mindlin(run: Run) -> Array | None:
-    """u and F_x of Cattaneo and Mindlin along the path of a parabola under one load, shape (2, n); else None."""
+def _mindlin(run: Run) -> list[Series]:
+    """F_x of Cattaneo and Mindlin over u along the path of a parabola under one load; of others nothing."""
     case, places = Case(run.scene, run.results), run.friction["tangential_displacement"]
     if not drawn_along(case):
-        return None
+        return []
     steps = places.size - 1
     dense = np.interp(np.linspace(0.0, steps, 1 + BETWEEN * steps), range(places.size), places)
-    return np.asarray([dense, mindlin_path(dense.tolist(), *sliding_contact(case)[:3])])
-
-
-def _radius(scene: Scene, profile: Profile) -> float:
-    found = RadiusRule(scene, scene.accuracy.tolerance).of(profile)
-    return nan if found is None else found.value
+    force = mindlin_path(dense.tolist(), *sliding_contact(case)[:3])
+    return figures.lines(("Cattaneo–Mindlin", dense, np.asarray(force)))
 
 
 def _adheres_over_a_width(values: Mapping[str, float]) -> bool:

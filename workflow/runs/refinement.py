@@ -54,7 +54,7 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
         if count == MOST_REFINEMENTS:
             ended = f"{_after(count)}, the limit"
             break
-        context.progress.note(f"refining: {in_words(left)}, tolerance {scene.accuracy.tolerance:g}")
+        context.progress.note(f"refining: {in_words(left, wanted)}, tolerance {scene.accuracy.tolerance:g}")
         try:
             finer_deck, finer = _pass(context, tolerance / TOLERANCE_RATIO)
         except (EngineError, UntrustedError, SettingsError) as error:

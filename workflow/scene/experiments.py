@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Annotated, ClassVar, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from contact1d.workflow.scene.quantities import (
@@ -31,7 +31,6 @@ from contact1d.workflow.scene.quantities import (
     Table,
     Velocity,
     allowed_by,
-    either,
 )
 
 Method = Literal["quasistatic", "dynamic"]
@@ -68,10 +67,7 @@ class Span(Table):
         return there + there[-2::-1] if self.return_ else there
 
 
-Displacements = Annotated[
-    Annotated[Listed[Displacement], Tag("list")] | Annotated[Span, Tag("table")],
-    either("table", Mapping | Span, "list"),
-]
+Displacements = Listed[Displacement] | Span
 
 
 class Cycles(Table):
@@ -380,6 +376,6 @@ class Hold(Kind):
 Experiment = Annotated[Load | Path | PullOff | Slide | Tangential | Hold, Discriminator("kind")]
 
 KINDS: dict[str, type[Kind]] = {
-    str(choice.kind): choice.type for choice in allowed_by(Experiment).choices if issubclass(choice.type, Kind)
+    kind: table for kind, table in allowed_by(Experiment).kinds.items() if issubclass(table, Kind)
 }
 """The experiments by their `kind`."""

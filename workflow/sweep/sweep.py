@@ -17,7 +17,7 @@ from subprocess import CalledProcessError
 from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings, simplefilter
 
-from contact1d.analysis.curve import HEADER
+from contact1d.analysis.curve import HEADER, MARKED
 from contact1d.files import FULL_DISK, write_whole
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, FolderError
@@ -70,7 +70,7 @@ class Sweep:
         """
         import pandas
 
-        found = pandas.read_csv(self.folder / TABLE)
+        found = pandas.read_csv(self.folder / TABLE).replace(MARKED, r"\1", regex=True)
         units = {name[1]: name[2] for header in found.columns if (name := HEADER.fullmatch(header))}
         units |= {column: unit for name, unit in self.quantities.items() for column in columns_of(name)}
         found.columns = found.columns.map(bare)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from contact1d.analysis.curve import HEADER, headed
+from contact1d.analysis.curve import HEADER, MARKED, as_text, headed, plain
 from contact1d.files import whole
 from contact1d.workflow.errors import Contact1dError, FolderError
 from contact1d.workflow.runs.report import quantities_in, read_results
@@ -77,7 +77,7 @@ def write_table(
             own = (found[name] if name in found and found[name].unit == units[name] else None for name in units)
             cells = [number for one in own for number in (("", "") if one is None else (one.value, one.uncertainty))]
             places = (cell(numbers.get(str(value), value)) for value, numbers in zip(values, known, strict=True))
-            writer.writerow([*places, answer.status, answer.reason, answer.run, *cells])
+            writer.writerow(map(as_text, [*places, answer.status, answer.reason, answer.run, *cells]))
     return units
 
 
@@ -99,12 +99,16 @@ def cell(value: Any) -> Any:
 def write_parquet(folder: Path) -> None:
     """The table again as results.parquet. Raises Contact1dError where pyarrow isn't installed."""
     try:
+        from pyarrow import compute, parquet, types
         from pyarrow import csv as arrow
-        from pyarrow import parquet
     except ImportError:
         raise Contact1dError("Parquet needs pyarrow: install it with pip install 'contact1d[tables]'") from None
+    table = arrow.read_csv(folder / TABLE)
+    for place, name in enumerate(table.column_names):
+        if types.is_string(table[name].type):
+            table = table.set_column(place, name, compute.replace_substring_regex(table[name], MARKED, r"\1"))
     with whole(folder / PARQUET) as part:
-        parquet.write_table(arrow.read_csv(folder / TABLE), part)
+        parquet.write_table(table, part)
 
 
 def document_in(folder: Path) -> dict[str, Any]:
@@ -146,7 +150,7 @@ def read_table(folder: Path) -> Iterator[dict[str, str]]:
     with (folder / TABLE).open(newline="", encoding="utf-8") as file:
         rows = csv.reader(file)
         names = [*map(bare, next(rows))]
-        yield from (dict(zip(names, row, strict=True)) for row in rows)
+        yield from (dict(zip(names, map(plain, row), strict=True)) for row in rows)
 
 
 def bare(header: str) -> str:

@@ -1,0 +1,168 @@
+"""What a chart shows, apart from how it is drawn: axes with units, and series in panels one below the other.
+
+A description is arrays and words, and costs no drawing. `analysis.plots` draws it by matplotlib, for files and Python;
+`workflow.report.charts` by plotly, for a page. Both draw what `Chart.written` gives.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.floating[Any]]
+UnitOf = Callable[[float, str], tuple[float, str]]
+"""Of the largest number and its unit the factor to the unit in which it is written, and that unit."""
+COMPRESSION, TENSION, LOADING, UNLOADING, THEORY = "#0072B2", "#D55E00", "#56B4E9", "#0072B2", "#555555"
+"""Okabe and Ito's colours, which the colour-blind can tell apart; theories are grey."""
+BLACK = "#000000"
+"""Of marks and bounds, which no run has for its own."""
+FILL = "fill"
+"""The look of a series that is the outline of an area; other looks are matplotlib's: "-", "--", "o", "o-"."""
+MARGIN = 0.05
+"""Between the numbers and the end of an axis, over their span."""
+SAME = 1e-9
+"""Span over size below which numbers are one: what is held is not magnified."""
+MOST_NAMES = 7
+"""Names in a legend; of more, the ends."""
+ENDLESS = np.asarray([-math.inf, math.inf])
+
+
+@dataclass(frozen=True)
+class Axis:
+    """What is measured along an axis.
+
+    Attributes:
+        name, unit, remark: `force`, `FU`, `, compression positive`; the unit "1" is that of a number.
+        zero: whether 0 is shown, with a line.
+        log: whether it is logarithmic.
+        ticks: words in place of numbers, by their positions.
+        view: its ends, as the numbers of a chart have them.
+    """
+
+    name: str
+    unit: str = "1"
+    remark: str = ""
+    zero: bool = False
+    log: bool = False
+    ticks: Mapping[float, str] = field(default_factory=dict)
+    view: tuple[float, float] = (math.nan, math.nan)
+
+    @property
+    def label(self) -> str:
+        """`force (FU), compression positive`."""
+        return f"{self.name}{'' if self.unit == '1' else f' ({self.unit})'}{self.remark}"
+
+    def ended(self, values: Array) -> Array:
+        """The values, ±∞ at the ends of the axis."""
+        return np.nan_to_num(values, nan=math.nan, neginf=self.view[0], posinf=self.view[1])
+
+    def written(self, numbers: Sequence[Array], unit_of: UnitOf) -> tuple[float, Axis]:
+        """The factor to the unit that fits the numbers, and the axis in it, its ends around them."""
+        shown = np.concatenate([[0.0] * self.zero, *map(np.ravel, numbers)])
+        shown = shown[np.isfinite(shown) & ((shown > 0.0) | (not self.log))]
+        low, high = (shown.min(), shown.max()) if shown.size else (0.0, 0.0)
+        factor, unit = unit_of(max(abs(low), abs(high)), self.unit)
+        ends = np.log([low, high]) if self.log else np.asarray([low, high])
+        span, size = np.ptp(ends), np.abs(ends).max()
+        margin = MARGIN * (span if span > SAME * size else size or 1.0)
+        low, high = ends[0] - margin, ends[1] + margin
+        view = (math.exp(low), math.exp(high)) if self.log else (low, high)
+        return factor, replace(self, unit=unit, view=(factor * view[0], factor * view[1]))
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """A line, points, or the outline of an area.
+
+    Attributes:
+        x, y: arrays (n,); NaN is a gap, ±∞ the end of the axis. In a chart that moves either may be (m, n), m states.
+        name: in the legend; a name that several have is there once.
+        colour, look, width, opacity: see FILL.
+        dx, dy: uncertainties, which points show as bars.
+    """
+
+    x: Array
+    y: Array
+    name: str = ""
+    colour: str = THEORY
+    look: str = "-"
+    width: float = 1.4
+    opacity: float = 1.0
+    dx: Array | float = 0.0
+    dy: Array | float = 0.0
+
+
+@dataclass(frozen=True)
+class Panel:
+    """What is drawn over one pair of axes.
+
+    Attributes:
+        y: the axis upwards; along x a chart has one for all its panels.
+        series: in the order in which they are drawn. Theories, by their colour, do not widen the view.
+        title, note: above; the note has numbers of one run.
+        height: [inch].
+    """
+
+    y: Axis
+    series: Sequence[Series]
+    title: str = ""
+    note: str = ""
+    height: float = 3.2
+
+    @property
+    def heading(self) -> str:
+        """Title and note."""
+        return ", ".join(filter(None, [self.title, self.note]))
+
+    @property
+    def legend(self) -> list[str]:
+        """The names that the legend has room for."""
+        names = list(dict.fromkeys(one.name for one in self.series if one.name))
+        return names if len(names) <= MOST_NAMES else names[: MOST_NAMES // 2] + names[-(MOST_NAMES // 2) :]
+
+
+@dataclass(frozen=True)
+class Chart:
+    """Panels one below the other, over one axis, and what stands above them."""
+
+    x: Axis
+    panels: Sequence[Panel]
+    title: str = ""
+
+    def written(self, unit_of: UnitOf, words: Callable[[str], str] = str) -> Chart:
+        """The chart as it is drawn: every axis has its ends, and the unit that fits its numbers.
+
+        Args:
+            unit_of: what a unit is written in.
+            words: writes the numbers of a text so.
+        """
+        decisive = [[one for one in panel.series if one.colour != THEORY] or panel.series for panel in self.panels]
+        along, x = self.x.written([one.x + side * one.dx for own in decisive for one in own for side in SIDES], unit_of)
+        panels = []
+        for panel, own in zip(self.panels, decisive, strict=True):
+            up, y = panel.y.written([one.y + side * one.dy for one in own for side in SIDES], unit_of)
+            series = [
+                replace(one, x=one.x * along, dx=one.dx * along, y=one.y * up, dy=one.dy * up, name=words(one.name))
+                for one in panel.series
+            ]
+            panels.append(replace(panel, y=y, series=series, title=words(panel.title), note=words(panel.note)))
+        return replace(self, x=x, panels=panels)
+
+
+SIDES = (-1.0, 1.0)
+
+
+def upright(*places: float, **look: Any) -> Series:
+    """Dashed lines across a panel at these positions along x."""
+    x, y = np.repeat(places, 3), np.tile([*ENDLESS, math.nan], len(places))
+    return Series(x, y, **{"colour": BLACK, "look": "--", "width": 1.0, **look})
+
+
+def area(x: Any, y: Any, **look: Any) -> Series:
+    """The rectangle between the two ends along x and along y."""
+    return Series(np.repeat(x, 2), np.asarray([*y, *y[::-1]]), look=FILL, **look)
