@@ -39,6 +39,14 @@ def test_the_detachment_force_is_that_of_smoluchowskis_equation(rate: float, tmp
     assert results["detachment_force"].value == pytest.approx(forces.mean())
     assert results["detachment_force"].uncertainty == pytest.approx(spread / np.sqrt(REPEATS), rel=1.0)
     assert len(set(forces.tolist())) > REPEATS // 2
+    samples, held = found.tables["samples"], found.profiles["last_held"]
+    last = np.flatnonzero(-samples["load"] < forces[0])[-1]
+    assert found.scene.bodies.spacing * held.pressure.sum() == pytest.approx(samples["force"][last])
+    assert (
+        samples["displacement"][last]
+        > settings_for(found.scene).estimate.parted(detachment.LET_GO)
+        > samples["displacement"][last + 1]
+    )
 
 
 def test_followed_in_time_slow_pulls_are_those_of_a_rate_at_every_load() -> None:

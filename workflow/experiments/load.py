@@ -32,9 +32,9 @@ class LoadExperiment(Scripted[Load]):
     def run(self, context: RunContext) -> Outcome:
         """With noise an average over samples; in time with a warning where a tension is only just held, or not."""
         scene, settings = context.deck.scene, context.deck.settings
-        if scene.noise is not None:
-            return thermal_load(context)
         load = self.given(scene).force
+        if scene.noise is not None:
+            return thermal_load(context, load)
         surely = scene.method != "dynamic" or LoadBranch(context).holds_more(load)
         outcome = super().run(context)
         if surely:

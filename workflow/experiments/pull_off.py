@@ -39,7 +39,11 @@ class PullOffExperiment(Scripted[PullOff]):
 
     def run(self, context: RunContext) -> Outcome:
         """With noise a ramp until the bodies separate, once for each seed."""
-        return super().run(context) if context.deck.scene.noise is None else pull_off_thermal(context)
+        return (
+            super().run(context)
+            if context.deck.scene.noise is None
+            else pull_off_thermal(context, self.given(context.deck.scene))
+        )
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """Compress, unload to F = 0, retract to the force maximum, separate; as many times as there are cycles."""
@@ -78,7 +82,7 @@ class PullOffExperiment(Scripted[PullOff]):
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule by the model."""
         if scene.noise is not None:
-            return planned_detachment(scene, settings)
+            return planned_detachment(scene, settings, self.given(scene))
         preload, tension = self.given(scene).preload, settings.estimate.pull_off_force()
         if scene.method == "dynamic":
             tensions = [float(-t) for t in np.linspace(0.0, LARGEST_TENSION * tension, TENSIONS + 1)[1:]]
