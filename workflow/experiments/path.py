@@ -65,7 +65,8 @@ class PathExperiment(Scripted[Path]):
         strongest = (ends["deepest"], min(seen, key=lambda s: s.force), ends["final"])
         errors = force_errors(scene, settings, seen, strongest)
         trace = of_states(seen, reduced(scene, settings))
-        other = self._in_half_steps(context, seen)
+        kept = {id(state) for state in seen}
+        other = self._in_half_steps(context, [i for i, state in enumerate(states) if id(state) in kept])
         repeated = {} if other is None else {"instability": [other]}
         results = budgeted(case, trace, errors, sampled=scene.noise is None, repeated=repeated)
         warnings = self._missing(results, scene, phases) | doubts(scene, settings, tuple(reported))
@@ -73,8 +74,8 @@ class PathExperiment(Scripted[Path]):
         tables = {} if scene.noise is None else {"means": _means(settings, reported)}
         return Outcome(results, tuple(reported), ends, phases, warnings, tables=tables)
 
-    def _in_half_steps(self, context: RunContext, seen: Sequence[State]) -> Trace | None:
-        """The same states of a second run with twice as many; None where no particle can move aside.
+    def _in_half_steps(self, context: RunContext, seen: Sequence[int]) -> Trace | None:
+        """The states of these numbers of a second run with twice as many; None where no particle can move aside.
 
         Chains that may buckle along x jump to another equilibrium between two load steps; to which depends on these.
         """
@@ -91,7 +92,7 @@ class PathExperiment(Scripted[Path]):
             phases.append(replace(phase, rows=tuple(rows)))
         with context.aside(deck) as other, other.contact("repeating the path in half the steps") as contact:
             states = contact.replay(phases)[1::2]
-        return of_states(states[-len(seen) :], reduced(scene, deck.settings))
+        return of_states([states[i] for i in seen], reduced(scene, deck.settings))
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """The approach, which is not evaluated, and the positions of the scene; where pairs snap also those between."""
