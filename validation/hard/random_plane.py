@@ -31,7 +31,10 @@ DIMENSIONS = {
     "contact_stiffness": "S", "adhesion_energy": "E", "dissipated_energy": "E", "dissipated_energy_per_cycle": "E",
     "instability_energy": "E", "work_of_separation": "E",
 }  # fmt: skip
-NAMING, GONE = ("lattice", "tolerance", "kink", "input"), ("unknown", "no_peak", "no_zero_load", "no_radius")
+NAMING, GONE = (
+    ("lattice", "tolerance", "kink", "input"),
+    ("unknown", "no_peak", "no_zero_load", "no_radius", "no_energy"),
+)
 """Warnings that give the relative uncertainty of each number they name; those that say that there is none."""
 INSIDE, FARTHEST = 0.98, 3.0
 FOLLOWS = {

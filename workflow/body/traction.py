@@ -32,7 +32,7 @@ BETWEEN = 101
 TIP, KNOWN_TIP, KINK = 1e-3, 1e-9, 0.5
 """A profile has an apex where so little of a spacing off the axis its slope is that share of the one to a spacing; the
 second where the body's own shape is taken, and not what particles make of it."""
-ROUND_OFF = 1e-13
+ROUND_OFF = 2e-12
 """Error of a pressure over the stiffness of the layer: of positions beside the depth of the wall that carries them."""
 INSIDE = 1.0 - 1e-9
 """Of the edge, up to which p is given: round-off."""

@@ -29,7 +29,7 @@ from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import law_error
 from contact1d.workflow.model.reduced import Reduced, reduced
 from contact1d.workflow.model.settings import Settings, SettingsError, settings_for
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Scene, Shape
 
 Array = NDArray[np.float64]
 MARGIN = 1.25
@@ -121,13 +121,20 @@ class Reduction:
     @cached_property
     def inputs(self) -> Values:
         """By name of a result, by how much the bodies that the scene may mean differ from the one that runs, in sum."""
-        bodies, others = self.scene.bodies, []
-        for shape in bodies.profile.alternatives:
-            scene = self.scene.model_copy(update={"bodies": bodies.model_copy(update={"profile": shape})})
-            with suppress(SettingsError):
-                others.append(reduced(scene, replace(self.settings, estimate=settings_for(scene).estimate)))
+        profile, others = self.scene.bodies.profile, []
+        try:
+            others = [self._of_shape(shape) for shape in profile.alternatives]
+        except SettingsError:  # a corner where the edge of an adhesive contact would jump
+            for shape in profile.coarser:
+                with suppress(SettingsError):
+                    others.append(self._of_shape(shape))
         each = [self._apart([other]) for other in others]
         return {name: sum(one[name] for one in each) for name in self.own}
+
+    def _of_shape(self, shape: Shape) -> Reduced:
+        """The model of another body. Raises SettingsError."""
+        scene = self.scene.model_copy(update={"bodies": self.scene.bodies.model_copy(update={"profile": shape})})
+        return reduced(scene, replace(self.settings, estimate=settings_for(scene).estimate))
 
     def _apart(self, models: Sequence[Reduced]) -> Values:
         """How far results of other models are off, at most."""

@@ -15,6 +15,8 @@ from contact1d.workflow.units import Quantity
 SOURCES = ("solver", "sampling", "discretisation", "time", "instability", "statistics", "input", "model")
 """What an error may come from. "input": results that a number is made of; "model": two readings of one quantity."""
 LATTICE = "discretisation"
+LOSSES = ("dissipated_energy", "instability_energy")
+"""Results that begin so are energies that may be 0, and are compared with themselves alone."""
 MODEL = "model"
 
 

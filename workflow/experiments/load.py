@@ -67,15 +67,16 @@ class LoadExperiment(Scripted[Load]):
         carried = float(trace.force[last])
         found = {
             "displacement": Reading(displacement, LENGTH, {"solver": missed}),
-            "force": Reading(carried, FORCE, prescribed=force == 0.0),
+            "force": Reading(carried, FORCE, {"solver": abs(carried - force)}, prescribed=force == 0.0),
         }
         if trace.radius(last):
             rate = radius_rate(trace, last, BRANCH_DISTANCE) or settings.estimate.radius_rate(own)
             radius = trace.radius_or_spot(last) + rate * (displacement - own)
             found["contact_radius"] = Reading(radius, LENGTH, {"solver": abs(rate) * missed})
             if radius > 0.0:
-                pressure = carried / (math.pi * radius**2)
-                found["mean_pressure"] = Reading(pressure, MEAN_PRESSURE, prescribed=force == 0.0)
+                area = math.pi * radius**2
+                errors = {"solver": abs(carried - force) / area}
+                found["mean_pressure"] = Reading(carried / area, MEAN_PRESSURE, errors, prescribed=force == 0.0)
         return found
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:

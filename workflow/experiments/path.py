@@ -19,7 +19,7 @@ from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.marks import unloading
 from contact1d.workflow.continuation.model_branch import UNSEEN
-from contact1d.workflow.continuation.outcome import Outcome, Reading, Result
+from contact1d.workflow.continuation.outcome import LOSSES, Outcome, Reading, Result
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import doubts, require_trust
@@ -69,7 +69,7 @@ class PathExperiment(Scripted[Path]):
         other = self._in_half_steps(context, [i for i, state in enumerate(states) if id(state) in kept])
         repeated = {} if other is None else {"instability": [other]}
         results = budgeted(case, trace, errors, sampled=scene.noise is None, repeated=repeated)
-        warnings = self._missing(results, scene, phases) | doubts(scene, settings, tuple(reported))
+        warnings = self._missing(results, scene, settings, phases) | doubts(scene, settings, tuple(reported))
         warnings |= _buckling(trace, other, settings)
         tables = {} if scene.noise is None else {"means": _means(settings, reported)}
         return Outcome(results, tuple(reported), ends, phases, warnings, tables=tables)
@@ -124,7 +124,9 @@ class PathExperiment(Scripted[Path]):
         """The load steps are the scene's own."""
         return f"Use more steps in experiment.displacements; for a radius also {FINER_SPACING}"
 
-    def _missing(self, results: Mapping[str, Result], scene: Scene, phases: Sequence[Phase]) -> dict[str, str]:
+    def _missing(
+        self, results: Mapping[str, Result], scene: Scene, settings: Settings, phases: Sequence[Phase]
+    ) -> dict[str, str]:
         """Warnings of results that the path does not reach."""
         if not scene.adheres:
             return {}
@@ -133,6 +135,13 @@ class PathExperiment(Scripted[Path]):
             never = "the path never unloads the contact, so it gives no"
             return {"no_peak": f"{never} adhesion_force", "no_zero_load": f"{never} zero_load_radius"}
         warnings = {}
+        lowest, highest = min(scene.experiment.places()), max(scene.experiment.places())
+        jumps = scene.adhesion is not None and lowest < settings.estimate.parted(0.0) and highest > 0.0
+        if jumps and not any(name.startswith(LOSSES) for name in results):
+            warnings["no_energy"] = (
+                "the path has too few load steps to tell what is lost at snap-in or separation: use more steps in "
+                "experiment.displacements"
+            )
         if "adhesion_force" not in results:
             warnings["no_peak"] = (
                 "the tensile force is largest at an end of the last unloading, so the path gives no adhesion_force: "

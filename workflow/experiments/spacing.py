@@ -15,7 +15,7 @@ import numpy as np
 from contact1d.analysis.pressure import Array
 from contact1d.digits import digits_apart
 from contact1d.workflow.continuation.budget import ForceErrors, budgeted
-from contact1d.workflow.continuation.outcome import LATTICE
+from contact1d.workflow.continuation.outcome import LATTICE, LOSSES, Result
 from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import SettingsError, settings_for
@@ -93,13 +93,18 @@ def left_by_lattice(scene: Scene) -> float:
     left = [
         (SQUARED * one.errors[LATTICE] if name in RADII else one.errors[LATTICE], one.size)
         for name, one in results.items()
-        if not one.prescribed or name in RADII
+        if (not one.prescribed or name in RADII) and not _is_lost(name, one)
     ]
     shares = [error / size for error, size in left if size]
     appear = any(
         error for name, one in results.items() if (error := one.errors[LATTICE]) and not one.size and name in RADII
     )
     return max([0.0, *shares, math.inf if appear else 0.0])
+
+
+def _is_lost(name: str, one: Result) -> bool:
+    """Whether a loss is so small that no spacing shows it: it is not reported, and others are not to wait for it."""
+    return name.startswith(LOSSES) and one.errors[LATTICE] > LARGEST * one.size
 
 
 def _spaced(scene: Scene, radius: float, count: int) -> Scene:

@@ -7,14 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from contact1d.workflow.continuation.outcome import LATTICE, MODEL, Outcome, Result, in_words, unmet
+from contact1d.workflow.continuation.outcome import LATTICE, LOSSES, MODEL, Outcome, Result, in_words, unmet
 from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.experiments.experiment import FINER_SPACING
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import FORCE, LENGTH
 
-LOSSES = ("dissipated_energy", "instability_energy")
 UNKNOWN = 0.5
 """Uncertainty over a value above which the value is not reported."""
 

@@ -15,6 +15,7 @@ from contact1d.workflow.scene.profiles import (
     Parabola,
     Power,
     Profile,
+    Shape,
 )
 from contact1d.workflow.scene.quantities import Table
 from contact1d.workflow.scene.read import AnyScene, Scene, read_scene, read_tables, scene_from_dict, scene_to_toml
@@ -45,6 +46,7 @@ __all__ = [
     "Reduction",
     "Scene",
     "SceneError",
+    "Shape",
     "Slide",
     "Span",
     "Table",

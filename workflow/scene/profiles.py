@@ -80,6 +80,11 @@ class Shape(Table):
         return ()
 
     @property
+    def coarser(self) -> tuple[Shape, ...]:
+        """The same with less known of it, in place of an alternative that is no contact."""
+        return ()
+
+    @property
     def steepest(self) -> Self:
         """The steeper one of the two bodies, whose slope and size limit the theory: this one on a plane."""
         return self
@@ -360,6 +365,13 @@ class Measured(Shape):
         if digit := _digit(self.z or ()):
             found.append(self.model_copy(update={"z": ((self.z or ())[0] - 0.5 * digit, *(self.z or ())[1:])}))
         return tuple(found)
+
+    @property
+    def coarser(self) -> tuple[Shape, ...]:
+        """The curve through every second point, or through the others."""
+        r, z = self.r or (), self.z or ()
+        fewer = [((r[0], *r[first:-1:2], r[-1]), (z[0], *z[first:-1:2], z[-1])) for first in (1, 2)]
+        return tuple(self.model_copy(update={"r": r, "z": z}) for r, z in fewer if len(r) >= FEWEST_POINTS)
 
     def _curve(self) -> Any:
         return _spline(self.r or (), self.z or ())
