@@ -130,18 +130,22 @@ class PathExperiment(Scripted[Path]):
         """Warnings of results that the path does not reach."""
         if not scene.adheres:
             return {}
-        marks = {"adhesion_force", "zero_load_radius"}
-        if not any(phase.name.startswith("unloading") for phase in phases) and not marks & results.keys():
-            never = "the path never unloads the contact, so it gives no"
-            return {"no_peak": f"{never} adhesion_force", "no_zero_load": f"{never} zero_load_radius"}
-        warnings = {}
-        lowest, highest = min(scene.experiment.places()), max(scene.experiment.places())
-        jumps = scene.adhesion is not None and lowest < settings.estimate.parted(0.0) and highest > 0.0
-        if jumps and not any(name.startswith(LOSSES) for name in results):
+        warnings, places = {}, scene.experiment.places()
+        jumps = min(places) < settings.estimate.parted(0.0) or places[0] < 0.0
+        if (
+            scene.adhesion is not None
+            and jumps
+            and max(places) > 0.0
+            and not any(name.startswith(LOSSES) for name in results)
+        ):
             warnings["no_energy"] = (
                 "the path has too few load steps to tell what is lost at snap-in or separation: use more steps in "
                 "experiment.displacements"
             )
+        marks = {"adhesion_force", "zero_load_radius"}
+        if not any(phase.name.startswith("unloading") for phase in phases) and not marks & results.keys():
+            never = "the path never unloads the contact, so it gives no"
+            return warnings | {"no_peak": f"{never} adhesion_force", "no_zero_load": f"{never} zero_load_radius"}
         if "adhesion_force" not in results:
             warnings["no_peak"] = (
                 "the tensile force is largest at an end of the last unloading, so the path gives no adhesion_force: "
