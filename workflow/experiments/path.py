@@ -130,14 +130,8 @@ class PathExperiment(Scripted[Path]):
         """Warnings of results that the path does not reach."""
         if not scene.adheres:
             return {}
-        warnings, places = {}, scene.experiment.places()
-        jumps = min(places) < settings.estimate.parted(0.0) or places[0] < 0.0
-        if (
-            scene.adhesion is not None
-            and jumps
-            and max(places) > 0.0
-            and not any(name.startswith(LOSSES) for name in results)
-        ):
+        warnings: dict[str, str] = {}
+        if _passes_jump(scene, settings) and not any(name.startswith(LOSSES) for name in results):
             warnings["no_energy"] = (
                 "the path has too few load steps to tell what is lost at snap-in or separation: use more steps in "
                 "experiment.displacements"
@@ -145,7 +139,8 @@ class PathExperiment(Scripted[Path]):
         marks = {"adhesion_force", "zero_load_radius"}
         if not any(phase.name.startswith("unloading") for phase in phases) and not marks & results.keys():
             never = "the path never unloads the contact, so it gives no"
-            return warnings | {"no_peak": f"{never} adhesion_force", "no_zero_load": f"{never} zero_load_radius"}
+            warnings |= {"no_peak": f"{never} adhesion_force", "no_zero_load": f"{never} zero_load_radius"}
+            return warnings
         if "adhesion_force" not in results:
             warnings["no_peak"] = (
                 "the tensile force is largest at an end of the last unloading, so the path gives no adhesion_force: "
@@ -156,6 +151,14 @@ class PathExperiment(Scripted[Path]):
                 "the force does not cross 0 before separation in the last unloading, so there is no zero_load_radius"
             )
         return warnings
+
+
+def _passes_jump(scene: Scene, settings: Settings) -> bool:
+    """Whether an adhesive contact on a plane is made or lost along the path."""
+    places = scene.experiment.places()
+    if scene.adhesion is None or max(places) <= 0.0:
+        return False
+    return places[0] < 0.0 or min(places) < settings.estimate.parted(0.0)
 
 
 def _buckling(trace: Trace, other: Trace | None, settings: Settings) -> dict[str, str]:
