@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -39,13 +39,13 @@ def draw_panel(axes: Axes, x: Axis, panel: Panel, legend: bool = True) -> None:
     """Draw a panel of a chart over its axis along x."""
     for one in panel.series:
         along, up = x.ended(one.x), panel.y.ended(one.y)
+        look: dict[str, Any] = {"color": one.colour, "alpha": one.opacity, "linewidth": one.width, "label": one.name}
         if one.look == FILL:
-            axes.fill(along, up, color=one.colour, alpha=one.opacity, linewidth=0.0, label=one.name)
+            axes.fill(along, up, **look | {"linewidth": 0.0})
             continue
-        size = 3.0 + one.width / 2.0
-        axes.plot(along, up, one.look, color=one.colour, linewidth=one.width, markersize=size, label=one.name)
+        axes.plot(along, up, one.look, markersize=3.0 + one.width / 2.0, **look)
         if np.any(one.dx) or np.any(one.dy):
-            axes.errorbar(along, up, one.dy, one.dx, fmt="none", ecolor=one.colour, capsize=2, alpha=0.4)
+            axes.errorbar(along, up, one.dy, one.dx, fmt="none", ecolor=one.colour, alpha=0.3)
     for key, axis in (("x", x), ("y", panel.y)):
         axes.set(**{f"{key}scale": "log" if axis.log else "linear", f"{key}lim": axis.view})
         if axis.ticks:
@@ -92,6 +92,8 @@ def plain_axes(figure: Figure) -> Figure:
 
 def save_figure(figure: Figure, path: Path) -> None:
     """Save in the format that the name ends on (png, svg, pdf), whole or not at all."""
-    plain_axes(figure)
+    if layout := plain_axes(figure).get_layout_engine():
+        layout.execute(figure)
+        figure.set_layout_engine(None)  # savefig would draw it twice, to find the layout again
     with whole(path) as part:
         figure.savefig(part, format=path.suffix[1:])

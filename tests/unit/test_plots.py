@@ -24,8 +24,6 @@ ROUND_OFF = 1e-12  # relative; closed forms of a few operations
 GRID = 2e-3  # of F_A; the theory is drawn with 400 points
 PNG = b"\x89PNG\r\n\x1a\n"
 
-BODY_RADIUS, ADHESION, ZERO_LOAD = 1000.0, 1.5, 28.0
-
 
 def profile(depth: float) -> Profile:
     x = np.arange(-60.0, 61.0)
@@ -153,15 +151,17 @@ def test_hertz_is_the_integral_of_the_springs_under_the_parabola(reduction: str,
     np.testing.assert_array_equal(again, force)
 
 
-def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(curve: Columns) -> None:
-    columns = curve.contact_radius, curve.force, LEGS, curve.contact_radius_uncertainty
-    (axis,) = drawn(figures.reduced_radius(*columns, ADHESION, ZERO_LOAD))
-    found = lines(axis)
-    run = found["unloading"]
-    run = run[np.isfinite(run[:, 0])]
-    assert len(run) == 39
-    np.testing.assert_allclose(run[:, 0] * ZERO_LOAD, curve.contact_radius[30:69], rtol=ROUND_OFF)
-    np.testing.assert_allclose(run[:, 1] * ADHESION, curve.force[30:69], rtol=ROUND_OFF)
+def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(tmp_path: Path) -> None:
+    pull = {"kind": "pull_off", "preload": 0.2}
+    tables = chains(50.0, bodies={"particles": 40}, accuracy={"tolerance": 1e-2}, experiment=pull)
+    done = run(scene_from_dict(tables), tmp_path / "run", figures=False)
+    adhesion, zero_load = done.results.adhesion_force.value, done.results.zero_load_radius.value
+    found = lines(done.plot("force_radius").axes[0])
+    points = found["unloading"][np.isfinite(found["unloading"][:, 0])]
+    rows = (done.curve.branch == "unloading") & (done.curve.contact_radius > 0.0)
+    rows = np.flatnonzero(rows)[np.argsort(done.curve.contact_radius[rows])]
+    np.testing.assert_allclose(points[:, 0] * zero_load, done.curve.contact_radius[rows], rtol=ROUND_OFF)
+    np.testing.assert_allclose(points[:, 1] * adhesion, done.curve.force[rows], rtol=ROUND_OFF)
     jkr, barquins = found["JKR"], found["Barquins (2D)"]
     np.testing.assert_allclose(jkr[:, 1], 4.0 * jkr[:, 0] ** 3 - 4.0 * jkr[:, 0] ** 1.5, atol=ROUND_OFF)
     assert jkr[:, 1].min() == pytest.approx(-1.0, abs=GRID)

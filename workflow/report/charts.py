@@ -97,14 +97,8 @@ def _trace(one: Series, x: Axis, y: Axis) -> Data:
         "opacity": one.opacity, "line": {"color": one.colour, "width": 1.4 * one.width, "dash": DASHES.get(look)},
     }  # fmt: skip
     if one.look == FILL:
-        outline = {"width": 0, "color": one.colour}
-        return trace | {
-            "mode": "lines",
-            "fill": "toself",
-            "fillcolor": one.colour,
-            "line": outline,
-            "hoverinfo": "skip",
-        }
+        filled = {"mode": "lines", "fill": "toself", "fillcolor": one.colour, "hoverinfo": "skip"}
+        return trace | filled | {"line": {"width": 0, "color": one.colour}}
     for key, spread in (("error_x", one.dx), ("error_y", one.dy)):
         if np.any(spread):
             trace[key] = {"array": listed(spread), "thickness": 1, "width": 0, "color": one.colour}
@@ -115,10 +109,10 @@ def _trace(one: Series, x: Axis, y: Axis) -> Data:
 def moving(run: Run, states: States) -> list[Chart]:
     """What a slider moves: a mark on the main curve, line loads and bodies; their series have a row for each state."""
     main = path_chart(run.model)
-    x, y, *_ = main_curve(run.model).values()
+    panel, (x, y, *_) = main.panels[0], main_curve(run.model).values()
+    along, up = (replace(axis, remark="") for axis in (main.x, panel.y))
     mark = Series(x[states.rows, None], y[states.rows, None], "state", TENSION, "o", 16.0)
-    half = max(half_width(*state) for state in zip(states.x, states.pressure, strict=True))
-    view = np.abs(states.x).min(axis=0) <= half
+    view = np.abs(states.x).min(axis=0) <= half_width(states.x, states.pressure)
     places = states.x[:, view]
     places = places if np.ptp(places, axis=0).any() else places[0]
 
@@ -131,11 +125,11 @@ def moving(run: Run, states: States) -> list[Chart]:
 
     shear = {"shear": -states.shear} if states.shear.any() else {}
     charts = [
-        Chart(main.x, [replace(main.panels[0], series=[*main.panels[0].series, mark])]),
+        Chart(along, [replace(panel, y=up, series=[*panel.series, mark])]),
         over_x(Axis("line load", LINE_PRESSURE), normal=states.pressure, **shear),
         over_x(Axis("z", LENGTH, ", magnified"), upper=states.z_upper, lower=states.z_lower),
     ]
-    return [chart.written(lambda _, unit: run.scales.base(unit)).written(scale_of) for chart in charts]
+    return [chart.written(run.scales.written) for chart in charts]
 
 
 def path_of(run: Run, states: States) -> Data:
@@ -154,9 +148,12 @@ def path_of(run: Run, states: States) -> Data:
 
 def listed(values: Any) -> list[Any]:
     """Numbers for JSON, in seven digits; None where there is none."""
-    return [
-        listed(one) if np.ndim(one) else float(f"{one:.7g}") if math.isfinite(one) else None for one in values
-    ]  # fmt: skip
+    numbers = np.asarray(values, dtype=np.float64)
+    size = np.where(np.isfinite(numbers) & (numbers != 0.0), np.abs(numbers), 1.0)
+    digits = 10.0 ** (6.0 - np.floor(np.log10(size)))
+    found = (np.round(numbers * digits) / digits).astype(object)
+    found[~np.isfinite(numbers)] = None
+    return list(found.tolist())
 
 
 def _words(text: str) -> str:

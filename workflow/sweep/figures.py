@@ -96,19 +96,16 @@ def _series(lines: Mapping[tuple[str, str], Seeds], label: str, form: str) -> Se
     """The runs as points, of several seeds mean and standard error; or a closed form, in the colour of its runs."""
     labels, forms = (list(dict.fromkeys(part)) for part in zip(*lines, strict=True))
     colour = DARK_TO_LIGHT[labels.index(label) * (len(DARK_TO_LIGHT) - 1) // max(1, len(labels) - 1)]
-    seeds = sorted(lines[label, form].items())
-    x, y = np.asarray([place for place, _ in seeds]), np.asarray([np.mean(values, axis=0)[0] for _, values in seeds])
+    points = []
+    for place, seeds in sorted(lines[label, form].items()):
+        values, spread = np.transpose(seeds)
+        error = values.std(ddof=1) / math.sqrt(values.size) if values.size > 1 else spread[0]
+        points.append((place, values.mean(), error))
+    x, y, dy = np.transpose(points)
     if form:
         look = LOOKS[forms.index(form) % len(LOOKS) - 1] if x.size > 1 else "x"
         return Series(*_dense(x, y), form, colour, look)
-    errors = np.asarray([_error(*np.transpose(values)) for _, values in seeds])
-    return Series(x, y, label or "runs", colour, "o" if len(forms) > 1 else "o:", dy=errors)
-
-
-def _error(values: Array, uncertainties: Array) -> float:
-    """The standard error of several seeds; of one its uncertainty."""
-    several = values.size > 1
-    return float(values.std(ddof=1) / math.sqrt(values.size) if several else uncertainties[0])
+    return Series(x, y, label or "runs", colour, "o" if len(forms) > 1 else "o:", dy=dy)
 
 
 def _spans(values: Collection[float]) -> bool:
