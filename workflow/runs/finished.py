@@ -176,8 +176,9 @@ class Run:
         """Draw a figure, by default the experiment's main one; `.savefig(path)` keeps it.
 
         Args:
-            name: "force_displacement", "force_radius", "pressure", "pressure_3d", "friction", "tangential",
-                "stick_slip", "shear_3d", "detachments" or "samples", as the files in the folder are called.
+            name: "force_displacement", "force_radius", "force_time", "displacement_time", "pressure", "pressure_3d",
+                "friction", "tangential", "stick_slip", "shear_3d", "detachments" or "samples", as the files in the
+                folder are called.
 
         Raises:
             ValueError: the run has no such figure; the message says which it has.
