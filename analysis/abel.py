@@ -28,6 +28,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from contact1d.analysis.polynomial import gauss
 from contact1d.analysis.pressure import Array, spacing_of
 
 NEAR = 0.3
@@ -117,7 +118,7 @@ class LineLoad:
 
 def _of_body(body: Body, r: Array, edge: float) -> Array:
     """(c/π) ∫_0^s h′(x)/x dt at distances r < edge, s² = edge² − r²; its remainder at 0 as a power of t."""
-    node, weight = np.polynomial.legendre.leggauss(NODES)
+    node, weight = gauss(NODES)
     ends = 0.5 ** np.arange(HALVINGS + 1.0)
     middle, half = 0.5 * (ends[:-1] + ends[1:]), 0.5 * (ends[:-1] - ends[1:])
     share = (middle[:, None] + half[:, None] * node).ravel()

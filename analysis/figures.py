@@ -198,7 +198,7 @@ def body(
         r, value, spread = (columns[column][shown] for column in ("r", name, f"{name}_uncertainty"))
         series = lines(theories[state]) if state in theories else []
         series.append(Series(r, value, "this run", COMPRESSION, "o", dy=spread))
-        for (mark, radius), colour in zip(marks[state].items(), (TENSION, BLACK), strict=False):
+        for (mark, radius), colour in zip(marks.get(state, {}).items(), (TENSION, BLACK), strict=False):
             if radius > 0.0:
                 series.append(upright(radius, name=f"{mark} = {radius:.4g} LU", colour=colour))
         panels.append(Panel(Axis(name.replace("_", " "), "FU/LU²", zero=True), series, _state(state), height=2.6))

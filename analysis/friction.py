@@ -12,7 +12,7 @@ within a timestep or two where the plate slips.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,6 +27,8 @@ FEWEST_BLOCKS = 2
 """Periods that a mean needs after the run-in."""
 DROPPED = 1
 """Periods that always belong to the run-in: they hold the path from the start to the first slip."""
+FEWEST_PERIODS = DROPPED + FEWEST_BLOCKS
+"""That a slide needs for a mean."""
 MOST_PAIRED = 4
 """Periods that may be one block, if that leaves so many blocks: slips may repeat after several periods only."""
 FASTER = 2.0
@@ -40,11 +42,27 @@ LONG = 0.45
 
 @dataclass(frozen=True)
 class Mean:
-    """A mean over blocks, half of its interval of 95 %, and the first of the blocks that it is over."""
+    """A mean over blocks.
 
-    value: float
-    error: float
+    Attributes:
+        blocks: that it is over, shape (n,).
+        first: how many before them are the run-in.
+        missed: sampling error of each.
+    """
+
+    blocks: Array
     first: int
+    missed: float = 0.0
+
+    @property
+    def value(self) -> float:
+        """The mean."""
+        return float(self.blocks.mean())
+
+    @property
+    def error(self) -> float:
+        """Half of its interval of 95 %, and what is missed."""
+        return interval(self.blocks) + self.missed
 
 
 @dataclass(frozen=True)
@@ -83,13 +101,12 @@ def mean_of(blocks: Array) -> Mean:
     """The mean after the run-in; the run-in minimises the standard error of the rest, at most half of the blocks.
 
     Raises:
-        ValueError: fewer than DROPPED + FEWEST_BLOCKS blocks.
+        ValueError: fewer than FEWEST_PERIODS blocks.
     """
-    if blocks.size < DROPPED + FEWEST_BLOCKS:
-        raise ValueError(f"a mean needs {DROPPED + FEWEST_BLOCKS} periods, got {blocks.size}")
-    errors = [interval(blocks[first:]) for first in range(DROPPED, blocks.size // 2 + 1)]
-    first = DROPPED + int(np.argmin(errors))
-    return Mean(float(blocks[first:].mean()), errors[first - DROPPED], first)
+    if blocks.size < FEWEST_PERIODS:
+        raise ValueError(f"a mean needs {FEWEST_PERIODS} periods, got {blocks.size}")
+    means = [Mean(blocks[first:], first) for first in range(DROPPED, blocks.size // 2 + 1)]
+    return min(means, key=lambda mean: mean.error)
 
 
 def sampled_mean(time: Array, force: Array, period: float) -> Mean:
@@ -106,13 +123,18 @@ def sampled_mean(time: Array, force: Array, period: float) -> Mean:
     integral = np.concatenate([[0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(time))])
     blocks = block_means(time, integral, period)
     mean = mean_of(blocks)
-    count = blocks.size - mean.first
+    count = mean.blocks.size
     each = max(2, round(period / float(np.median(np.diff(time)))))
     phases = time[-1] - period * count + period / each * np.arange(count * each)
     usual = np.interp(phases, time, force).reshape(count, each).mean(axis=0)
     steps = np.diff(usual, append=usual[0])
     missed = 0.5 * (float(np.abs(steps).max()) + abs(float(np.median(steps)))) / each
-    return Mean(mean.value, mean.error + missed, mean.first)
+    return replace(mean, missed=missed)
+
+
+def standard_error(blocks: Array) -> float:
+    """Of the mean of blocks, shape (n,), by their scatter; a single one, of which that says nothing, may be chance."""
+    return float(blocks.std(ddof=1)) / math.sqrt(blocks.size) if blocks.size > 1 else abs(float(blocks[0]))
 
 
 def interval(blocks: Array) -> float:
@@ -124,7 +146,7 @@ def interval(blocks: Array) -> float:
     while together == 1 or (together <= MOST_PAIRED and blocks.size // together >= MOST_PAIRED):
         whole = blocks[blocks.size % together :]
         means = whole.reshape(whole.size // together, together).mean(axis=1)
-        found = max(found, student(means.size - 1) * float(means.std(ddof=1)) / math.sqrt(means.size))
+        found = max(found, student(means.size - 1) * standard_error(means))
         together *= 2
     half = blocks.size // 2
     drift = 0.5 * abs(float(blocks[-half:].mean() - blocks[:half].mean()))

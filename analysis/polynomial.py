@@ -6,7 +6,7 @@ Positions t are of the order of 1 and counted from a sample, or the coefficients
 from __future__ import annotations
 
 import math
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -120,3 +120,10 @@ def _newton(first: Array, second: Array, low: float, high: float, t: float) -> A
         if not abs(t) < 1.0:
             break
     return np.empty(0)
+
+
+@cache
+def gauss(count: int) -> tuple[Array, Array]:
+    """Nodes and weights of Gauss and Legendre's quadrature over −1..1, (count,) each, kept: they are roots."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    return nodes, weights

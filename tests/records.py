@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import datetime
 import json
 import os
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from validation.age import today
 from validation.doors import machine
 
 SLOW = Path(__file__).parents[1] / "docs" / "slow.json"
@@ -18,7 +18,7 @@ VERDICTS = {"passed": "PASS", "failed": "**FAIL**"}
 
 
 def slow_results() -> dict[str, Any]:
-    """What docs/slow.json holds: outcome, time [s], date and kind of machine of each test, by its name."""
+    """What docs/slow.json holds: outcome, time [s], date, commit and kind of machine of each test, by its name."""
     return dict(json.loads(SLOW.read_text(encoding="utf-8"))) if SLOW.exists() else {}
 
 
@@ -33,7 +33,7 @@ class SlowTests:
         found[report.nodeid] = {
             "outcome": "failed" if report.failed else "passed",
             "seconds": round(report.duration, 1),
-            "date": datetime.date.today().isoformat(),
+            **vars(today()),
             "machine": machine(),
         }
         SLOW.write_text(json.dumps(dict(sorted(found.items())), indent=1) + "\n", encoding="utf-8")

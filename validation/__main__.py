@@ -55,6 +55,15 @@ def pages() -> None:
     write_between(ROOT / "docs" / "performance.md", "speed", speed_table(records["speed"]))
 
 
+@app.command()
+def ages() -> None:
+    """How old each record is: commits that touch the program, and days."""
+    from validation.age import ages as lines
+
+    for line in lines():
+        typer.echo(line)
+
+
 def _conduct(studies: object, out: Path, only: list[str] | None, full: bool, workers: int | None) -> None:
     from validation.page import agreement, duration, number
     from validation.study import RECORD, Study, conduct

@@ -88,10 +88,11 @@ def finish(scenes: Mapping[str, Scene], folder: Path, workers: int) -> None:
 
 
 @contextmanager
-def contact_of(tables: dict[str, Any], folder: Path, **settings: Any) -> Iterator[Contact]:
-    """The contact of a scene, at displacement 0; `settings` in place of the chosen ones."""
+def contact_of(tables: dict[str, Any], folder: Path, **motion: Any) -> Iterator[Contact]:
+    """The contact of a scene, at displacement 0; numbers of its `motion` in place of the chosen ones."""
     scene = scene_from_dict({"title": folder.name} | tables)
-    deck = Deck(scene, replace(settings_for(scene), **settings))
+    settings = settings_for(scene)
+    deck = Deck(scene, replace(settings, motion=replace(settings.motion, **motion)))
     folder.mkdir(parents=True, exist_ok=True)
     write_system(deck, folder)
     with RunContext(deck, folder, Silent(), TIME_LIMIT).contact() as contact:

@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from validation.age import Measured, times
 from validation.doors import rounded, write_whole
 from validation.row import WIDE, Evidence, Row, judged, verdicts
 from validation.study import Answer, Record
@@ -109,8 +110,8 @@ def allowed(row: Row) -> str:
             return f"within {share(row.bound.size, 4)}"
         case "absolute":
             return f"within {_with_unit(number(row.bound.size, 3), row.unit)}"
-        case "at most":
-            return f"at most {reference(row)}"
+        case "at most" | "at least":
+            return f"{row.bound.kind} {reference(row)}"
         case "claim":
             most = f", itself at most {share(row.bound.size)}" if row.bound.size else ""
             return f"within the uncertainty{most}"
@@ -161,22 +162,24 @@ def summary(paper: Record, hard: Record) -> str:
         if (own := [row for row in judged(paper.rows) if row.reference.evidence == name])
     ]
     made = ", ".join(f"{name} {version}" for name, version in paper.versions.items())
+    took = duration(sum(answer.wall_s for answer in hard.answers))
     filled = {
-        "paper": outcome(paper.rows),
-        "hard": agreement(hard.rows),
+        "paper": f"{outcome(paper.rows)} (measured {_when(paper.answers)})",
+        "hard": f"{agreement(hard.rows)} (measured {_when(hard.answers)})",
         "failing": _failing([*paper.answers, *hard.answers]),
         "evidence": table(("reference", "meaning", "rows", "pass", "differ"), counted),
         "studies": studies_table(paper),
-        "classes": table(("class", "what is tested", "rows", "smallest margin"),
+        "differing": _differing(paper),
+        "classes": table(("class", "what is tested", "rows", "smallest margin", "measured"),
                          [_class(answer) for answer in hard.answers]),
-        "made": f"Made with {made}; the hard cases in {duration(hard.wall_s)} on {hard.machine}.",
+        "made": f"Made with {made}; the hard cases took {took}, one after the other, on {hard.machine}.",
     }  # fmt: skip
     return (Path(__file__).parent / "validation.md").read_text(encoding="utf-8").format(**filled)
 
 
 def studies_table(record: Record) -> str:
-    """A row for each study: its name, what was asked, what came out, the verdict."""
-    return table(("study", "asked", "result", "verdict"), [_study(answer) for answer in record.answers])
+    """A row for each study: its name, what was asked, what came out, the verdict, when."""
+    return table(("study", "asked", "result", "verdict", "measured"), [_study(answer) for answer in record.answers])
 
 
 def speed_table(record: Record) -> str:
@@ -186,7 +189,7 @@ def speed_table(record: Record) -> str:
         for one in record.answers
         for row in one.rows
     ]
-    return table(("study", "measured", "found", "asked"), rows)
+    return f"{table(('study', 'measured', 'found', 'asked'), rows)}\nMeasured {_when(record.answers)}.\n"
 
 
 def write_between(page: Path, name: str, text: str) -> None:
@@ -199,24 +202,42 @@ def write_between(page: Path, name: str, text: str) -> None:
     write_whole(page, before + begin + text + end + after)
 
 
-def _study(answer: Answer) -> tuple[str, str, str, str]:
+def _when(answers: Sequence[Answer]) -> str:
+    return times(Measured(answer.date, answer.commit) for answer in answers)
+
+
+def _differing(record: Record) -> str:
+    """What the paper says and this program does not find: as the paper has it, as it is here, and why."""
+    rows = [
+        (f"`{answer.name}`", row.name, allowed(row) if row.bound.kind == "at least" else reference(row),
+         measured(row.value, row.uncertainty, row.unit), row.known.source)
+        for answer in record.answers
+        for row in judged(answer.rows)
+        if row.known and row.reference.evidence in ("printed value", "paper's words")
+    ]  # fmt: skip
+    return table(("study", "statement", "in the paper", "here", "since"), rows)
+
+
+def _study(answer: Answer) -> tuple[str, ...]:
     words, own = outcome(answer.rows), judged(answer.rows)
     off = [row for row in own if row.bound.kind in ("relative", "claim") and row.reference.value and not row.known]
     if off and math.isfinite(worst := worst_deviation(off)):
         words += f"; worst deviation {share(worst)}"
     found = {row.verdict for row in own}
-    verdict = next((word for word in ("FAIL", "PASS") if word in found), "DIFFERS")
-    return f"`{answer.name}`", answer.title, words, f"**{verdict}**" if verdict == "FAIL" else verdict
+    verdict = next((word for word in ("FAIL", "DIFFERS") if word in found), "PASS")
+    badge = f"**{verdict}**" if verdict == "FAIL" else verdict
+    return f"`{answer.name}`", answer.title, words, badge, _when([answer])
 
 
-def _class(answer: Answer) -> tuple[str, str, str, str]:
+def _class(answer: Answer) -> tuple[str, ...]:
     margins = [row.margin for row in answer.rows if math.isfinite(row.margin)]
     rows = f"{len(verdicts(answer.rows, 'PASS'))} of {len(answer.rows)}"
     return (
         f"`{answer.name}`",
         f"{answer.title}: {answer.question}",
         rows,
-        number(min(margins), 3) if margins else "exact",
+        number(min(margins), 3) if margins else "nothing off",
+        _when([answer]),
     )
 
 

@@ -5,6 +5,7 @@ The two agree where
     |value − reference| ≤ size                   "absolute"
     |value − reference| ≤ uncertainty            "claim": what the run states (at most size · |reference|, if size > 0)
     value ≤ reference                            "at most"
+    value ≥ reference                            "at least"
 PASS: they agree. FAIL: they don't, there is no number, or a run that the row rests on has a warning that the row does
 not answer. A row that is known to differ, a limit of the model, has a bound of its own: DIFFERS where the value is
 within a margin of what the difference is known to be; FAIL elsewhere, and FAIL where it agrees after all.
@@ -18,7 +19,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
 Evidence = Literal["closed form", "independent solver", "printed value", "paper's words", "set bound"]
-Kind = Literal["relative", "absolute", "claim", "at most"]
+Kind = Literal["relative", "absolute", "claim", "at most", "at least"]
 Verdict = Literal["PASS", "FAIL", "DIFFERS"]
 Standing = Literal["judged", "repeats", "by construction"]
 MEASURED = ("value", "uncertainty")
@@ -116,7 +117,12 @@ class Row:
     @property
     def off(self) -> float:
         """What is compared with `allowed`."""
-        return self.value if self.bound.kind == "at most" else abs(self.value - self.reference.value)
+        match self.bound.kind:
+            case "at most":
+                return self.value
+            case "at least":
+                return self.reference.value
+        return abs(self.value - self.reference.value)
 
     @property
     def allowed(self) -> float:
@@ -130,6 +136,8 @@ class Row:
                 return self.uncertainty
             case "at most":
                 return self.reference.value
+            case "at least":
+                return self.value
 
     @property
     def margin(self) -> float:

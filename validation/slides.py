@@ -22,25 +22,25 @@ def slide_model(scene: Scene, settings: Settings, beyond: int = 0) -> SlideModel
     def row(count: int, spacing: float) -> Array:
         return np.asarray((np.arange(count) - 0.5 * (count - 1)) * spacing, dtype=np.float64)
 
-    below, along = row(settings.lower_particles + beyond, bodies.spacing), row(settings.particles, bodies.own_spacing)
-    height = settings.rest + bodies.profile.height(along)
+    below, along = row(settings.chains.lower + beyond, bodies.spacing), row(settings.chains.upper, bodies.own_spacing)
+    height = settings.forces.rest + bodies.profile.height(along)
     upper = np.column_stack([along + start_offset(scene, settings), height])
     return SlideModel(
         lower=np.column_stack([below, np.zeros_like(below)]),
         upper=upper,
         law=law_of(scene),
-        cutoff=settings.cutoff,
+        cutoff=settings.forces.cutoff,
         normal_stiffness=scene.bulk_stiffness,
         tangential_stiffness=scene.tangential_stiffness,
         mass=bodies.mass,
-        plate_mass=settings.plate_mass,
-        drag=settings.damping,
-        plate_drag=settings.plate_damping,
+        plate_mass=settings.motion.plate_mass,
+        drag=settings.motion.damping,
+        plate_drag=settings.motion.plate_damping,
         cantilever_stiffness=scene.cantilever.stiffness,
         velocity=scene.cantilever.velocity,
         normal_force=scene.experiment.normal_force,
         rigid=bodies.lower == "rigid_chain",
-        period=settings.lower_particles * bodies.spacing if bodies.periodic else 0.0,
+        period=settings.chains.lower * bodies.spacing if bodies.periodic else 0.0,
         neighbours=0.0 if scene.neighbours is None else scene.neighbours.stiffness,
     )
 
@@ -53,9 +53,9 @@ def integrated(scene: Scene, settings: Settings) -> Trace:
     """All legs by the independent integrator, in the program's timesteps, measured where the program measures."""
     _, _, amplitude, reach = law_of(scene)
     body = Integrator(slide_model(scene, settings))
-    body.settle(settings.time_step, RESIDUAL * amplitude / reach, drag=settings.calm_damping)
+    body.settle(settings.motion.time_step, RESIDUAL * amplitude / reach, drag=settings.motion.calm_damping)
     legs, drive, time, impulse = [], 0.0, 0.0, 0.0
-    for leg in settings.drive:
+    for leg in settings.motion.drive:
         trace = body.run(leg.rows * leg.steps, leg.time_step, leg.velocity, start=drive, every=leg.steps)
         drive += leg.velocity * leg.rows * leg.row_time
         legs.append(replace(trace, time=time + trace.time, impulse=impulse + trace.impulse))

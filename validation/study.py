@@ -7,7 +7,6 @@ ends; studies of the same versions that were not asked for stay in it.
 
 from __future__ import annotations
 
-import datetime
 import json
 import math
 import multiprocessing
@@ -24,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from validation import doors
+from validation.age import today
 from validation.doors import Quantity, Run, Scene
 from validation.figures import Drawing, Panel, Series, figure, save
 from validation.row import Bound, Reference, Row, at_most, verdicts
@@ -189,7 +189,7 @@ class Study:
 
 @dataclass(frozen=True)
 class Answer:
-    """A study that was measured, as a record holds it; `form` is "full" or "quick"."""
+    """A study that was measured, as a record holds it; `form` is "full" or "quick", `commit` as in `validation.age`."""
 
     name: str
     title: str
@@ -201,6 +201,7 @@ class Answer:
     form: str
     date: str
     wall_s: float
+    commit: str = ""
 
 
 @dataclass(frozen=True)
@@ -317,10 +318,10 @@ def answered(study: Study, folder: Path, full: bool) -> Answer:
         file = f"{study.name}{'_' * bool(suffix)}{suffix}.png"
         save(drawing, folder / file)
         captions[file] = drawing.caption
-    count = len(study.scenes(bench.paper)) if study.scenes else 0
+    count, now = len(study.scenes(bench.paper)) if study.scenes else 0, today()
     return Answer(
         study.name, study.title, study.question, found.text, captions, list(found.rows), count,
-        "full" if full else "quick", datetime.date.today().isoformat(), time.perf_counter() - started,
+        "full" if full else "quick", now.date, time.perf_counter() - started, now.commit,
     )  # fmt: skip
 
 

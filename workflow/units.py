@@ -65,7 +65,7 @@ IN_WORDS = re.compile(
 )
 """A number with a unit of the model in a text, "1.5 FU/LU" or "1.5 (FU/LU)"; or that unit alone, in brackets."""
 DIGITS = 4
-"""Of a number in a text."""
+"""Of a number in a text, at least."""
 EXACTNESS = 1e-8
 """A relative uncertainty below it, as of a unit that was given, is left out."""
 
@@ -80,10 +80,10 @@ def scale_of(value: float, unit: str) -> tuple[float, str]:
     return 1000.0**-power, PREFIXES[power - FIRST].strip() + unit
 
 
-def prefixed(value: float, unit: str) -> str:
-    """A value [`unit` of SI] with four digits and a prefix: `2.356 µN`."""
+def prefixed(value: float, unit: str, digits: int = DIGITS) -> str:
+    """A value [`unit` of SI] with so many digits and a prefix: `2.356 µN`."""
     factor, name = scale_of(value, unit)
-    return f"{value * factor:.4g} {name}"
+    return f"{value * factor:.{digits}g} {name}"
 
 
 @cache
@@ -257,7 +257,8 @@ class Scales:
             if not value:
                 return found[0].replace(unit, self.base(unit)[1])
             factor, name = self.written(value, unit)
-            return f"{value * factor:.{DIGITS}g} {name}"
+            digits = len(re.sub(r"e.*|\D", "", number).lstrip("0"))
+            return f"{value * factor:.{max(DIGITS, digits)}g} {name}"
 
         return IN_WORDS.sub(shown, text)
 

@@ -22,6 +22,7 @@ from functools import lru_cache
 import numpy as np
 
 from contact1d.analysis.theory.indenters import Contact, PowerLaw, require_positive
+from contact1d.digits import apart
 
 LENNARD_JONES_STRESS = 16.0 / (9.0 * math.sqrt(3.0))
 """1.026: the force maximum of the 9-3 surface law of Lennard-Jones over W/z_0; taken as sigma_0."""
@@ -253,14 +254,12 @@ def valid_theory(tabor: float, reduced_load: float) -> Verdict:
     jkr = contacts[Theory.JKR].pull_off_force()
     largest = max(jkr, contacts[Theory.DMT if usual is Theory.DMT else Theory.MAUGIS].pull_off_force())
     if reduced_load < -largest:
-        return Verdict(
-            Theory.APART, f"a tension of {-reduced_load:.3g} πWR exceeds the pull-off force {largest:.3g} πWR"
-        )
+        found, limit = apart(-reduced_load, largest)
+        return Verdict(Theory.APART, f"a tension of {found} πWR exceeds the pull-off force {limit} πWR")
     compression = tabor * math.cbrt(0.75 * math.pi * (reduced_load + 2.0)) ** 2
     if compression < RIGID_COMPRESSION:
-        return Verdict(
-            Theory.RIGID, f"the compression is {compression:.2g} z₀, less than {RIGID_COMPRESSION}: F_A = 2πWR"
-        )
+        found, limit = apart(compression, RIGID_COMPRESSION, 2)
+        return Verdict(Theory.RIGID, f"the compression is {found} z₀, less than {limit}: F_A = 2πWR")
     if reduced_load > 0.0:
         share = (contacts[usual].contact_radius(reduced_load) ** 3 - reduced_load) / reduced_load
         if share < HERTZ_ADHESION_SHARE:
@@ -268,9 +267,9 @@ def valid_theory(tabor: float, reduced_load: float) -> Verdict:
                 Theory.HERTZ, f"attraction adds {share:.1%} to the load, less than {HERTZ_ADHESION_SHARE:.0%}"
             )
     if usual is Theory.JKR and reduced_load >= -jkr:
-        return Verdict(usual, f"{tabor:.3g} is above {JKR_TABOR:g}: the range is negligible")
+        return Verdict(usual, f"{apart(tabor, JKR_TABOR)[0]} is above {JKR_TABOR:g}: the range is negligible")
     if usual is Theory.DMT:
-        return Verdict(usual, f"{tabor:.3g} is below {DMT_TABOR:g}: attraction deforms little")
+        return Verdict(usual, f"{apart(tabor, DMT_TABOR)[0]} is below {DMT_TABOR:g}: attraction deforms little")
     reason = f"{tabor:.3g} is between {DMT_TABOR:g} and {JKR_TABOR:g}: neither DMT nor JKR"
     if usual is Theory.JKR:
         reason = "the tension exceeds JKR's pull-off force, 1.5 πWR, and not yet that of a finite range"

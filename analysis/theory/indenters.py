@@ -24,6 +24,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.analysis.polynomial import gauss
+
 Floats = NDArray[np.float64]
 RIM = 1.0 - 1e-12
 """Of the radius of a whole sphere, up to which its contact is sought: at the rim there is no bound."""
@@ -282,7 +284,7 @@ class Ellipsoid(Contact):
 
         By quadrature: the first part has no elementary form.
         """
-        nodes, weights = np.polynomial.legendre.leggauss(POINTS)
+        nodes, weights = gauss(POINTS)
         half, a = 0.5 * contact_radius, contact_radius
         places = half * (nodes + 1.0)
         rate = float(weights @ [self._rate(float(x)) / x for x in places])

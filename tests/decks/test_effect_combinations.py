@@ -216,7 +216,7 @@ def run_a_little(scene: Scene, case: Case, folder: Path) -> None:
 def test_sets_with_long_bonds_run(make_scene: MakeScene, tmp_path: Path, case: Case, tangential: float) -> None:
     """Normal and tangential stiffness differ, either way."""
     scene = scene_of(make_scene, case, bulk_stiffness_tangential=tangential)
-    assert settings_for(scene).far > 0
+    assert settings_for(scene).chains.far > 0
     run_a_little(scene, case, tmp_path)
 
 

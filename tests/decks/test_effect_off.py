@@ -95,7 +95,7 @@ class Unchecked(Deck):
 def decks(scene: Scene, effect: str) -> tuple[str, str]:
     """The deck with and without an effect; same settings, same schedule."""
     settings: Settings = settings_for(scene)
-    fewer = replace(settings, far=0.0) if effect == "horizontal" else settings
+    fewer = replace(settings, chains=replace(settings.chains, far=0.0)) if effect == "horizontal" else settings
     phases = planned(scene, settings)
     short = phases
     if effect == "cantilever":
@@ -213,6 +213,6 @@ def test_no_attraction_in_the_table_without_attraction(make_scene: MakeScene, tm
     settings = settings_for(adhesive)
     heads = Deck(scene, settings_for(scene)).head, Deck(adhesive, settings).head
     assert numbers.sub("…", heads[0]) == numbers.sub("…", heads[1])
-    assert settings.table is not None
-    write_table(settings.table, settings.closest, tmp_path / "adhesive.table")
+    assert settings.forces.table is not None
+    write_table(settings.forces.table, settings.forces.closest, tmp_path / "adhesive.table")
     assert (tmp_path / "adhesive.table").read_text().split("DOUBLE")[0].count("exp(") == 2

@@ -67,12 +67,12 @@ def test_a_kicked_particle_swings_and_comes_to_rest_as_its_drag_says(
     lower = slice(0, PARTICLES)  # whose anchors stand still
     start = session.atoms("x")["x"][lower, 2]
     session.execute(f"velocity particles set 0.0 0.0 {KICK}")
-    stride = round(1.0 / deck.settings.time_step)
+    stride = round(1.0 / deck.settings.motion.time_step)
     found = []
     for _ in range(TIMES):
         session.execute(f"run {stride} post no")
         found.append(float(np.mean(session.atoms("x")["x"][lower, 2] - start)))
-    time = deck.settings.time_step * stride * np.arange(1, TIMES + 1)
+    time = deck.settings.motion.time_step * stride * np.arange(1, TIMES + 1)
     decay = 0.5 * DRAG / MASS
     omega = math.sqrt(STIFFNESS / MASS - decay**2)
     exact = KICK / omega * np.exp(-decay * time) * np.sin(omega * time)
@@ -105,4 +105,4 @@ def test_the_stiffest_motion_is_stable(stiffness: float, neighbours: float) -> N
     law = PairInteraction(Exponential(*LAW[:2]), Exponential(*LAW[2:]))
     pair = -float(law.force_slope(np.asarray(law.force_free_distance())))
     stiffest = stiffness + 4.0 * neighbours + 2.0 * pair
-    assert settings.time_step * math.sqrt(stiffest / MASS) < STABLE
+    assert settings.motion.time_step * math.sqrt(stiffest / MASS) < STABLE

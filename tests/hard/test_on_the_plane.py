@@ -120,7 +120,7 @@ def energies(contact: ReducedContact) -> tuple[float, float, float]:
     return -snapped, parted, parted - rested
 
 
-@pytest.mark.parametrize("steps", [40, 300])
+@pytest.mark.parametrize("steps", [40, 1000])
 @pytest.mark.parametrize(
     ("ends", "returns"), [((-1.0, 1.0), False), ((1.0, -1.0), False), ((-1.0, 1.0), True), ((-0.05, 1.0), True)]
 )

@@ -98,7 +98,7 @@ def test_a_single_pair_under_a_steep_body_runs(tmp_path: Path) -> None:
     deck = Deck(scene, settings_for(scene))
     assert "bin_edge" in deck.head
     done = run(scene, tmp_path / "run", figures=False)
-    pair = settings_for(scene).law
+    pair = settings_for(scene).forces.law
     assert pair is not None
     distance = done.outcome.states[-1].smallest_distance
     assert float(pair.force(distance)) == pytest.approx(0.3, rel=CLAIMED)

@@ -45,9 +45,8 @@ def test_a_long_chain_has_few_bins(make_scene: MakeScene) -> None:
     """LAMMPS bins the whole box, and the plate's anchors widen it with the chain's length."""
     scene = make_scene(experiment=LOAD, **TIMED)
     short = settings_for(scene)
-    texts = [
-        Deck(scene, replace(short, particles=count)).text(planned(scene, short)) for count in (short.particles, 10**6)
-    ]
+    long = replace(short, chains=replace(short.chains, upper=10**6, lower=10**6))
+    texts = [Deck(scene, settings).text(planned(scene, short)) for settings in (short, long)]
     assert "binsize" not in texts[0]
     found = re.search(r"variable\s+wide_bin index (\S+)", texts[1])
     assert found is not None
@@ -79,7 +78,7 @@ def test_a_plate_that_swings_past_a_tooth_has_no_pull_off_force(tmp_path: Path) 
     """With little drag it loses pairs that it would have held: F_A is uncertain by more than half, and not reported."""
     case = PairCase("tooth", 1.5, shaped("parabola", 9, reach(1.5)), 9, 3.0 * TENSION, 1e-2, dynamic=True)
     tables = {"title": "tooth"} | case.scene()
-    drag = 0.1 * settings_for(scene_from_dict(tables)).damping
+    drag = 0.1 * settings_for(scene_from_dict(tables)).motion.damping
     tables |= {"damping": {"coefficient": drag}, "plate": {"damping": 0.0}}
     with pytest.raises(RunError, match=r"not reported.*adhesion_force \(± 0\.05"):
         run(scene_from_dict(tables), tmp_path / "run", figures=False)

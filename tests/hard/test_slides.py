@@ -35,8 +35,8 @@ def test_there_and_back_with_a_rest_is_the_motion_of_the_integrator(tmp_path: Pa
     scene = scene.with_({"bodies.upper_offset": start_offset(scene, settings)})
     found = run(scene, tmp_path / "run", figures=False)
     body, drive, friction = Integrator(slide_model(scene, settings)), 0.0, []
-    body.settle(settings.time_step, 1e-6)
-    for leg in settings.drive:
+    body.settle(settings.motion.time_step, 1e-6)
+    for leg in settings.motion.drive:
         trace = body.run(leg.rows * leg.steps, leg.time_step, leg.velocity, start=drive, every=leg.steps)
         drive += leg.velocity * leg.rows * leg.row_time
         friction.append(trace.friction)

@@ -58,8 +58,10 @@ def carried(scene: Scene) -> tuple[float, float]:
     near, far = terms.repulsion, terms.attraction
     law = PairInteraction(Exponential(near.amplitude, near.range), Exponential(far.amplitude, far.range))
     settings = settings_for(scene)
-    heights = scene.bodies.height(ChainModel(settings.particles, 1.0, law, radius=1.0).places() * scene.bodies.spacing)
-    model = ChainModel(settings.particles, scene.bulk_stiffness, law, heights=heights, spacing=scene.bodies.spacing)
+    heights = scene.bodies.height(
+        ChainModel(settings.chains.upper, 1.0, law, radius=1.0).places() * scene.bodies.spacing
+    )
+    model = ChainModel(settings.chains.upper, scene.bulk_stiffness, law, heights=heights, spacing=scene.bodies.spacing)
     solver, core, worst = ChainSolver(model), float(law.force(np.zeros(1))[0]), 0.0
     load = scene.experiment.compression
     assert load is not None

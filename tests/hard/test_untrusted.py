@@ -10,8 +10,9 @@ from typing import Any
 import pytest
 
 from contact1d import RunError
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.scene import scene_from_dict
+from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import LAW, chains
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
@@ -62,18 +63,23 @@ def test_no_number_comes_out(name: str, tmp_path: Path) -> None:
     assert {"in.lammps", "system.data", "log.lammps"} <= {path.name for path in (tmp_path / "run").iterdir()}
 
 
-def spoil(monkeypatch: pytest.MonkeyPatch, **numbers: float) -> None:
-    """Give a run settings that no scene can ask for."""
+def spoil(monkeypatch: pytest.MonkeyPatch, record: str, **numbers: float) -> None:
+    """Give a run settings that no scene can ask for, in one of their records."""
     from dataclasses import replace
 
     from contact1d.workflow.runs import campaign
 
     choose: Callable[..., Any] = campaign.settings_for
-    monkeypatch.setattr(campaign, "settings_for", lambda scene: replace(choose(scene), **numbers))
+
+    def spoilt(scene: Scene) -> Settings:
+        chosen = choose(scene)
+        return replace(chosen, **{record: replace(getattr(chosen, record), **numbers)})
+
+    monkeypatch.setattr(campaign, "settings_for", spoilt)
 
 
 def test_a_time_step_that_explodes_is_no_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    spoil(monkeypatch, time_step=50.0)
+    spoil(monkeypatch, "motion", time_step=50.0)
     scene = tables({"kind": "load", "force": 0.3, "method": "dynamic"}, plate={}, damping={"coefficient": "auto"})
     with pytest.raises(RunError, match=r"finite|left the box|went through|LAMMPS stopped"):
         run(scene_from_dict(scene), tmp_path / "run", figures=False)
@@ -106,13 +112,13 @@ def test_particles_closer_than_the_table_was_chosen_for_get_a_warning(
     scene = tables({"kind": "path", "displacements": [0.0, 1.7]})  # one leap: the rows between are the program's
     results = run(scene_from_dict(scene), tmp_path / "run", figures=False).document
     assert "table_core" not in doubts(results)
-    spoil(monkeypatch, table_from=0.1)
+    spoil(monkeypatch, "forces", table_from=0.1)
     results = run(scene_from_dict(scene), tmp_path / "run", figures=False).document
     assert "table_core" in doubts(results)
 
 
 def test_atoms_that_fly_apart_are_no_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    spoil(monkeypatch, damping=1e4)  # over the time step it takes away many times the momentum that there is
+    spoil(monkeypatch, "motion", damping=1e4)  # over the time step it takes away many times the momentum that there is
     scene = tables({"kind": "load", "force": 0.3, "method": "dynamic"}, plate={}, damping={"coefficient": "auto"})
     with pytest.raises(RunError, match=r"left the box|missing"):
         run(scene_from_dict(scene), tmp_path / "run", figures=False)

@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Callable
 from dataclasses import fields, replace
+from operator import attrgetter
 from pathlib import Path
 
 import pytest
@@ -52,23 +53,30 @@ def test_all_shares_together_keep_the_tolerance_in_every_scene() -> None:
     assert max(row.error for row in together) <= 1.0
 
 
-@pytest.mark.parametrize(("share", "field"), [("residual", "force_tolerance"), ("smooth_increment", "smooth_step")])
+@pytest.mark.parametrize(
+    ("share", "field"), [("residual", "forces.residual"), ("smooth_increment", "increments.smooth_step")]
+)
 def test_settings_follow_their_share(share: str, field: str, make_scene: MakeScene) -> None:
     scene = make_scene()
     double = replace(CALIBRATION, **{share: 2.0 * getattr(CALIBRATION, share)})
-    assert getattr(settings_for(scene, calibration=double), field) == 2.0 * getattr(settings_for(scene), field)
+    chosen = attrgetter(field)
+    assert chosen(settings_for(scene, calibration=double)) == 2.0 * chosen(settings_for(scene))
 
 
 def test_a_longer_share_of_the_law_or_of_the_pressure_shortens(make_scene: MakeScene) -> None:
     scene = make_scene(bodies={"particles": "auto"})
     usual = settings_for(scene)
-    assert settings_for(scene, calibration=replace(CALIBRATION, cutoff=10.0 * CALIBRATION.cutoff)).cutoff < usual.cutoff
     assert (
-        settings_for(scene, calibration=replace(CALIBRATION, chain=100.0 * CALIBRATION.chain)).particles
-        < usual.particles
+        settings_for(scene, calibration=replace(CALIBRATION, cutoff=10.0 * CALIBRATION.cutoff)).forces.cutoff
+        < usual.forces.cutoff
+    )
+    assert (
+        settings_for(scene, calibration=replace(CALIBRATION, chain=100.0 * CALIBRATION.chain)).chains.upper
+        < usual.chains.upper
     )
     fine, rough = (
-        settings_for(scene, calibration=replace(CALIBRATION, table=f * CALIBRATION.table)).table for f in (1e-4, 1.0)
+        settings_for(scene, calibration=replace(CALIBRATION, table=f * CALIBRATION.table)).forces.table
+        for f in (1e-4, 1.0)
     )
     assert fine is not None
     assert rough is not None

@@ -166,7 +166,7 @@ def test_the_like_of_jkr_beside_other_profiles(profile: str, name: str) -> None:
 
 
 def test_maugis_and_dugdale_beside_a_range() -> None:
-    """At the Tabor parameter 50 they are JKR within 1 %; at 0.5 they are not, and DMT's pull-off is nearer."""
+    """At the Tabor parameter 50 they are JKR within 1 %; at 0.05 they are not, and DMT's pull-off is nearer."""
     work = 0.01
     for tabor, factor in ((50.0, 1.5), (0.05, 2.0)):
         span = (R * (work / E) ** 2) ** (1.0 / 3.0) / tabor
@@ -174,8 +174,11 @@ def test_maugis_and_dugdale_beside_a_range() -> None:
                        bodies={"profile": PROFILES["parabola"], "spacing": 2.0, "lower": "rigid_plane"},
                        adhesion={"work_of_adhesion": work, "range": span})  # fmt: skip
         of = Case(scene_from_dict(scene), {})
-        jkr, maugis = applying(of)
+        jkr, maugis, *others = applying(of)
         assert maugis.name == "Maugis and Dugdale"
+        assert [(one.name, one.values(of)["adhesion_force"] / (math.pi * work * R)) for one in others] == (
+            [] if tabor > 5.0 else [("DMT", pytest.approx(2.0))]
+        )
         assert f"the Tabor parameter is {tabor:.3g}" in maugis.applies(of)
         assert maugis.values(of)["adhesion_force"] == pytest.approx(factor * math.pi * work * R, rel=LIMIT)
         near = abs(maugis.values(of)["zero_load_radius"] / jkr.values(of)["zero_load_radius"] - 1.0) < LIMIT

@@ -38,7 +38,7 @@ displacements = { from = 0.0, to = 0.5, steps = 2 }
 def test_a_variant_that_fails_is_listed_and_does_not_stop_the_others(make_scene: MakeScene, tmp_path: Path) -> None:
     scene = make_scene(bodies={"particles": "auto"})
     usual = settings_for(scene)
-    loose = replace(usual, force_tolerance=1e3)
+    loose = replace(usual, forces=replace(usual.forces, residual=1e3))
     ready = {"loose": (scene, loose), "usual": (scene, usual)}
     done = measure(ready, tmp_path, repeats=2, workers=1, progress=Silent())
     assert "not converged" in done["loose"].failure

@@ -15,8 +15,8 @@ from tests.sweeps import BROKEN
 
 MakeScene = Callable[..., Scene]
 STEEL = {"youngs_modulus": 210e9, "poisson_ratio": 0.3}
-SHORT = 800
-"""Characters that a run shows of itself; it has hundreds of thousands of numbers."""
+SHORT = 1200
+"""Characters that a run shows of itself, sentences of warnings among them; it has hundreds of thousands of numbers."""
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +63,8 @@ def test_a_run_shows_itself_in_a_few_lines(finished: Run) -> None:
     assert "done" in first
     assert str(finished.folder) in first
     assert any("adhesion_force" in line and str(finished.results.adhesion_force) in line for line in rest)
+    assert finished.warnings
+    assert all(f"warning {name}: {message}" in shown for name, message in finished.warnings.items())
     assert "a &lt;b&gt; &amp; c: done" in finished._repr_html_()
     assert "<b>" not in finished._repr_html_()
 

@@ -10,20 +10,21 @@ import pytest
 
 from contact1d.analysis.friction import block_means, mean_of, sampled_mean
 from contact1d.workflow.experiments.motion import Motion
-from contact1d.workflow.experiments.slide import is_steady
+from contact1d.workflow.experiments.series import Series
 from contact1d.workflow.model.dynamics import DriveLeg
 
 PERIODS, VELOCITY = 12, 0.5
 
 
 MASS = 2.0
-SPACED = SimpleNamespace(bodies=SimpleNamespace(spacing=1.0, mass=MASS), cantilever=SimpleNamespace(stiffness=0.5))
+SPACED: Any = SimpleNamespace(bodies=SimpleNamespace(spacing=1.0, mass=MASS), cantilever=SimpleNamespace(stiffness=0.5))
 """A scene, as far as it is asked."""
 
 
 def weighing(plate: float) -> Any:
     """Settings, as far as they are asked: of a plate so heavy [MU] and three particles."""
-    return SimpleNamespace(plate_mass=plate, particles=3)
+    leg = DriveLeg(rows=40 * PERIODS, steps=10, velocity=VELOCITY, time_step=0.005)
+    return SimpleNamespace(motion=SimpleNamespace(plate_mass=plate, drive=(leg,)), chains=SimpleNamespace(upper=3))
 
 
 def test_a_mean_leaves_the_run_in_out() -> None:
@@ -33,27 +34,25 @@ def test_a_mean_leaves_the_run_in_out() -> None:
     assert found.first == 3
 
 
-def moved(place: Any, leg: DriveLeg) -> Motion:
+def moved(share: float, plate: float = 1.0) -> Motion:
+    """A plate that lags behind its drive, under a constant friction of 1 FU."""
     time = np.linspace(0.0, PERIODS / VELOCITY, 40 * PERIODS + 1)
-    none = np.zeros_like(time)
-    legs = np.zeros(time.size, dtype=np.int64)
-    return Motion((leg,), legs, time, VELOCITY * time, place(time), none, none, time, none, none, none, none, none)
+    columns = {"time": time, "drive": VELOCITY * time, "plate_x": share * VELOCITY * time, "friction": 1.0 + 0.0 * time}
+    series = Series(columns, {"friction": time}, smooth=True)
+    return Motion(SPACED, weighing(plate), series, {})
 
 
 @pytest.mark.parametrize(("share", "steady"), [(1.0, True), (0.95, True), (0.5, False)])
 def test_a_plate_that_falls_behind_the_drive_does_not_slide_steadily(share: float, steady: bool) -> None:
-    leg = DriveLeg(VELOCITY, 40 * PERIODS, 10, 0.005)
-    told = is_steady(SPACED, weighing(1.0), moved(lambda time: share * VELOCITY * time, leg))
+    told = moved(share).unsteady
     assert (told == "") == steady
     assert "has a period of" not in told
 
 
 def test_a_plate_that_swings_for_longer_than_the_way_is_named_as_why() -> None:
     """2π √((M + N m)/k) against 12 periods of 2 TU: the threshold is 0.5 (24/2π)² = 7.295 MU in all."""
-    leg = DriveLeg(VELOCITY, 40 * PERIODS, 10, 0.005)
     for plate, said in ((1.29, False), (1.30, True)):
-        told = is_steady(SPACED, weighing(plate), moved(lambda time: 0.5 * VELOCITY * time, leg))
-        assert ("lighter plate.mass" in told) == said
+        assert ("lighter plate.mass" in moved(0.5, plate).unsteady) == said
 
 
 def test_samples_know_a_friction_under_heat_better_than_the_balance() -> None:

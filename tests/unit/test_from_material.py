@@ -14,6 +14,7 @@ from contact1d.workflow.identify import IdentifyError
 from contact1d.workflow.identify.choice import chosen, theories_of
 from contact1d.workflow.identify.contact import KEYS, read_contact
 from contact1d.workflow.scene import SceneError
+from validation.references.maugis import LAMBDA_OVER_TABOR, marks
 
 ROUND_OFF = 1e-12
 GRID = 2e-3
@@ -169,7 +170,7 @@ def test_two_chains_are_chosen_where_they_are_asked_for() -> None:
     assert words.startswith('model = "particles" is for an adhesive sphere')
 
 
-# What theories say, and where no chain can stand for a contact.
+# What theories say, and where no chain can represent a contact.
 
 
 def test_theories_are_those_of_the_closed_forms() -> None:
@@ -191,15 +192,17 @@ def test_theories_are_those_of_the_closed_forms() -> None:
     assert theories.holding == "Maugis-Dugdale"
 
 
-def test_tip_of_an_atomic_force_microscope_is_told_that_dmt_holds_with_its_value() -> None:
-    """R = 10 nm, E* = 37 GPa, γ = 0.03 J/m², z₀ = 0.3 nm: μ = 0.099 and 2πWR = 3.77 nN."""
-    words = refused(**TIP)
-    assert words.startswith("DMT holds, which a chain cannot represent: the Tabor parameter μ is 0.099")
-    assert "F_A = 2πWR = 3.77 nN, a_0 = 913.7 pm" in words
-    assert "JKR's F_A, 2.827 nN, which is 25% too small here" in words
-    between = refused(**TIP | {"surface_energy": 0.1})
-    assert between.startswith("DMT holds, which a chain cannot represent: the Tabor parameter μ is 0.22")
-    assert "by Maugis and Dugdale, between it and JKR" in between
+@pytest.mark.parametrize(("energy", "tabor", "holds"), [(0.03, "0.099", "DMT"), (0.1, "0.22", "Maugis-Dugdale")])
+@pytest.mark.parametrize("model", ["plane", "particles"])
+def test_a_scene_of_a_stiff_tip_says_which_theory_holds(model: str, energy: float, tabor: str, holds: str) -> None:
+    """R = 10 nm, E* = 37 GPa, z₀ = 0.3 nm; F_A of Maugis and Dugdale by another solver."""
+    choice = chosen(read_contact(TIP | {"surface_energy": energy, "model": model}))
+    assert choice.theories is not None
+    assert choice.theories.holding == holds
+    missing = 1.0 - 1.5 / marks(LAMBDA_OVER_TABOR * choice.theories.tabor)[1]
+    words = choice.doubts["tabor"]
+    assert words.startswith(f"the Tabor parameter is {tabor}, where {holds} holds, and JKR above 5")
+    assert f"the results are JKR's, whose pull-off force is {missing:.1%} smaller" in words
 
 
 def test_rough_surfaces_are_refused_with_the_roughness_that_is_not() -> None:

@@ -63,14 +63,14 @@ def tables(shape: str, horizontal: bool, tangential: str, **more: Any) -> dict[s
 
 def apart(deck: Deck, session: Session) -> dict[str, Array]:
     """Move the upper body out of reach and return places and forces."""
-    height = 4.0 * max(deck.settings.cutoff, 1.0)
+    height = 4.0 * max(deck.settings.forces.cutoff, 1.0)
     session.execute(f"displace_atoms upper_body move 0 0 {height!r} units box\nrun 0")
     return session.atoms("x", "f")
 
 
 def rest_error(deck: Deck) -> float:
     """What may be left at rest [FU]: round-off, larger where positions are those of far anchors."""
-    return ROUND_OFF if deck.settings.far == 0.0 else LONG_BOND_ROUND_OFF
+    return ROUND_OFF if deck.settings.chains.far == 0.0 else LONG_BOND_ROUND_OFF
 
 
 @pytest.mark.parametrize(("shape", "horizontal", "tangential"), BODIES)
@@ -82,7 +82,7 @@ def test_undeformed_bodies_are_in_equilibrium(
     read = apart(deck, session)
     particles = read["type"] <= 2
     assert particles.sum() == 2 * PARTICLES
-    assert (deck.settings.far > 0) == (horizontal and tangential != "equal")
+    assert (deck.settings.chains.far > 0) == (horizontal and tangential != "equal")
     assert np.abs(read["f"][particles]).max() <= rest_error(deck)
 
 
@@ -93,7 +93,7 @@ def test_without_neighbours_nothing_pulls_either(
     """Anchors stand where particles do."""
     deck, session = open_deck(make_scene(**tables(shape, horizontal, tangential, neighbours=None)))
     read = apart(deck, session)
-    allowed = LONG_BOND_ROUND_OFF if deck.settings.far else 0.0
+    allowed = LONG_BOND_ROUND_OFF if deck.settings.chains.far else 0.0
     assert np.abs(read["f"][read["type"] <= 2]).max() <= allowed
     for body in bodies(deck.scene, deck.settings):
         assert np.array_equal(body.anchors, body.particles)
@@ -105,7 +105,7 @@ def test_a_chain_on_a_rigid_plane_is_in_equilibrium(make_scene: MakeScene, open_
     scene_tables = tables(shape, False, "equal", interaction=None)
     scene_tables["bodies"]["lower"] = "rigid_plane"
     deck, session = open_deck(make_scene(**scene_tables))
-    assert deck.settings.bulk_stiffness > NORMAL
+    assert deck.settings.forces.bulk_stiffness > NORMAL
     read = apart(deck, session)
     assert set(read["type"]) == {2, 4}
     assert np.abs(read["f"][read["type"] == 2]).max() <= ROUND_OFF
@@ -146,9 +146,9 @@ def test_stiffness_against_one_particle(
     wanted[PARTICLES + particle, axis] = -(own + len(beside) * spring)
     wanted[[PARTICLES + i for i in beside], axis] = spring
     allowed = ROUND_OFF
-    if deck.settings.far:
+    if deck.settings.chains.far:
         # Moved across itself by 1 LU and at most 1 LU more for the anchor's shift, a long bond bends by u²/2L.
-        allowed = abs(TANGENTIAL[tangential] - NORMAL) * 2.0**2 / (2 * deck.settings.far)
+        allowed = abs(TANGENTIAL[tangential] - NORMAL) * 2.0**2 / (2 * deck.settings.chains.far)
     assert np.abs(change - wanted).max() <= allowed
 
 
@@ -162,11 +162,10 @@ def test_without_horizontal_a_particle_keeps_its_place(make_scene: MakeScene, op
     assert force[24, 2] == pytest.approx(-0.5 * (NORMAL + 2 * NEIGHBOURS), abs=ROUND_OFF)
 
 
-def test_particles_in_a_rigid_plane_have_the_series_stiffness(make_scene: MakeScene, open_deck: OpenDeck) -> None:
-    """A plate lowered by d: F_i = k max(0, d − x²/R) on every particle, with the scene's own k.
-
-    In time each particle moves by itself.
-    """
+def test_a_plane_in_time_has_the_scenes_own_spring_for_each_particle(
+    make_scene: MakeScene, open_deck: OpenDeck
+) -> None:
+    """A plate lowered by d: F_i = k max(0, d − x²/R) on every particle, which is fixed in its body."""
     still = {"experiment": {"kind": "path", "displacements": [0.0]}, "damping": {"coefficient": "auto"}}
     scene_tables = tables("curved", False, "equal", interaction=None, neighbours=None) | still
     scene_tables["bodies"]["lower"] = "rigid_plane"
@@ -187,12 +186,13 @@ def test_bodies_at_displacement_zero(make_scene: MakeScene) -> None:
     settings = settings_for(scene)
     lower, upper = bodies(scene, settings)
     assert lower.particles[10].tolist() == [0.0, 0.0, 0.0]
-    assert settings.table is not None
-    assert upper.particles[10].tolist() == [0.0, settings.table.plane_offset, settings.rest]
-    assert settings.rest == pytest.approx(0.360437, abs=1e-6)
-    assert upper.particles[:, 2] - settings.rest == pytest.approx(lower.particles[:, 0] ** 2 / 200.0, abs=1e-14)
+    assert settings.forces.table is not None
+    assert upper.particles[10].tolist() == [0.0, settings.forces.table.plane_offset, settings.forces.rest]
+    assert settings.forces.rest == pytest.approx(0.360437, abs=1e-6)
+    assert upper.particles[:, 2] - settings.forces.rest == pytest.approx(lower.particles[:, 0] ** 2 / 200.0, abs=1e-14)
     assert np.array_equal(lower.particles[:, 0], upper.particles[:, 0])
-    assert bodies(scene, replace(settings, particles=5))[0].particles.shape == (5, 3)
+    fewer = replace(settings, chains=replace(settings.chains, upper=5, lower=5))
+    assert bodies(scene, fewer)[0].particles.shape == (5, 3)
 
 
 @pytest.mark.parametrize("particles", [4, 40, 401])

@@ -34,7 +34,7 @@ SHOWN = (
         "docs/identify.md",
         "silica",
         "identify lammps_inputs/contacts",
-        r"Tabor|adhesion force|zero-load|JKR  |\* valid",
+        r"Tabor|adhesion force|zero-load|theory, at|\* holds",
     ),
 )
 """Page, name of the scene and of what is shown, the command, and which lines of what it prints."""

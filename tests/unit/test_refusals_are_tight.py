@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from contact1d.workflow.model.chain import SettingsError, in_words, require_reach, require_rows, require_steps
-from contact1d.workflow.model.dynamics import _swinging_apart, drive_steps, stiffest_of
+from contact1d.workflow.model.dynamics import drive_steps
 from contact1d.workflow.model.motion import require_way, too_fast
 from contact1d.workflow.model.pairs import tabulated
-from contact1d.workflow.model.settings import settings_for
+from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import chains
 
@@ -21,6 +21,9 @@ LOAD = {"kind": "load", "force": 0.05}
 CIRCLE = {"kind": "circle", "radius": 30.0}
 FEWEST_ROWS, MOST_ROWS, FEWEST_STEPS = 20, 50, 5
 """Rows in a spacing of a drive's way, and timesteps in a row."""
+RELAXING = 0.5
+"""ω Δt of a relaxation without time."""
+ROUND_OFF = 1e-12
 FIGURES = 1e-3
 """Relative: four figures of a number in a message."""
 
@@ -156,9 +159,12 @@ def test_rows_and_timesteps_make_the_drives_way_exactly(longest: float) -> None:
 @pytest.mark.parametrize("share", [0.02, 0.3, 0.9, 1.0, 4.0])
 def test_a_light_plate_swings_no_longer_against_its_particles_than_one_of_their_mass(share: float) -> None:
     """Reference: eigenvalues of two masses on a stiff spring, of which the particles have a drag of their own."""
-    particles, rate, spring = 40.0, 0.3, 1e7
+    particles, spring = 40.0, 1e7
     plate = share * particles
-    drag = _swinging_apart(plate, particles, rate)
+    load = LOAD | {"method": "dynamic"}
+    tables = chains(100.0, bodies={"particles": 40, "mass": 1.0}, damping={"coefficient": "auto"}, experiment=load)
+    chosen = settings_for(scene_from_dict(tables | {"plate": {"mass": plate}})).motion
+    rate, drag = chosen.damping, chosen.plate_damping
     motion = np.array([
         [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0],
         [-spring / plate, spring / plate, -drag / plate, 0.0],
@@ -167,7 +173,17 @@ def test_a_light_plate_swings_no_longer_against_its_particles_than_one_of_their_
     values = np.linalg.eigvals(motion)
     swing = values[np.abs(values.imag) > 1.0].real
     assert swing == pytest.approx(-0.25 * rate if share <= 1.0 else -0.5 * rate * share / (1.0 + share), rel=1e-4)
-    assert (drag == 0.0) == (share >= 1.0)
+    assert (drag < ROUND_OFF * particles * rate) == (share >= 1.0)
+
+
+def sampled_stiffness(settings: Settings) -> float:
+    """Stiffness [FU/LU] of the motion that the time step of a relaxation is made for, of particles of 1 MU."""
+    return (RELAXING / settings.motion.time_step) ** 2
+
+
+def between(count: int) -> Any:
+    """Neighbours on each other, over the stiffness of a spring."""
+    return 2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1)
 
 
 @pytest.mark.parametrize("neighbours", [None, 0.3, 20.0])
@@ -180,16 +196,23 @@ def test_the_stiffest_motion_of_two_chains_is_no_stiffer_than_what_the_timestep_
         tables["neighbours"] = {"stiffness": neighbours}
     scene = scene_from_dict(tables | {"horizontal": {}})
     settings = settings_for(scene)
-    assert settings.law is not None
-    pair = float(settings.law.stiffness(settings.closest))
-    between = 2.0 * np.eye(30) - np.eye(30, k=1) - np.eye(30, k=-1)
-    chain = 1.1 * np.eye(30) + (neighbours or 0.0) * between
+    assert settings.forces.law is not None
+    pair = float(settings.forces.law.stiffness(settings.forces.closest))
+    chain = 1.1 * np.eye(30) + (neighbours or 0.0) * between(30)
     matrix = np.block(
         [[chain + pair * np.eye(30), -pair * np.eye(30)], [-pair * np.eye(30), chain + pair * np.eye(30)]]
     )
     stiffest = float(np.linalg.eigvalsh(matrix).max())
-    assert stiffest <= stiffest_of(scene, settings.law, settings.closest, 0.0) <= 1.3 * stiffest
-    assert stiffest_of(scene, settings.law, settings.closest, 5.0) >= stiffest + 5.0 - 1e-9
+    assert stiffest <= sampled_stiffness(settings) <= 1.3 * stiffest
+
+
+@pytest.mark.parametrize("neighbours", [0.3, 20.0])
+def test_so_is_the_stiffest_motion_of_a_chain_on_a_plane(neighbours: float) -> None:
+    tables = chains(100.0, bodies={"particles": 30, "lower": "rigid_plane"}, interaction=None, experiment=LOAD)
+    settings = settings_for(scene_from_dict(tables | {"neighbours": {"stiffness": neighbours}}))
+    each = settings.forces.bulk_stiffness + settings.forces.plane_stiffness
+    stiffest = float(np.linalg.eigvalsh(each * np.eye(30) + neighbours * between(30)).max())
+    assert stiffest <= sampled_stiffness(settings) <= 1.3 * stiffest
 
 
 def test_a_large_system_is_told_with_how_many_each_particle_feels() -> None:
@@ -208,7 +231,7 @@ def test_a_rigid_plane_has_neither_snaps_nor_teeth() -> None:
     ):
         settings = settings_for(scene_from_dict(tables))
         assert settings.snaps == snaps
-        if snaps or settings.law is None:
+        if snaps or settings.forces.law is None:
             assert settings.is_toothed == snaps
 
 

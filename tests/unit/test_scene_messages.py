@@ -51,6 +51,7 @@ def test_a_size_is_a_finite_number_greater_than_zero(path: str) -> None:
 ONE_MISTAKE: list[tuple[dict[str, Any], str, str, str]] = [
     ({}, 'bodies.spacing="1.0"', "bodies.spacing", 'with its unit: "10 mm"'),
     ({}, "bodies.spacing=-1", "bodies.spacing", 'greater than 0 (LU), or "auto"'),
+    ({}, "bodies.spacing={ number = 2 }", "bodies.spacing", 'must be a number greater than 0 (LU), or "auto"'),
     ({}, "bodies.particles=2", "bodies.particles", "from 3 to 10000000"),
     ({}, "bodies.particles=200.0", "bodies.particles", "write 200"),
     ({}, "bodies.particles=atuo", "bodies.particles", '"auto"'),
@@ -102,6 +103,16 @@ def test_one_mistake_is_one_line(tables: dict[str, Any], override: str, path: st
     (line,) = lines(override, tables=tables)
     assert line.startswith((f"{path}: ", f"{path} = "))
     assert words in line
+
+
+def test_a_wrong_table_of_cycles_is_not_taken_for_displacements() -> None:
+    tangential = {"kind": "tangential", "normal_force": 1.0, "displacements": {"from": 0, "to": 1, "steps": 5}}
+    bodies = BASE["bodies"] | {"lower": "rigid_plane"}
+    tables = {"bodies": bodies, "interaction": None, "friction": {"coefficient": 0.3}, "experiment": tangential}
+    assert [line.partition("; ")[0] for line in lines("experiment.cycles=3", tables=tables)] == [
+        "experiment.cycles = 3: must be a table with amplitude, number, points",
+        "experiment.cycles = 3: not together with displacements",
+    ]
 
 
 def test_missing_tables_and_keys() -> None:

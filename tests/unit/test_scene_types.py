@@ -28,10 +28,9 @@ SLIDE = [
 
 def every_key() -> Iterator[tuple[str, type[Table], str, Key]]:
     """Path, table, name and record of every key of a scene, those of all kinds and of an experiment to come."""
-    for path, choice in (*tables_in(Scene), *tables_in(Hold, "experiment")):
-        assert choice.table is not None
-        for name, key in keys_of(choice.table).items():
-            yield f"{path}.{name}".lstrip("."), choice.table, name, key
+    for path, _, table in (*tables_in(Scene), *tables_in(Hold, "experiment")):
+        for name, key in keys_of(table).items():
+            yield f"{path}.{name}".lstrip("."), table, name, key
 
 
 KEYS = list(every_key())

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 import contact1d
 from contact1d import Run, SceneError
+from contact1d.workflow.cli.summary import quantities
 
 RUBBER, GLASS = {"youngs_modulus": "3 MPa", "poisson_ratio": 0.5}, {"youngs_modulus": "70 GPa", "poisson_ratio": 0.22}
 PAIR = {"upper": RUBBER, "lower": GLASS, "tolerance": 1e-2}
@@ -28,6 +30,21 @@ def test_a_sphere_pulls_off_as_jkr_has_it() -> None:
     near(run, "zero_load_radius", (4.5 * math.pi * W * R**2 / MODULUS) ** (1 / 3), "m")
     assert run.curve.units["force"] == "N"
     assert float(-run.curve.force.min()) == pytest.approx(run.results.adhesion_force.value, rel=1e-2)
+
+
+def test_a_stiff_tip_has_one_answer_at_both_doors(tmp_path: Path) -> None:
+    """R = 20 nm, E* = 70 GPa: JKR's F_A, the sentence that it does not hold, and DMT's value beside it, 2πWR."""
+    tip = {"radius": "20 nm", "contact_modulus": "70 GPa", "work_of_adhesion": "50 mJ/m²"}
+    run = contact1d.sphere(**tip).pull_off()
+    asked = contact1d.from_material(tip, tmp_path / "tip")
+    near(run, "adhesion_force", 1.5 * math.pi * 20e-9 * 0.05, "N")
+    near(asked.run, "adhesion_force", 1.5 * math.pi * 20e-9 * 0.05, "N")
+    assert asked.doubts["tabor"] == asked.run.warnings["tabor"] == run.warnings["tabor"]
+    assert "where DMT holds" in run.warnings["tabor"]
+    for text in (repr(run), "\n".join(quantities(asked.run.document))):
+        (line,) = (line for line in text.splitlines() if "DMT 6.2832 nN (-25 %)" in line)
+        assert "JKR 4.7124 nN" in line
+        assert "Maugis and Dugdale (μ = 0.0723) 6.1618 nN" in line
 
 
 def test_a_sphere_in_a_cup_is_hertz_with_the_effective_radius() -> None:

@@ -36,16 +36,16 @@ def with_rows(count: int) -> Scene:
 
 def test_a_way_along_x_may_take_a_million_rows() -> None:
     require_rows(with_rows(MOST), math.inf, ())
-    with pytest.raises(SettingsError, match="the tangential path would need 1e\\+06 load steps"):
+    with pytest.raises(SettingsError, match="the tangential path would need 1000001 load steps"):
         require_rows(with_rows(MOST + 1), math.inf, ())
 
 
 def test_a_drive_may_take_a_million_rows_in_all_its_legs() -> None:
     of = scene({"kind": "load", "force": 0.1})
-    legs = [DriveLeg(0.1, rows, 5, 0.01) for rows in (MOST // 4, 3 * MOST // 4)]
-    require_rows(of, math.inf, legs)
-    with pytest.raises(SettingsError, match="the slide would need 1e\\+06 load steps"):
-        require_rows(of, math.inf, [*legs, DriveLeg(0.1, 1, 5, 0.01)])
+    first, last, more = (DriveLeg(rows, 5, 0.1, 0.01) for rows in (MOST // 4, 3 * MOST // 4, 1))
+    require_rows(of, math.inf, [first, last])
+    with pytest.raises(SettingsError, match="the slide would need 1000001 load steps"):
+        require_rows(of, math.inf, [first, last, more])
 
 
 @pytest.mark.parametrize("places", [[3.0], [1.0, -1.0, 1.0], [-2.0, 1.0, 0.0, 0.0]])
@@ -54,7 +54,7 @@ def test_a_path_has_a_row_for_each_place_and_each_move_towards_the_other_body(pl
     of = scene({"kind": "path", "displacements": places})
     moves = MOST - len(places) - 1
     require_rows(of, 3.0 / (moves + 0.5), ())
-    with pytest.raises(SettingsError, match="the path would need 1e\\+06 load steps"):
+    with pytest.raises(SettingsError, match="the path would need 1000001 load steps"):
         require_rows(of, 3.0 / (moves + 1.5), ())
 
 
@@ -86,7 +86,7 @@ def test_without_another_chain_or_with_time_no_digit_is_too_few() -> None:
 def test_a_reach_over_as_many_particles_as_can_be_summed_over_is_possible() -> None:
     of = scene({"kind": "load", "force": 0.1}, bodies={"spacing": 0.8})
     require_reach(of, 2000.0)
-    with pytest.raises(SettingsError, match=r"5e\+03 opposite ones, at most 5000 are possible.* below 2000 LU"):
+    with pytest.raises(SettingsError, match=r"5000.2 opposite ones, at most 5000 are possible.* below 2000 LU"):
         require_reach(of, 2000.1)
 
 

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
 
+from contact1d.analysis.friction import standard_error
+from contact1d.workflow.continuation.outcome import Result
 from contact1d.workflow.continuation.trust import UntrustedError
-from contact1d.workflow.experiments import thermal
-from contact1d.workflow.experiments.thermal import planned_samples, standard_error
+from contact1d.workflow.experiments.series import Series
+from contact1d.workflow.experiments.thermal import BLOCKS, planned_samples, require_balance
 from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import scene_from_dict
 from tests.scenes import chains
@@ -31,9 +31,10 @@ def correlated(seed: int) -> np.ndarray:
 
 def test_a_standard_error_is_that_of_the_mean_of_a_correlated_series() -> None:
     series = [correlated(seed) for seed in range(SEEDS)]
-    stated = np.mean([standard_error(one.tolist()) for one in series])
+    errors = [standard_error(Series({"d": one}).parts(BLOCKS)["d"]) for one in series]
+    stated = np.mean(errors)
     assert stated == pytest.approx(math.sqrt(2.0 * MEMORY / COUNT), rel=0.15)
-    off = np.asarray([abs(one.mean()) / standard_error(one.tolist()) for one in series])
+    off = np.asarray([abs(one.mean()) / error for one, error in zip(series, errors, strict=True)])
     assert (off <= 2.1).mean() >= 0.9
 
 
@@ -42,14 +43,11 @@ def test_a_motion_forgets_its_start_before_it_is_sampled() -> None:
     scene = scene_from_dict(noisy | {"noise": {"temperature": 1e-4, "seed": 1}})
     settings = settings_for(scene)
     settling, _ = planned_samples(settings, 1.0)
-    time = sum(getattr(row, "steps", 0) for row in settling.rows) * settings.time_step
-    assert time >= 8.0 * settings.settle_time
+    time = sum(getattr(row, "steps", 0) for row in settling.rows) * settings.motion.time_step
+    assert time >= 8.0 * settings.motion.settle_time
 
 
-def test_a_mean_force_that_misses_its_load_is_no_result(monkeypatch: pytest.MonkeyPatch) -> None:
-    rng = np.random.default_rng(1)
-    samples: list[Any] = [
-        SimpleNamespace(carried=1.1 + 0.01 * rng.normal(), displacement=0.0) for _ in range(thermal.SAMPLES)
-    ]
-    with pytest.raises(UntrustedError, match="not in equilibrium"):
-        thermal._load_results(SimpleNamespace(deck=SimpleNamespace(scene=None)), samples, 1.0)  # type: ignore[arg-type]
+def test_a_mean_force_that_misses_its_load_is_no_result() -> None:
+    require_balance(Result(1.1, "FU", {"statistics": 0.021}), 1.0)
+    with pytest.raises(UntrustedError, match=r"not in equilibrium: .* 1\.1 FU .* load 1 FU by 5\.3 standard errors"):
+        require_balance(Result(1.1, "FU", {"statistics": 0.019}), 1.0)

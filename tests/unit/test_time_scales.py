@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d.workflow.model.dynamics import stiffest_of
 from contact1d.workflow.model.settings import CALIBRATION, Settings, settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import chains
@@ -40,10 +39,17 @@ def slide(tolerance: float, cantilever: float = 0.5, **bodies: Any) -> Scene:
     )  # fmt: skip
 
 
+def stiffest(of: Scene, settings: Settings) -> float:
+    """Stiffness [FU/LU] of a particle and a row of opposite ones that move against it, at the closest distance."""
+    law = settings.forces.law
+    assert law is not None
+    row = (1.0 + 2.0 * law.repulsion.range / of.bodies.spacing) * float(law.stiffness(settings.forces.closest))
+    return max(of.bulk_stiffness, of.tangential_stiffness) + 2.0 * row
+
+
 def per_step(of: Scene, settings: Settings) -> float:
     """ω Δt of the stiffest motion of the particles."""
-    stiffest = stiffest_of(of, settings.law, settings.closest, settings.plane_stiffness)
-    return settings.time_step * math.sqrt(stiffest / of.bodies.mass)
+    return settings.motion.time_step * math.sqrt(stiffest(of, settings) / of.bodies.mass)
 
 
 def test_a_motion_that_comes_to_rest_has_the_steps_that_were_measured() -> None:
@@ -78,7 +84,7 @@ def test_a_light_plate_is_sampled_too(mass: float) -> None:
     """It swings on the springs of all its particles, which stay behind."""
     of = scene(damping={"coefficient": 1e-6}, plate={"mass": mass, "damping": 0.0})
     settings = settings_for(of)
-    swing = math.sqrt(settings.particles * SPRING / mass) * settings.time_step
+    swing = math.sqrt(settings.chains.upper * SPRING / mass) * settings.motion.time_step
     assert swing <= CALIBRATION.still_step * (1.0 + EXACT)
     assert max(swing, per_step(of, settings)) == pytest.approx(CALIBRATION.still_step, rel=EXACT)
 
@@ -89,8 +95,8 @@ def test_a_cantilever_holds_its_plate_too() -> None:
         of = slide(1e-3, cantilever, bulk_stiffness_tangential=along)
         light = of.with_({"plate.mass": 1e-3})
         settings = settings_for(light)
-        held = settings.particles * max(2.0, along) + cantilever
-        assert 0.7 * 0.2 < settings.time_step * math.sqrt(held / 1e-3) <= 0.2 * (1.0 + EXACT)
+        held = settings.chains.upper * max(2.0, along) + cantilever
+        assert 0.7 * 0.2 < settings.motion.time_step * math.sqrt(held / 1e-3) <= 0.2 * (1.0 + EXACT)
 
 
 def test_a_machines_spring_holds_its_plate_too() -> None:
@@ -100,7 +106,7 @@ def test_a_machines_spring_holds_its_plate_too() -> None:
         noise={"temperature": 1e-6, "seed": 1}, accuracy={"tolerance": 1e-2},
     )  # fmt: skip
     settings = settings_for(of)
-    swing = settings.time_step * math.sqrt((settings.particles * SPRING + 1e4) / 0.1)
+    swing = settings.motion.time_step * math.sqrt((settings.chains.upper * SPRING + 1e4) / 0.1)
     assert swing == pytest.approx(math.sqrt(1e-2 / 0.4), rel=EXACT)
 
 
@@ -109,35 +115,39 @@ def test_an_automatic_drag_is_critical_for_plate_and_particles_on_the_softened_c
     """2√(K M): K is 0.6 of the springs of those within √(2Rd), two in series each; M is all that moves."""
     of = scene(damping={"coefficient": "auto"}, plate={"mass": mass})
     settings = settings_for(of)
-    count = settings.particles
+    count = settings.chains.upper
     touching = 2.0 * math.sqrt(2.0 * RADIUS * settings.largest_displacement) / SPACING
     contact = 0.6 * touching * 0.5 * SPRING
     plate = count * MASS if mass == "auto" else mass
-    assert settings.plate_mass == plate
-    drag = count * settings.damping
+    assert settings.motion.plate_mass == plate
+    drag = count * settings.motion.damping
     assert drag == pytest.approx(2.0 * math.sqrt(contact * (plate + count * MASS)), rel=1e-6)
-    assert settings.damped_stiffness == pytest.approx(contact, rel=1e-6)
-    assert settings.settle_time == pytest.approx(2.0 * math.pi * math.sqrt((plate + count * MASS) * 0.6 / contact))
+    assert settings.motion.damped_stiffness == pytest.approx(contact, rel=1e-6)
+    assert settings.motion.settle_time == pytest.approx(
+        2.0 * math.pi * math.sqrt((plate + count * MASS) * 0.6 / contact)
+    )
     share = plate / (count * MASS)  # a light plate swings against its particles: see `_swinging_apart`
-    needed = 0.5 * settings.damping / MASS * plate * max(0.0, 1.0 - share)
-    assert settings.plate_damping == pytest.approx(needed, rel=1e-6, abs=1e-9 * drag)
+    needed = 0.5 * settings.motion.damping / MASS * plate * max(0.0, 1.0 - share)
+    assert settings.motion.plate_damping == pytest.approx(needed, rel=1e-6, abs=1e-9 * drag)
 
 
 def test_without_a_plate_each_particle_is_damped_on_its_own_spring() -> None:
     path = {"kind": "path", "method": "dynamic", "displacements": [0.05]}
     settings = settings_for(scene(damping={"coefficient": "auto"}, experiment=path))
-    assert settings.damping == pytest.approx(math.sqrt(SPRING * MASS))
-    assert settings.settle_time == pytest.approx(2.0 * math.pi * math.sqrt(MASS / SPRING))
-    assert settings.plate_mass == settings.plate_damping == 0.0
+    assert settings.motion.damping == pytest.approx(math.sqrt(SPRING * MASS))
+    assert settings.motion.settle_time == pytest.approx(2.0 * math.pi * math.sqrt(MASS / SPRING))
+    assert settings.motion.plate_mass == settings.motion.plate_damping == 0.0
 
 
 def test_what_snaps_comes_to_rest_under_a_drag_that_is_critical_for_the_stiffest_motion() -> None:
     of = scene(damping={"coefficient": "auto"}, plate={})
     settings = settings_for(of)
-    stiffest = stiffest_of(of, settings.law, settings.closest, 0.0)
-    assert settings.calm_damping == pytest.approx(2.0 * math.sqrt(stiffest * MASS), rel=EXACT)
-    assert settings.calm_step == pytest.approx(min(settings.time_step, 0.2 * MASS / settings.calm_damping), rel=EXACT)
-    given = settings_for(of.with_({"damping.coefficient": 0.3}))
+    critical = 2.0 * math.sqrt(stiffest(of, settings) * MASS)
+    assert settings.motion.calm_damping == pytest.approx(critical, rel=EXACT)
+    assert settings.motion.calm_step == pytest.approx(
+        min(settings.motion.time_step, 0.2 * MASS / settings.motion.calm_damping), rel=EXACT
+    )
+    given = settings_for(of.with_({"damping.coefficient": 0.3})).motion
     assert (given.calm_damping, given.calm_step) == (given.damping, given.time_step)
 
 
@@ -146,10 +156,13 @@ def test_drag_stops_nothing_within_a_step(coefficient: float) -> None:
     """Explicit integration needs γ Δt/m below 1; a fifth of it is left."""
     of = scene(damping={"coefficient": coefficient}, plate={"mass": 10.0, "damping": 30.0 * coefficient})
     settings = settings_for(of)
-    assert settings.time_step * coefficient / MASS <= 0.2 * (1.0 + EXACT)
-    assert settings.time_step * 30.0 * coefficient / 10.0 <= 0.2 * (1.0 + EXACT)
-    swinging = settings.time_step * math.sqrt(settings.particles * SPRING / 10.0)
-    tightest = [settings.time_step * coefficient / MASS / 0.2, settings.time_step * 3.0 * coefficient / 0.2]
+    assert settings.motion.time_step * coefficient / MASS <= 0.2 * (1.0 + EXACT)
+    assert settings.motion.time_step * 30.0 * coefficient / 10.0 <= 0.2 * (1.0 + EXACT)
+    swinging = settings.motion.time_step * math.sqrt(settings.chains.upper * SPRING / 10.0)
+    tightest = [
+        settings.motion.time_step * coefficient / MASS / 0.2,
+        settings.motion.time_step * 3.0 * coefficient / 0.2,
+    ]
     assert max(*tightest, swinging / CALIBRATION.still_step, per_step(of, settings) / CALIBRATION.still_step) == (
         pytest.approx(1.0, rel=EXACT)
     )
@@ -160,38 +173,39 @@ def test_a_slide_is_loaded_with_a_drag_that_lets_its_plate_swing_not_and_creep_n
     """Reference: the eigenvalues of the plate with its particles on the contact's stiffness, and of the calm steps."""
     of = slide(1e-3).with_({"damping.coefficient": drag})
     settings = settings_for(of)
-    count = settings.particles
+    count = settings.chains.upper
     stiffness = min(
         settings.estimate.stiffness_under(1.0),
-        settings.estimate.half_width(settings.largest_displacement, settings.rest) * 2.0 * settings.estimate.stiffness,
+        settings.estimate.half_width(settings.largest_displacement, settings.forces.rest)
+        * 2.0
+        * settings.estimate.stiffness,
     )
-    moving = settings.plate_mass + count * MASS
-    rate = count * settings.calm_damping / moving
+    moving = settings.motion.plate_mass + count * MASS
+    rate = count * settings.motion.calm_damping / moving
     values = np.linalg.eigvals([[0.0, 1.0], [-0.6 * stiffness / moving, -rate]])
-    assert settings.calm_step == pytest.approx(settings.time_step, rel=0.3)
+    assert settings.motion.calm_step == pytest.approx(settings.motion.time_step, rel=0.3)
     swing = 2.0 * math.pi * math.sqrt(moving / stiffness)  # of the plate on its contact, by the law and springs
     own = 2.0 * math.pi * math.sqrt(moving / (2.0 * settings.estimate.stiffness))
-    assert settings.settle_time >= SWING * swing * (1.0 - 1e-6)
-    assert settings.settle_time <= max(SWING * swing, own) * (1.0 + 1e-6)
-    assert settings.calm_step * settings.calm_damping / MASS <= 0.4 * 1.3
-    if drag == 0.3 and settings.calm_damping != drag:
+    assert settings.motion.settle_time >= SWING * swing * (1.0 - 1e-6)
+    assert settings.motion.settle_time <= max(SWING * swing, own) * (1.0 + 1e-6)
+    assert settings.motion.calm_step * settings.motion.calm_damping / MASS <= 0.4 * 1.3
+    if drag == 0.3 and settings.motion.calm_damping != drag:
         assert np.abs(values.imag).max() <= 1e-3 * np.abs(values.real).max()
     if drag == 3e3:  # a particle alone would not come to rest
-        assert settings.calm_damping < drag
-    assert settings.damping == drag
+        assert settings.motion.calm_damping < drag
+    assert settings.motion.damping == drag
 
 
 def test_in_smaller_steps_a_chain_without_a_plate_is_stopped_by_drag_and_a_plate_keeps_its_own() -> None:
     path = {"kind": "path", "method": "dynamic", "displacements": [0.05]}
     alone = settings_for(scene(damping={"coefficient": "auto"}, experiment=path))
     held = settings_for(scene(damping={"coefficient": "auto"}, plate={}))
-    for settings, damping in ((alone, alone.calm_damping), (held, held.damping)):
+    for settings, damping in ((alone, alone.motion.calm_damping), (held, held.motion.damping)):
         smaller = settings.in_smaller_steps(0.25)
-        assert (smaller.damping, smaller.time_step) == (damping, settings.calm_step)
+        assert (smaller.motion.damping, smaller.motion.time_step) == (damping, settings.motion.calm_step)
         for name in ("displacement_step", "loading_step", "smooth_step", "longest_move"):
-            assert getattr(smaller, name) == 0.25 * getattr(settings, name)
-    assert alone.calm_damping > 2.0 * alone.damping
-    assert held.calm_damping > 2.0 * held.damping
+            assert getattr(smaller.increments, name) == 0.25 * getattr(settings.increments, name)
+        assert settings.motion.calm_damping > 2.0 * settings.motion.damping
 
 
 @pytest.mark.parametrize("spring", [2.0, 2000.0])
@@ -199,13 +213,13 @@ def test_a_slides_plate_has_time_for_half_a_swing_on_what_holds_it(spring: float
     """On stiff springs that is the law alone, which is softer by far."""
     of = slide(1e-3, bulk_stiffness=spring, bulk_stiffness_tangential=2.0)
     settings = settings_for(of)
-    moving = settings.plate_mass + settings.particles * MASS
-    touching = settings.estimate.half_width(settings.largest_displacement, settings.rest) * 2.0
+    moving = settings.motion.plate_mass + settings.chains.upper * MASS
+    touching = settings.estimate.half_width(settings.largest_displacement, settings.forces.rest) * 2.0
     contact = max(1.0, touching) * settings.estimate.stiffness
     held = min(contact, settings.estimate.stiffness_under(1.0))
     assert (held < 0.1 * contact) == (spring > 2.0)
     periods = [2.0 * math.pi * math.sqrt(moving / contact), SWING * 2.0 * math.pi * math.sqrt(moving / held)]
-    assert settings.settle_time == pytest.approx(max(periods), rel=1e-6)
+    assert settings.motion.settle_time == pytest.approx(max(periods), rel=1e-6)
 
 
 @pytest.mark.parametrize(("force", "spring"), [(1.0, 2.0), (0.0, 2.0), (0.1, 0.02)])
@@ -219,20 +233,22 @@ def test_a_slide_is_loaded_under_its_own_drag_where_that_is_enough_and_no_more_t
         {"damping.coefficient": drag, "plate.mass": mass, "experiment.normal_force": force}
     )
     settings = settings_for(of)
-    moving = mass + settings.particles * MASS
-    touching = settings.estimate.half_width(settings.largest_displacement, settings.rest) * 2.0
+    moving = mass + settings.chains.upper * MASS
+    touching = settings.estimate.half_width(settings.largest_displacement, settings.forces.rest) * 2.0
     held = min(max(1.0, touching) * settings.estimate.stiffness, settings.estimate.stiffness_under(force))
-    critical = 2.0 * math.sqrt(0.6 * held * moving) / settings.particles
-    within = [0.4 * MASS / (settings.time_step * part) for part in (1.0, 1.3)]  # rows take whole numbers of steps
+    critical = 2.0 * math.sqrt(0.6 * held * moving) / settings.chains.upper
+    within = [
+        0.4 * MASS / (settings.motion.time_step * part) for part in (1.0, 1.3)
+    ]  # rows take whole numbers of steps
     if critical < within[1]:
         enough = critical
     else:
-        enough = settings.calm_damping
+        enough = settings.motion.calm_damping
         assert within[1] <= enough <= within[0] * (1.0 + EXACT) or drag >= within[1]
     if enough <= drag <= 10.0 * enough:
-        assert settings.calm_damping == drag
+        assert settings.motion.calm_damping == drag
     else:
-        assert settings.calm_damping == pytest.approx(enough, rel=EXACT)
+        assert settings.motion.calm_damping == pytest.approx(enough, rel=EXACT)
 
 
 def test_a_relaxation_without_time_has_steps_in_which_nothing_swings_apart() -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from validation.page import limits, measured, outcome
-from validation.row import Known, Reference, Row, absolute, at_most, claim, relative
+from validation.row import Bound, Known, Reference, Row, absolute, at_most, claim, relative
 
 TWO = Reference(2.0, "theory")
 
@@ -24,6 +24,8 @@ TWO = Reference(2.0, "theory")
         (Row("claim that is too wide", 2.1, TWO, claim("run", 0.01), uncertainty=0.11), "FAIL"),
         (at_most("bound", 1.0, 1.0, "theory"), "PASS"),
         (at_most("bound", 1.01, 1.0, "theory"), "FAIL"),
+        (Row("at least", 2.1, TWO, Bound("at least", 0.0, "–")), "PASS"),
+        (Row("not at least", 1.9, TWO, Bound("at least", 0.0, "–")), "FAIL"),
         (at_most("no number", math.nan, 1.0, "theory"), "FAIL"),
         (Row("not answered", 2.0, TWO, relative(0.1, "–"), warnings={"lattice": ""}), "FAIL"),
         (Row("answered", 2.0, TWO, relative(0.1, "–"), warnings={"lattice": "since"}), "PASS"),

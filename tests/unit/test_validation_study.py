@@ -13,6 +13,7 @@ from tests.pages import require_shown
 from tests.punch import PUNCH
 from validation import doors
 from validation.__main__ import RESULTS, ROOT, app
+from validation.age import RECORDS, Measured, today
 from validation.hard import STUDIES as HARD
 from validation.page import speed_table, summary, tables_page
 from validation.paper import STUDIES as PAPER
@@ -37,6 +38,16 @@ def test_a_study_runs_its_scenes_once_and_a_refusal_is_a_row_that_fails(tmp_path
     assert [row.as_data() for row in read_record(tmp_path / "record.json").rows] == [
         row.as_data() for row in again.rows
     ]
+
+
+def test_a_record_says_at_which_commit_it_was_measured_and_its_age_is_printed(tmp_path: Path) -> None:
+    (answer,) = conduct([PUNCH], tmp_path, workers=1).answers
+    assert Measured(answer.date, answer.commit) == today()
+    assert all(answer.commit for answer in read_record(RESULTS / "paper.json").answers)
+    done = CliRunner().invoke(app, ["ages"])
+    assert done.exit_code == 0
+    for name in RECORDS:
+        assert any(line.startswith(name) and line.endswith(" days ago") for line in done.output.splitlines())
 
 
 def test_a_study_that_breaks_has_a_row_that_fails(tmp_path: Path) -> None:

@@ -48,16 +48,16 @@ def row(r: float, cutoff: float) -> float:
 def test_a_contact_reaches_to_where_the_tolerances_share_of_its_largest_force_is_felt(tolerance: float) -> None:
     of = slide(tolerance=tolerance, particles=200, upper_particles=80)
     settings = settings_for(of)
-    cutoff, deepest = settings.cutoff, settings.largest_displacement
+    cutoff, deepest = settings.forces.cutoff, settings.largest_displacement
 
     def gap(r: float) -> float:
         return r - 2.0 * row(r, cutoff) / SPRING
 
-    innermost = brentq(lambda r: gap(r) - settings.rest + deepest, 0.05, 3.0)
+    innermost = brentq(lambda r: gap(r) - settings.forces.rest + deepest, 0.05, 3.0)
     places = np.linspace(innermost, cutoff, 4000)
     forces = np.abs([row(r, cutoff) for r in places])
     felt = places[np.flatnonzero(forces > tolerance * forces.max())[-1]]
-    half = math.sqrt(2.0 * RADIUS * (gap(float(felt)) - settings.rest + deepest))
+    half = math.sqrt(2.0 * RADIUS * (gap(float(felt)) - settings.forces.rest + deepest))
     assert half < 0.5 * 79 * SPACING
     assert contact_half_width(of, settings) == pytest.approx(half, rel=GRID)
 
@@ -75,7 +75,7 @@ def test_an_automatic_lower_chain_is_long_enough_and_no_longer_than_the_way_asks
     of = slide(distance, upper_offset=offset)
     settings = settings_for(of)
     require_way(of, settings)
-    longer = settings.lower_particles - settings.particles
+    longer = settings.chains.lower - settings.chains.upper
     assert 2.0 * (distance + abs(offset)) / SPACING <= longer < 2.0 * (distance + abs(offset)) / SPACING + 2.0
 
 
@@ -83,15 +83,15 @@ def test_an_automatic_lower_chain_is_long_enough_and_no_longer_than_the_way_asks
 def test_a_lower_chain_of_another_spacing_is_as_long_as_the_upper_one_and_the_way(spacing: float) -> None:
     of = slide(upper_spacing=spacing)
     settings = settings_for(of)
-    length = settings.particles * spacing + 2.0 * 9.5
-    assert length <= settings.lower_particles * SPACING < length + 4.0 * SPACING
+    length = settings.chains.upper * spacing + 2.0 * 9.5
+    assert length <= settings.chains.lower * SPACING < length + 4.0 * SPACING
     require_way(of, settings)
 
 
 def test_no_way_needs_no_more_particles_below() -> None:
     of = scene_from_dict(chains(RADIUS, experiment={"kind": "load", "force": 0.05}))
     settings = settings_for(of)
-    assert settings.lower_particles == settings.particles
+    assert settings.chains.lower == settings.chains.upper
     require_way(of, settings)
     assert too_fast(of) == ""
 
@@ -141,9 +141,9 @@ def test_an_automatic_chain_of_bodies_that_only_repel_ends_where_nothing_is_felt
     )  # fmt: skip
     settings = settings_for(of)
     felt = math.sqrt(2.0 * RADIUS * max(0.0, displacement)) if displacement > 0.0 else 0.0  # rest is the cutoff
-    half = 0.5 * settings.particles * SPACING
+    half = 0.5 * settings.chains.upper * SPACING
     assert 1.1 * max(felt, SPACING) + 2.0 * SPACING <= half * (1.0 + 1e-6) < 1.1 * max(felt, SPACING) + 3.0 * SPACING
-    assert settings.particles % 2 == 0
+    assert settings.chains.upper % 2 == 0
 
 
 @pytest.mark.parametrize(("spacing", "particles"), [(0.5, 8), (0.9, 4), (0.7, 6), (0.1, 42)])
@@ -151,7 +151,7 @@ def test_an_automatic_chain_is_no_longer_than_its_body(spacing: float, particles
     """Of a circle of 2.1 LU: the outermost particles are on it still, and one more on each side would not be."""
     body = {"spacing": spacing, "profile": {"kind": "circle", "radius": 2.1}}
     of = scene_from_dict(chains(1.0, law=LAW, bodies=body, experiment={"kind": "path", "displacements": [0.3]}))
-    found = settings_for(of).particles
+    found = settings_for(of).chains.upper
     assert found == particles
     assert 0.5 * (found - 1) * spacing <= 2.1 < 0.5 * (found + 1) * spacing
 
@@ -160,7 +160,7 @@ def test_an_automatic_chain_is_no_longer_than_its_body(spacing: float, particles
 def test_a_punch_is_as_many_particles_wide_as_it_is(spacing: float) -> None:
     body = {"spacing": spacing, "profile": {"kind": "flat_punch", "radius": 4.0}}
     of = scene_from_dict(chains(1.0, law=LAW, bodies=body, experiment={"kind": "path", "displacements": [0.3]}))
-    assert settings_for(of).particles == round(8.0 / spacing)
+    assert settings_for(of).chains.upper == round(8.0 / spacing)
 
 
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4])
@@ -173,14 +173,16 @@ def test_a_pair_that_comes_within_reach_changes_neither_the_force_on_it_nor_that
     terms = [{"amplitude": law[i], "range": law[i + 1]} for i in (0, 2)]
     of = of.with_({"interaction.repulsion": terms[0], "interaction.attraction": terms[1]})
     settings = settings_for(of)
-    assert settings.law is not None
-    at_cutoff = abs(float(settings.law.force(np.asarray([settings.cutoff]))[0]))
-    along = largest_holding_force(settings.law, SPACING, 0.0)
-    far = law[2] / law[3] * math.exp(-settings.cutoff / law[3])
-    at_rest = law[2] / law[3] * math.exp(-settings.law.force_free_distance() / law[3])
+    assert settings.forces.law is not None
+    at_cutoff = abs(float(settings.forces.law.force(np.asarray([settings.forces.cutoff]))[0]))
+    along = largest_holding_force(settings.forces.law, SPACING, 0.0)
+    far = law[2] / law[3] * math.exp(-settings.forces.cutoff / law[3])
+    at_rest = law[2] / law[3] * math.exp(-settings.forces.law.force_free_distance() / law[3])
     share = CALIBRATION.cutoff * tolerance
     assert at_cutoff <= far <= min(0.1 * tolerance * along, share * at_rest) * (1.0 + 1e-9)
-    assert settings.cutoff == 40.0 * law[3] or far == pytest.approx(min(0.1 * tolerance * along, share * at_rest))
+    assert settings.forces.cutoff == 40.0 * law[3] or far == pytest.approx(
+        min(0.1 * tolerance * along, share * at_rest)
+    )
 
 
 def test_without_motion_along_x_only_the_springs_across_hold_a_chain() -> None:

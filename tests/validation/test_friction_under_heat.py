@@ -7,12 +7,14 @@ vectorised integrator of other form (BAOAB) than LAMMPS's.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from contact1d import Run, run, run_many
 from contact1d.workflow.runs.processors import pool
 from contact1d.workflow.scene import Scene, read_scene
+from tests.kept_runs import KeptBench
 from validation.paper import heat
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
@@ -46,7 +48,8 @@ def test_three_decades_of_velocity_at_two_temperatures(paper: Scene, tmp_path: P
     with pool(2) as executor:
         runs = run_many([(scene, tmp_path / name) for name, scene in scenes.items()], executor)
     done = {name: one for name, one in zip(scenes, runs, strict=True) if isinstance(one, Run)}
-    rows = heat.judge(paper, done, tmp_path).checks
+    bench: Any = KeptBench(done, paper)
+    rows = heat.judge(bench).rows
     assert [row.name for row in rows if row.verdict != "PASS"] == []
     coldest, slowest = min(heat.SHARES), min(heat.DRIVES)
     still = heat.slow_friction(heat.WELLS, heat.SPRING)

@@ -83,7 +83,7 @@ def sample(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Sample]:
         folder = tmp_path_factory.mktemp("noise")
         write_system(deck, folder)
         with RunContext(deck, folder, Silent(), 300.0).contact() as contact:
-            return drawn(contact.session, deck.settings.time_step)
+            return drawn(contact.session, deck.settings.motion.time_step)
 
     return taken
 

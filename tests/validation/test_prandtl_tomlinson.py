@@ -78,8 +78,8 @@ def test_the_friction_is_that_of_the_equation_of_motion(eta: float, velocity: fl
     settings = settings_for(scene)
     found = run(scene, tmp_path / "run", figures=False).results
     body = Integrator(slide_model(scene, settings))
-    body.settle(settings.time_step, 1e-7)
-    (leg,) = settings.drive
+    body.settle(settings.motion.time_step, 1e-7)
+    (leg,) = settings.motion.drive
     trace = body.run(leg.rows * leg.steps, leg.time_step, velocity, every=leg.steps)
     periods = np.interp(trace.time[-1] - np.arange(3)[::-1] / velocity, trace.time, trace.impulse)
     expected = float(np.diff(periods).mean()) * velocity

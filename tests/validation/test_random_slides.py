@@ -157,7 +157,7 @@ def longer(scene: Scene) -> Scene:
     changes: dict[str, object] = {"experiment.distance": LONGER * scene.experiment.way}
     if not scene.bodies.periodic:
         beside = math.ceil((LONGER - 1.0) * scene.experiment.way / scene.bodies.spacing)
-        changes["bodies.particles"] = settings_for(scene).lower_particles + 2 * beside
+        changes["bodies.particles"] = settings_for(scene).chains.lower + 2 * beside
     return scene.with_(changes)
 
 

@@ -95,8 +95,8 @@ def test_the_pinned_slides_are_those_of_the_integrator(name: str) -> None:
     scene = read_scene(SCENES / f"{name}.toml")
     settings = settings_for(scene)
     body = Integrator(slide_model(scene.with_({"bodies.upper_offset": start_offset(scene, settings)}), settings))
-    body.settle(settings.time_step, 1e-7)
-    (leg,) = settings.drive
+    body.settle(settings.motion.time_step, 1e-7)
+    (leg,) = settings.motion.drive
     trace_ = body.run(leg.rows * leg.steps // 2, leg.time_step, leg.velocity, every=leg.steps)
     last = 2.0 * scene.bodies.spacing / leg.velocity
     mean = (trace_.impulse[-1] - np.interp(trace_.time[-1] - last, trace_.time, trace_.impulse)) / last
@@ -147,7 +147,7 @@ def model_of(scene: Scene) -> ChainModel:
         terms = [Exponential(term.amplitude, term.range) for term in (repulsion, attraction)]
         law = PairInteraction(*terms)
     return ChainModel(
-        settings_for(scene).particles,
+        settings_for(scene).chains.upper,
         scene.bulk_stiffness,
         law,
         radius=scene.bodies.plane_radius,

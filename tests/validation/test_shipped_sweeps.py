@@ -88,8 +88,10 @@ def law(name: str) -> float:
         case _:
             wells = corrugation(LAW, 1.0, LOAD)
     settings = settings_for(scene)
-    drag = settings.damping + settings.plate_damping
-    return moving_friction(wells, k, scene.bodies.mass + settings.plate_mass, drag, scene.cantilever.velocity, 4, 2)
+    drag = settings.motion.damping + settings.motion.plate_damping
+    return moving_friction(
+        wells, k, scene.bodies.mass + settings.motion.plate_mass, drag, scene.cantilever.velocity, 4, 2
+    )
 
 
 @pytest.mark.parametrize(

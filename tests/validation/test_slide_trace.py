@@ -49,8 +49,8 @@ def scene_of(**tables: Any) -> Scene:
 def integrated(scene: Scene, settings: Settings) -> Trace:
     """The same by the reference, measured where the program measures."""
     body = Integrator(slide_model(scene, settings))
-    body.settle(settings.time_step, RESIDUAL)
-    (leg,) = settings.drive
+    body.settle(settings.motion.time_step, RESIDUAL)
+    (leg,) = settings.motion.drive
     return body.run(leg.rows * leg.steps, leg.time_step, leg.velocity, every=leg.steps)
 
 

@@ -7,6 +7,7 @@ its density is followed in time as the load grows.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from contact1d import Run, run, run_many
 from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.runs.processors import pool
 from contact1d.workflow.scene import read_scene
+from tests.kept_runs import KeptBench
 from validation.paper import detachment
 from validation.references.detachment import detachment as quasi_stationary
 from validation.references.detachment import detachment_in_time, drag_of_pairs
@@ -37,6 +39,14 @@ def test_the_detachment_force_is_that_of_smoluchowskis_equation(rate: float, tmp
     assert results["detachment_force"].value == pytest.approx(forces.mean())
     assert results["detachment_force"].uncertainty == pytest.approx(spread / np.sqrt(REPEATS), rel=1.0)
     assert len(set(forces.tolist())) > REPEATS // 2
+    samples, held = found.tables["samples"], found.profiles["last_held"]
+    last = np.flatnonzero(-samples["load"] < forces[0])[-1]
+    assert found.scene.bodies.spacing * held.pressure.sum() == pytest.approx(samples["force"][last])
+    assert (
+        samples["displacement"][last]
+        > settings_for(found.scene).estimate.parted(detachment.LET_GO)
+        > samples["displacement"][last + 1]
+    )
 
 
 def test_followed_in_time_slow_pulls_are_those_of_a_rate_at_every_load() -> None:
@@ -60,7 +70,8 @@ def test_three_decades_of_the_loading_rate(tmp_path: Path) -> None:
     with pool(2) as executor:
         runs = run_many([(scene, tmp_path / name) for name, scene in scenes.items()], executor)
     done = {name: one for name, one in zip(scenes, runs, strict=True) if isinstance(one, Run)}
-    rows = detachment.judge(paper, done, tmp_path).checks
+    bench: Any = KeptBench(done, paper)
+    rows = detachment.judge(bench).rows
     assert [row.name for row in rows if row.verdict != "PASS"] == []
 
 

@@ -1,24 +1,29 @@
 """What programs of this kind get wrong: classes of hard cases, each against bounds that are not the program's own."""
 
 from validation.hard import (
+    coarse_paths,
     extremes,
     faults,
     forces,
     friction,
     fuzz,
+    kinks,
     loads,
     loops,
     modes,
     motion,
     plane_adhesive,
     pressed,
+    random_plane,
     random_scenes,
     settling,
     sharp,
+    sideways,
     similarity,
     slides,
     stiffness,
     thermal,
+    transient,
 )
 from validation.study import Study
 
@@ -26,4 +31,5 @@ STUDIES: tuple[Study, ...] = (
     stiffness.STIFFNESS, sharp.SHARP, random_scenes.RANDOM, loads.LOADS, settling.SETTLING, loops.LOOPS,
     friction.FRICTION, similarity.SIMILARITY, forces.FORCES, motion.MOTION, modes.EQUIPARTITION, *thermal.CLASSES,
     extremes.EXTREMES, *pressed.CLASSES, plane_adhesive.ADHESIVE, slides.SLIDES, faults.FAULTS, fuzz.FUZZ,
+    random_plane.RANDOM_PLANE, *kinks.CLASSES, coarse_paths.COARSE_PATHS, sideways.SIDEWAYS, transient.TRANSIENT,
 )  # fmt: skip

@@ -75,7 +75,7 @@ def measure(bench: Bench) -> Findings:
 
 def _stir(contact: Contact) -> None:
     """Leave the equilibrium, where all forces are 0, by moves of a few hundredths."""
-    session, count = contact.session, contact.settings.particles
+    session, count = contact.session, contact.settings.chains.upper
     bodies = 1 if contact.scene.bodies.lower == "rigid_plane" else 2
     random = np.random.default_rng(7)
     lines = []
@@ -91,7 +91,7 @@ def _forces(contact: Contact) -> tuple[Floats, Floats, tuple[float, float]]:
     """Forces and minus the slopes of the energy on every particle and direction, and the same of the plate along z."""
     session, scene = contact.session, contact.scene
     plane = scene.bodies.lower == "rigid_plane"
-    count = contact.settings.particles * (1 if plane else 2)
+    count = contact.settings.chains.upper * (1 if plane else 2)
     energy = ("pe", "f_rigid_plane_wall") if plane else ("pe",)
     session.execute("thermo_style custom step pe\nthermo_modify norm no\nrun 0 post no\n")  # in this order
     reading = session.measure("", ("f_quasistatic_plate[3]",), ("f",))

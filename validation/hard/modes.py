@@ -81,7 +81,7 @@ def _sampled(folder: Path, samples: int, drag: float | str) -> tuple[Floats, Flo
     moved, velocity = [], []
     with contact_of(tables, folder) as contact:
         session = contact.session
-        stride = round(INTERVAL / contact.settings.time_step)
+        stride = round(INTERVAL / contact.settings.motion.time_step)
         session.execute(f"displace_atoms upper_body move 0 0 {APART} units box\n", phase="sampling")
         start = session.atoms("x")["x"]
         session.execute(f"run {20 * stride} post no\n")

@@ -91,7 +91,7 @@ def _pushed(contact: Contact, d: float) -> float:
     Sideways or in height: pairs that buckle may slip past each other until they are aligned again.
     """
     contact.begin("loading")
-    moves = math.ceil(d / contact.settings.longest_move)
+    moves = math.ceil(d / contact.settings.increments.longest_move)
     for i in range(moves):  # in one move they would pass each other
         contact.row(Displace(d * (i + 1) / moves))
     contact.finish()

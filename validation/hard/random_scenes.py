@@ -191,7 +191,7 @@ def _exact(scene: dict[str, Any], run: Run | Refused) -> dict[str, float]:
     """The solver's numbers. Raises RuntimeError where it does not carry the scene."""
     if isinstance(run, Refused):
         expected = settings_for(scene_from_dict({"title": "expected"} | scene))
-        return exact_results(scene, model_of(scene, expected.particles), expected.largest_displacement)
+        return exact_results(scene, model_of(scene, expected.chains.upper), expected.largest_displacement)
     near = run.results["displacement"].value if "displacement" in run.results else 0.0
     return exact_results(scene, model_of(scene, next(iter(run.profiles.values())).x.size), near)
 

@@ -65,8 +65,8 @@ def measure(bench: Bench) -> Findings:
             with contact_of(timed, bench.folder / f"{words}_{share:g}") as contact:
                 settings = contact.settings
                 expected = reduced_time(pairs, settings, contact.scene.bodies.mass, load, begin, end)
-                stride = max(1, round(expected / settings.time_step / LOOKS))
-                slow = round(20.0 * settings.settle_time / settings.time_step)
+                stride = max(1, round(expected / settings.motion.time_step / LOOKS))
+                slow = round(20.0 * settings.motion.settle_time / settings.motion.time_step)
                 contact.begin("held")
                 contact.row(UnderLoad(0.0, slow))
                 last = contact.row(UnderLoad(-START * largest, 2 * slow)).displacement
@@ -75,7 +75,7 @@ def measure(bench: Bench) -> Findings:
                 for i in range(2 * LOOKS):
                     place = contact.row(UnderLoad(load, stride)).displacement
                     if place <= end:
-                        taken = (i + (last - end) / (last - place)) * stride * settings.time_step
+                        taken = (i + (last - end) / (last - place)) * stride * settings.motion.time_step
                         break
                     last = place
             found.append(taken)
@@ -107,8 +107,8 @@ def reduced_time(pairs: FoldedPairs, settings: Settings, mass: float, load: floa
     places = np.linspace(end - 0.1 * abs(begin - end), begin + 0.1 * abs(begin - end), 4001)
     force, moved = pairs.loading(places), _moved(pairs, places)
     net = CubicSpline(places, load - force)
-    inertia = CubicSpline(places, settings.plate_mass + mass * moved)
-    drag = CubicSpline(places, settings.plate_damping + settings.damping * moved)
+    inertia = CubicSpline(places, settings.motion.plate_mass + mass * moved)
+    drag = CubicSpline(places, settings.motion.plate_damping + settings.motion.damping * moved)
     slope = inertia.derivative()
 
     def motion(_: float, y: Floats) -> list[float]:

@@ -16,7 +16,7 @@ from scipy.stats import linregress, t
 from validation.doors import Quantity, Scene
 from validation.figures import Panel, Series, figure
 from validation.page import agreement, measured, number, share, worst_deviation
-from validation.paper.scenes import HALF_DIGIT, TABLE_1, changed, independent_pairs, local, with_radius
+from validation.paper.scenes import HALF_DIGIT, IN_PLACE, TABLE_1, changed, independent_pairs, local, with_radius
 from validation.row import Evidence, Reference, Row, absolute, claim
 from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
 
@@ -153,7 +153,7 @@ def judge_fig7(bench: Bench) -> Findings:
         f"runs claim). Held against the square root, R^{{-1/2}} and R^0: {agreement(checks)}. "
         f"{_departures(checks[:3])} JKR has 1 and 2/3 for F_A "
         f"and a_0, Barquins 1/3 and 2/3: {_far(force, (1.0, 1.0 / 3.0))} and {_far(radius, (2.0 / 3.0,))} of these "
-        "uncertainties away at least."
+        f"uncertainties away at least.\n\n{IN_PLACE}"
     )
     return Findings(checks, figures, text=finding)
 

@@ -57,6 +57,11 @@ TABLE_1 = (
     Printed(1600.0, 36.14, 1.87, 7.7e-9, 61.8e-6),
     Printed(2000.0, 40.36, 2.09, 8.6e-9, 77.6e-6),
 )
+IN_PLACE = (
+    "These runs have in place of the paper's: particles that move along z only (Fig. 2 has both directions; `fig6` has "
+    "what that changes), the interaction that is identified by the first row of Table 1, and a bulk stiffness of "
+    "1 FU/LU, chosen by the nearness of the curve of R = 1000 LU to JKR's. The paper prints neither of the last two."
+)
 HALF_DIGIT = {"a_0": 0.005, "F_A": 0.005, "one LU": 0.05, "one FU": 0.05}
 """Rounding of the printed numbers, in their units."""
 LOCAL_SPACING = 4.0
@@ -146,13 +151,13 @@ def radius(scene: Scene) -> float:
 
 
 def chain_model(scene: Scene) -> ChainModel:
-    """The scene for the independent solver."""
+    """The scene for the independent solver; the transformed profile x²/R is that of half the radius as given."""
     assert isinstance(scene.bodies.particles, int)
     return ChainModel(
         scene.bodies.particles,
         scene.bulk_stiffness,
         interaction(scene),
-        radius=radius(scene),
+        radius=radius(scene) / (2.0 if scene.bodies.reduction == "mdr" else 1.0),
         spacing=scene.bodies.spacing,
         neighbour_stiffness=0.0 if scene.neighbours is None else scene.neighbours.stiffness,
         horizontal=scene.horizontal is not None,
@@ -194,6 +199,11 @@ def row_tension(scene: Scene) -> float:
 def jkr_reduced(a: Array | float) -> Array:
     """F/F_A = 4 ã³ − 4 ã^{3/2} at ã = a/a₀ (Eq. 8)."""
     return np.asarray(4.0 * np.asarray(a) ** 3 - 4.0 * np.asarray(a) ** 1.5)
+
+
+def breaking_reduced(a: Array | float) -> Array:
+    """F/F_A = (3√3/2)(ã³ − ã) of springs that break: the model's own limit of zero range, whatever the law."""
+    return np.asarray(1.5 * math.sqrt(3.0) * (np.asarray(a) ** 3 - np.asarray(a)))
 
 
 def barquins_reduced(a: Array | float) -> Array:

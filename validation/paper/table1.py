@@ -12,7 +12,7 @@ from typing import Any
 from validation import doors
 from validation.doors import Scene
 from validation.page import agreement, number, share, worst_deviation
-from validation.paper.scenes import CONTACT_MODULUS, HALF_DIGIT, SURFACE_ENERGY, TABLE_1, with_radius
+from validation.paper.scenes import CONTACT_MODULUS, HALF_DIGIT, IN_PLACE, SURFACE_ENERGY, TABLE_1, with_radius
 from validation.row import Known, printed, relative
 from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
 
@@ -84,7 +84,7 @@ def judge(bench: Bench) -> Findings:
         f"can have: in the model a_0 and F_A go with the square root of R, and FU with R. {_odd()} The units are "
         "printed "
         "with more digits than F_A: what they say of it scatters about the square root of R by "
-        f"{share(printed_scatter())}."
+        f"{share(printed_scatter())}.\n\n{IN_PLACE}"
     )
     return Findings(checks, text=finding)
 

@@ -67,8 +67,8 @@ def ratio(name: str, folder: Path) -> float:
     settings = settings_for(scene)
     deck = Deck(scene, settings)
     write_deck(scene, folder)
-    points = settings.table.points if settings.table is not None else 0
-    variables = f"variable points index {points}\nvariable dt index {settings.time_step!r}\n"
+    points = settings.forces.table.points if settings.forces.table is not None else 0
+    variables = f"variable points index {points}\nvariable dt index {settings.motion.time_step!r}\n"
     load = "fix plate_load plate addforce 0.0 0.0 -0.005\n"
     steps = steps_of(deck)
     head = deck.head + (deck.begin("loading") if deck.stepped else load)

@@ -50,11 +50,11 @@ def held(contact: Contact, load: float, scale: float) -> bool:
     stiffness = scale / settings.largest_displacement
     while True:
         state = contact.row(UnderLoad(load, doors.chunk_steps(settings)))
-        if max(abs(state.force - load), abs(state.plate_velocity) * settings.settle_time * stiffness) <= near:
+        if max(abs(state.force - load), abs(state.plate_velocity) * settings.motion.settle_time * stiffness) <= near:
             return True
         largest = max(largest, -state.force)
         off = load < 0.0 < largest and state.plate_velocity < 0.0 and -state.force < LOST * min(largest, -load)
-        if off or state.smallest_distance > settings.cutoff:
+        if off or state.smallest_distance > settings.forces.cutoff:
             return False
 
 
@@ -65,9 +65,10 @@ def plain(scene: Scene, tolerance: float, folder: Path, tuned: bool) -> tuple[fl
     preload = own.experiment.preload
     settings = settings_for(own)
     if tuned:
-        settings = replace(settings, damping=TUNED_DAMPING)
+        settings = replace(settings, motion=replace(settings.motion, damping=TUNED_DAMPING))
     else:
-        settings = replace(settings, time_step=settings.time_step * STEP / doors.still_step())
+        step = settings.motion.time_step * STEP / doors.still_step()
+        settings = replace(settings, motion=replace(settings.motion, time_step=step))
     deck = doors.Deck(own, settings)
     folder.mkdir(parents=True, exist_ok=True)
     doors.write_system(deck, folder)
@@ -83,7 +84,7 @@ def plain(scene: Scene, tolerance: float, folder: Path, tuned: bool) -> tuple[fl
             holds = held(contact, -tension, max(preload, guess))
             contact.finish()
         low, high = (tension, high) if holds else (low, tension)
-    return 0.5 * (low + high), context.lammps_cpu_seconds
+    return 0.5 * (low + high), context.clock.lammps_cpu_seconds
 
 
 def rows_of(tolerance: float, seconds: Mapping[str, float], errors: Mapping[str, float]) -> list[Row]:

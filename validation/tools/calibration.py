@@ -152,11 +152,11 @@ def power(value: float) -> str:
 def _effective(scene: Scene, settings: Settings) -> str:
     """What a run of the scene depends on among the settings that shares choose: runs that agree in it are one."""
     timed = scene.method == "dynamic"
-    step = settings.smooth_step if settings.is_smooth else settings.displacement_step
-    points = settings.table.points if settings.table is not None else 0
-    pace = settings.time_step if timed else settings.force_tolerance
+    step = settings.increments.smooth_step if settings.is_smooth else settings.increments.displacement_step
+    points = settings.forces.table.points if settings.forces.table is not None else 0
+    pace = settings.motion.time_step if timed else settings.forces.residual
     searched = not timed and scene.experiment.kind != "path"
-    return f"{settings.particles} {settings.cutoff!r} {points} {pace!r} {step if searched else 0.0!r}"
+    return f"{settings.chains.upper} {settings.forces.cutoff!r} {points} {pace!r} {step if searched else 0.0!r}"
 
 
 def _rows(

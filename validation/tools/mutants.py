@@ -30,6 +30,7 @@ from typing import Any
 
 import pytest
 
+from validation.age import today
 from validation.tools.copies import ROOT, copy_of_this, first_failure, load, run_tests
 
 RESULTS = Path(__file__).parents[1] / "results" / "mutants.json"
@@ -277,7 +278,14 @@ def main() -> int:
         for m in alive
     ]  # fmt: skip
     noticed = 1.0 - len(alive) / len(chosen)
-    record = {"asked": ASKED, "seed": options.seed, "faults": len(chosen), "noticed": noticed, "survivors": rows}
+    record = {
+        "asked": ASKED,
+        "seed": options.seed,
+        **vars(today()),
+        "faults": len(chosen),
+        "noticed": noticed,
+        "survivors": rows,
+    }
     options.out.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     print(f"{len(chosen)} faults, {len(alive)} survive: {100.0 * noticed:.1f} % noticed")
     return int(noticed < ASKED)

@@ -40,6 +40,8 @@ RADII = ("contact_radius", "largest_radius", "zero_load_radius")
 ERRORS = ("displacement", "largest_force", *RADII)
 """Results whose relative uncertainty, that of the lattice included, is the pressure's, too; of springs on a plane,
 whose pressure is a function of the radius, that of the radius alone."""
+SWING = 2.0
+"""Relative change of a pressure over those of the results, of a body that is not known exactly."""
 WIDER = {"mdr": 1.0, "geike_popov": 4.0}
 """W π s a/w."""
 EFFECTIVE = {"mdr": 1.0, "geike_popov": 0.5}
@@ -67,11 +69,18 @@ def with_implied(scene: Scene, settings: Settings, outcome: Outcome) -> Outcome:
 
 
 def _with(outcome: Outcome, made: Mapping[str, Quantity]) -> Outcome:
-    """The outcome with what was made of its results; W is two readings of one quantity."""
+    """The outcome with what was made of its results; W is two readings of one quantity.
+
+    A pressure that may be 0, as under a punch that carries nothing, is compared with the largest force over a².
+    """
     sources = {"work_of_adhesion": MODEL}
-    results = {
-        name: Result(one.value, one.unit, {sources.get(name, "input"): one.uncertainty}) for name, one in made.items()
-    }
+    radius = max((one.value for name, one in outcome.quantities.items() if name.endswith("radius")), default=0.0)
+    pressure = max(abs(state.force) for state in outcome.states) / radius**2 if radius > 0.0 else None
+    results = {}
+    for name, one in made.items():
+        is_zero = one.unit == MEAN_PRESSURE and abs(one.value) <= one.uncertainty
+        errors = {sources.get(name, "input"): one.uncertainty}
+        results[name] = Result(one.value, one.unit, errors, pressure if is_zero else None)
     return replace(outcome, results={**outcome.results, **results})
 
 
@@ -83,9 +92,13 @@ def implied(scene: Scene, settings: Settings, found: Mapping[str, Quantity]) -> 
         settings: that it ran with.
         found: its results; without a radius there is no W.
     """
-    if settings.law is None or settings.law.attraction is None:
+    if settings.forces.law is None or settings.forces.law.attraction is None:
         return {}
-    work, spacing, reduction = _work(settings.law, scene.bodies.spacing), scene.bodies.spacing, scene.bodies.reduction
+    work, spacing, reduction = (
+        _work(settings.forces.law, scene.bodies.spacing),
+        scene.bodies.spacing,
+        scene.bodies.reduction,
+    )
     line = product(1.0 / spacing, FORCE, (work, 1.0))
     quantities = {"separation_energy": line}
     radius, curvature = first_of(found, "zero_load_radius", "contact_radius"), scene.bodies.profile.curvature_radius
@@ -140,10 +153,17 @@ def _pressures(scene: Scene, outcome: Outcome) -> dict[str, Quantity]:
     found = outcome.quantities
     shares = {name: one.uncertainty / abs(one.value) for name in ERRORS if (one := found.get(name)) and one.value}
     radius = next((shares[name] for name in RADII if name in shares), 0.0)
+    every = sum(shares.values()) * (SWING if scene.bodies.profile.alternatives else 1.0)
     pressures = body_pressures(scene, {name: outcome.profiles[name] for name in reported_state(outcome)})
+    # What is not quite 0 at F = 0 is spread over the contact.
+    left = {"zero_load": abs(outcome.marked["zero_load"].force)} if "zero_load" in pressures else {}
     return {
-        name: Quantity(p.value, p.uncertainty + _swing(pressure, name, radius, sum(shares.values())), p.unit)
-        for pressure in pressures.values()
+        name: Quantity(
+            p.value,
+            p.uncertainty + _swing(pressure, name, radius, every) + left.get(state, 0.0) / pressure.contact_radius**2,
+            p.unit,
+        )
+        for state, pressure in pressures.items()
         for name, p in pressure.results.items()
     }
 

@@ -1,11 +1,12 @@
 """The closed forms to compare a run with: one table, each with its conditions and its predictions of results.
 
 Pressed without adhesion: Hertz, Sneddon, Galin. Adhesive on a plane: JKR and its extensions to other profiles, Maugis
-and Dugdale with a range. A sphere with an interaction: JKR, Maugis and Dugdale or DMT by the Tabor parameter.
-Tangential displacement with friction: Cattaneo and Mindlin.
+and Dugdale with a range, and with DMT where the Tabor parameter is below that of JKR. A sphere with an interaction:
+JKR, Maugis and Dugdale or DMT by the Tabor parameter. Tangential displacement with friction: Cattaneo and Mindlin.
 
-results.json has them as `theory`: a list of {"name", "source", "applies", "values"}; of each result in `values` the
-closed form's "value" and "unit", with known units "si", and "deviation", the run's value over it minus 1.
+results.json has them as `theory`: a list of {"name", "source", "applies", "values"}, and "tabor" where the values
+depend on it; of each result in `values` the closed form's "value" and "unit", with known units "si", and "deviation",
+the run's value over it minus 1.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from contact1d.analysis.theory.mindlin import (
 from contact1d.workflow.model.settings import interaction_law
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.scene.tables import SPHERES
-from contact1d.workflow.units import Quantity, Scales, scale_of
+from contact1d.workflow.units import UNKNOWN, Quantity, Scales, scale_of
 
 Values = dict[str, float]
 
@@ -36,6 +37,8 @@ SHOWN = 6
 """Decimals of a deviation in percent: below that it is round-off."""
 SAME_LOAD = 1e-12
 """Relative: up to that loads are one; round-off."""
+ASSUMED_RANGE = 0.3e-9
+"""z₀ [m] of an adhesion whose scene has none: a distance between atoms, and that of most solids."""
 
 
 @dataclass(frozen=True)
@@ -45,10 +48,12 @@ class Case:
     Attributes:
         scene: what ran.
         quantities: what it found, of the body, by name.
+        scales: LU and FU, by which a range is assumed where the scene has none.
     """
 
     scene: Scene
     quantities: Mapping[str, Quantity]
+    scales: Scales = UNKNOWN
 
     @property
     def contact_modulus(self) -> float:
@@ -90,9 +95,9 @@ class Case:
 
     @property
     def range(self) -> float:
-        """z₀ [LU]: given, or the force-free distance of an interaction that attracts; 0 where neither is."""
+        """z₀ [LU]: given or assumed, or the force-free distance of an interaction that attracts; 0 where none is."""
         if self.scene.adhesion is not None:
-            return self.scene.adhesion.range or 0.0
+            return self.scene.adhesion.range or (ASSUMED_RANGE / self.scales.length if self.scales.known else 0.0)
         law = interaction_law(self.scene)
         return 0.0 if law is None or law.attraction is None else law.force_free_distance()
 
@@ -107,6 +112,13 @@ class Case:
         """R, E* and W of a sphere."""
         assert self.radius is not None
         return self.radius, self.contact_modulus, self.work
+
+    @property
+    def with_range(self) -> MaugisDugdale | None:
+        """The contact of an adhesive sphere whose attraction has a range; None for anything else."""
+        if self.radius is None or not (self.work > 0.0 and self.range > 0.0):
+            return None
+        return MaugisDugdale(*self.sphere, self.range)
 
     @cached_property
     def body(self) -> PowerLaw | Ellipsoid:
@@ -150,6 +162,7 @@ class ClosedForm:
         applies: why it holds for a case, in a few words; "" where it does not.
         values: its predictions, by the names of results, in their model units, to compare the run with.
         pressure: p(r) [FU/LU²] at r [LU] in the reported state, if it predicts that.
+        has_range: whether the predictions depend on the Tabor parameter.
     """
 
     name: str
@@ -157,6 +170,7 @@ class ClosedForm:
     applies: Callable[[Case], str]
     values: Callable[[Case], Values]
     pressure: Callable[[Case, Array], Array] | None = None
+    has_range: bool = False
 
 
 def applying(case: Case) -> list[ClosedForm]:
@@ -166,7 +180,7 @@ def applying(case: Case) -> list[ClosedForm]:
 
 def theory(scene: Scene, quantities: Mapping[str, Quantity], scales: Scales) -> list[dict[str, Any]]:
     """What results.json has as `theory`; `quantities` of the body, `scales` of the run."""
-    case = Case(scene, quantities)
+    case = Case(scene, quantities, scales)
     return [_entry(form, case, scales) for form in applying(case)]
 
 
@@ -181,17 +195,22 @@ def _entry(form: ClosedForm, case: Case, scales: Scales) -> dict[str, Any]:
             si = scales.in_si(value, 0.0, ours.unit)
             values[name]["si"] = {"value": si["value"], "unit": si["unit"]}
         values[name]["deviation"] = ours.value / value - 1.0 if value else None
-    return {"name": form.name, "source": form.source, "applies": form.applies(case), "values": values}
+    depends = {"tabor": tabor(case)} if form.has_range else {}
+    return {"name": form.name, "source": form.source, "applies": form.applies(case), **depends, "values": values}
 
 
 def in_words(results: Mapping[str, Any], name: str) -> Iterator[str]:
     """The prediction of each closed form for a result, with the deviation: `Hertz 110.37 µm (+0.001 %)`."""
+
+    def named(form: Mapping[str, Any]) -> str:
+        return f"{form['name']} (μ = {form['tabor']:.3g})" if "tabor" in form else str(form["name"])
+
     for form in results.get("theory", ()):
         if said := form["values"].get(name):
             entry = said.get("si", said)
             factor, unit = scale_of(entry["value"], entry["unit"]) if "si" in said else (1.0, said["unit"])
             off = "" if said["deviation"] is None else f" ({round(100.0 * said['deviation'], SHOWN) + 0.0:+.2g} %)"
-            yield f"{form['name']} {entry['value'] * factor:.5g} {unit}{off}"
+            yield f"{named(form)} {entry['value'] * factor:.5g} {unit}{off}"
 
 
 # Pressed without adhesion. Under a given F: d, a, F/πa², p(0), dF/dd = 2E*a; at a given d: F, a and the pressures.
@@ -293,17 +312,21 @@ def _adhesive_punch_values(case: Case) -> Values:
 
 def tabor(case: Case) -> float | None:
     """µ = (R W²/E*² z₀³)^{1/3} of a sphere with a range; None for anything else."""
-    if case.radius is None or not (case.work > 0.0 and case.range > 0.0):
-        return None
-    return MaugisDugdale(*case.sphere, case.range).tabor
+    return None if case.with_range is None else case.with_range.tabor
 
 
-def _with_a_range(case: Case) -> str:
-    """µ and what follows from it."""
-    mu = tabor(case)
-    if mu is None or case.scene.adhesion is None or case.kind != "parabola":
-        return ""
-    return f"a paraboloid with a range; the Tabor parameter is {mu:.3g}, where {valid_theory(mu, 0.0).theory} holds"
+def _with_a_range(of_any: bool) -> Callable[[Case], str]:
+    """Applies to a paraboloid on a plane where JKR does not hold, and `of_any` µ where the scene gives the range."""
+
+    def applies(case: Case) -> str:
+        mu, adhesion = tabor(case), case.scene.adhesion
+        if mu is None or adhesion is None or case.kind != "parabola":
+            return ""
+        if of_tabor(mu) is Theory.JKR and not (of_any and adhesion.range):
+            return ""
+        return f"a paraboloid with a range; the Tabor parameter is {mu:.3g}, where {valid_theory(mu, 0.0).theory} holds"
+
+    return applies
 
 
 def _by_tabor(theory: Theory) -> Callable[[Case], str]:
@@ -374,6 +397,7 @@ def _mindlin_values(case: Case) -> Values:
 SNEDDON = "I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47"
 JKR = "K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301"
 MAUGIS = "D. Maugis, J. Colloid Interface Sci. 150 (1992) 243"
+DMT = "B. V. Derjaguin, V. M. Muller, Yu. P. Toporov, J. Colloid Interface Sci. 53 (1975) 314"
 FORMS = (
     ClosedForm("Hertz", "H. Hertz 1882; K. L. Johnson, Contact Mechanics, 1985, section 4.2",
                _pressed("parabola", "a paraboloid, pressed without adhesion"), _pressed_values, _pressure),
@@ -397,11 +421,11 @@ FORMS = (
                _adheres("circle", "a whole sphere that adheres, without a range"), _adhesive_values),
     ClosedForm("Kendall, flat punch", "K. Kendall, J. Phys. D 4 (1971) 1186",
                _adheres("flat_punch", "a flat punch that adheres, without a range"), _adhesive_punch_values),
-    ClosedForm("Maugis and Dugdale", MAUGIS, _with_a_range, _maugis_values),
+    ClosedForm("Maugis and Dugdale", MAUGIS, _with_a_range(True), _maugis_values, has_range=True),
+    ClosedForm("DMT", DMT, _with_a_range(False), _dmt_values),
     ClosedForm("JKR", JKR, _by_tabor(Theory.JKR), _jkr_values),
-    ClosedForm("Maugis-Dugdale", MAUGIS, _by_tabor(Theory.MAUGIS), _maugis_values),
-    ClosedForm("DMT", "B. V. Derjaguin, V. M. Muller, Yu. P. Toporov, J. Colloid Interface Sci. 53 (1975) 314",
-               _by_tabor(Theory.DMT), _dmt_values),
+    ClosedForm("Maugis-Dugdale", MAUGIS, _by_tabor(Theory.MAUGIS), _maugis_values, has_range=True),
+    ClosedForm("DMT", DMT, _by_tabor(Theory.DMT), _dmt_values),
     ClosedForm("Cattaneo and Mindlin", "C. Cattaneo 1938; R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327",
                drawn_along, _mindlin_values),
 )  # fmt: skip

@@ -32,6 +32,8 @@ BETWEEN = 101
 TIP, KNOWN_TIP, KINK = 1e-3, 1e-9, 0.5
 """A profile has an apex where so little of a spacing off the axis its slope is that share of the one to a spacing; the
 second where the body's own shape is taken, and not what particles make of it."""
+ROUND_OFF = 1e-13
+"""Error of a pressure over the stiffness of the layer: of positions beside the depth of the wall that carries them."""
 INSIDE = 1.0 - 1e-9
 """Of the edge, up to which p is given: round-off."""
 SHRINKS = 0.45
@@ -135,12 +137,15 @@ def _pressure(scene: Scene, profile: Profile, radius: ContactRadius) -> BodyPres
     if not fine.has_apex:
         if _converges([float(level.pressure([0.0])[0]) for level in told], noise):
             bounded["central_pressure"] = 0
-        off_axis = top > 0 and len(told) == 3 and fine.at_edge <= noise * p[top] * fine.edge  # a jump is a pole
+        # A jump at the edge is a pole, and where the slope jumps inside p is a logarithm.
+        smooth = not (scene.bodies.profile.has_edge or any(kink < radius.value for kink in scene.bodies.kinks))
+        off_axis = smooth and top > 0 and len(told) == 3 and fine.at_edge <= noise * p[top] * fine.edge
         if off_axis:
             off_axis = _converges([float(level.pressure(r).max()) for level in told], noise)
-        if off_axis or top in bounded.values():
+        if p[top] > 0.0 and (off_axis or (smooth and top in bounded.values())):
             bounded["peak_pressure"] = top
-    results = {name: Quantity(float(p[at]), float(spread[at]), MEAN_PRESSURE) for name, at in bounded.items()}
+    digits = ROUND_OFF * scene.bulk_stiffness / scene.bodies.spacing
+    results = {name: Quantity(float(p[at]), float(spread[at]) + digits, MEAN_PRESSURE) for name, at in bounded.items()}
     if bounded.get("peak_pressure"):  # it lies between two particles
         highest = float(fine.pressure(np.linspace(r[top - 1], r[min(top + 1, r.size - 1)], BETWEEN)).max())
         results["peak_pressure"] = Quantity(highest, float(spread[top]), MEAN_PRESSURE)

@@ -15,9 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from contact1d.analysis.theory.adhesion import JKR_TABOR, MaugisDugdale, Theory
+from contact1d.analysis.theory.adhesion import JKR_TABOR, MaugisDugdale, Theory, of_tabor
 from contact1d.analysis.theory.indenters import Ellipsoid, PowerLaw
-from contact1d.workflow.body.theory import Case
+from contact1d.digits import apart, digits_apart
+from contact1d.workflow.body.theory import ASSUMED_RANGE, Case
 from contact1d.workflow.body.traction import is_of_a_body
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import MEAN_PRESSURE, Quantity, Scales, prefixed
@@ -26,8 +27,6 @@ SLOPE, HALF_WIDTH = 0.1, 0.5
 """Conventions: largest slope at the contact edge, and contact radius over half-width of a body, without a warning."""
 YIELD = 1.6
 """Pressure on the axis over the yield strength at which a ball begins to yield below the surface."""
-RANGE = 0.3e-9
-"""Range of the attraction [m] that is assumed for the Tabor parameter where none is given: an atomic distance."""
 STEP = 1e-6
 """Relative, for the slope of a profile."""
 RADII = ("contact_radius", "largest_radius", "zero_load_radius", "critical_radius")
@@ -66,8 +65,8 @@ def checks(scene: Scene, found: Mapping[str, Quantity], scales: Scales) -> list[
     radius = max((found[name].value for name in RADII if name in found), default=0.0)
     if not is_of_a_body(scene) or radius <= 0.0:
         return []
-    case = Case(scene, found)
-    return [*_slope(case, radius), *_half_width(case, radius), *_tabor(case, scales), *_yield(case, scales)]
+    case = Case(scene, found, scales)
+    return [*_slope(case, radius), *_half_width(case, radius), *_tabor(case), *_yield(case)]
 
 
 def _slope(case: Case, radius: float) -> Iterator[Check]:
@@ -79,9 +78,10 @@ def _slope(case: Case, radius: float) -> Iterator[Check]:
     slope = float((high - low) / np.diff(around)[0])
     message, holds = "", slope <= SLOPE
     if not holds:
+        found, limit = apart(slope, SLOPE)
         message = (
-            f"the slope of the profile at the contact edge is {slope:.3g}, and the theory of the elastic half-space is "
-            f"for slopes below {SLOPE:g}{_beside_a_ball(case, radius)}"
+            f"the slope of the profile at the contact edge is {found}, and the theory of the elastic half-space is "
+            f"for slopes below {limit}{_beside_a_ball(case, radius)}"
         )
     yield Check("slope", "f'(a)", slope, SLOPE, holds, message)
 
@@ -105,36 +105,38 @@ def _half_width(case: Case, radius: float) -> Iterator[Check]:
     if not np.isfinite(profile.reach) or profile.has_edge:
         return
     share = radius / profile.reach
+    found, limit = apart(share, HALF_WIDTH)
     message = (
-        f"the contact radius is {share:.3g} of the half-width of the body, and the theory of the elastic half-space is "
-        f"for bodies much wider than the contact, here less than {HALF_WIDTH:g}"
+        f"the contact radius is {found} of the half-width of the body, and the theory of the elastic half-space is "
+        f"for bodies much wider than the contact, here less than {limit}"
     )
     yield Check("body_size", "a/half-width", share, HALF_WIDTH, share <= HALF_WIDTH, message)
 
 
-def _tabor(case: Case, scales: Scales) -> Iterator[Check]:
-    adhesion, radius = case.scene.adhesion, case.radius
-    if adhesion is None or radius is None or not adhesion.work:
-        return
-    if adhesion.range is not None:
-        reach, assumed = adhesion.range, ""
-    elif scales.known:
-        reach, assumed = RANGE / scales.length, f" with an assumed range of the attraction of {prefixed(RANGE, 'm')}"
-    else:
-        return
-    theory = MaugisDugdale(radius, case.contact_modulus, adhesion.work, reach)
-    message, holds = "", theory.tabor >= JKR_TABOR
-    if not holds:
-        error = theory.theories[Theory.JKR].pull_off_force() / theory.pull_off_force() - 1.0
-        message = (
-            f"the Tabor parameter is {theory.tabor:.2g}{assumed}, and JKR holds above {JKR_TABOR:g}: JKR's pull-off "
-            f"force is {abs(error):.1%} {'larger' if error > 0.0 else 'smaller'} than that of Maugis and Dugdale"
-        )
-    yield Check("tabor", "Tabor parameter", theory.tabor, JKR_TABOR, holds, message)
+def beyond_jkr(sphere: MaugisDugdale, assumed: bool) -> str:
+    """What JKR misses of a sphere whose attraction has a range, given or `assumed`; "" where JKR holds."""
+    held = of_tabor(sphere.tabor)
+    if held is Theory.JKR:
+        return ""
+    error = sphere.theories[Theory.JKR].pull_off_force() / sphere.pull_off_force() - 1.0
+    found, limit = apart(sphere.tabor, JKR_TABOR, 2)
+    where = f" with an assumed range of the attraction of {prefixed(ASSUMED_RANGE, 'm')}" if assumed else ""
+    return (
+        f"the Tabor parameter is {found}{where}, where {held} holds, and JKR above {limit}: the "
+        f"results are JKR's, whose pull-off force is {abs(error):.1%} {'larger' if error > 0.0 else 'smaller'} than "
+        "that of Maugis and Dugdale"
+    )
 
 
-def _yield(case: Case, scales: Scales) -> Iterator[Check]:
-    material = case.scene.material
+def _tabor(case: Case) -> Iterator[Check]:
+    adhesion, sphere = case.scene.adhesion, case.with_range
+    if adhesion is not None and sphere is not None:
+        message = beyond_jkr(sphere, adhesion.range is None)
+        yield Check("tabor", "Tabor parameter", sphere.tabor, JKR_TABOR, not message, message)
+
+
+def _yield(case: Case) -> Iterator[Check]:
+    material, scales = case.scene.material, case.scales
     bodies = () if material is None else (material.upper, material.lower)
     strength = min((body.yield_strength or math.inf for body in bodies if body is not None), default=math.inf)
     if math.isinf(strength) or not scales.known:
@@ -143,11 +145,12 @@ def _yield(case: Case, scales: Scales) -> Iterator[Check]:
     if case.radius is not None and "preload" in case.quantities:
         pressures.append(case.body.central_pressure(case.body.contact_radius(case.quantities["preload"].value)))
     pressure = max(pressures, default=0.0) * scales.factor(MEAN_PRESSURE)
-    share, reached = pressure / strength, f"the largest pressure is {prefixed(pressure, 'Pa')}"
+    share, digits = pressure / strength, digits_apart(pressure, YIELD * strength, 4)
+    reached = f"the largest pressure is {prefixed(pressure, 'Pa', digits)}"
     if case.kind in SINGULAR:
         share, reached = math.inf, "a tip or an edge yields at once"
     message = (
         f"{reached}, and a smooth elastic ball yields from {YIELD:g} times the yield strength on, "
-        f"{prefixed(YIELD * strength, 'Pa')} (Poisson's ratio near 0.3): pressures are those of an elastic body"
+        f"{prefixed(YIELD * strength, 'Pa', digits)} (Poisson's ratio near 0.3): pressures are those of an elastic body"
     )
     yield Check("yield", "largest pressure/Y", share, YIELD, share <= YIELD, message)

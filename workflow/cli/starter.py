@@ -78,13 +78,13 @@ def _table(name: str, table: type[Table], given: Mapping[str, Any] | None, allow
 
 def _inside(allowed: Allowed, given: object) -> Iterator[str]:
     """What stands in an inline table: each key, and which other kinds of table there are."""
-    for choice in allowed.choices:
-        if choice.table is None or (isinstance(given, Mapping) and choice.kind not in (None, given.get("kind"))):
+    for kind, table in allowed.tables.items():
+        if isinstance(given, Mapping) and kind not in ("", given.get("kind")):
             continue
-        for word in keys_of(choice.table):
+        for word in keys_of(table):
             if word != "kind":
-                yield from _comment(f"{word}: {meaning(choice.table, word)}", "#   ")
-        yield from _other_kinds(allowed, choice.table, "#   ")
+                yield from _comment(f"{word}: {meaning(table, word)}", "#   ")
+        yield from _other_kinds(allowed, table, "#   ")
 
 
 def _other_kinds(allowed: Allowed, chosen: type[Table], begin: str = "# ") -> Iterator[str]:

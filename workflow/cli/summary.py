@@ -124,10 +124,10 @@ def beside_theories(found: MaterialRun) -> Iterator[str]:
     if theories is None:
         return
     columns = [f"{name}*" if name == theories.holding else name for name in theories.values]
-    yield f"\n  {'':<28} {''.join(f'{name:<{WIDTH}}' for name in columns)}".rstrip()
+    yield f"\n  {f'theory, at μ = {theories.tabor:.3g}':<28} {''.join(f'{name:<{WIDTH}}' for name in columns)}".rstrip()
     for name, unit in THEORY.items():
         values = [marks.get(name) for marks in theories.values.values()]
         if None not in values:
             shown = "".join(f"{prefixed(value or 0.0, unit):<{WIDTH}}" for value in values)
             yield f"  {LABELS[name]:<28} {shown}".rstrip()
-    yield "  * valid at this μ"
+    yield "  * holds at this μ, that of the material"

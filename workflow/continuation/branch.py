@@ -8,16 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import Peak, promised, rivals
+from contact1d.digits import apart
 from contact1d.workflow.continuation.context import ContactBranch, RunContext
 from contact1d.workflow.continuation.marks import PLACE_FACTOR, peak_of, radius_rate
 from contact1d.workflow.continuation.state import State
-from contact1d.workflow.continuation.trace import Trace, of_states
+from contact1d.workflow.continuation.trace import Search, Trace, of_states
 from contact1d.workflow.continuation.trust import TensionError, UntrustedError
 from contact1d.workflow.deck.steps import Displace, DisplaceInTime, displacements
 
@@ -63,54 +63,48 @@ JUMPS = (
 
 
 class Branch(ContactBranch):
-    """States under displacement control.
-
-    Attributes:
-        missed: error of the search for the force maximum [FU].
-        on_the_way: how many of the first states are intermediate ones.
-    """
+    """States under displacement control; `tolerance` is what a search may use up, relative."""
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
         """Prepare a contact."""
         super().__init__(context, meanwhile)
         self.tolerance = SEARCH_SHARE * self.settings.tolerance
-        self.missed, self.on_the_way = 0.0, 0
-        self._targets: dict[str, float] = {}
-
-    def trace(self) -> Trace:
-        """What a reader sees."""
-        asked = [i >= self.on_the_way for i in range(len(self.states))]
-        return replace(of_states(self.states, asked, self._limit), doubt={"sampling": self.missed})
 
     @property
     def unloading(self) -> Trace:
-        """The states that were held while unloading, by falling displacement."""
-        return of_states(self.falling, limit=self._limit).falling()
+        """The states of the leg under way that are held, by falling displacement."""
+        return of_states(self.leg, self.model).falling()
 
     @property
     def peak(self) -> Peak:
         """The force maximum of the states that were held while unloading."""
         return peak_of(self.unloading)
 
-    @property
-    def _limit(self) -> float:
-        return -math.inf
+    def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | None = None) -> None:
+        """Load steps at displacements [LU] that are known beforehand, of one direction."""
+        self._turn(not self.states or positions[-1] >= self._last.displacement)
+        self._visit(positions)
 
-    def visit(self, positions: Sequence[float] | Array, phases: str = "falling") -> list[State]:
-        """Load steps at displacements [LU] that are known beforehand."""
-        states = self.contact.rows(displacements([float(position) for position in positions]))
-        (self.loading if phases == "loading" else self.falling).extend(states)
-        return states
+    def _visit(self, positions: Sequence[float] | Array) -> None:
+        """The same on the leg under way, to and fro."""
+        self._enter()
+        self._keep(self.contact.rows(displacements([float(position) for position in positions])))
 
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
         """Hold a displacement [LU] for a time [TU], in which particles move."""
         assert displacement is not None
-        moves = max(1, math.ceil(abs(displacement) / self.settings.longest_move - SAME))
-        rows = [DisplaceInTime(displacement * i / moves, APPROACH_STEPS) for i in range(1, moves)]
-        count, steps = self.settings.rows_of(duration)
-        held = [DisplaceInTime(displacement, 1), *[DisplaceInTime(displacement, steps)] * count]
-        self.on_the_way = len(rows)
-        self.loading += self.contact.rows([*rows, *held], moving=True)
+        self.moves, name = True, self._phase
+        moves = max(1, math.ceil(abs(displacement) / self.settings.increments.longest_move - SAME))
+        self._turn(displacement > 0.0)
+        if approach := [DisplaceInTime(displacement * i / moves, APPROACH_STEPS) for i in range(1, moves)]:
+            self.begin("approaching")
+            self._move(approach)
+        self.begin(name)
+        self._move([DisplaceInTime(displacement, steps) for steps in self.settings.steps_of(duration)])
+
+    def _move(self, rows: Sequence[DisplaceInTime]) -> None:
+        self._enter()
+        self._keep(self.contact.rows(rows, moving=True))
 
     # --- a force
 
@@ -120,38 +114,38 @@ class Branch(ContactBranch):
         Raises:
             UntrustedError: see `require_trust`; also where the force cannot be held.
         """
-        falls = bool(self.loading)
-        direction, states = (-1, self.falling) if falls else (1, self.loading)
-        self._targets["zero" if falls else "deepest"] = force
         near = FORCE_ACCURACY * self.settings.tolerance * scale
+        rises = not self.states or force - self._last.carried > near
+        direction = 1 if rises else -1
+        self._turn(rises)
         self._first_rows(force, direction)
         before: State | None = None
         beyond: State | None = None
-        while abs(states[-1].carried - force) > near:
-            last = states[-1]
+        while abs(self._last.carried - force) > near:
+            last, states = self._last, self.leg
             if direction * (last.carried - force) > 0:
                 beyond = last
             else:
                 before = last
             before = before or next((s for s in states[::-1] if direction * (s.carried - force) <= 0), None)
             if before is None:
+                wanted, start = apart(force, last.carried, 4)
                 raise UntrustedError(
-                    f"{force:.4g} FU cannot be reached: the force starts at {last.carried:.4g} FU, already "
-                    f"{'below' if falls else 'above'} it. Give a force beyond that, or use "
+                    f"{wanted} FU cannot be reached: the force starts at {start} FU, already "
+                    f"{'above' if rises else 'below'} it. Give a force beyond that, or use "
                     'kind = "path" for the full curve'
                 )
-            self._require_within_reach(force, falls, before, beyond)
-            step = self.settings.increment(math.inf if falls else last.smallest_distance)
-            states.append(self._at(_secant(before, beyond, states, force, direction * step)))
+            self._require_within_reach(force, rises, before, beyond)
+            step = self.settings.increment(last.smallest_distance if rises else math.inf)
+            self._at(_secant(before, beyond, states, force, direction * step))
 
     def _first_rows(self, force: float, direction: int) -> None:
-        """The first load steps of a stretch towards a force [FU]: the position where it begins."""
-        states, start = (self.loading, 0.0) if direction > 0 else (self.falling, self.loading[-1].displacement)
-        states.append(self._at(start))
+        """The first load steps of a leg towards a force [FU]: the position where it begins."""
+        self._at(self._last.displacement if self.states else 0.0)
 
-    def _require_within_reach(self, force: float, falls: bool, before: State, beyond: State | None) -> None:
+    def _require_within_reach(self, force: float, rises: bool, before: State, beyond: State | None) -> None:
         """Refuse a force that the branch jumps past, never reaches, or does not reach in a practicable time."""
-        states = self.falling if falls else self.loading
+        states = self.leg
         if beyond is not None and abs(beyond.displacement - before.displacement) < SAME * self.scene.bodies.spacing:
             raise UntrustedError(
                 f"the force jumps past {force:.4g} FU at displacement {before.displacement:.6g} LU, from "
@@ -159,7 +153,7 @@ class Branch(ContactBranch):
                 'force. Give a force outside the jump, use kind = "path" for the full curve, or stiffer '
                 "springs or a longer range, which avoid the instability"
             )
-        if falls and states[-1].smallest_distance > self.settings.cutoff:
+        if not rises and states[-1].smallest_distance > self.settings.forces.cutoff:
             raise TensionError(force, max(-state.force for state in states))
         if len(states) > MOST_INCREMENTS:
             raise UntrustedError(
@@ -190,9 +184,9 @@ class Branch(ContactBranch):
                 continue
             known = changed <= allowed and found.uncertainty <= allowed
             if known and (cuts > HALVINGS_AT_PEAK or self._is_placed(found)):
-                before, left = len(self.falling), self._look_at_rivals(allowed)
-                if len(self.falling) == before:
-                    self.missed = max(missed, changed, left, abs(found.smooth + self._last.force))
+                before, left = len(self.states), self._look_at_rivals(allowed)
+                if len(self.states) == before:
+                    self._found(max(missed, changed, left, abs(found.smooth + self._last.force)))
                     return
                 expected = self.peak
                 changed = max(changed, abs(expected.smooth - found.smooth))
@@ -200,6 +194,8 @@ class Branch(ContactBranch):
             beside, cuts = 0.5 * beside, cuts + 1
             surprise = self._halve((found.position + beside, found.position - beside))
             expected = self.peak
+            if (moved := abs(expected.position - found.position)) > 2.0 * beside:
+                beside = moved  # another maximum is higher: nothing is known beside it
             changed = max(surprise, abs(expected.smooth - found.smooth))
         raise UntrustedError(f"no force maximum is found near {expected.position:.6g} LU: {JUMPS}")
 
@@ -212,7 +208,7 @@ class Branch(ContactBranch):
         before = self.peak
         # On from where the bodies have been, yet no longer a way at once than the search for a maximum goes past it.
         nearest = self._last.displacement - (ROWS_BEYOND_PEAK + 1) * self.settings.increment()
-        self._separate(max(nearest, min(s.displacement for s in self.falling)))
+        self._separate(max(nearest, min(s.displacement for s in self.leg)))
         after = self.peak
         if abs(after.smooth - before.smooth) > self.tolerance * after.smooth:
             raise SecondMaximumError(
@@ -226,14 +222,13 @@ class Branch(ContactBranch):
         Returns the increment [LU].
         """
         estimate, zero = self.settings.estimate, self._last
-        tooth = estimate.tooth(self.settings.particles)
+        tooth = estimate.tooth(self.settings.chains.upper)
         densest = (zero.displacement - estimate.rest + float(estimate.gap[-1])) / MOST_TEETH
         step = min(self.settings.increment(), max(tooth, densest) / PER_TOOTH)
         through = tooth < math.inf or self.context.through
         rows = [zero]
         while not _is_passed(rows) or (through and -min(s.force for s in rows) <= self._still_held(rows[-1])):
             rows.append(self._at(zero.displacement - len(rows) * step))
-            self.falling.append(rows[-1])
             if len(rows) > MOST_INCREMENTS:
                 raise UntrustedError("the search does not pass the force maximum")
         return step
@@ -283,36 +278,38 @@ class Branch(ContactBranch):
 
     # --- moves
 
-    @property
-    def _last(self) -> State:
-        return self.falling[-1] if self.falling else self.loading[-1]
-
     def _at(self, displacement: float) -> State:
-        """One row at a displacement [LU]."""
-        return self.contact.row(Displace(displacement))
+        """One load step at a displacement [LU]."""
+        self._enter()
+        state = self.contact.row(Displace(displacement))
+        self._keep([state])
+        return state
+
+    def _found(self, missed: float) -> None:
+        """A force maximum, with the error of the search for it [FU]."""
+        self.searches[self._number] = Search({"sampling": missed})
 
     def _back_to(self, displacement: float) -> None:
         """Visit a displacement [LU]; bodies come nearer by RETURN_SHARE of their particles' distance at a time."""
         while displacement - self._last.displacement > (longest := RETURN_SHARE * self._last.smallest_distance):
-            longest = max(longest, self.settings.longest_move)
-            self.falling.append(self._at(min(self._last.displacement + longest, displacement)))
-        self.falling.append(self._at(displacement))
+            longest = max(longest, self.settings.increments.longest_move)
+            self._at(min(self._last.displacement + longest, displacement))
+        self._at(displacement)
 
     def _separate(self, start: float) -> None:
         """Rows of falling displacement from `start` [LU] until the tension has passed its largest value and is gone."""
-        largest = max((-s.force for s in self.falling), default=0.0)
-        self.falling.append(self._at(start))
+        largest = max((-s.force for s in self.leg), default=0.0)
+        self._at(start)
         displacement, step = start, self._unloading_step(start)
         for _ in range(MOST_INCREMENTS):
             displacement -= step
             state = self._at(displacement)
-            self.falling.append(state)
             largest = max(largest, -state.force)
             if 0.0 <= -state.force < GROWTH_SHARE * largest:
                 step *= self._growth(state, largest)
             gone = abs(state.force) < SEPARATION_SHARE * largest
             if (gone and self._still_held(state) < SEPARATION_SHARE * largest) or (
-                state.smallest_distance > self.settings.cutoff
+                state.smallest_distance > self.settings.forces.cutoff
             ):
                 return
         raise UntrustedError(f"the bodies did not separate within {MOST_INCREMENTS} increments of the displacement")
@@ -323,7 +320,7 @@ class Branch(ContactBranch):
 
     def _unloading_step(self, start: float) -> float:
         """First increment [LU] of an unloading: soft springs follow the attraction farther than they were pressed."""
-        way = start - self.settings.rest + float(self.settings.estimate.gap[-1])
+        way = start - self.settings.forces.rest + float(self.settings.estimate.gap[-1])
         return max(self.settings.increment(), way / SEPARATION_ROWS)
 
     def _still_held(self, state: State) -> float:

@@ -6,6 +6,7 @@
                      the model with these steps beside the model with dense ones
     discretisation   the reader on the model with its apex elsewhere between particles, or on three spacings; and on
                      radii changed by the error of interpolation between particles
+    time             of a motion: the reader on the same in longer timesteps, with larger masses where none are given
     instability      premature detachment of particles, and other maxima of the force (the reader's own)
 
 Nothing here depends on the experiment: whatever a script passes and a reader reads has all of these.
@@ -14,7 +15,8 @@ Nothing here depends on the experiment: whatever a script passes and a reader re
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -26,7 +28,7 @@ from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import law_error
 from contact1d.workflow.model.reduced import Reduced, reduced
-from contact1d.workflow.model.settings import Settings
+from contact1d.workflow.model.settings import Settings, SettingsError, settings_for
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
@@ -36,12 +38,16 @@ STEP_MARGIN, PATH_MARGIN = 1.25, 1.5
 """The same of the steps of a path: dense ones have errors, too; the second if the model's maximum is elsewhere."""
 PHASES = (0.25, 0.0)
 """Positions of the apex between particles, over the spacing, that an even chain is compared with."""
+UNEVEN = (0.93, 0.86)
+"""Spacings over the own one that put a kink of the profile elsewhere between particles, on both sides alike."""
 MORE_PHASES = (0.375, 0.25, 0.125, 0.0)
 """Such positions where friction makes several edges, the errors of which may cancel at two positions."""
 SHIFTS = (0.0, 0.25, 0.5, 0.75)
 """Shifts of a path's steps over their width, of which the worst counts where the model is no copy of the deck."""
 DENSE, FEWEST = 16, 200
 """Positions of the model in one step of a path; particles that the model of a plane keeps for so many."""
+FOLLOWED = 0.5
+"""Difference of the model from a motion, over the result, beyond which its lattice says nothing of that."""
 SLOWEST = 0.9
 """Ratio of two differences of three spacings above which they do not shrink."""
 
@@ -85,21 +91,49 @@ class Reduction:
         return self.scene.adhesion is not None and self.scene.adheres
 
     @cached_property
+    def own(self) -> Values:
+        """The results of the model of the chain that runs."""
+        return self.values(reduced(self.scene, self.settings))
+
+    def followed(self, values: Values) -> Values:
+        """`lattice` of results in time; where the model does not follow the motion, by how much they differ."""
+        off = {name: abs(values[name] - self.own.get(name, 0.0)) for name in values.keys() & self.lattice.keys()}
+        return {name: max(self.lattice[name], one * (one > FOLLOWED * abs(values[name]))) for name, one in off.items()}
+
+    @cached_property
     def lattice(self) -> Values:
         """By name of a result, its discretisation error; a result that another lattice does not have may be 0."""
         if not (self.on_lattice or self.converges):
             return {}
-        model = reduced(self.scene, self.settings)
-        own = self.values(model)
+        model, own = reduced(self.scene, self.settings), self.own
+        kinks = self.scene.bodies.profile.kinks
+        beside = [model.resized(factor) for factor in UNEVEN if kinks]
+        if not self.converges or kinks:
+            phases = MORE_PHASES if self.scene.friction is not None or kinks else PHASES
+            beside += [model.shifted(phase) for phase in phases]
+        found = self._apart(beside)
         if self.converges:
-            others = [self.values(model.resized(0.5)), self.values(model.resized(0.25))]
-            return {
-                name: MARGIN * _extrapolated(value, *(one.get(name, 0.0) for one in others))
-                for name, value in own.items()
-            }
-        phases = MORE_PHASES if self.scene.friction is not None else PHASES
-        others = [self.values(model.shifted(phase)) for phase in phases]
-        return {name: MARGIN * max(abs(one.get(name, 0.0) - value) for one in others) for name, value in own.items()}
+            finer = [self.values(model.resized(0.5)), self.values(model.resized(0.25))]
+            for name, value in own.items():
+                found[name] = max(found[name], _extrapolated(value, *(one.get(name, 0.0) for one in finer)))
+        return {name: MARGIN * error for name, error in found.items()}
+
+    @cached_property
+    def inputs(self) -> Values:
+        """By name of a result, by how much the bodies that the scene may mean differ from the one that runs, in sum."""
+        bodies, others = self.scene.bodies, []
+        for shape in bodies.profile.alternatives:
+            scene = self.scene.model_copy(update={"bodies": bodies.model_copy(update={"profile": shape})})
+            with suppress(SettingsError):
+                others.append(reduced(scene, replace(self.settings, estimate=settings_for(scene).estimate)))
+        each = [self._apart([other]) for other in others]
+        return {name: sum(one[name] for one in each) for name in self.own}
+
+    def _apart(self, models: Sequence[Reduced]) -> Values:
+        """How far results of other models are off, at most."""
+        others = [self.values(model) for model in models]
+        own = self.own.items()
+        return {name: max((abs(one.get(name, 0.0) - value) for one in others), default=0.0) for name, value in own}
 
 
 def _extrapolated(coarse: float, fine: float, finest: float) -> float:
@@ -122,9 +156,9 @@ def sampling_errors(case: Reduction, trace: Trace) -> Values:
         model = model.resized(2.0)  # steps miss the same on a coarser lattice
     for share in SHIFTS[:1] if is_copy else SHIFTS:
         dense, same = (case.values(model, between, share * step) for between in (DENSE, 1))
-        for name in same.keys() & dense.keys():
-            missed = (STEP_MARGIN if is_copy else PATH_MARGIN) * abs(same[name] - dense[name])
-            found[name] = max(found.get(name, 0.0), missed)
+        for name in same.keys() | dense.keys():
+            missed = abs(same.get(name, 0.0) - dense.get(name, 0.0))
+            found[name] = max(found.get(name, 0.0), (STEP_MARGIN if is_copy else PATH_MARGIN) * missed)
     return found
 
 
@@ -149,7 +183,7 @@ def force_errors(
     scene: Scene, settings: Settings, states: Sequence[State], marked: Collection[State], left: float | None = None
 ) -> ForceErrors:
     """Of states, by their displacement between `marked` ones; `left`: in place of residual forces [FU]."""
-    count = float(settings.particles)
+    count = float(settings.chains.upper)
     law = {state.displacement: law_error(scene, settings, state) for state in marked}
     own = {
         state.displacement: law[state.displacement] + (count * state.residual if left is None else left)
@@ -169,6 +203,7 @@ def budgeted(
     force_error: ForceErrors,
     sampled: bool = False,
     length: float = 0.0,
+    repeated: Mapping[str, Sequence[Trace]] | None = None,
 ) -> dict[str, Result]:
     """The results with their errors.
 
@@ -178,6 +213,7 @@ def budgeted(
         force_error: ε of each state.
         sampled: whether the scene gives the steps.
         length: over which a tilt of the force is ε [LU]; 0 for none.
+        repeated: by the source of the error that they show, the same measured in other ways: "time" of a motion.
     """
     readings = case.read(trace)
     values = _values(readings)
@@ -198,25 +234,34 @@ def budgeted(
     radii = [trace.perturbed(radius_shift=shift) for shift in (alike, -alike, other, -other)]
     read = _changes(case.read, values, radii)
     between = sampling_errors(case, trace) if sampled else {}
+    repeated = repeated or {}
+    again = {
+        source: [_changes(case.read, values, [other], missing=True) for other in others]
+        for source, others in repeated.items()
+    }
+    lattice = case.followed(values) if "time" in repeated else case.lattice
+    inputs = case.inputs if case.scene.bodies.profile.alternatives else {}
     found = {}
     for name, one in readings.items():
-        errors = {"solver": solver[name], LATTICE: case.lattice.get(name, 0.0) + read[name]}
+        errors = {"solver": solver[name], LATTICE: lattice.get(name, 0.0) + read[name]}
+        errors |= {source: MARGIN * sum(one[name] for one in changes) for source, changes in again.items()}
         for source, error in one.errors.items():
             errors[source] = errors.get(source, 0.0) + error
+        if name in inputs:
+            errors["input"] = errors.get("input", 0.0) + inputs[name]
         if name in between:
             errors["sampling"] = max(errors.get("sampling", 0.0), between[name])
         found[name] = Result(one.value, one.unit, errors, one.scale, one.prescribed, read[name])
     return found
 
 
-def _changes(read: Reader, values: Values, perturbed: list[Trace]) -> Values:
-    """The largest change of each value."""
+def _changes(read: Reader, values: Values, perturbed: list[Trace], missing: bool = False) -> Values:
+    """The largest change of each value; where `missing` counts, one that a perturbed reader lacks is 0."""
     found = dict.fromkeys(values, 0.0)
     for trace in perturbed:
         others = _values(read(trace))
-        found = {
-            name: max(change, abs(others.get(name, values[name]) - values[name])) for name, change in found.items()
-        }
+        for name, value in values.items():
+            found[name] = max(found[name], abs(others.get(name, 0.0 if missing else value) - value))
     return found
 
 

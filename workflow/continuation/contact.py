@@ -168,7 +168,7 @@ class Contact:
         spacing, phase, settings = self.scene.bodies.spacing, self._phases[-1].name, self.settings
         # The wall's force is a difference of distances from far below.
         depth = PLANE_DEPTH * max(settings.largest_displacement, spacing)
-        round_off = float(np.finfo(np.float64).eps) * depth * settings.plane_stiffness
+        round_off = float(np.finfo(np.float64).eps) * depth * settings.forces.plane_stiffness
         states = []
         for i, (row, profile) in enumerate(zip(rows, self._profiles(len(rows)), strict=True)):
             assert isinstance(row, Displace | Draw)
@@ -216,7 +216,7 @@ class Contact:
         if self.scene.cantilever is not None:
             names |= {"cantilever_plate": "LU", "cantilever_force": "FU"} | MOTION
             if self.scene.noise is not None and self._heat_is_reported:
-                names |= dict.fromkeys(HEAT if self.settings.plate_damping > 0.0 else HEAT[:1], "FU·LU")
+                names |= dict.fromkeys(HEAT if self.settings.motion.plate_damping > 0.0 else HEAT[:1], "FU·LU")
         return names | dict.fromkeys(self._pushes, "FU")
 
     def _lost(self, message: str, step: int) -> EngineError:
@@ -225,8 +225,8 @@ class Contact:
     def _state(self, phase: str, numbers: dict[str, float], atoms: dict[str, Array], number: int) -> State:
         upper, lower = (atoms["type"] == PARTICLES[body] for body in ("upper", "lower"))
         here = int(upper.sum() + lower.sum())
-        opposite = 0 if self.scene.bodies.lower == "rigid_plane" else self.settings.lower_particles
-        if here < self.settings.particles + opposite:
+        opposite = 0 if self.scene.bodies.lower == "rigid_plane" else self.settings.chains.lower
+        if here < self.settings.chains.upper + opposite:
             # LAMMPS looks for lost atoms when it makes a new neighbour list, and a row may end before.
             raise self._lost(f"atoms are missing: only {here} particles are left in the box", int(numbers["step"]))
         position, force = atoms["x"], atoms["f"]

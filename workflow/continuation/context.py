@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,11 +14,46 @@ from typing import Self
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.state import State
+from contact1d.workflow.continuation.trace import Array, Search, Trace, of_states
+from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.steps import Phase
+from contact1d.workflow.deck.steps import Phase, numbered
+from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.engine.session import Engine
 from contact1d.workflow.model.reduced import Reduced, reduced
+
+ASIDE = ".aside"
+"""Folder of a context aside, in the run folder."""
+
+
+class Clock:
+    """What contacts took, also those of other threads.
+
+    Attributes:
+        lammps_seconds, lammps_cpu_seconds: in LAMMPS.
+        rows_seconds: of the first, what load steps took: without the deck's head and the files of states.
+        steps: timesteps.
+    """
+
+    def __init__(self) -> None:
+        """Begin at 0."""
+        self.lammps_seconds = self.lammps_cpu_seconds = self.rows_seconds = 0.0
+        self.steps = 0
+        self._lock = threading.Lock()
+
+    @property
+    def taken(self) -> tuple[float, float, float, int]:
+        """What `add` takes."""
+        return self.lammps_seconds, self.lammps_cpu_seconds, self.rows_seconds, self.steps
+
+    def add(self, lammps: float, cpu: float, rows: float, steps: int) -> None:
+        """Add what another one took."""
+        with self._lock:
+            self.lammps_seconds += lammps
+            self.lammps_cpu_seconds += cpu
+            self.rows_seconds += rows
+            self.steps += steps
 
 
 @dataclass
@@ -32,8 +68,7 @@ class RunContext:
         retries: whether a search in which bodies went through each other restarts in smaller steps.
         workers: contacts that an experiment may have open at a time.
         ranks: of MPI, for each of them.
-        lammps_seconds, lammps_cpu_seconds, steps: summed over all contacts so far.
-        rows_seconds: of the first, what load steps took: without the deck's head and the files of states.
+        clock: what all contacts so far took.
         phase, timestep: where the latest contact is or ended.
         through: whether a search goes through all of the tension: it rises again after its first maximum.
         left: what a run that failed had so far, if that is worth looking at; its quantities are no results.
@@ -46,15 +81,11 @@ class RunContext:
     retries: bool = True
     workers: int = 1
     ranks: int = 1
-    lammps_seconds: float = field(default=0.0, init=False)
-    lammps_cpu_seconds: float = field(default=0.0, init=False)
-    rows_seconds: float = field(default=0.0, init=False)
-    steps: int = field(default=0, init=False)
+    clock: Clock = field(default_factory=Clock, init=False)
     phase: str = field(default="start", init=False)
     timestep: int = field(default=0, init=False)
     left: Outcome | None = field(default=None, init=False)
     through: bool = field(default=False, init=False)
-    _lock: threading.Lock = field(default_factory=threading.Lock, init=False, repr=False)
 
     @contextmanager
     def contact(self, purpose: str = "", meanwhile: Callable[[], object] | None = None) -> Iterator[Contact]:
@@ -70,19 +101,27 @@ class RunContext:
                 contact = Contact(self.deck, session, meanwhile)
                 yield contact
             finally:
-                self.rows_seconds += contact.rows_seconds if contact else 0.0
-                self.lammps_seconds += session.lammps_seconds
-                self.lammps_cpu_seconds += session.lammps_cpu_seconds
-                self.steps += session.steps
+                rows = contact.rows_seconds if contact else 0.0
+                self.clock.add(session.lammps_seconds, session.lammps_cpu_seconds, rows, session.steps)
                 self.phase, self.timestep = session.phase, session.timestep
 
+    @contextmanager
+    def aside(self, deck: Deck) -> Iterator[RunContext]:
+        """A context of another deck in a folder of its own, which goes at the end; its time counts here."""
+        folder = self.folder / ASIDE
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+        own = RunContext(deck, folder, self.progress, self.time_limit, workers=self.workers, ranks=self.ranks)
+        try:
+            write_system(deck, folder)
+            yield own
+        finally:
+            self.add_time_of(own)
+            shutil.rmtree(folder, ignore_errors=True)
+
     def add_time_of(self, other: RunContext) -> None:
-        """Add the time used by a parallel context, possibly in another thread."""
-        with self._lock:
-            self.lammps_seconds += other.lammps_seconds
-            self.lammps_cpu_seconds += other.lammps_cpu_seconds
-            self.rows_seconds += other.rows_seconds
-            self.steps += other.steps
+        """Add the time used by another context, possibly in another thread."""
+        self.clock.add(*other.clock.taken)
 
 
 class ContactBranch:
@@ -92,8 +131,12 @@ class ContactBranch:
         context: where contacts are opened.
         contact: the one that runs.
         model: the reduced one.
-        loading, falling: states of rising, and then of falling displacement, as they were measured.
+        states: of all load steps, in order.
+        legs: number of the leg of each; see `Trace`.
+        searches: what the search for a force maximum leaves open, by the leg's number.
         marked: states that are reported, by name.
+        unbalance: force [FU] that the last state leaves unbalanced; None: what its residual forces add up to.
+        moves: whether the states are those of a motion, and no equilibria.
     """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
@@ -101,9 +144,13 @@ class ContactBranch:
         self.context, self._meanwhile = context, meanwhile
         self.scene, self.settings = context.deck.scene, context.deck.settings
         self.model: Reduced = reduced(self.scene, self.settings)
-        self.loading: list[State] = []
-        self.falling: list[State] = []
+        self.states: list[State] = []
+        self.legs: list[int] = []
+        self.searches: dict[int, Search] = {}
         self.marked: dict[str, State] = {}
+        self.unbalance: float | None = None
+        self.moves = False
+        self._direction, self._turned, self._phase = 0, False, ""
         self._open = ExitStack()
 
     def __enter__(self) -> Self:
@@ -123,18 +170,27 @@ class ContactBranch:
         return self.contact.phases
 
     @property
-    def states(self) -> list[State]:
-        """All states, in order."""
-        return [*self.loading, *self.falling]
+    def leg(self) -> list[State]:
+        """The states of the leg under way."""
+        return [state for state, leg in zip(self.states, self.legs, strict=True) if leg == self._number]
 
     @property
     def scale(self) -> float:
         """The force maximum that is expected [FU]."""
         return self.settings.estimate.pull_off_force()
 
+    def trace(self) -> Trace:
+        """What a reader sees."""
+        step = self.settings.motion.time_step if self.moves else 0.0
+        return of_states(self.states, self.model, self.legs, self.searches, step)
+
     def begin(self, name: str) -> None:
-        """Begin a phase."""
-        self.contact.begin(name)
+        """Begin a phase with the next load step: "loading" for the second time is "loading_2"."""
+        self._phase = name
+
+    def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | None = None) -> None:
+        """Go to displacements [LU]. Raises UntrustedError under load control."""
+        raise UntrustedError('a plate under a load has no prescribed displacement: use method = "quasistatic"')
 
     def mark(self, name: str) -> None:
         """Report the last state."""
@@ -144,3 +200,30 @@ class ContactBranch:
     def finish(self) -> None:
         """End the schedule."""
         self.contact.finish()
+
+    @property
+    def _number(self) -> int:
+        return self.legs[-1] if self.legs else -1
+
+    @property
+    def _last(self) -> State:
+        return self.states[-1]
+
+    def _turn(self, rises: bool) -> bool:
+        """Whether a leg of rising or falling displacement begins with the next load step, which is not under way."""
+        direction = 1 if rises else -1
+        turned, self._direction = direction != self._direction, direction
+        self._turned = self._turned or turned
+        return turned
+
+    def _keep(self, states: Sequence[State]) -> None:
+        """Add states of the leg under way, or the first ones of the next."""
+        self.legs += [self._number + self._turned] * len(states)
+        self.states += states
+        self._turned = False
+
+    def _enter(self) -> None:
+        """Begin the phase that the script has named, before its first load step."""
+        if self._phase:
+            name, self._phase = self._phase, ""
+            self.contact.begin(numbered(name, [phase.name for phase in self.contact.phases]))

@@ -81,12 +81,12 @@ def damping_under(settings: Settings, load: float) -> float:
 
     In a search that restarts, no particle that is pressed on oscillates either.
     """
-    if settings.damped_stiffness == 0.0:
-        return settings.damping
+    if settings.motion.damped_stiffness == 0.0:
+        return settings.motion.damping
     if settings.gentle and load >= 0.0:
-        return settings.calm_damping
-    stiffer = stiffness_under(settings, load) / settings.damped_stiffness
-    return settings.damping * math.sqrt(min(max(stiffer, 0.0), 1.0 / SOFTENING))
+        return settings.motion.calm_damping
+    stiffer = stiffness_under(settings, load) / settings.motion.damped_stiffness
+    return settings.motion.damping * math.sqrt(min(max(stiffer, 0.0), 1.0 / SOFTENING))
 
 
 def overshoot(settings: Settings, mass: float, load: float, next_load: float) -> float:
@@ -94,7 +94,7 @@ def overshoot(settings: Settings, mass: float, load: float, next_load: float) ->
 
     exp(−πζ/√(1 − ζ²)) of a linear oscillator with the stiffness of the beginning, the largest one under tension.
     """
-    moving = settings.plate_mass + settings.particles * mass
+    moving = settings.motion.plate_mass + settings.chains.upper * mass
     drag = settings.drag(damping_under(settings, next_load))
     ratio = drag / (2.0 * math.sqrt(stiffness_under(settings, load) * moving))
     return math.exp(-math.pi * ratio / math.sqrt(1.0 - ratio**2)) if ratio < 1.0 else 0.0
@@ -110,7 +110,7 @@ def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start:
     inertia = _inertia(scene, settings)
     drag = settings.drag(damping)
     parted = settings.estimate.parted(PARTING_SHARE) if load < 0.0 else _apart(settings)
-    steps = max(FEWEST_STEPS, math.ceil(PATIENCE * settings.settle_time / settings.time_step))
+    steps = max(FEWEST_STEPS, math.ceil(PATIENCE * settings.motion.settle_time / settings.motion.time_step))
     rest = at_rest(settings, scale) / inertia
     return Hold(int(start), load, damping, drag / inertia, rest, parted, _through(settings), steps)
 
@@ -173,7 +173,7 @@ def press(contact: Contact, load: float, scale: float) -> Held:
     Raises:
         UntrustedError: see `hold`.
     """
-    count = max(1, round(1.0 / contact.settings.part)) if load > 0.0 else 1
+    count = max(1, round(1.0 / contact.settings.increments.part)) if load > 0.0 else 1
     states: list[State] = []
     for i in range(1, count + 1):
         held = hold(contact, load * i / count, scale)
@@ -185,22 +185,22 @@ def press(contact: Contact, load: float, scale: float) -> Held:
 
 def _inertia(scene: Scene, settings: Settings) -> float:
     """Total moving mass over that of the plate in LAMMPS: the upper particles move with it, or are part of it."""
-    return 1.0 if scene.stands else 1.0 + settings.particles * scene.bodies.mass / settings.plate_mass
+    return 1.0 if scene.stands else 1.0 + settings.chains.upper * scene.bodies.mass / settings.motion.plate_mass
 
 
 def _apart(settings: Settings) -> float:
     """Displacement [LU] at which the bodies are certainly out of each other's reach."""
-    return settings.rest - settings.cutoff - settings.estimate.spacing
+    return settings.forces.rest - settings.forces.cutoff - settings.estimate.spacing
 
 
 def _through(settings: Settings) -> float:
     """Displacement [LU] beyond what a plate without any damping would shoot to: the bodies went through each other."""
-    way = settings.largest_displacement - settings.rest + settings.cutoff
+    way = settings.largest_displacement - settings.forces.rest + settings.forces.cutoff
     return settings.largest_displacement + 2.0 * max(way, settings.estimate.spacing)
 
 
 def _lost(contact: Contact, state: State, load: float) -> bool:
     """Out of reach, or moving off with a tension that has fallen below what is pulled with."""
-    if contact.settings.law is not None and state.smallest_distance > contact.settings.cutoff:
+    if contact.settings.forces.law is not None and state.smallest_distance > contact.settings.forces.cutoff:
         return True
     return load < 0.0 and state.plate_velocity < 0.0 and -state.force < -LOSS_SHARE * load

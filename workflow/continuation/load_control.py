@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -19,8 +19,7 @@ from contact1d.analysis.curve_marks import are_apart
 from contact1d.analysis.polynomial import lowest_minimum, through, value
 from contact1d.workflow.continuation.context import ContactBranch, RunContext
 from contact1d.workflow.continuation.holding import Held, Start, hold, overshoot, press
-from contact1d.workflow.continuation.state import State
-from contact1d.workflow.continuation.trace import Trace, of_states
+from contact1d.workflow.continuation.trace import Search
 from contact1d.workflow.continuation.trust import ThroughError, UntrustedError
 from contact1d.workflow.deck.steps import UnderLoad
 
@@ -51,7 +50,7 @@ LEAST_STEP = 1e-3
 
 
 @dataclass
-class Search:
+class LoadSearch:
     """Tensions tried so far.
 
     Attributes:
@@ -113,22 +112,13 @@ class LoadBranch(ContactBranch):
 
     Attributes:
         unbalance: force [FU] that the last state leaves unbalanced.
-        search: of the force maximum, once there was one.
     """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
         """Prepare a contact."""
         super().__init__(context, meanwhile)
-        self.search: Search | None = None
         self.unbalance = 0.0
         self._held: Held | None = None
-
-    def trace(self) -> Trace:
-        """What a reader sees."""
-        bracket, doubt = None, {}
-        if self.search is not None:
-            bracket, doubt = (self.search.best, self.search.broken), {"instability": self.missed_teeth()}
-        return replace(of_states(self.states), bracket=bracket, doubt=doubt)
 
     def reach(self, force: float, scale: float) -> None:
         """Hold a force [FU] to a share of the tolerance of `scale` [FU]; a tension is approached from F = 0, so
@@ -137,28 +127,35 @@ class LoadBranch(ContactBranch):
         Raises:
             UntrustedError: see `hold`; the contact can't hold the force.
         """
-        first = self._held is None
-        if self._held is None:
-            self._take(press(self.contact, max(force, 0.0), scale), self.loading)
+        self._turn(self._held is None or force > self._held.load)
+        self._enter()
+        if self._turned and self._direction > 0:
+            self._take(press(self.contact, max(force, 0.0), scale))
         elif force >= 0.0:
-            self._take(hold(self.contact, force, scale), self.falling)
-        if first and force < 0.0:
-            self.contact.begin("unloading")
-        while (held := self._last).held and held.load > force:
+            self._take(hold(self.contact, force, scale))
+        while (held := self._latest).held and held.load > force:
+            if self._turn(rises=False):
+                self.begin("unloading")
+                self._enter()
             past = overshoot(self.settings, self.scene.bodies.mass, held.load, -self.scale)
             gentle = (past * held.load - self.scale) / (1.0 + past)
             close = gentle >= held.load - LEAST_STEP * self.scale
-            self._take(hold(self.contact, force if close else max(force, gentle), scale), self.falling)
-        if not self._last.held:
-            raise UntrustedError(f"the contact does not sustain {self._last.load:.4g} FU: the bodies separate")
+            self._take(hold(self.contact, force if close else max(force, gentle), scale))
+        if not self._latest.held:
+            raise UntrustedError(f"the contact does not sustain {self._latest.load:.4g} FU: the bodies separate")
 
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
         """Hold a force [FU] for a time [TU]; a tension from F = 0 on."""
         assert force is not None
+        self.moves, name = True, self._phase
         if force < 0.0:
+            self.begin("approaching")
             self.reach(0.0, self.scale)
-        count, steps = self.settings.rows_of(duration)
-        self.loading += self.contact.rows([UnderLoad(force, 1), *[UnderLoad(force, steps)] * count], moving=True)
+        self.begin(name)
+        self._enter()
+        self._turn(rises=force >= 0.0)
+        rows = [UnderLoad(force, steps) for steps in self.settings.steps_of(duration)]
+        self._keep(self.contact.rows(rows, moving=True))
 
     def holds_more(self, force: float) -> bool:
         """Whether a tensile load larger by FIRST_RISE tolerances is sustained, too, tried with a contact of its own.
@@ -172,7 +169,7 @@ class LoadBranch(ContactBranch):
             with LoadBranch(self.context) as other:
                 other.begin("loading")
                 larger = force * (1.0 + FIRST_RISE * self.settings.tolerance)
-                other.reach(larger, max(-larger, self.settings.force_scale))
+                other.reach(larger, max(-larger, self.settings.forces.scale))
         except ThroughError:
             raise
         except UntrustedError:
@@ -185,15 +182,14 @@ class LoadBranch(ContactBranch):
         Raises:
             UntrustedError: see `hold`; the force maximum is not bracketed, or not held again.
         """
-        zero = self._last
-        past = partial(_overshoot, self)
-        self.search = search = Search(self.settings.tolerance, self.scale, past, [zero])
+        self._enter()
+        search = LoadSearch(self.settings.tolerance, self.scale, partial(_overshoot, self), [self._latest])
         start = Start.KEPT
         for _ in range(MOST_LEVELS):
             result = hold(self.contact, -search.next(), search.guess, start)
             start = Start.KEPT if result.held else Start.BACK
             if result.held:
-                self.falling.append(result.last)
+                self._keep([result.last])
             search.learn(result)
             if search.done:
                 break
@@ -201,7 +197,8 @@ class LoadBranch(ContactBranch):
             raise UntrustedError(
                 f"the pull-off force was not bracketed within {MOST_LEVELS} loads: it is above {search.best:.6g} FU"
             )
-        self.contact.begin("critical")
+        self.begin("critical")
+        self._enter()
         critical = hold(self.contact, -search.best, search.guess, Start.BACK)
         if not critical.held:
             raise UntrustedError(
@@ -209,27 +206,28 @@ class LoadBranch(ContactBranch):
                 'Use "auto" or larger values for [damping] coefficient and [plate] damping, or method = '
                 '"quasistatic"'
             )
-        self.falling[-1] = critical.last
+        self.states[-1] = critical.last
         self._held, self.unbalance = critical, critical.unbalance
+        doubt = {"instability": self._missed_teeth(search)}
+        self.searches[self._number] = Search(doubt, (search.best, search.broken))
 
     def open(self) -> None:
         """Nothing: a tension that was not held has separated the bodies."""
 
-    def missed_teeth(self) -> float:
+    def _missed_teeth(self, search: LoadSearch) -> float:
         """Tension [FU] that a plate may miss which oscillates past a force maximum, where pairs are lost one by one."""
         settings = self.settings
         lost = (settings.estimate.snap[1] or settings.strongest[1]) if settings.is_toothed else 0.0
-        assert self.search is not None
-        return EDGES * lost * self.search.overshoot(self.search.best)
+        return EDGES * lost * search.overshoot(search.best)
 
     @property
-    def _last(self) -> Held:
+    def _latest(self) -> Held:
         assert self._held is not None
         return self._held
 
-    def _take(self, held: Held, states: list[State]) -> None:
+    def _take(self, held: Held) -> None:
         self._held, self.unbalance = held, held.unbalance
-        states.append(held.last)
+        self._keep([held.last])
 
 
 def _overshoot(branch: LoadBranch, tension: float) -> float:

@@ -8,11 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import Peak, crossing, largest_tension, rivals, smooth_crossing
+from contact1d.analysis.polynomial import gauss
 from contact1d.workflow.continuation.outcome import Reading
 from contact1d.workflow.continuation.trace import Trace
-from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
 
 Array = NDArray[np.float64]
@@ -30,7 +29,7 @@ PLACE_FACTOR = 2.0
 """Error of the position of the force maximum over the distance between those of two polynomials."""
 
 
-def unloading(branch: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
+def unloading(branch: Trace, settings: Settings) -> dict[str, Reading]:
     """F_A, a_cr, a₀ and the work of separation of a branch of falling displacement, those of the four that it has.
 
     F_A is the force maximum, at the vertex of a smooth curve or at the last row before a jump, and a_cr the radius
@@ -40,7 +39,7 @@ def unloading(branch: Trace, scene: Scene, settings: Settings) -> dict[str, Read
     found: dict[str, Reading] = {}
     peak, last = peak_of(branch), len(branch) - 1
     if peak.tension > 0.0 and peak.index > 0 and (peak.index < last or _distance_from_limit(branch) <= LAST):
-        sampled = max(peak.uncertainty, branch.doubt.get("sampling", 0.0))
+        sampled = max(peak.uncertainty, branch.search.doubt.get("sampling", 0.0))
         errors = {"sampling": sampled, "instability": cut_short(branch, peak, settings)}
         found["adhesion_force"] = Reading(peak.smooth, FORCE, errors)
         if branch.radius(peak.index) is not None:
@@ -48,16 +47,16 @@ def unloading(branch: Trace, scene: Scene, settings: Settings) -> dict[str, Read
     if (zero := _zero_load(branch)) is not None:
         found["zero_load_radius"] = zero
     if "adhesion_force" in found and zero is not None:
-        found |= _separation(branch, peak, scene, settings)
+        found |= _separation(branch, peak)
     return found
 
 
-def _separation(branch: Trace, peak: Peak, scene: Scene, settings: Settings) -> dict[str, Reading]:
+def _separation(branch: Trace, peak: Peak) -> dict[str, Reading]:
     """∫ −F dd from F = 0 until nothing is felt; none where the branch ends before.
 
     The reduced model has the curve between the states; the difference from it is interpolated.
     """
-    model = reduced(scene, settings)
+    model = branch.model
     d, force = branch.lists
     start, end = smooth_crossing(d, force, 0.0), model.apart
     held = [(one, own) for one, own in zip(d[::-1], force[::-1], strict=True) if end <= one < start]
@@ -69,7 +68,7 @@ def _separation(branch: Trace, peak: Peak, scene: Scene, settings: Settings) -> 
 
     def work(nodes: int, every: int) -> float:
         """By Gauss's quadrature over u, d = d_end + (d₀ − d_end) u²: a limit point has an infinite slope."""
-        u, weights = np.polynomial.legendre.leggauss(nodes)
+        u, weights = gauss(nodes)
         u = 0.5 * (u + 1.0)
         places = end + (start - end) * u**2
         others = [*range(0, len(at) - 1, every), len(at) - 1]

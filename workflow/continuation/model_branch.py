@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.continuation.state import RadiusRule
 from contact1d.workflow.continuation.trace import Trace, of_model
-from contact1d.workflow.model.friction import Stop
-from contact1d.workflow.model.reduced import Reduced, Sliding
+from contact1d.workflow.model.reduced import Path, Reduced, swing
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
@@ -22,12 +23,22 @@ BETWEEN = 8
 """Intermediate positions towards a force."""
 LAST = 1e-9
 """How much of the path from F = 0 to the limit point is left before it."""
+NEAR = 1e-6
+"""Distance over the spacing from a jump of the force at which it has jumped, or not yet."""
 MOST_NUMBERS = 400_000
 """Forces that are worked out in a path with dense positions."""
-
-
 UNSEEN = ""
 """Phase of states that make the history of a path and are none of it."""
+
+
+class Row(NamedTuple):
+    """A position of the plate: its phase and leg, displacement and position along x [LU], time [TU]."""
+
+    phase: str
+    leg: int
+    displacement: float
+    along: float
+    time: float
 
 
 class ModelBranch:
@@ -42,9 +53,9 @@ class ModelBranch:
     def __init__(self, scene: Scene, settings: Settings, model: Reduced, dense: int = 1, shift: float = 0.0) -> None:
         """Begin apart."""
         self.scene, self.settings, self.model, self.dense, self.shift = scene, settings, model, dense, shift
-        self._phase = ""
-        self._rows: list[tuple[str, float, bool]] = []
-        self._stops: list[tuple[str, Stop, bool]] = []
+        self._phase, self._leg = "", -1
+        self._rises: bool | None = None
+        self._rows: list[Row] = []
 
     @property
     def scale(self) -> float:
@@ -55,38 +66,57 @@ class ModelBranch:
         """Begin a phase."""
         self._phase = name
 
-    def visit(self, positions: Sequence[float] | Array, asked: Sequence[bool] | None = None) -> None:
-        """Displacements [LU] that are known beforehand, and others between them."""
-        wanted = [True] * len(positions) if asked is None else asked
-        most = max(1, MOST_NUMBERS // max(1, len(positions) * self.model.x.size))
-        between = min(self.dense, most)
-        for position, one in zip(np.asarray(positions) + self.shift, wanted, strict=True):
-            if self._rows and between > 1:
-                before = self._rows[-1][1]
-                inner = np.linspace(before, float(position), between + 1)[1:-1]
-                self._rows += [(self._phase, at, False) for at in inner.tolist()]
-            self._rows.append((self._phase, float(position), one))
+    def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | Array | None = None) -> None:
+        """Displacements [LU] that are known beforehand, and others between them; positions along x [LU], else 0."""
+        wanted = np.asarray(positions, dtype=np.float64) + self.shift
+        before = self._rows[-1].displacement if self._rows else float(wanted[0])
+        self._turn(float(wanted[-1]) >= before)
+        between = min(self.dense, max(1, MOST_NUMBERS // max(1, wanted.size * self.model.x.size)))
+        if between == 1 or not self._rows:
+            self._add(wanted, along)
+            return
+        ends = np.append(before, wanted)
+        dense = [self._between(*pair, between) for pair in pairwise(ends.tolist())]
+        own = self._phase
+        if self._rows[-1].phase == UNSEEN:  # what leads from there to the first state of a path is none of it either
+            self._phase = UNSEEN
+        self._add(dense[0][:-1])
+        self._phase = own
+        self._add(np.concatenate([dense[0][-1:], *dense[1:]]))
 
-    def draw(self, stops: Sequence[Stop], asked: Sequence[bool]) -> None:
-        """Displacements and positions along x [LU]."""
-        self._stops += [(self._phase, stop, one) for stop, one in zip(stops, asked, strict=True)]
+    def _between(self, start: float, end: float, count: int) -> Array:
+        """So many positions [LU] of a step, its end the last, and others on both sides of each jump."""
+        near = NEAR * self.model.estimate.spacing
+        beside = [at + side for at in self.model.jumps for side in (-near, near)]
+        inner = [at for at in beside if min(start, end) < at < max(start, end)]
+        found = np.unique([*np.linspace(start, end, count + 1)[1:], *inner])
+        return found if end > start else found[::-1]
 
     def reach(self, force: float, scale: float) -> None:
         """Go to where a force [FU] is carried."""
         end = self.model.displacement_at(force)
-        start = self._rows[-1][1] if self._rows else min(0.0, end) - self.settings.estimate.spacing
-        self._rows += [(self._phase, at, True) for at in np.linspace(start, end, BETWEEN + 1)[1:].tolist()]
+        start = self._rows[-1].displacement if self._rows else min(0.0, end) - self.settings.estimate.spacing
+        self._turn(end > start)
+        self._add(np.linspace(start, end, BETWEEN + 1)[1:])
 
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
-        """What is held, in equilibrium."""
-        if force is not None:
-            self.reach(force, abs(force))
-        elif displacement is not None:
-            self.visit([self.model.apart, displacement])  # what follows from the beginning is as uncertain as the end
+        """A displacement [LU], or a plate that moves under a force [FU], for a time [TU]: the first and the last state.
+
+        A transient is that of plate and particles on the contact's own force; see `reduced.swing`.
+        """
+        if displacement is not None:
+            self._add(np.asarray([displacement, displacement]), time=(0.0, duration))
+        elif force is not None:
+            start = 0.0
+            if force < 0.0:
+                self.reach(0.0, self.scale)
+                start = self._rows[-1].displacement
+            self._add(swing(self.scene, self.settings, self.model, start, force, duration), time=(0.0, duration))
 
     def maximum(self) -> None:
         """Pass the force maximum, densely about it."""
-        zero, apart = self._rows[-1][1], self.model.apart
+        self._turn(False)
+        zero, apart = self._rows[-1].displacement, self.model.apart
         end = zero + (1.0 - LAST) * (apart - zero)
         dense = COARSE * (2 if self.settings.snaps else 1)
         positions, step = np.linspace(zero, end, dense, retstep=True)
@@ -96,29 +126,31 @@ class ModelBranch:
             low, high = max(top - abs(step), end), min(top + abs(step), zero)
             positions, step = np.linspace(high, low, FINE, retstep=True)
             found.append(positions[1:])
-        falling = np.unique(np.concatenate(found))[::-1]
-        self._rows += [(self._phase, at, True) for at in falling.tolist()]
+        self._add(np.unique(np.concatenate(found))[::-1])
 
     def mark(self, name: str) -> None:
         """Nothing is written."""
 
     def open(self) -> None:
-        """Nothing is read off bodies that are apart."""
-
-    def finish(self) -> None:
-        """Nothing is left."""
+        """Pull the bodies apart."""
+        self._add(np.asarray([self.model.apart - self.settings.estimate.spacing]))
 
     def trace(self) -> Trace:
         """What a reader sees."""
-        rule, spacing = RadiusRule(self.scene, self.settings.tolerance), self.model.estimate.spacing
-        if self._stops:
-            assert isinstance(self.model, Sliding)
-            phases, stops, asked = zip(*self._stops, strict=True)
-            displacement, along = (np.asarray(column) for column in zip(*stops, strict=True))
-            followed = self.model.drawn(stops)
-        else:
-            phases, positions, asked = zip(*self._rows, strict=True)
-            displacement = np.asarray(positions)
-            along, followed = np.zeros_like(displacement), self.model.follow(displacement)
-        whole = of_model(phases, displacement, along, asked, followed, rule, spacing, self.model.apart)
+        phases, legs, *columns = zip(*self._rows, strict=True)
+        path = Path(*(np.asarray(column, dtype=np.float64) for column in columns))
+        rule = RadiusRule(self.scene, self.settings.tolerance)
+        whole = of_model(phases, legs, path, self.model.follow(path), rule, self.model)
         return whole.chosen([i for i, name in enumerate(phases) if name != UNSEEN])
+
+    def _turn(self, rises: bool) -> None:
+        """Begin a leg where the loading turns."""
+        self._leg += rises != self._rises
+        self._rises = rises
+
+    def _add(
+        self, positions: Array, along: Sequence[float] | Array | None = None, time: Sequence[float] | None = None
+    ) -> None:
+        none = np.zeros(len(positions))
+        columns = (positions, none if along is None else along, none if time is None else time)
+        self._rows += [Row(self._phase, self._leg, *map(float, row)) for row in zip(*columns, strict=True)]

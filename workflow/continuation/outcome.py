@@ -7,11 +7,12 @@ from dataclasses import dataclass, field
 from math import inf, nan
 
 from contact1d.analysis.pressure import Profile
+from contact1d.digits import digits_apart
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.units import Quantity
 
-SOURCES = ("solver", "sampling", "discretisation", "instability", "statistics", "input", "model")
+SOURCES = ("solver", "sampling", "discretisation", "time", "instability", "statistics", "input", "model")
 """What an error may come from. "input": results that a number is made of; "model": two readings of one quantity."""
 LATTICE = "discretisation"
 MODEL = "model"
@@ -126,9 +127,9 @@ class Outcome:
         return {name: nan if state.radius is None else state.radius.value for name, state in self.marked.items()}
 
 
-def in_words(shares: Mapping[str, float]) -> str:
-    """Relative uncertainties by name: "critical_radius 3.1e-04"."""
-    return ", ".join(f"{name} {share:.1e}" for name, share in shares.items())
+def in_words(shares: Mapping[str, float], tolerance: float) -> str:
+    """Relative uncertainties above the tolerance by name: "critical_radius 3.1e-04"."""
+    return ", ".join(f"{name} {share:.{digits_apart(share, tolerance, 2) - 1}e}" for name, share in shares.items())
 
 
 def unmet(results: Mapping[str, Result], tolerance: float, without: Iterable[str] = ()) -> dict[str, float]:

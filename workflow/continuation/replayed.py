@@ -15,7 +15,7 @@ from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.marks import cut_short, early_loss, radius_rate
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trust import UntrustedError
-from contact1d.workflow.deck.steps import Phase, displacements
+from contact1d.workflow.deck.steps import Phase, displacements, numbered
 
 MOST_REPLAYS = 8
 GROWTH = 1.2
@@ -33,22 +33,23 @@ class ReplayedBranch(Branch):
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
         """Prepare a contact."""
         super().__init__(context, meanwhile)
-        self._finished = False
+        self._is_replayed = False
+        self._passed: tuple[Phase, ...] = ()
+        self._targets: dict[bool, float] = {}
 
-    def begin(self, name: str) -> None:
-        """Begin a phase; of a finished schedule nothing is left to do."""
-        if not self._finished:
-            super().begin(name)
+    def reach(self, force: float, scale: float) -> None:
+        """See `Branch.reach`; a leg of rising displacement begins a new schedule behind the one that is known."""
+        phases, leg = self.contact.phases, self._number
+        super().reach(force, scale)
+        rises = self._direction > 0
+        if rises and self._number != leg:
+            self._passed, self._is_replayed = phases, False
+        self._targets[rises] = force
 
     def mark(self, name: str) -> None:
-        """Report the last state."""
-        if not self._finished:
+        """Report the last state; a schedule that was run again has its marks."""
+        if not self._is_replayed:
             super().mark(name)
-
-    def finish(self) -> None:
-        """End the schedule."""
-        if not self._finished:
-            super().finish()
 
     def maximum(self) -> None:
         """Pull the bodies apart, then run the schedule again and again, each time finer about the force maximum.
@@ -60,15 +61,15 @@ class ReplayedBranch(Branch):
             UntrustedError: they never do.
         """
         self._separate(self._last.displacement)
-        window = self._unloading_step(self.loading[-1].displacement)
+        window = self._unloading_step(self._loading[-1].displacement)
         for number in range(MOST_REPLAYS):
             before = self.peak
             self._replay(window, first=number == 0)
             window *= ZOOM_FACTOR
             if self._agrees(before):
                 teeth = rivals(*self.unloading.lists, self.peak)
-                self.missed = abs(self.peak.smooth - before.smooth) + max((0.0, *teeth.values()))
-                self._finished = True
+                self._found(abs(self.peak.smooth - before.smooth) + max((0.0, *teeth.values())))
+                self._is_replayed = True
                 return
         raise UntrustedError(
             f"the pull-off force has not converged: {before.tension:.6g} and {self.peak.tension:.6g} FU after "
@@ -78,12 +79,13 @@ class ReplayedBranch(Branch):
 
     def _replay(self, window: float, first: bool) -> None:
         """Run the schedule again from the start, with the marks of the one before and a window about its peak [LU]."""
-        deepest = _displacement_of(self.loading, self._targets["deepest"])
+        preload, before = self._targets[True], self._loading
+        deepest = _displacement_of(before, preload)
         way, peak = self.unloading, self.peak
         d, force = way.displacement, way.force
         same = SAME * (deepest - d[-1])
-        climbed = sorted({s.displacement for s in self.loading[:-1] if s.force < self._targets["deepest"]})
-        zero = smooth_crossing(*way.lists, self._targets["zero"])
+        climbed = sorted({s.displacement for s in before[:-1] if s.force < preload})
+        zero = smooth_crossing(*way.lists, self._targets[False])
         half, step = max(window, early_loss(way, peak, self.settings)), window / WINDOW_ROWS
         high, low = peak.position + half, peak.position - half
         if first:  # which tooth is the highest can't be told from coarse rows
@@ -98,16 +100,20 @@ class ReplayedBranch(Branch):
             "pulling": [row for row in falling if peak.position <= row < zero],
             "separating": [row for row in falling if row < peak.position],
         }
-        loading = [row for row in climbed if row < deepest - same] + [deepest]
-        phases = [Phase("loading", displacements(loading))]
-        phases += [Phase(name, displacements(rows), state=name != "separating") for name, rows in parts.items()]
+        parts = {"loading": [row for row in climbed if row < deepest - same] + [deepest]} | parts
+        taken = [phase.name for phase in self._passed]
+        phases = [
+            Phase(numbered(name, taken), displacements(rows), state=name in ("unloading", "pulling"))
+            for name, rows in parts.items()
+        ]
         self._open.close()
         purpose = "repeating the path with smaller steps at the force maximum"
         self.contact = self._open.enter_context(self.context.contact(purpose))
-        states = self.contact.replay(phases)
-        self.loading, self.falling = states[: len(loading)], states[len(loading) :]
-        held = len(parts["unloading"])
-        marks = (self.falling[held - 1], self.falling[held + len(parts["pulling"]) - 1])
+        self.states = self.contact.replay([*self._passed, *phases])
+        number, rising, held = self._number, len(parts["loading"]), len(parts["unloading"])
+        whole = sum(map(len, parts.values()))
+        self.legs = self.legs[: len(self.states) - whole] + [number - 1] * rising + [number] * (whole - rising)
+        marks = (self.leg[held - 1], self.leg[held + len(parts["pulling"]) - 1])
         self.marked = dict(zip(("zero_load", "critical"), marks, strict=True))
 
     def _agrees(self, before: Peak) -> bool:
@@ -116,16 +122,21 @@ class ReplayedBranch(Branch):
         allowed, radius = self.tolerance * peak.smooth, critical.radius_or_spot
         way = self.unloading
         rate = radius_rate(way, int(np.argmin(np.abs(way.displacement - critical.displacement))))
-        preload = self._targets["deepest"]
+        preload = self._targets[True]
         return (
             abs(peak.smooth - before.smooth) <= allowed
             and peak.uncertainty + cut_short(way, peak, self.settings) <= allowed
-            and abs(self.loading[-1].force - preload) <= self.tolerance * preload
+            and abs(self._loading[-1].force - preload) <= self.tolerance * preload
             and abs(self.marked["zero_load"].force) <= allowed
             and peak.smooth + critical.force <= allowed
             and abs(rate * (peak.position - critical.displacement))
             <= max(self.tolerance * radius.value, READ_SHARE * radius.uncertainty)
         )
+
+    @property
+    def _loading(self) -> list[State]:
+        """The states of the leg before."""
+        return [state for state, leg in zip(self.states, self.legs, strict=True) if leg == self._number - 1]
 
     def open(self) -> None:
         """Nothing: a schedule that was run again has separated the bodies."""

@@ -5,8 +5,6 @@ The reduced model of such a contact is identical to the deck, so that its limit 
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from contact1d.workflow.continuation.branch import Branch
@@ -29,17 +27,13 @@ BEYOND_LIMIT = 1.05
 class SteppedBranch(Branch):
     """States on a rigid plane."""
 
-    @property
-    def _limit(self) -> float:
-        return self.model.apart if self.scene.adheres else -math.inf
-
     def _first_rows(self, force: float, direction: int) -> None:
         """Load steps up to where the model has the force [FU].
 
         Raises:
             TensionError: no contact holds the force.
         """
-        start = self.loading[-1].displacement if direction < 0 else 0.0
+        start = self._last.displacement if self.states else 0.0
         end = self.model.displacement_at(force)
         held = float(self.model.held(np.asarray([end]))[0])
         if force < 0.0 and held > (1.0 - self.settings.tolerance) * force:
@@ -47,9 +41,9 @@ class SteppedBranch(Branch):
         if direction * (end - start) <= 0.0:
             super()._first_rows(force, direction)
             return
-        steps = LOADING_STEPS if self.scene.adheres else curve_steps(self.settings)
+        steps = LOADING_STEPS if self.model.limits else curve_steps(self.settings)
         rows = np.linspace(start, end, steps + 1)
-        self.visit(rows if direction > 0 else rows[1:], "loading" if direction > 0 else "falling")
+        self._visit(rows[1:] if self.states else rows)
 
     def maximum(self) -> None:
         """Load steps from F = 0 to just before the limit point, then about the force maximum.
@@ -59,13 +53,13 @@ class SteppedBranch(Branch):
         """
         zero, last = self._last.displacement, self.model.apart
         end = zero + (1.0 - LAST) * (last - zero)
-        self.visit(np.linspace(zero, end, PULLING_STEPS + 1)[1:])
+        self._visit(np.linspace(zero, end, PULLING_STEPS + 1)[1:])
         before = self.peak
         step = (zero - last) / PULLING_STEPS
-        self.visit(np.clip(before.position + step * np.asarray((0.5, -0.5, 0.25, -0.25)), end, zero))
-        self.visit([min(max(self.peak.position, end), zero)])
-        self.missed = abs(self.peak.smooth - before.smooth)
-        digits = self._last.residual * self.settings.particles
+        self._visit(np.clip(before.position + step * np.asarray((0.5, -0.5, 0.25, -0.25)), end, zero))
+        self._visit([min(max(self.peak.position, end), zero)])
+        self._found(abs(self.peak.smooth - before.smooth))
+        digits = self._last.residual * self.settings.chains.upper
         if self.peak.smooth <= digits:
             raise DigitsError(
                 f"the force maximum, about {self.scale:.2g} FU, is too small compared with {digits:.2g} FU, the "
@@ -75,9 +69,9 @@ class SteppedBranch(Branch):
 
     def open(self) -> None:
         """Load steps over the limit point."""
-        self.visit(np.linspace(self._last.displacement, BEYOND_LIMIT * self.model.apart, LOADING_STEPS + 1)[1:])
+        self._visit(np.linspace(self._last.displacement, BEYOND_LIMIT * self.model.apart, LOADING_STEPS + 1)[1:])
 
 
 def curve_steps(settings: Settings) -> int:
     """Increments of a load's curve where load steps are steps of one run."""
-    return max(LOADING_STEPS, min(CURVE_STEPS, CURVE_NUMBERS // settings.particles))
+    return max(LOADING_STEPS, min(CURVE_STEPS, CURVE_NUMBERS // settings.chains.upper))

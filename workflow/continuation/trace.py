@@ -12,11 +12,39 @@ from numpy.typing import NDArray
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.continuation.state import RadiusRule, State
-from contact1d.workflow.model.reduced import Followed
+from contact1d.workflow.model.reduced import Followed, Path, Reduced
 
 Array = NDArray[np.float64]
 BESIDE = 2
 """Particles beside a contact that carry nothing: a radius is read between the last that carries and the next."""
+
+
+@dataclass(frozen=True)
+class Search:
+    """What the search for a force maximum leaves open.
+
+    Attributes:
+        doubt: error of the maximum by source [FU].
+        bracket: under load control, the force maximum that was held and the smallest that was not [FU].
+    """
+
+    doubt: Mapping[str, float] = field(default_factory=dict)
+    bracket: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Perturbation:
+    """By how much a trace differs from what was measured.
+
+    Attributes:
+        force: added, (m,) [FU].
+        radius_shift: by how many of its own uncertainties each radius is taken too large, (m,).
+        radius_factor: by which radii are taken larger.
+    """
+
+    force: Array | float = 0.0
+    radius_shift: Array | float = 0.0
+    radius_factor: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -25,34 +53,30 @@ class Trace:
 
     Attributes:
         phase: name of each state's phase.
+        leg: number of each state's leg, from 0 on: a leg ends where the loading turns.
         displacement, force: [LU], [FU].
-        asked: whether the scene asks for the state; the others are on the path there.
         along: position along x [LU].
+        time: [TU]; 0 where states are equilibria.
         profile: pressure and shear of a state, by its number.
         contact: radius of a state as it is read off its profile; None where the bodies do not touch.
         rule: what a contact radius is.
-        shift: by how much forces were changed from those of the states, (m,) [FU]; 0 where they are these.
-        radius_shift: by how many of its own uncertainties each radius is taken too large, (m,); 0 as it is read.
-        radius_factor: by which radii are taken larger.
-        limit: displacement [LU] below which no contact is held; −inf where none is known.
-        doubt: by source, error of the search for the force maximum [FU].
-        bracket: under load control, the force maximum that was held and the smallest that was not [FU].
+        model: the reduced model of the particles, with the limit points of its contact.
+        searches: of the legs on which a force maximum was searched for.
+        perturbation: forces are changed by it already, radii as they are read.
     """
 
     phase: tuple[str, ...]
+    leg: NDArray[np.int64]
     displacement: Array
     force: Array
-    asked: NDArray[np.bool_]
     along: Array
+    time: Array
     profile: Callable[[int], Profile] = field(repr=False)
     contact: Callable[[int], ContactRadius | None] = field(repr=False)
     rule: RadiusRule = field(repr=False)
-    shift: Array | float = 0.0
-    radius_shift: Array | float = 0.0
-    radius_factor: float = 1.0
-    limit: float = -np.inf
-    doubt: Mapping[str, float] = field(default_factory=dict)
-    bracket: tuple[float, float] | None = None
+    model: Reduced = field(repr=False)
+    searches: Mapping[int, Search] = field(default_factory=dict)
+    perturbation: Perturbation = Perturbation()
 
     def __len__(self) -> int:
         """How many states."""
@@ -62,6 +86,25 @@ class Trace:
     def lists(self) -> tuple[list[float], list[float]]:
         """Displacements and forces, as arguments of the functions that read a curve."""
         return self.displacement.tolist(), self.force.tolist()
+
+    @property
+    def legs(self) -> list[Trace]:
+        """The legs in order."""
+        return [self.chosen(np.flatnonzero(self.leg == number)) for number in np.unique(self.leg)]
+
+    @property
+    def search(self) -> Search:
+        """That of the last leg, its bracket perturbed as the force of the last state is, which it holds."""
+        own = self.searches.get(int(self.leg[-1]), Search())
+        if own.bracket is None:
+            return own
+        shift = float(np.broadcast_to(self.perturbation.force, self.force.shape)[-1])
+        return replace(own, bracket=(own.bracket[0] - shift, own.bracket[1] - shift))
+
+    @property
+    def limit(self) -> float:
+        """The first limit point below the first state [LU]; −inf where there is none."""
+        return max((one for one in self.model.limits if one < self.displacement[0]), default=-np.inf)
 
     def radius(self, state: int) -> float | None:
         """Contact radius [LU]; None where the bodies do not touch."""
@@ -76,7 +119,8 @@ class Trace:
     def _perturbed(self, found: ContactRadius, state: int) -> float:
         if found.uncertainty == 0.0:  # a body that ends at an edge
             return found.value
-        return max(0.0, self.radius_factor * (found.value + self.shift_of(state) * found.uncertainty))
+        shifted = found.value + self.shift_of(state) * found.uncertainty
+        return max(0.0, self.perturbation.radius_factor * shifted)
 
     def phases(self, *names: str) -> Trace:
         """The states of these phases, "unloading_2" being one of "unloading"."""
@@ -84,30 +128,32 @@ class Trace:
 
     def shift_of(self, state: int) -> float:
         """By how many of its uncertainties the radius of a state is taken too large."""
-        return float(np.broadcast_to(self.radius_shift, self.force.shape)[state])
+        return float(np.broadcast_to(self.perturbation.radius_shift, self.force.shape)[state])
 
     def own_force(self, state: int) -> float:
         """Force of an unperturbed state [FU]."""
-        return float((self.force - self.shift)[state])
+        return float((self.force - self.perturbation.force)[state])
 
     def falling(self) -> Trace:
         """The states that are held, by falling displacement, each once, the last that was measured there."""
         _, last = np.unique(self.displacement[::-1], return_index=True)
         falling = (len(self) - 1 - last)[::-1]
-        return self.chosen(falling[self.displacement[falling] >= self.limit])
+        limit = max((one for one in self.model.limits if one < self.displacement.max()), default=-np.inf)
+        return self.chosen(falling[self.displacement[falling] >= limit])
 
     def chosen(self, states: Sequence[int] | NDArray[np.intp]) -> Trace:
         """The states of these numbers, in this order."""
-        at = np.asarray(states, dtype=np.intp)
+        at, own = np.asarray(states, dtype=np.intp), self.perturbation
+        force, shift = (np.broadcast_to(one, self.force.shape)[at] for one in (own.force, own.radius_shift))
         return replace(
             self,
             phase=tuple(self.phase[i] for i in at),
+            leg=self.leg[at],
             displacement=self.displacement[at],
             force=self.force[at],
-            asked=self.asked[at],
             along=self.along[at],
-            shift=np.broadcast_to(self.shift, self.force.shape)[at],
-            radius_shift=np.broadcast_to(self.radius_shift, self.force.shape)[at],
+            time=self.time[at],
+            perturbation=replace(own, force=force, radius_shift=shift),
             profile=lambda i: self.profile(int(at[i])),
             contact=lambda i: self.contact(int(at[i])),
         )
@@ -117,46 +163,53 @@ class Trace:
     ) -> Trace:
         """With forces changed [FU], and radii changed by a multiple of their uncertainties and by a factor."""
         changed = self.force + force
-        bracket = self.bracket
-        if bracket is not None:  # of tensions, that the last state is the largest of
-            shift = float(changed[-1] - self.force[-1])
-            bracket = (bracket[0] - shift, bracket[1] - shift)
-        return replace(
-            self,
-            force=changed,
-            shift=changed - self.force,
-            radius_shift=radius_shift,
-            radius_factor=radius_factor,
-            bracket=bracket,
-        )
+        own = Perturbation(changed - self.force, radius_shift, radius_factor)
+        return replace(self, force=changed, perturbation=own)
 
 
-def of_states(states: Sequence[State], asked: Sequence[bool] | None = None, limit: float = -np.inf) -> Trace:
-    """The trace of measured states; their radii are kept with them."""
+def legs_by_phase(phases: Sequence[str]) -> NDArray[np.int64]:
+    """A leg for each phase, (m,)."""
+    changes = [int(i > 0 and name != phases[i - 1]) for i, name in enumerate(phases)]
+    return np.cumsum(changes, dtype=np.int64)
+
+
+def of_states(
+    states: Sequence[State],
+    model: Reduced,
+    leg: Sequence[int] | None = None,
+    searches: Mapping[int, Search] | None = None,
+    time_step: float = 0.0,
+) -> Trace:
+    """The trace of measured states; their radii are kept with them.
+
+    Args:
+        states: in order.
+        model: of their particles.
+        leg: number of the leg of each; None: each phase is one.
+        searches: see `Trace`.
+        time_step: [TU], of a motion in time.
+    """
+    phases = tuple(state.phase for state in states)
     return Trace(
-        tuple(state.phase for state in states),
+        phases,
+        legs_by_phase(phases) if leg is None else np.asarray(leg, dtype=np.int64),
         np.asarray([state.displacement for state in states]),
         np.asarray([state.force for state in states]),
-        np.ones(len(states), dtype=bool) if asked is None else np.asarray(asked, dtype=bool),
         np.asarray([state.plate_x for state in states]),
+        time_step * np.asarray([state.step for state in states]),
         lambda i: states[i].profile,
         lambda i: states[i].radius,
         states[0].rule,
-        limit=limit,
+        model,
+        searches or {},
     )
 
 
 def of_model(
-    phase: Sequence[str],
-    displacement: Array,
-    along: Array,
-    asked: Sequence[bool],
-    followed: Followed,
-    rule: RadiusRule,
-    spacing: float,
-    limit: float,
+    phase: Sequence[str], leg: Sequence[int], path: Path, followed: Followed, rule: RadiusRule, model: Reduced
 ) -> Trace:
-    """The trace of the reduced model, with unloaded particles on both sides of the contact."""
+    """The trace of the reduced model along a path, with unloaded particles on both sides of the contact."""
+    spacing = model.estimate.spacing
     beside = spacing * np.arange(1, BESIDE + 1)
     x = np.concatenate([followed.x[0] - beside[::-1], followed.x, followed.x[-1] + beside])
     none = np.zeros_like(x)
@@ -168,12 +221,13 @@ def of_model(
 
     return Trace(
         tuple(phase),
-        displacement,
+        np.asarray(leg, dtype=np.int64),
+        path.displacement,
         followed.total,
-        np.asarray(asked, dtype=bool),
-        along,
+        path.along,
+        path.time,
         profile,
         cache(lambda state: rule.of(profile(state))),
         rule,
-        limit=limit,
+        model,
     )

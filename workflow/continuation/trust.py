@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable
 
 from contact1d.analysis.pressure import Profile, end_pressure_share, left_out
+from contact1d.digits import apart
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.errors import ChainEndError as ChainEndError
 from contact1d.workflow.errors import DigitsError as DigitsError
@@ -53,15 +54,15 @@ def require_trust(scene: Scene, settings: Settings, state: State, moving: bool =
             against_passing(scene),
         )
     if not moving and scene.plate is None and scene.noise is None and not is_converged(settings, state):
-        limit = RESIDUAL_LIMIT * settings.tolerance * settings.force_scale
+        residual, limit = apart(state.residual, RESIDUAL_LIMIT * settings.tolerance * settings.forces.scale, 2)
         if scene.is_stepped:
             raise DigitsError(
                 f"the forces are too small to resolve {at}: the round-off error of a position corresponds to "
-                f"{state.residual:.2g} FU, and a tolerance of {settings.tolerance:g} allows {limit:.2g} FU",
+                f"{residual} FU, and a tolerance of {settings.tolerance:g} allows {limit} FU",
                 "use a larger load or displacement, or a larger [accuracy] tolerance",
             )
         raise UntrustedError(
-            f"not converged {at}: a particle has a residual force of {state.residual:.2g} FU, above the {limit:.2g} FU "
+            f"not converged {at}: a particle has a residual force of {residual} FU, above the {limit} FU "
             f"that a tolerance of {settings.tolerance:g} allows. Use "
             + ("more [damping]" if scene.method == "dynamic" else "a smaller load or smaller displacements")
             + ", or a larger [accuracy] tolerance"
@@ -85,13 +86,13 @@ def _against_passing(scene: Scene) -> str:
 def _more_particles(scene: Scene, settings: Settings) -> str:
     """Which number to increase: that of the upper chain, if given."""
     if scene.bodies.upper_particles is not None:
-        return f"more bodies.upper_particles than {settings.particles}, or leave it out"
-    return f'more bodies.particles than {settings.particles} (or "auto")'
+        return f"more bodies.upper_particles than {settings.chains.upper}, or leave it out"
+    return f'more bodies.particles than {settings.chains.upper} (or "auto")'
 
 
 def is_converged(settings: Settings, state: State) -> bool:
     """Whether the residual force on every particle is below RESIDUAL_LIMIT."""
-    return state.residual <= RESIDUAL_LIMIT * settings.tolerance * settings.force_scale
+    return state.residual <= RESIDUAL_LIMIT * settings.tolerance * settings.forces.scale
 
 
 def require_no_contradiction(settings: Settings, tension: float, uncertainty: float, states: Iterable[State]) -> None:
@@ -101,7 +102,7 @@ def require_no_contradiction(settings: Settings, tension: float, uncertainty: fl
         UntrustedError: names the state.
     """
     for state in states:
-        if -state.force > tension + uncertainty + state.residual * settings.particles:
+        if -state.force > tension + uncertainty + state.residual * settings.chains.upper:
             raise UntrustedError(
                 f"the search found a force maximum of {tension:.6g} FU, but the curve of this run has "
                 f"{-state.force:.6g} FU at displacement {state.displacement:.6g} LU (phase {state.phase}): it missed "
@@ -131,20 +132,20 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
     if not scene.bodies.profile.has_edge and share > END_SHARE_LIMIT * settings.tolerance:
         found["chain_end"] = (
             f"the outermost particles carry up to {share:.2g} of the largest pressure, so the chain of "
-            f"{settings.particles} particles truncates the contact: use {_more_particles(scene, settings)}"
+            f"{settings.chains.upper} particles truncates the contact: use {_more_particles(scene, settings)}"
         )
-    ends = reflected(scene, settings.estimate, settings.largest_displacement, settings.particles)
+    ends = reflected(scene, settings.estimate, settings.largest_displacement, settings.chains.upper)
     if not scene.bodies.profile.has_edge and ends > settings.tolerance:
         found["chain_end"] = (
             f"neighbour springs spread the load over {decay_length(scene):.3g} LU to each side, and the chain of "
-            f"{settings.particles} particles ends so near to the contact that up to {ends:.1g} of it is reflected by "
-            f"its end: use {_more_particles(scene, settings)}"
+            f"{settings.chains.upper} particles ends so near to the contact that up to {ends:.1g} of it is reflected "
+            f"by its end: use {_more_particles(scene, settings)}"
         )
     share = law_share(scene, settings)
     if share > settings.tolerance:
         found["cutoff"] = (
-            f"the truncation error of the interaction (a cutoff of {settings.cutoff:.3g} LU, its table near zero "
-            f"distance, or the finite stiffness of the plane) changes a force by up to "
+            f"the truncation error of the interaction (a cutoff of {settings.forces.cutoff:.3g} LU, its table near "
+            f"zero distance, or the finite stiffness of the plane) changes a force by up to "
             f'{share:.1g} of it, and the radii with it: use a longer interaction.cutoff, or "auto", or a smaller load'
         )
     if slow := slowness(scene, settings):
@@ -157,11 +158,11 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
             "equilibrium, a few particles wider or narrower. Stiffer springs or a longer range of the interaction "
             "leave a single equilibrium"
         )
-    closest = min(state.smallest_distance for state in states)
-    if settings.table is not None and closest < settings.table_from:
-        error = settings.table.error_beyond(max(closest, settings.table.core))
+    closest, forces = min(state.smallest_distance for state in states), settings.forces
+    if forces.table is not None and closest < forces.table_from:
+        error = forces.table.error_beyond(max(closest, forces.table.core))
         found["table_core"] = (
-            f"opposite particles came as close as {closest:.3g} LU; the table was made for {settings.table_from:.3g} "
+            f"opposite particles came as close as {closest:.3g} LU; the table was made for {forces.table_from:.3g} "
             f"LU and beyond, and its error is {error:.1e} FU there"
         )
     return found
@@ -169,10 +170,10 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
 
 def law_share(scene: Scene, settings: Settings) -> float:
     """Relative error of a force that table and cutoff, or a plane that is not quite rigid, may cause, before a run."""
-    if settings.table is None or settings.law is None:
+    if settings.forces.table is None or settings.forces.law is None:
         return _plane_share(scene, settings)
-    tail = TAIL * abs(float(settings.law.force(settings.cutoff)))
-    return (tail + settings.table.error_beyond(settings.table_from)) / settings.force_scale
+    tail = TAIL * abs(float(settings.forces.law.force(settings.forces.cutoff)))
+    return (tail + settings.forces.table.error_beyond(settings.forces.table_from)) / settings.forces.scale
 
 
 def law_error(scene: Scene, settings: Settings, state: State) -> float:
@@ -180,14 +181,14 @@ def law_error(scene: Scene, settings: Settings, state: State) -> float:
 
     COMPLIANCE_FACTOR Σ |F_table(r) - f(r)| |z|/r over the pairs of opposite particles, F_table = 0 beyond the cutoff.
     """
-    if settings.table is None or settings.law is None:
+    if settings.forces.table is None or settings.forces.law is None:
         return _plane_share(scene, settings) * abs(state.force)
-    return COMPLIANCE_FACTOR * left_out(settings.law, settings.table, state.profile)
+    return COMPLIANCE_FACTOR * left_out(settings.forces.law, settings.forces.table, state.profile)
 
 
 def _plane_share(scene: Scene, settings: Settings) -> float:
     neighbours = 0.0 if scene.neighbours is None else scene.neighbours.stiffness
-    return 4.0 * neighbours / settings.plane_stiffness
+    return 4.0 * neighbours / settings.forces.plane_stiffness
 
 
 def slowness(scene: Scene, settings: Settings) -> str:
@@ -214,16 +215,16 @@ def slowness(scene: Scene, settings: Settings) -> str:
 def _mass(scene: Scene, settings: Settings) -> float:
     """What moves [MU]: plate and upper particles, or without a plate each particle by itself."""
     alone = scene.bodies.mass
-    return alone if scene.plate is None else settings.plate_mass + settings.particles * alone
+    return alone if scene.plate is None else settings.motion.plate_mass + settings.chains.upper * alone
 
 
 def _drag(scene: Scene, settings: Settings) -> float:
     """Drag on that [FU·TU/LU]."""
-    return settings.damping if scene.plate is None else settings.drag()
+    return settings.motion.damping if scene.plate is None else settings.drag()
 
 
 def _steps(scene: Scene, settings: Settings) -> float:
     """Timesteps of T; the settling time is 2π √(M/K)."""
     mass, drag = _mass(scene, settings), _drag(scene, settings)
-    stiffness = mass * (2.0 * math.pi / settings.settle_time) ** 2
-    return max(2.0 * mass / drag, drag / stiffness) / settings.time_step
+    stiffness = mass * (2.0 * math.pi / settings.motion.settle_time) ** 2
+    return max(2.0 * mass / drag, drag / stiffness) / settings.motion.time_step

@@ -179,10 +179,10 @@ def _tolerance(scene: Scene) -> Knob:
 
 
 def _cutoff(scene: Scene, own: Settings) -> Knob | str:
-    if (law := own.law) is None or law.attraction is None:
+    if (law := own.forces.law) is None or law.attraction is None:
         physics = "without attraction displacements are measured from the cutoff"
         return "" if scene.interaction is None else physics
-    cutoffs = (own.cutoff, *map(law.cutoff_for, CUTOFF_SHARES))
+    cutoffs = (own.forces.cutoff, *map(law.cutoff_for, CUTOFF_SHARES))
     free, reach = law.force_free_distance(), law.longest_range
     return _knob(
         scene, "interaction.cutoff", map(_rounded, cutoffs), lambda cutoff: math.exp((free - cutoff) / reach), " LU"
@@ -196,16 +196,16 @@ def _rounded(value: float) -> float:
 def _chain(scene: Scene, own: Settings) -> Knob | str:
     if scene.bodies.profile.has_edge:
         return "its chain is as long as the flat punch is wide"
-    automatic = settings_for(changed(scene, at_tolerance(scene, scene.accuracy.tolerance))).particles
+    automatic = settings_for(changed(scene, at_tolerance(scene, scene.accuracy.tolerance))).chains.upper
     counts = (max(4, 2 * round(0.5 * factor * automatic)) for factor in CHAIN_FACTORS)
     # The tail of the pressure falls exponentially where a cutoff ends it, algebraically where springs carry it on.
-    return _knob(scene, "bodies.particles", (own.particles, *counts), _inverse, has_order=False)
+    return _knob(scene, "bodies.particles", (own.chains.upper, *counts), _inverse, has_order=False)
 
 
 def _damping(scene: Scene, own: Settings) -> Knob | str:
     if scene.damping is None:
         return ""
-    values = (_rounded(factor * own.damping) for factor in DAMPING_FACTORS)
+    values = (_rounded(factor * own.motion.damping) for factor in DAMPING_FACTORS)
     return _knob(scene, "damping.coefficient", values, unit=" FU·TU/LU", has_order=False)
 
 

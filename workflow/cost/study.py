@@ -206,16 +206,16 @@ def fit_order(h: Sequence[float], errors: Sequence[float], floor: float = 0.0) -
 def choice(scene: Scene, settings: Settings) -> str:
     """The settings of a scene as text."""
     words = []
-    if settings.table is not None and scene.interaction is not None:
-        words.append(f"table of {settings.table.points} points")
+    if settings.forces.table is not None and scene.interaction is not None:
+        words.append(f"table of {settings.forces.table.points} points")
         if scene.interaction.attraction is not None:
-            words.append(f"cutoff {settings.cutoff:.3g} LU")
-    words.append(f"chain of {settings.particles} particles")
+            words.append(f"cutoff {settings.forces.cutoff:.3g} LU")
+    words.append(f"chain of {settings.chains.upper} particles")
     if scene.method == "dynamic":
-        words.append(f"time step {settings.time_step:.3g} TU")
+        words.append(f"time step {settings.motion.time_step:.3g} TU")
     else:
-        words.append(f"residual {settings.force_tolerance / settings.force_scale:.0e}")
+        words.append(f"residual {settings.forces.residual / settings.forces.scale:.0e}")
         if not scene.experiment.way_is_given:
-            step = settings.smooth_step if settings.is_smooth else settings.displacement_step
+            step = settings.increments.smooth_step if settings.is_smooth else settings.increments.displacement_step
             words.append(f"increment {step:.3g} LU")
     return scales_of(scene, {}).in_words(", ".join(words))

@@ -60,17 +60,17 @@ def neighbour_forces(particles: Array, stiffness: float) -> Array:
 
 def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
     """The bodies of a scene, lower one first; on a rigid plane the upper one alone."""
-    x = places(settings.particles, scene.bodies.own_spacing)
+    x = places(settings.chains.upper, scene.bodies.own_spacing)
     flat = np.zeros_like(x)
-    offset = settings.table.plane_offset if settings.table is not None else 0.0
+    offset = settings.forces.table.plane_offset if settings.forces.table is not None else 0.0
     along = x + start_offset(scene, settings)
     if scene.bodies.periodic:
         half = 0.5 * period(scene, settings)
         along = (along + half) % (2.0 * half) - half
-    upper = np.column_stack([along, flat + offset, settings.rest + scene.bodies.height(x)])
+    upper = np.column_stack([along, flat + offset, settings.forces.rest + scene.bodies.height(x)])
     if scene.bodies.lower == "rigid_plane":
         return (_body("upper", upper, scene, settings),)
-    below = places(settings.lower_particles, scene.bodies.spacing)
+    below = places(settings.chains.lower, scene.bodies.spacing)
     lower = np.column_stack([below, 0.0 * below, 0.0 * below])
     if scene.bodies.lower == "rigid_chain":
         return Body("lower", lower, *2 * (np.empty((0, 3)),)), _body("upper", upper, scene, settings)
@@ -79,7 +79,7 @@ def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
 
 def period(scene: Scene, settings: Settings) -> float:
     """Length [LU] after which bodies without end repeat themselves."""
-    return settings.lower_particles * scene.bodies.spacing
+    return settings.chains.lower * scene.bodies.spacing
 
 
 def start_offset(scene: Scene, settings: Settings) -> float:
@@ -93,7 +93,7 @@ def start_offset(scene: Scene, settings: Settings) -> float:
         return bodies.upper_offset
     if not scene.experiment.motion_is_result or bodies.lower == "rigid_plane":
         return 0.0
-    first = 0.5 * (settings.lower_particles - 1) * bodies.spacing - 0.5 * (settings.particles - 1) * bodies.own_spacing
+    first = 0.5 * (settings.chains.lower - 1) * bodies.spacing - 0.5 * (settings.chains.upper - 1) * bodies.own_spacing
     beside = first / bodies.spacing - math.floor(first / bodies.spacing)
     return bodies.spacing * (0.5 - beside)
 
@@ -103,7 +103,7 @@ def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body
     if scene.stands:
         return Body(name, particles + _staggered(particles, scene), none, none)
     tangential = scene.tangential_stiffness
-    softer = min(settings.bulk_stiffness, tangential) if settings.far else settings.bulk_stiffness
+    softer = min(settings.forces.bulk_stiffness, tangential) if settings.chains.far else settings.forces.bulk_stiffness
     shift = np.zeros_like(particles)
     if scene.neighbours is not None and not scene.bodies.periodic:
         shift = -neighbour_forces(particles, scene.neighbours.stiffness) / softer
@@ -112,13 +112,13 @@ def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body
     if name == "upper":
         shift += _staggered(particles, scene)
     anchors = particles + shift
-    if settings.far == 0.0:
+    if settings.chains.far == 0.0:
         return Body(name, particles, anchors, none)
     away = np.zeros(3)
-    if tangential > settings.bulk_stiffness:
-        away[0] = -settings.far
+    if tangential > settings.forces.bulk_stiffness:
+        away[0] = -settings.chains.far
     else:
-        away[2] = settings.far if name == "upper" else -settings.far
+        away[2] = settings.chains.far if name == "upper" else -settings.chains.far
     return Body(name, particles, anchors, particles + away)
 
 

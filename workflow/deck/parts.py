@@ -31,18 +31,19 @@ CHOSEN_BINS = ("far_bin", "wide_bin")
 
 def standing(scene: Scene, settings: Settings) -> list[Contribution]:
     """A body with fixed particles over a rigid plane that has their springs: in single steps, or moved in time."""
-    motion = Contribution("dynamic", Stage.MOTION, ("clock",), {"time_step": number(settings.time_step)})
-    if scene.is_stepped:
-        steps = ("sweep", "along") if scene.experiment.goes_along else ("sweep",)
-        motion = Contribution("quasistatic", Stage.MOTION, steps)
-    body = Contribution("bodies", Stage.BODIES, ("standing" if scene.is_stepped else "standing_plate",))
-    return [body, _plane("standing_plane", scene, settings), motion]
+    if not scene.is_stepped:
+        clock = Contribution("dynamic", Stage.MOTION, ("clock",), {"time_step": number(settings.motion.time_step)})
+        body = Contribution("bodies", Stage.BODIES, ("standing_plate",))
+        return [body, _plane("rigid_plane", scene, settings), clock]
+    steps = ("sweep", "along") if scene.experiment.goes_along else ("sweep",)
+    motion = Contribution("quasistatic", Stage.MOTION, steps)
+    return [Contribution("bodies", Stage.BODIES, ("standing",)), _plane("standing_plane", scene, settings), motion]
 
 
 def moving(scene: Scene, settings: Settings) -> list[Contribution]:
     """Bodies whose particles find their own positions, each on the spring of its bulk."""
-    softer = min(settings.bulk_stiffness, scene.tangential_stiffness)
-    coefficient = softer if settings.far else settings.bulk_stiffness
+    softer = min(settings.forces.bulk_stiffness, scene.tangential_stiffness)
+    coefficient = softer if settings.chains.far else settings.forces.bulk_stiffness
     found = [
         Contribution("bodies", Stage.BODIES, ("bodies",), {"bulk_bond_coefficient": number(coefficient / 2)}),
         Contribution("guide", Stage.GUIDE, ("guide",), {} if scene.horizontal is not None else {"guide_x": "0.0"}),
@@ -84,25 +85,25 @@ def _plane(fragment: str, scene: Scene, settings: Settings) -> Contribution:
     variables = {
         "plane_position": number(-depth),
         "plane_reach": number(depth),
-        "plane_half_stiffness": number(settings.plane_stiffness / 2),
+        "plane_half_stiffness": number(settings.forces.plane_stiffness / 2),
     }
     if fragment == "rigid_plane":
-        variables["plane_stiffness"] = number(settings.plane_stiffness)
+        variables["plane_stiffness"] = number(settings.forces.plane_stiffness)
     return Contribution("rigid_plane", Stage.SPRINGS, (fragment,), variables)
 
 
 def _method(scene: Scene, settings: Settings) -> Contribution:
     if scene.method == "quasistatic":
         variables = {
-            "force_tolerance": number(settings.force_tolerance),
+            "force_tolerance": number(settings.forces.residual),
             "minimiser_iterations": str(MINIMISER_ITERATIONS),
-            "relaxation_step": number(RELAXATION * settings.time_step),
+            "relaxation_step": number(RELAXATION * settings.motion.time_step),
         }
         if settings.gentle:
-            variables["gentle_move"] = number(settings.longest_move)
-            variables["gentle_tolerance"] = number(GENTLE_RESIDUAL * settings.force_scale)
+            variables["gentle_move"] = number(settings.increments.longest_move)
+            variables["gentle_tolerance"] = number(GENTLE_RESIDUAL * settings.forces.scale)
         return Contribution("quasistatic", Stage.MOTION, ("quasistatic",), variables)
-    variables = {"time_step": number(settings.time_step)}
+    variables = {"time_step": number(settings.motion.time_step)}
     return Contribution("dynamic", Stage.MOTION, ("dynamic",), variables, integrates="particles")
 
 
@@ -123,15 +124,15 @@ Lengths = tuple[float, float, float]
 def margins(scene: Scene, settings: Settings) -> Lengths:
     """Free space along x, y and z [LU] between the bodies and the walls of the box."""
     side = SIDE_MARGIN * scene.bodies.spacing + scene.experiment.way
-    head = HEAD_MARGIN * max(scene.bodies.spacing, settings.cutoff) + 2 * abs(settings.largest_displacement)
+    head = HEAD_MARGIN * max(scene.bodies.spacing, settings.forces.cutoff) + 2 * abs(settings.largest_displacement)
     if scene.plate is not None and (scene.noise is not None or scene.experiment.motion_is_result):
         head *= FLIGHT
     head -= min([0.0, *scene.experiment.places()])
-    least = max(BIN_MARGIN * settings.far, LEAST_SLENDERNESS * reach(scene, settings))
+    least = max(BIN_MARGIN * settings.chains.far, LEAST_SLENDERNESS * reach(scene, settings))
     side, flat, head = (math.ceil(max(margin, least)) for margin in (side, 1.0, head))
     return side, flat, head
 
 
 def reach(scene: Scene, settings: Settings) -> float:
     """Distance [LU] up to which LAMMPS lists neighbours."""
-    return settings.cutoff + SKIN * scene.bodies.spacing
+    return settings.forces.cutoff + SKIN * scene.bodies.spacing

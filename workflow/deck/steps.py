@@ -138,6 +138,12 @@ class Phase:
     kept: tuple[bool, ...] | None = None
 
 
+def numbered(name: str, taken: Sequence[str]) -> str:
+    """The name of a phase: "loading", and where that is taken "loading_2", "loading_3", …"""
+    count = 1 + sum(one.partition("_")[0] == name for one in taken)
+    return name if count == 1 else f"{name}_{count}"
+
+
 def displacements(places: Sequence[float]) -> tuple[Displace, ...]:
     """Rows that put the plate to each of the displacements [LU]."""
     return tuple(Displace(float(place)) for place in places)

@@ -158,7 +158,7 @@ def write_system(deck: Deck, folder: Path) -> None:
     """Write the input files of a deck: system.data, and interaction.table or adhesion.cells if it has one."""
     scene, settings = deck.written
     both = bodies(scene, settings)
-    anchors = settings.particles
+    anchors = settings.chains.upper
     particle, plate = inertia(scene, settings)
     mass = plate / anchors if scene.plate is not None else particle
     if scene.stands and scene.plate is not None:
@@ -173,8 +173,8 @@ def write_system(deck: Deck, folder: Path) -> None:
         period=period(scene, settings) if scene.bodies.periodic else 0.0,
     )
     write_data(replace(system, radius=sphere_radius(scene, settings)), scene.title, folder / "system.data")
-    if settings.table is not None:
-        write_table(settings.table, settings.table_from, folder / "interaction.table")
+    if settings.forces.table is not None:
+        write_table(settings.forces.table, settings.forces.table_from, folder / "interaction.table")
     if scene.adhesion is not None:
         _write_cells(deck, folder / CELLS)
 

@@ -12,13 +12,14 @@ What the deck prints and writes (curve.txt, states.lammpstrj) is in LU and FU in
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.potentials.table import Table as LawTable
-from contact1d.workflow.model.settings import Settings
+from contact1d.workflow.model.dynamics import Motion
+from contact1d.workflow.model.settings import Chains, Forces, Increments, Settings
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.scene.quantities import places
 from contact1d.workflow.scene.read import plain_data
@@ -34,15 +35,6 @@ ORDINARY_LENGTHS = (1e-2, 1e2)
 steps of 2e-6 is within 1e-4 of the true one at the lower end."""
 ORDINARY_FORCES = (1e-4, 1e4)
 """Bulk stiffness times the unit of length [FU]."""
-SETTINGS = {
-    "rest": "LU", "cutoff": "LU", "table_from": "LU", "closest": "LU", "far": "LU", "displacement_step": "LU",
-    "loading_step": "LU",
-    "smooth_step": "LU", "longest_move": "LU", "largest_displacement": "LU", "force_scale": "FU",
-    "force_tolerance": "FU", "bulk_stiffness": "FU/LU", "plane_stiffness": "FU/LU", "damped_stiffness": "FU/LU",
-    "time_step": "TU", "settle_time": "TU", "damping": "FU·TU/LU", "plate_damping": "FU·TU/LU",
-    "calm_damping": "FU·TU/LU", "calm_step": "TU",
-}  # fmt: skip
-"""Units of the settings; the others have none, are masses, or are the law, its table and the predictor."""
 
 
 @dataclass(frozen=True)
@@ -78,23 +70,32 @@ class DeckUnits:
         data = plain_data(scene.model_copy(update={"bodies": bodies, "material": None}))
         for place in places(Scene, data):
             if place.is_number and not place.absent:
-                place.put(data, self.to_deck(place.value, place.unit.name))
+                place.put(self.to_deck(place.value, place.unit.name))
         return Scene.model_validate(data)
 
     def settings(self, settings: Settings) -> Settings:
         """The settings in deck units, but for the predictor, which no deck asks."""
         if not self.are_own:
             return settings
-        changed: dict[str, Any] = {name: self.to_deck(getattr(settings, name), unit) for name, unit in SETTINGS.items()}
-        changed["drive"] = tuple(
-            replace(leg, velocity=self.to_deck(leg.velocity, "LU/TU"), time_step=self.to_deck(leg.time_step, "TU"))
-            for leg in settings.drive
-        )
-        if settings.law is not None:
-            law = self._law(settings.law)
-            table = None if settings.table is None else LawTable(law, changed["cutoff"], settings.table.points)
-            changed |= {"law": law, "table": table}
-        return replace(settings, **changed)
+        found: Settings = self._converted(settings)
+        if settings.forces.law is None:
+            return found
+        law, table = self._law(settings.forces.law), settings.forces.table
+        forces = replace(found.forces, law=law, table=table and LawTable(law, found.forces.cutoff, table.points))
+        return replace(found, forces=forces)
+
+    def _converted(self, record: Any) -> Any:
+        """A record in deck units, and those in it: the fields whose `metadata` has a unit."""
+        changed: dict[str, Any] = {}
+        for one in fields(record):
+            value = getattr(record, one.name)
+            if unit := one.metadata.get("unit"):
+                changed[one.name] = self.to_deck(value, unit)
+            elif isinstance(value, Forces | Chains | Increments | Motion):
+                changed[one.name] = self._converted(value)
+            elif one.name == "drive":
+                changed[one.name] = tuple(self._converted(leg) for leg in value)
+        return replace(record, **changed)
 
     def _law(self, law: DoubleExponential) -> DoubleExponential:
         terms = [

@@ -1,5 +1,7 @@
 """Experiments: each a script over the continuation and a reader of what it leaves."""
 
+from typing import Any
+
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.trust import slowness
@@ -17,7 +19,7 @@ from contact1d.workflow.scene import Scene
 
 __all__ = ["KINDS", "kind_of", "perform", "planned"]
 
-KINDS: dict[str, Experiment] = {
+KINDS: dict[str, Experiment[Any]] = {
     "hold": HoldExperiment(),
     "load": LoadExperiment(),
     "path": PathExperiment(),
@@ -28,7 +30,7 @@ KINDS: dict[str, Experiment] = {
 """By the word that a scene has for it."""
 
 
-def kind_of(scene: Scene) -> Experiment:
+def kind_of(scene: Scene) -> Experiment[Any]:
     """The scene's experiment."""
     return KINDS[scene.experiment.kind]
 

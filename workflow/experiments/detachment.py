@@ -19,7 +19,7 @@ import numpy as np
 from contact1d.analysis.curve import DETACHMENTS, SAMPLE_TABLE
 from contact1d.workflow.continuation.contact import BATCH
 from contact1d.workflow.continuation.context import RunContext
-from contact1d.workflow.continuation.outcome import Outcome, Result
+from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trust import UntrustedError, doubts, require_trust
 from contact1d.workflow.deck.deck import Deck
@@ -27,7 +27,8 @@ from contact1d.workflow.deck.steps import DrawnOff, Phase, Row, UnderLoad
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import LOG
-from contact1d.workflow.experiments.thermal import SETTLING_LOOKS, chunk_steps, sample_columns
+from contact1d.workflow.experiments.series import Series, begun, measured, recorded
+from contact1d.workflow.experiments.thermal import SETTLING_LOOKS, run_in, sample_columns
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import PullOff, Scene
 from contact1d.workflow.units import FORCE
@@ -56,34 +57,45 @@ class Detachment:
     """How one pull ended.
 
     Attributes:
-        seed: of its heat.
         force: the tension [FU] when the plate last left the position of the largest one.
         time: since the pull began [TU].
         phases: the schedule.
-        states: of all load steps, none where only the numbers are kept.
-        held: index of the last one that was held.
+        states: of all load steps.
+        held: the last one that was held.
     """
 
-    seed: int
     force: float
     time: float
     phases: tuple[Phase, ...]
     states: tuple[State, ...]
-    held: int
+    held: State
 
 
 @dataclass(frozen=True)
 class Ramp:
-    """The load ramp: `steps` timesteps in each load step, an increment `rise` [FU], up to load step `most`.
+    """The load ramp: a staircase, of which each load step adds an increment to the load.
 
-    With a `spring` [FU/LU], slack at the displacement `slack` [LU], its far end goes on by rise/spring.
+    With a spring the increment is that of its force on a plate at rest: its far end goes on by rise/spring.
+
+    Attributes:
+        steps, time: of a load step, the latter [TU].
+        rise: increment [FU].
+        largest: tension that the contact holds by the predictor [FU].
+        barrier, gone: displacements beyond which it holds less, and next to nothing [LU].
+        surely: energy that no fluctuation gives to the plate [FU·LU].
+        spring: stiffness [FU/LU]; 0 where a load pulls.
+        slack: displacement at which the spring is slack at the start [LU].
     """
 
     steps: int
+    time: float
     rise: float
-    most: int
-    spring: float = 0.0
-    slack: float = 0.0
+    largest: float
+    barrier: float
+    gone: float
+    surely: float
+    spring: float
+    slack: float
 
     def row(self, number: int) -> Row:
         """The load step of that number, from 1 on."""
@@ -93,86 +105,89 @@ class Ramp:
 
     def tension(self, number: float, place: float) -> float:
         """On a plate at a displacement [LU] after this number of load steps [FU]."""
-        return number * self.rise - (self.spring * (self.slack - place) if self.spring else 0.0)
+        return number * self.rise - self.spring * (self.slack - place)
 
-    def until(self, tension: float, place: float) -> int:
-        """Load steps after which it is as large [FU] on a plate at that displacement [LU]."""
-        return math.ceil((tension - self.tension(0.0, place)) / self.rise)
+    def until(self, tension: float) -> int:
+        """Load steps after which it is as large [FU] on a plate at the barrier."""
+        return math.ceil((tension - self.tension(0.0, self.barrier)) / self.rise)
 
-    def work(self, number: float, place: float, barrier: float) -> float:
-        """Work to move the plate from a displacement back to the barrier, or gained on that path [FU·LU]."""
-        return 0.5 * (self.tension(number, barrier) + self.tension(number, place)) * (barrier - place)
+    @property
+    def needed(self) -> float:
+        """Work [FU·LU] that keeps a plate from coming back: more than heat and attraction give it on its path.
 
+        The latter is F_A (d_A − d_0) at most, d_0 the position beyond which there is none.
+        """
+        return self.largest * (self.barrier - self.gone) + self.surely
 
-def spring_of(scene: Scene, settings: Settings) -> float:
-    """Of the spring that retracts the plate [FU/LU]; 0 where a load does."""
-    assert isinstance(scene.experiment, PullOff)
-    if scene.experiment.velocity is None:
-        return 0.0
-    return scene.experiment.stiffness or settings.estimate.stiffness_under(0.0)
+    @property
+    def most(self) -> int:
+        """Load steps after which the bodies must have separated."""
+        far = self.spring * (self.barrier - self.gone) + math.sqrt(2.0 * self.spring * self.needed)
+        return self.until(MOST_TENSION * self.largest + 2.0 * far)
 
-
-def rate_of(scene: Scene, settings: Settings) -> float:
-    """At which the load grows, or that of the spring on a plate at rest [FU/TU]."""
-    assert isinstance(scene.experiment, PullOff)
-    if scene.experiment.velocity is not None:
-        return scene.experiment.velocity * spring_of(scene, settings)
-    assert scene.experiment.loading_rate is not None
-    return scene.experiment.loading_rate
+    def is_over(self, number: int, place: float) -> bool:
+        """Whether a plate at a displacement [LU] cannot return: there is no attraction, and the load is tensile."""
+        mean = 0.5 * (self.tension(number, self.barrier) + self.tension(number, place))
+        return place < self.gone and mean * (self.barrier - place) > self.needed
 
 
-def ramp_of(scene: Scene, settings: Settings) -> Ramp:
+def ramp_of(scene: Scene, settings: Settings, experiment: PullOff) -> Ramp:
     """The staircase: its steps are a share of the tension, or more where they would have too few timesteps."""
-    estimate, spring = settings.estimate, spring_of(scene, settings)
-    rate, tension = rate_of(scene, settings), settings.estimate.pull_off_force()
-    wanted = max(tension / INCREMENTS, rate * FEWEST_STEPS * settings.time_step)
-    steps = max(FEWEST_STEPS, round(wanted / rate / settings.time_step))
-    slack = estimate.displacement_at(0.0) if spring else 0.0
-    ramp = Ramp(steps, rate * steps * settings.time_step, 0, spring, slack)
-    barrier, none = estimate.parted(BARRIER), estimate.parted(GONE)
-    far = spring * (barrier - none) + math.sqrt(2.0 * spring * _needed(scene, settings))
-    return replace(ramp, most=ramp.until(MOST_TENSION * tension + 2.0 * far, barrier))
+    estimate, step = settings.estimate, settings.motion.time_step
+    spring = (experiment.stiffness or estimate.stiffness_under(0.0)) if experiment.draws_off else 0.0
+    rate = experiment.loading_rate or spring * (experiment.velocity or 0.0)
+    largest = estimate.pull_off_force()
+    steps = max(FEWEST_STEPS, round(largest / INCREMENTS / rate / step))
+    surely = SURELY * scene.noise.temperature if scene.noise else 0.0
+    places = estimate.parted(BARRIER), estimate.parted(GONE)
+    slack = estimate.displacement_at(0.0)
+    return Ramp(steps, steps * step, rate * steps * step, largest, *places, surely, spring, slack)
 
 
-def pulls(context: RunContext, count: int) -> list[Detachment]:
-    """So many pulls, with the scene's seed and those after it, `context.workers` of them at a time.
+def planned_detachment(scene: Scene, settings: Settings, experiment: PullOff) -> tuple[Phase, Phase, Phase]:
+    """The schedule up to a tension that the predictor does not hold."""
+    ramp = ramp_of(scene, settings, experiment)
+    rows = tuple(ramp.row(number) for number in range(1, ramp.until(FARTHEST * ramp.largest) + 1))
+    before = run_in("loading", settings, experiment.preload), run_in("settling", settings, 0.0)
+    return *before, Phase("pulling", rows, state=True)
+
+
+def pulls(context: RunContext, experiment: PullOff) -> list[Detachment]:
+    """The pulls, with the scene's seed and those after it, `context.workers` of them at a time.
 
     The files of the run folder are those of the scene's own seed, and only its states are kept.
 
     Raises:
         EngineError, UntrustedError: of the first pull that failed; the log in the run folder is then its own.
     """
+    count, stop = experiment.repeats or 1, threading.Event()
     if count == 1:
-        return [_pull(context, threading.Event())]
-    stop, found = threading.Event(), []
+        return [_pull(context, experiment, stop)]
     context.progress.phase("pulling", count, "pull")
     with ThreadPoolExecutor(min(count, context.workers)) as executor:
-        tasks = {executor.submit(_apart, context, number, stop): number for number in range(count)}
+        tasks = [executor.submit(_apart, context, experiment, number, stop) for number in range(count)]
         try:
             for task in as_completed(tasks):
-                found.append(task.result())
+                task.result()
                 context.progress.advance(1)
-        except BaseException:
+        finally:
             stop.set()
             executor.shutdown(cancel_futures=True)
-            raise
-        finally:
             shutil.rmtree(context.folder / FOLDER, ignore_errors=True)
-    return sorted(found, key=lambda one: one.seed)
+    return [task.result() for task in tasks]
 
 
-def _apart(context: RunContext, number: int, stop: threading.Event) -> Detachment:
+def _apart(context: RunContext, experiment: PullOff, number: int, stop: threading.Event) -> Detachment:
     """The pull of the seed that is `number` after the scene's, in a folder of its own."""
-    scene, settings = context.deck.scene, context.deck.settings
+    scene, folder = context.deck.scene, context.folder / FOLDER / str(number) if number else context.folder
     assert scene.noise is not None
     seeded = scene.model_copy(update={"noise": scene.noise.model_copy(update={"seed": scene.noise.seed + number})})
-    folder = context.folder / FOLDER / str(number) if number else context.folder
-    own = RunContext(Deck(seeded, settings), folder, Silent(), context.time_limit, context.retries)
+    own = replace(context, deck=Deck(seeded, context.deck.settings), folder=folder, progress=Silent(), ranks=1)
     if number:
         folder.mkdir(parents=True, exist_ok=True)
         write_system(own.deck, folder)
     try:
-        found = _pull(own, stop)
+        found = _pull(own, experiment, stop)
     except Exception:
         if not stop.is_set():
             context.phase, context.timestep = own.phase, own.timestep
@@ -184,118 +199,76 @@ def _apart(context: RunContext, number: int, stop: threading.Event) -> Detachmen
     return replace(found, phases=(), states=()) if number else found
 
 
-def _pull(context: RunContext, stop: threading.Event) -> Detachment:
+def _pull(context: RunContext, experiment: PullOff, stop: threading.Event) -> Detachment:
     scene, settings = context.deck.scene, context.deck.settings
-    experiment = scene.experiment
-    assert isinstance(experiment, PullOff)
-    assert scene.noise is not None
-    ramp, look = ramp_of(scene, settings), chunk_steps(settings)
-    barrier = settings.estimate.parted(BARRIER)
+    ramp = ramp_of(scene, settings, experiment)
+    *before, pulling = planned_detachment(scene, settings, experiment)
     with context.contact() as contact:
-        states: list[State] = []
-        for name, load in (("loading", experiment.preload), ("settling", 0.0)):
-            contact.begin(name, expected_steps=SETTLING_LOOKS * look)
-            states += contact.rows((UnderLoad(load, look),) * SETTLING_LOOKS, trusted=False)
+        states = [state for phase in before for state in contact.rows(begun(contact, phase), trusted=False)]
         require_trust(scene, settings, states[-1])
-        if min(one.displacement for one in states) < settings.estimate.parted(GONE):
+        if min(one.displacement for one in states) < ramp.gone:
             raise UntrustedError(
                 "thermal fluctuations separate the bodies before the load decreases: use a lower noise.temperature, "
                 "or a stronger interaction.attraction"
             )
-        contact.begin("pulling", expected_steps=ramp.most * ramp.steps)
-        settled = len(states)
-        at_once = min(BATCH, max(1, WAITING_STEPS // ramp.steps))
-        for first in range(1, ramp.most + 1, at_once):
+        contact.begin(pulling.name, expected_steps=ramp.most * ramp.steps)
+        settled, done = len(states), 0
+        while not ramp.is_over(done, states[-1].displacement):
             if stop.is_set():
                 raise UntrustedError("another repeat failed")
-            numbers = range(first, min(first + at_once, ramp.most + 1))
-            states += contact.rows([ramp.row(n) for n in numbers], trusted=False)
-            if _has_parted(scene, settings, ramp, numbers[-1], states[-1]):
-                break
-        else:
-            raise UntrustedError(
-                f"the bodies did not separate up to a tensile force of {ramp.tension(ramp.most, barrier):.4g} FU, more "
-                f"than {MOST_TENSION:g} times the predicted pull-off force: the load changes faster than they move. "
-                f"Use a smaller experiment.{'velocity' if ramp.spring else 'loading_rate'}"
-            )
+            if done == ramp.most:
+                raise UntrustedError(
+                    f"the bodies did not separate up to a tensile force of {ramp.tension(done, ramp.barrier):.4g} FU, "
+                    f"more than {MOST_TENSION:g} times the predicted pull-off force: the load changes faster than they "
+                    f"move. Use a smaller experiment.{'velocity' if ramp.spring else 'loading_rate'}"
+                )
+            at_once = min(BATCH, max(1, WAITING_STEPS // ramp.steps), ramp.most - done)
+            states += contact.rows([ramp.row(done + i) for i in range(1, at_once + 1)], trusted=False)
+            done += at_once
         contact.write_state()
         contact.finish()
-    held = max((n for n, one in enumerate(states[settled:], 1) if one.displacement > barrier), default=0)
-    time = (held + 0.5) * ramp.steps * settings.time_step
-    force = ramp.tension(held + 0.5, barrier)
-    return Detachment(scene.noise.seed, force, time, contact.phases, tuple(states), settled + held - 1)
+    held = max((n for n, one in enumerate(states[settled:], 1) if one.displacement > ramp.barrier), default=0)
+    force = ramp.tension(held + 0.5, ramp.barrier)
+    return Detachment(force, (held + 0.5) * ramp.time, contact.phases, tuple(states), states[settled + held - 1])
 
 
-def _has_parted(scene: Scene, settings: Settings, ramp: Ramp, number: int, state: State) -> bool:
-    """Whether the plate cannot return: there is no attraction, and the load is tensile."""
-    barrier, none = settings.estimate.parted(BARRIER), settings.estimate.parted(GONE)
-    gone = state.displacement < none
-    return gone and ramp.work(number, state.displacement, barrier) > _needed(scene, settings)
-
-
-def _needed(scene: Scene, settings: Settings) -> float:
-    """Work [FU·LU] that keeps a plate from coming back: SURELY kT, and more than attraction gives it on its path.
-
-    That is F_A (d_A − d_0) at most, d_0 the position beyond which there is none.
-    """
-    assert scene.noise is not None
-    estimate = settings.estimate
-    given = estimate.pull_off_force() * (estimate.parted(BARRIER) - estimate.parted(GONE))
-    return given + SURELY * scene.noise.temperature
-
-
-def pull_off_thermal(context: RunContext) -> Outcome:
+def pull_off_thermal(context: RunContext, experiment: PullOff) -> Outcome:
     """Detachment force, mean and spread over the seeds, of a pull-off with [noise].
 
     Raises:
         UntrustedError: bodies that do not separate, or see `require_trust`.
     """
     scene, settings = context.deck.scene, context.deck.settings
-    assert isinstance(scene.experiment, PullOff)
-    count = scene.experiment.repeats or 1
-    found = pulls(context, count)
-    forces = np.asarray([one.force for one in found])
-    step = ramp_of(scene, settings).rise / math.sqrt(12.0)
-    spread = float(forces.std(ddof=1)) if count > 1 else math.nan
-    # One pull says nothing of how they scatter.
-    error = math.hypot(spread, step) / math.sqrt(count) if count > 1 else float(abs(forces[0]))
-    results = {"detachment_force": Result(float(forces.mean()), FORCE, {"statistics": error})}
-    if count > 1:
-        of_spread = {"statistics": spread / math.sqrt(2.0 * (count - 1))}
-        results["detachment_force_spread"] = Result(spread, FORCE, of_spread)
-    own = found[0]
-    rows = [row for phase in own.phases for row in phase.rows]
-    loads = [_load(rows[state.number], state) for state in own.states]
-    tables = {
-        DETACHMENTS: {
-            "seed": tuple(float(one.seed) for one in found),
-            "force": tuple(one.force for one in found),
-            "time": tuple(one.time for one in found),
-        },
-        SAMPLE_TABLE: sample_columns(own.states, loads, settings),
-    }
-    warnings = doubts(scene, settings, own.states) | _lagging(scene, settings)
-    return Outcome(results, own.states, {"last_held": own.states[own.held]}, own.phases, warnings, tables=tables)
+    found, ramp = pulls(context, experiment), ramp_of(scene, settings, experiment)
+    assert scene.noise is not None
+    seeds = scene.noise.seed + np.arange(float(len(found)))
+    each = Series({"seed": seeds} | recorded(found, ("force", "time")))
+
+    def read(each: Series) -> dict[str, Reading]:
+        """A force is known to be within a load step."""
+        count, force = len(each), float(each.mean("force"))
+        found = {"detachment_force": Reading(force, FORCE, {"sampling": ramp.rise / math.sqrt(12.0 * count)})}
+        if count > 1:
+            spread = float(each["force"].std(ddof=1))
+            errors = {"statistics": spread / math.sqrt(2.0 * (count - 1))}
+            found["detachment_force_spread"] = Reading(spread, FORCE, errors)
+        return found
+
+    states, own = found[0].states, found[0]
+    loads = [experiment.preload] * SETTLING_LOOKS + [0.0] * SETTLING_LOOKS
+    loads += [-ramp.tension(number, one.displacement) for number, one in enumerate(states[len(loads) :], 1)]
+    tables = {DETACHMENTS: each.table(), SAMPLE_TABLE: sample_columns(states, loads, settings)}
+    warnings = doubts(scene, settings, states) | _lagging(settings, ramp, experiment)
+    return Outcome(measured(each, read), states, {"last_held": own.held}, own.phases, warnings, tables=tables)
 
 
-def _load(row: Row, state: State) -> float:
-    """On the plate in a row [FU], compression positive: given, or the spring's at the load step's end."""
-    if isinstance(row, DrawnOff):
-        return -row.spring * (state.displacement - row.end)
-    assert isinstance(row, UnderLoad)
-    return row.load
-
-
-def _lagging(scene: Scene, settings: Settings) -> dict[str, str]:
+def _lagging(settings: Settings, ramp: Ramp, experiment: PullOff) -> dict[str, str]:
     """A warning where the load grows by a share of F_A while drag Γ lets F_A move the plate by the range: Γ b Ḟ/F_A."""
-    assert isinstance(scene.experiment, PullOff)
-    assert settings.law is not None
-    drag, largest = settings.drag(), settings.estimate.pull_off_force()
-    share = drag * settings.law.longest_range * rate_of(scene, settings) / largest**2
+    share = settings.drag() * settings.forces.range * ramp.rise / ramp.time / ramp.largest**2
     if share < LAGGING:
         return {}
-    key, unit = ("velocity", "LU/TU") if scene.experiment.velocity else ("loading_rate", "FU/TU")
-    given = scene.experiment.velocity or scene.experiment.loading_rate or 0.0
+    key, unit = ("velocity", "LU/TU") if ramp.spring else ("loading_rate", "FU/TU")
+    given = experiment.velocity or experiment.loading_rate or 0.0
     return {
         "lagging": (
             f"viscous drag delays the separation, and the load meanwhile grows by {share:.2g} of the pull-off force: "
@@ -303,16 +276,3 @@ def _lagging(scene: Scene, settings: Settings) -> dict[str, str]:
             "to avoid it"
         )
     }
-
-
-def planned_detachment(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-    """The schedule up to a tension that the predictor does not hold."""
-    experiment = scene.experiment
-    assert isinstance(experiment, PullOff)
-    ramp, look = ramp_of(scene, settings), chunk_steps(settings)
-    rows = ramp.until(FARTHEST * settings.estimate.pull_off_force(), settings.estimate.parted(BARRIER))
-    return (
-        Phase("loading", (UnderLoad(experiment.preload, look),) * SETTLING_LOOKS),
-        Phase("settling", (UnderLoad(0.0, look),) * SETTLING_LOOKS),
-        Phase("pulling", tuple(ramp.row(n) for n in range(1, rows + 1)), state=True),
-    )

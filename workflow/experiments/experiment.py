@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any, ClassVar
+from typing import ClassVar, Generic, TypeVar, cast
 
 from contact1d.workflow.continuation.branch import Branch, SecondMaximumError
 from contact1d.workflow.continuation.budget import (
@@ -13,7 +13,8 @@ from contact1d.workflow.continuation.budget import (
     budgeted,
     force_errors,
 )
-from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.context import ContactBranch, RunContext
+from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.load_control import LoadBranch
 from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.replayed import ReplayedBranch
@@ -22,8 +23,8 @@ from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import ThroughError, doubts
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Phase
-from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.model.settings import Settings, slower
+from contact1d.workflow.scene import Kind, Scene
 
 FINER_SPACING = "a smaller bodies.spacing at the same stiffness and energy per length"
 """What every radius gains from."""
@@ -35,8 +36,11 @@ then goes downhill in short moves. In time it is a load applied at once that dri
 what a snap sets free that drives a particle through its opposite: loads then come in such parts, with drag."""
 
 
-class Experiment(ABC):
-    """One kind of experiment.
+K = TypeVar("K", bound=Kind)
+
+
+class Experiment(ABC, Generic[K]):
+    """One kind of experiment; K is its table in a scene.
 
     Attributes:
         main_results: names of the results that an error is judged by, as far as a scene has them.
@@ -45,6 +49,10 @@ class Experiment(ABC):
 
     main_results: ClassVar[tuple[str, ...]]
     branches: ClassVar[Mapping[str, str]] = {}
+
+    def given(self, scene: Scene) -> K:
+        """What a scene says of it."""
+        return cast("K", scene.experiment)
 
     @abstractmethod
     def run(self, context: RunContext) -> Outcome:
@@ -77,16 +85,20 @@ class Experiment(ABC):
         return self.branches.get(name, name)
 
 
-class Scripted(Experiment):
-    """A quasi-static experiment: a script over a branch, and a reader of the resulting trace."""
+class Scripted(Experiment[K]):
+    """A script over a branch, and a reader of the resulting trace."""
 
     @abstractmethod
-    def script(self, branch: Any, scene: Scene) -> None:
-        """Move a contact: a `Branch`, a `LoadBranch` or a `ModelBranch`."""
+    def script(self, branch: Driver, scene: Scene) -> None:
+        """Move a contact, as often to and fro as it takes: each turn begins a leg of the trace."""
 
     @abstractmethod
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """Results of the states that the script has passed."""
+
+    def tables(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Mapping[str, tuple[float, ...]]]:
+        """Columns of further files, by the names of these."""
+        return {}
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
         """What the experiment adds to its outcome, or refuses of it."""
@@ -96,18 +108,33 @@ class Scripted(Experiment):
         """Run the script on LAMMPS; the reader's results with their error budget."""
         scene, settings = context.deck.scene, context.deck.settings
         case = self.reduction(scene, settings)
+        branch, trace = self._driven(context, case)
+        # An error of the force changes its sign within half a range: it moves where a flat maximum lies.
+        errors = force_errors(scene, settings, branch.states, branch.marked.values(), branch.unbalance)
+        slower = self._slower(context, case, trace)
+        results = budgeted(case, trace, errors, length=0.5 * settings.forces.range, repeated=slower)
+        warnings = doubts(scene, settings, tuple(branch.states))
+        tables = self.tables(trace, scene, settings)
+        outcome = Outcome(results, tuple(branch.states), branch.marked, branch.phases, warnings, tables=tables)
+        return self.finish(outcome, scene, settings)
+
+    def _driven(self, context: RunContext, case: Reduction) -> tuple[ContactBranch, Trace]:
+        """The script on a new contact, and its trace."""
+        scene = context.deck.scene
         with branch_of(context, lambda: case.lattice) as branch:
             self.script(branch, scene)
             branch.finish()
-        trace = branch.trace()
-        # An error of the force changes its sign within half a range: it moves where a flat maximum lies.
-        length = 0.5 * settings.law.longest_range if settings.law is not None else 0.0
-        left = branch.unbalance if isinstance(branch, LoadBranch) else None
-        errors = force_errors(scene, settings, branch.states, branch.marked.values(), left)
-        results = budgeted(case, trace, errors, length=length)
-        warnings = doubts(scene, settings, tuple(branch.states))
-        outcome = Outcome(results, tuple(branch.states), branch.marked, branch.phases, warnings)
-        return self.finish(outcome, scene, settings)
+        return branch, branch.trace()
+
+    def _slower(self, context: RunContext, case: Reduction, trace: Trace) -> dict[str, list[Trace]]:
+        """A motion once more in longer timesteps, and slower where inertia or drag is the program's choice."""
+        if not trace.time.any() or context.deck.scene.noise is not None:
+            return {}
+        found = []
+        for scene, settings in slower(context.deck.scene, context.deck.settings):
+            with context.aside(Deck(scene, settings)) as other:
+                found.append(self._driven(other, case)[1])
+        return {"time": found}
 
     def reduction(self, scene: Scene, settings: Settings) -> Reduction:
         """Script and reader on the reduced model of a scene."""

@@ -5,40 +5,39 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
+from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.trace import Trace
-from contact1d.workflow.deck.steps import DisplaceInTime, Phase, UnderLoad
+from contact1d.workflow.deck.steps import DisplaceInTime, Phase, Row, UnderLoad
 from contact1d.workflow.experiments.experiment import Scripted
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Hold, Scene
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
 
-class HoldExperiment(Scripted):
+class HoldExperiment(Scripted[Hold]):
     """d, F, a and F/(πa²) at the end, and the change of the free variable since the beginning."""
 
     main_results = ("displacement", "force", "contact_radius")
 
-    def script(self, branch: Any, scene: Scene) -> None:
+    def script(self, branch: Driver, scene: Scene) -> None:
         """Hold."""
-        assert isinstance(scene.experiment, Hold)
+        held = self.given(scene)
         branch.begin("holding")
-        branch.hold(scene.experiment.duration, scene.experiment.displacement, scene.experiment.force)
+        branch.hold(held.duration, held.displacement, held.force)
         branch.mark("final")
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """The last state, and its distance from the first one that was held."""
-        assert isinstance(scene.experiment, Hold)
-        first, last = int(trace.asked.argmax()), len(trace) - 1
-        by_force = scene.experiment.force is not None
+        trace, by_force = trace.phases("holding"), self.given(scene).force is not None
+        last = len(trace) - 1
         free, unit = (trace.displacement, LENGTH) if by_force else (trace.force, FORCE)
         force = float(trace.force[last])
         found = {
             "displacement": Reading(float(trace.displacement[last]), LENGTH, prescribed=not by_force),
             "force": Reading(force, FORCE),
-            "relaxation": Reading(float(abs(free[last] - free[first])), unit, scale=float(abs(free).max())),
+            "relaxation": Reading(float(abs(free[last] - free[0])), unit, scale=float(abs(free).max())),
         }
         if radius := trace.radius(last):
             found["contact_radius"] = Reading(radius, LENGTH)
@@ -47,14 +46,15 @@ class HoldExperiment(Scripted):
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The load steps that run."""
-        held = scene.experiment
-        assert isinstance(held, Hold)
-        count, steps = settings.rows_of(held.duration)
-        if held.force is not None:
-            return (Phase("holding", (UnderLoad(held.force, steps),) * count, state=True),)
-        assert held.displacement is not None
-        return (Phase("holding", (DisplaceInTime(held.displacement, steps),) * count, state=True),)
+        held = self.given(scene)
+        rows: list[Row] = []
+        for steps in settings.steps_of(held.duration):
+            if held.force is not None:
+                rows.append(UnderLoad(held.force, steps))
+            elif held.displacement is not None:
+                rows.append(DisplaceInTime(held.displacement, steps))
+        return (Phase("holding", tuple(rows), state=True),)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
         """The time of each state, from when LAMMPS began."""
-        return replace(outcome, columns={"time": tuple(one.step * settings.time_step for one in outcome.states)})
+        return replace(outcome, columns={"time": tuple(one.step * settings.motion.time_step for one in outcome.states)})

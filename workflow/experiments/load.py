@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.holding import held_phase, stiffness_under
 from contact1d.workflow.continuation.load_control import FIRST_RISE, LoadBranch
 from contact1d.workflow.continuation.marks import BRANCH_DISTANCE, displacement_under, radius_rate
@@ -24,7 +24,7 @@ from contact1d.workflow.scene import Load, Scene
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
 
-class LoadExperiment(Scripted):
+class LoadExperiment(Scripted[Load]):
     """d, F, a and F/(πa²) under a force. A tension is approached from F = 0, as an experiment would."""
 
     main_results = ("displacement", "force", "contact_radius")
@@ -32,10 +32,9 @@ class LoadExperiment(Scripted):
     def run(self, context: RunContext) -> Outcome:
         """With noise an average over samples; in time with a warning where a tension is only just held, or not."""
         scene, settings = context.deck.scene, context.deck.settings
+        load = self.given(scene).force
         if scene.noise is not None:
-            return thermal_load(context)
-        assert isinstance(scene.experiment, Load)
-        load = scene.experiment.force
+            return thermal_load(context, load)
         surely = scene.method != "dynamic" or LoadBranch(context).holds_more(load)
         outcome = super().run(context)
         if surely:
@@ -48,11 +47,10 @@ class LoadExperiment(Scripted):
         )
         return replace(outcome, warnings={"near_pull_off": doubt, **outcome.warnings})
 
-    def script(self, branch: Any, scene: Scene) -> None:
+    def script(self, branch: Driver, scene: Scene) -> None:
         """Press to the force, or pull to it from F = 0."""
-        assert isinstance(scene.experiment, Load)
-        force = scene.experiment.force
-        scale = max(abs(force), branch.settings.force_scale)
+        force = self.given(scene).force
+        scale = max(abs(force), branch.settings.forces.scale)
         branch.begin("loading")
         branch.reach(max(force, 0.0), scale)
         if force < 0.0:
@@ -62,8 +60,7 @@ class LoadExperiment(Scripted):
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """Results at the last state."""
-        assert isinstance(scene.experiment, Load)
-        force, last = scene.experiment.force, len(trace) - 1
+        force, last = self.given(scene).force, len(trace) - 1
         own, stiffness = float(trace.displacement[last]), stiffness_under(settings, force)
         displacement = displacement_under(trace, last, trace.own_force(last), stiffness)
         missed = abs(displacement_under(trace, last, force, stiffness) - displacement)
@@ -83,12 +80,11 @@ class LoadExperiment(Scripted):
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule by the model."""
-        assert isinstance(scene.experiment, Load)
-        force = scene.experiment.force
+        force = self.given(scene).force
         if scene.noise is not None:
             return planned_samples(settings, force)
         if scene.method == "dynamic":
-            scale = max(abs(force), settings.force_scale)
+            scale = max(abs(force), settings.forces.scale)
             return (held_phase("loading", scene, settings, (force,), scale, state=True),)
         steps = curve_steps(settings) if scene.is_stepped else LOADING_STEPS
         rows = displacements(np.linspace(0.0, settings.largest_displacement, steps + 1).tolist())

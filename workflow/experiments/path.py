@@ -5,26 +5,28 @@ from __future__ import annotations
 import math
 from bisect import bisect_left
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
-from contact1d.analysis.curve_marks import SAME_FORCE, Work, closes, work_of
+from contact1d.analysis.curve_marks import closes, work_of
 from contact1d.workflow.continuation.budget import (
     budgeted,
     force_errors,
 )
 from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.marks import unloading
 from contact1d.workflow.continuation.model_branch import UNSEEN
 from contact1d.workflow.continuation.outcome import Outcome, Reading, Result
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import doubts, require_trust
-from contact1d.workflow.deck.steps import DisplaceInTime, Phase, Row, displacements
+from contact1d.workflow.deck.steps import Displace, DisplaceInTime, Phase, Row, displacements
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.experiments.thermal import CERTAIN, averaged, thermal_rows
+from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Path, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
@@ -38,7 +40,7 @@ EARLINESS = 8.0
 """Square of the longest move of bodies that part over the range squared, per unit of tolerance."""
 
 
-class PathExperiment(Scripted):
+class PathExperiment(Scripted[Path]):
     """F_A, a₀ and a_cr, read off the branch that unloads last; the energy that a closed path dissipates."""
 
     main_results = ("adhesion_force", "zero_load_radius", "critical_radius", "largest_force", "largest_radius")
@@ -62,24 +64,51 @@ class PathExperiment(Scripted):
         ends = {"deepest": max(reported, key=lambda s: s.displacement), "final": reported[-1]}
         strongest = (ends["deepest"], min(seen, key=lambda s: s.force), ends["final"])
         errors = force_errors(scene, settings, seen, strongest)
-        results = budgeted(case, of_states(seen), errors, sampled=scene.noise is None)
+        trace = of_states(seen, reduced(scene, settings))
+        other = self._in_half_steps(context, seen)
+        repeated = {} if other is None else {"instability": [other]}
+        results = budgeted(case, trace, errors, sampled=scene.noise is None, repeated=repeated)
         warnings = self._missing(results, scene, phases) | doubts(scene, settings, tuple(reported))
+        warnings |= _buckling(trace, other, settings)
         tables = {} if scene.noise is None else {"means": _means(settings, reported)}
         return Outcome(results, tuple(reported), ends, phases, warnings, tables=tables)
 
-    def script(self, branch: Any, scene: Scene) -> None:
+    def _in_half_steps(self, context: RunContext, seen: Sequence[State]) -> Trace | None:
+        """The same states of a second run with twice as many; None where no particle can move aside.
+
+        Chains that may buckle along x jump to another equilibrium between two load steps; to which depends on these.
+        """
+        scene, deck = context.deck.scene, context.deck
+        if scene.horizontal is None or scene.method != "quasistatic":
+            return None
+        phases, before = [], 0.0
+        for phase in schedule(scene, deck.settings):
+            rows = []
+            for row in phase.rows:
+                assert isinstance(row, Displace)
+                rows += [Displace(0.5 * (before + row.displacement)), row]
+                before = row.displacement
+            phases.append(replace(phase, rows=tuple(rows)))
+        with context.aside(deck) as other, other.contact("repeating the path in half the steps") as contact:
+            states = contact.replay(phases)[1::2]
+        return of_states(states[-len(seen) :], reduced(scene, deck.settings))
+
+    def script(self, branch: Driver, scene: Scene) -> None:
         """The approach, which is not evaluated, and the positions of the scene; where pairs snap also those between."""
-        settings = branch.settings
-        all_of_it = way(scene, settings)
-        first = [asked for _, asked in all_of_it].index(True)
-        if first:
-            branch.begin(UNSEEN)
-            branch.visit([position for position, _ in all_of_it[:first]])
-        passed = all_of_it[first:] if settings.estimate.snaps else [one for one in all_of_it if one[1]]
-        positions = [position for position, _ in passed]
-        for name, stretch in stretches(positions):
-            branch.begin(name)
-            branch.visit(stretch)
+        settings, passed = branch.settings, 0
+        whole = way(scene, settings)
+        first = [asked for _, asked in whole].index(True)
+        for name, stretch in stretches([position for position, _ in whole]):
+            rows = list(enumerate(whole[passed : passed + len(stretch)], passed))
+            passed += len(stretch)
+            parts = {
+                UNSEEN: [position for i, (position, _) in rows if i < first],
+                name: [position for i, (position, asked) in rows if i >= first and (asked or settings.estimate.snaps)],
+            }
+            for phase, positions in parts.items():
+                if positions:
+                    branch.begin(phase)
+                    branch.visit(positions)
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule that runs."""
@@ -115,12 +144,29 @@ class PathExperiment(Scripted):
         return warnings
 
 
+def _buckling(trace: Trace, other: Trace | None, settings: Settings) -> dict[str, str]:
+    """A warning where forces at the same displacements differ between two widths of the load steps."""
+    if other is None:
+        return {}
+    off = np.abs(trace.force - other.force)
+    worst, largest = int(off.argmax()), float(np.abs(trace.force).max())
+    if off[worst] <= settings.tolerance * largest:
+        return {}
+    return {
+        "buckling": (
+            f"at displacement {trace.displacement[worst]:.4g} LU the force is {trace.force[worst]:.4g} FU, and "
+            f"{other.force[worst]:.4g} FU in half the steps: the chains buckle along x, and the state depends on the "
+            "steps of the path. Leave out [horizontal], or use stiffer [neighbours]"
+        )
+    }
+
+
 def _means(settings: Settings, states: list[State]) -> dict[str, tuple[float, ...]]:
     """Columns of means.csv: the mean force at each position, and its standard error."""
     return {
         "displacement": tuple(one.displacement for one in states),
         "force": tuple(one.force for one in states),
-        "force_standard_error": tuple(one.residual * settings.particles / CERTAIN for one in states),
+        "force_standard_error": tuple(one.residual * settings.chains.upper / CERTAIN for one in states),
     }
 
 
@@ -144,7 +190,7 @@ def _adhesion(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Readi
         return {}
     name = apart[-1] if apart else trace.phase[-1]
     branch = trace.chosen(np.flatnonzero([phase == name for phase in trace.phase]))
-    found = unloading(branch, scene, settings)
+    found = unloading(branch, settings)
     if scene.adhesion is not None:
         found |= _fixed_grips(branch)
     return found
@@ -161,17 +207,16 @@ def _lost(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
     (d, force), noisy = trace.lists, scene.noise is not None
     same = noisy or (ends[0] is None) == (ends[1] is None)
     if same and closes(d, force, ANY_FORCE if noisy else settings.tolerance):
-        return {"dissipated_energy": Reading(work.area, ENERGY, errors, scale=_scale(work.area, work))}
+        # Springs lose nothing, nor does a contact that is held all along, where particles neither snap nor buckle.
+        held = not (_is_unstable(trace) or settings.snaps or scene.horizontal)
+        known = not noisy and (held or not scene.adheres)
+        scale = work.whole if known else None
+        return {"dissipated_energy": Reading(work.area, ENERGY, errors, scale=scale, prescribed=known)}
     first, last = (settings.estimate.energy(d[i], radius or 0.0) for i, radius in zip((0, -1), ends, strict=True))
     if first is None or last is None or not _is_unstable(trace):
         return {}
     lost = work.area - (last - first)
-    return {"instability_energy": Reading(lost, ENERGY, errors, scale=_scale(lost, work))}
-
-
-def _scale(energy: float, work: Work) -> float | None:
-    """All work of the path for an energy [FU·LU] that may be 0; None for one that is not."""
-    return work.whole if abs(energy) <= work.uncertainty + SAME_FORCE * work.whole else None
+    return {"instability_energy": Reading(lost, ENERGY, errors)}
 
 
 def _is_unstable(trace: Trace) -> bool:
@@ -228,14 +273,14 @@ def way(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
     assert isinstance(experiment, Path)
     asked = experiment.places()
     if settings.snaps:
-        before = min(0.0, estimate.rest - estimate.joins - settings.longest_move)
+        before = min(0.0, estimate.rest - estimate.joins - settings.increments.longest_move)
     goals = [(value, True) for value in asked]
     if experiment.start == "contact":
         goals.insert(0, (max(asked), False))
     before = min(before, goals[0][0])
     found = [(before, False)] if before not in (0.0, goals[0][0]) else []
     for value, one in goals:
-        longest = settings.longest_move if value > before else _longest_drop(settings)
+        longest = settings.increments.longest_move if value > before else _longest_drop(settings)
         moves = max(1, math.ceil(abs(value - before) / longest - ROUND_OFF))
         found += [(before + (value - before) * i / moves, False) for i in range(1, moves)]
         found.append((value, one))
@@ -252,9 +297,9 @@ def _longest_drop(settings: Settings) -> float:
     With |G″| of the ratio of the stiffnesses over the range b, and a loop as wide as some of that ratio times b,
     h = √(8 tolerance) b leaves a share of `tolerance` of the loop.
     """
-    if settings.law is None or settings.is_smooth:
+    if not settings.snaps:
         return math.inf
-    return min(settings.longest_move, math.sqrt(EARLINESS * settings.tolerance) * settings.law.longest_range)
+    return min(settings.increments.longest_move, math.sqrt(EARLINESS * settings.tolerance) * settings.forces.range)
 
 
 def _rows(scene: Scene, settings: Settings, positions: Sequence[tuple[float, bool]]) -> tuple[Row, ...]:
@@ -262,11 +307,11 @@ def _rows(scene: Scene, settings: Settings, positions: Sequence[tuple[float, boo
         return thermal_rows(settings, _decay(scene, settings), positions)
     if scene.method == "quasistatic":
         return displacements([position for position, _ in positions])
-    steps = math.ceil(RELAXATIONS * _decay(scene, settings) / settings.time_step)
+    steps = math.ceil(RELAXATIONS * _decay(scene, settings) / settings.motion.time_step)
     return tuple(DisplaceInTime(float(position), steps) for position, _ in positions)
 
 
 def _decay(scene: Scene, settings: Settings) -> float:
     """Relaxation time [TU] of a particle on its bulk spring: 2m/γ, overdamped γ/k."""
     mass, stiffness = scene.bodies.mass, scene.bulk_stiffness
-    return max(2.0 * mass / settings.damping, settings.damping / stiffness)
+    return max(2.0 * mass / settings.motion.damping, settings.motion.damping / stiffness)

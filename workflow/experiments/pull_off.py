@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 
 from contact1d.analysis.polynomial import through
 from contact1d.workflow.continuation.context import RunContext
+from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.holding import held_phase, overshoot
 from contact1d.workflow.continuation.load_control import FEWEST_HELD, SPREAD, top_of
 from contact1d.workflow.continuation.marks import unloading
@@ -30,7 +31,7 @@ LARGEST_TENSION = 1.2
 """The last of these tensions over the expected pull-off force."""
 
 
-class PullOffExperiment(Scripted):
+class PullOffExperiment(Scripted[PullOff]):
     """F_A, a_cr and a₀ after a preload; with noise the detachment force of each pull."""
 
     main_results = ("adhesion_force", "zero_load_radius", "critical_radius")
@@ -38,44 +39,51 @@ class PullOffExperiment(Scripted):
 
     def run(self, context: RunContext) -> Outcome:
         """With noise a ramp until the bodies separate, once for each seed."""
-        return super().run(context) if context.deck.scene.noise is None else pull_off_thermal(context)
+        return (
+            super().run(context)
+            if context.deck.scene.noise is None
+            else pull_off_thermal(context, self.given(context.deck.scene))
+        )
 
-    def script(self, branch: Any, scene: Scene) -> None:
-        """Compress, unload to F = 0, retract to the force maximum, separate."""
-        assert isinstance(scene.experiment, PullOff)
-        preload = scene.experiment.preload
+    def script(self, branch: Driver, scene: Scene) -> None:
+        """Compress, unload to F = 0, retract to the force maximum, separate; as many times as there are cycles."""
+        preload = self.given(scene).preload
         scale = max(preload, branch.scale)
-        branch.begin("loading")
-        branch.reach(preload, scale)
-        branch.begin("unloading")
-        branch.reach(0.0, min(branch.scale, scale) or scale)
-        branch.mark("zero_load")
-        branch.begin("pulling")
-        branch.maximum()
-        branch.mark("critical")
-        branch.begin("separating")
-        branch.open()
+        for _ in range(self.given(scene).cycles or 1):
+            branch.begin("loading")
+            branch.reach(preload, scale)
+            branch.begin("unloading")
+            branch.reach(0.0, min(branch.scale, scale) or scale)
+            branch.mark("zero_load")
+            branch.begin("pulling")
+            branch.maximum()
+            branch.mark("critical")
+            branch.begin("separating")
+            branch.open()
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """The marks of the unloading."""
-        assert isinstance(scene.experiment, PullOff)
-        loading = trace.phases("loading")
-        preload = float(loading.force[-1])
-        given = Reading(preload, FORCE, {"solver": abs(preload - scene.experiment.preload)}, prescribed=True)
-        falling = trace.phases("unloading", "pulling", "separating", "critical")
-        marks = (
-            _under_load(falling, scene, settings, preload)
-            if trace.bracket
-            else _held(falling.falling(), scene, settings)
-        )
-        return marks | {"preload": given}
+        """The marks of the last unloading; of several cycles the force maximum of the first one, too."""
+        preload = float(trace.phases("loading").force[-1])
+        given = Reading(preload, FORCE, {"solver": abs(preload - self.given(scene).preload)}, prescribed=True)
+        falls = _unloadings(trace)
+        found = _marks(falls[-1], scene, settings, preload) | {"preload": given}
+        if len(falls) > 1:
+            found["adhesion_force_first"] = _marks(falls[0], scene, settings, preload)["adhesion_force"]
+        return found
+
+    def tables(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Mapping[str, tuple[float, ...]]]:
+        """cycles: the force maximum of each."""
+        falls, preload = _unloadings(trace), self.given(scene).preload
+        if len(falls) == 1:
+            return {}
+        forces = tuple(_marks(one, scene, settings, preload)["adhesion_force"].value for one in falls)
+        return {"cycles": {"cycle": tuple(map(float, range(1, len(falls) + 1))), "adhesion_force": forces}}
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule by the model."""
-        assert isinstance(scene.experiment, PullOff)
         if scene.noise is not None:
-            return planned_detachment(scene, settings)
-        preload, tension = scene.experiment.preload, settings.estimate.pull_off_force()
+            return planned_detachment(scene, settings, self.given(scene))
+        preload, tension = self.given(scene).preload, settings.estimate.pull_off_force()
         if scene.method == "dynamic":
             tensions = [float(-t) for t in np.linspace(0.0, LARGEST_TENSION * tension, TENSIONS + 1)[1:]]
             return (
@@ -83,7 +91,7 @@ class PullOffExperiment(Scripted):
                 held_phase("unloading", scene, settings, (0.0,), max(preload, tension), state=True),
                 held_phase("pulling", scene, settings, tensions, tension, state=True),
             )
-        deepest, apart = settings.largest_displacement, settings.rest - settings.cutoff
+        deepest, apart = settings.largest_displacement, settings.forces.rest - settings.forces.cutoff
         if scene.is_stepped:
             apart = BEYOND_LIMIT * settings.estimate.parted(0.0)
         down = displacements(np.linspace(0.0, deepest, LOADING_STEPS + 1).tolist())
@@ -91,10 +99,13 @@ class PullOffExperiment(Scripted):
         return (Phase("loading", down), Phase("unloading", back, state=True))
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Refuse results that contradict the curve of the run."""
+        """Refuse results that contradict the curve of the run; of cycles the number of each state."""
         found = outcome.results["adhesion_force"]
         require_no_contradiction(settings, found.value, found.uncertainty, outcome.states)
-        return outcome
+        if self.given(scene).cycles is None:
+            return outcome
+        numbers = tuple(float(state.phase.partition("_")[2] or 1) for state in outcome.states)
+        return replace(outcome, columns={**outcome.columns, "cycle": numbers})
 
     def advice(self, scene: Scene) -> str:
         """With the limitation of load control in time."""
@@ -102,9 +113,21 @@ class PullOffExperiment(Scripted):
         return super().advice(scene) + since
 
 
-def _held(falling: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
+def _unloadings(trace: Trace) -> list[Trace]:
+    """The legs of falling displacement."""
+    return [leg for leg in trace.phases("unloading", "pulling", "separating", "critical").legs if len(leg)]
+
+
+def _marks(falling: Trace, scene: Scene, settings: Settings, preload: float) -> dict[str, Reading]:
+    """Of one unloading, under load or under displacement control."""
+    if falling.search.bracket:
+        return _under_load(falling, scene, settings, preload)
+    return _held(falling.falling(), settings)
+
+
+def _held(falling: Trace, settings: Settings) -> dict[str, Reading]:
     """The marks of an unloading under displacement control, which begins at F = 0 where there was no preload."""
-    found, least = unloading(falling, scene, settings), int(np.argmin(np.abs(falling.force)))
+    found, least = unloading(falling, settings), int(np.argmin(np.abs(falling.force)))
     return (
         found
         if "zero_load_radius" in found
@@ -114,10 +137,10 @@ def _held(falling: Trace, scene: Scene, settings: Settings) -> dict[str, Reading
 
 def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float) -> dict[str, Reading]:
     """F_A in the middle of the bracket; a_cr, which load control never sees, extrapolated over the displacement."""
-    assert rested.bracket is not None
-    best, broken = rested.bracket
+    assert rested.search.bracket is not None
+    best, broken = rested.search.bracket
     tension = 0.5 * (best + broken)
-    errors = {"sampling": 0.5 * (broken - best)} | dict(rested.doubt)
+    errors = {"sampling": 0.5 * (broken - best)} | dict(rested.search.doubt)
     zero, last = rested.radius_or_spot(0), len(rested) - 1
     if settings.is_toothed:
         # A tooth has no smooth top to go on to. The pull-off may be at the next one, with one particle less at each

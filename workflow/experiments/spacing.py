@@ -13,6 +13,7 @@ from functools import partial
 import numpy as np
 
 from contact1d.analysis.pressure import Array
+from contact1d.digits import digits_apart
 from contact1d.workflow.continuation.budget import ForceErrors, budgeted
 from contact1d.workflow.continuation.outcome import LATTICE
 from contact1d.workflow.experiments import kind_of
@@ -49,11 +50,14 @@ def with_spacing(scene: Scene) -> Scene:
     radius = contact_radius(scene)
     chosen = fine_enough(partial(_spaced, scene, radius))
     left = left_by_lattice(chosen)
-    if scene.accuracy.tolerance < left < math.inf:  # without bound the run says what appears
+    tolerance = scene.accuracy.tolerance
+    if tolerance < left < math.inf:  # without bound the run says what appears
         larger = "" if left > 0.9 * LARGEST else f"use an accuracy.tolerance of {_up(left)}, or "
+        digits = digits_apart(left, tolerance, 2)
         raise SettingsError(
-            f"a tolerance of {scene.accuracy.tolerance:g} is not reached by {MOST} particles in the contact radius of "
-            f'{radius:.4g} LU, the limit of bodies.spacing = "auto": their discretisation error is {left:.1e}. '
+            f"a tolerance of {tolerance:g} is not reached by {MOST} particles in the contact radius of "
+            f'{radius:.4g} LU, the limit of bodies.spacing = "auto": '
+            f"their discretisation error is {left:.{digits - 1}e}. "
             f"{larger[:1].upper()}{larger[1:]}{'give' if larger else 'Give'} bodies.spacing"
         )
     return chosen

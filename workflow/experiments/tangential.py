@@ -11,7 +11,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import compress, pairwise
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,13 +22,15 @@ from contact1d.workflow.continuation.budget import (
     force_errors,
 )
 from contact1d.workflow.continuation.context import RunContext
-from contact1d.workflow.continuation.outcome import Outcome, Reading
+from contact1d.workflow.continuation.driver import Driver
+from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Reading
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import UntrustedError, doubts
 from contact1d.workflow.deck.lattice import places
 from contact1d.workflow.deck.steps import Draw, Phase
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.model.friction import Sliders, Stop, sliders_of, stops, without_rests
+from contact1d.workflow.model.reduced import Sliding, reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene, Tangential
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
@@ -40,11 +41,13 @@ MOST_TOUCHES = 1.0
 """Rows between two of the scene, per 1/tolerance; a particle between two of them is moved from the first."""
 ROUND_OFF = 1e-13
 """Error of tangential forces over the largest of a path, for each row: a history is a sum over all of them."""
+STUCK, NOTHING = 3.0, 1e-5
+"""Spacings that may slip at both edges together where no particle does, and a loss over all work that is none."""
 AS_PREDICTED = 1e-8
 """How far a particle's tangential force may be from what spring and slider make of the row before, over its limit."""
 
 
-class TangentialExperiment(Scripted):
+class TangentialExperiment(Scripted[Tangential]):
     """F_N, F_x, a, c and the dissipated energy Σ ∫ |s_i| dδ_i of the last row; a particle has slipped by δ_i.
 
     Of cycles also what the last one dissipates, ∮ F_x du where it is closed.
@@ -62,7 +65,7 @@ class TangentialExperiment(Scripted):
             states = contact.replay(self.planned(scene, settings))
             phases = contact.phases
         asked = [one for _, one in passed(scene, _chain(scene, settings), settings)]
-        trace = of_states(states, asked)
+        trace = of_states(states, reduced(scene, settings))
         rows = drawn(trace, scene)
         _require_history(trace, rows)
         reported, kept = list(compress(states, asked)), list(compress(rows, asked))
@@ -73,12 +76,12 @@ class TangentialExperiment(Scripted):
         marked = {"farthest": reported[farthest], "final": reported[-1]}
         return Outcome(results, tuple(reported), marked, phases, warnings, columns=_columns(kept))
 
-    def script(self, branch: Any, scene: Scene) -> None:
+    def script(self, branch: Driver, scene: Scene) -> None:
         """The stops of the model's particles, those that change nothing left out."""
-        chain = branch.model.chain
-        for name, stretch in stretches(passed(scene, chain, branch.settings, sparse=True)):
+        assert isinstance(branch.model, Sliding)
+        for name, stretch in stretches(passed(scene, branch.model.chain, branch.settings, sparse=True)):
             branch.begin(name)
-            branch.draw([stop for stop, _ in stretch], [one for _, one in stretch])
+            branch.visit(*zip(*(stop for stop, _ in stretch), strict=True))
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """What the last row has; forces are compared with Σ |s_i|, the energy with the work of that."""
@@ -87,23 +90,23 @@ class TangentialExperiment(Scripted):
         strongest = max(row.carried for row in rows)
         error = ROUND_OFF * len(rows) * strongest + _moved_too_far(scene, settings)
         lost, force = error * scene.experiment.way, float(trace.force[last.state])
+        unseen = _unseen_slip(rows, scene)[0] if last.dissipated <= lost else 0.0
         radius = trace.radius(last.state) or 0.0
         found = {
             "normal_force": Reading(
                 force, FORCE, {"solver": ROUND_OFF * abs(force)}, prescribed=scene.experiment.compression is not None
             ),
-            "tangential_force": Reading(last.force, FORCE, {"solver": error}, scale=strongest),
+            "tangential_force": Reading(last.force, FORCE, {"solver": error, LATTICE: unseen}, scale=strongest),
             "contact_radius": Reading(radius, LENGTH, prescribed=radius == 0.0),
             "stick_radius": Reading(
                 last.stick.value + trace.shift_of(last.state) * last.stick.uncertainty, LENGTH,
                 prescribed=last.stick.value == last.stick.uncertainty == 0.0,
             ),
-            "dissipated_energy": _energy(rows, lost),
+            "dissipated_energy": _energy(rows, lost, scene),
         }  # fmt: skip
-        assert isinstance(scene.experiment, Tangential)
-        if scene.experiment.cycles:
+        if self.given(scene).cycles:
             start = max(i for i, row in enumerate(rows[1:]) if row.direction < rows[i].direction)  # of the last cycle
-            found["dissipated_energy_per_cycle"] = _energy(rows[start:], 4.0 * lost)  # its path is 4 u_m
+            found["dissipated_energy_per_cycle"] = _energy(rows[start:], 4.0 * lost, scene)  # its path is 4 u_m
         return found
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
@@ -179,11 +182,43 @@ def drawn(trace: Trace, scene: Scene) -> list[Drawn]:
     return rows
 
 
-def _energy(rows: Sequence[Drawn], lost: float) -> Reading:
-    """What is dissipated from the first of the rows to the last, compared with Σ ∫ |s_i| du; `lost`: error [FU·LU]."""
+def _energy(rows: Sequence[Drawn], lost: float, scene: Scene) -> Reading:
+    """What is dissipated from the first of the rows to the last; `lost`: error of tangential forces [FU·LU].
+
+    Where no particle slips, less is lost than `_unseen_slip`; that is 0 of a body with an edge, which sticks or slips
+    as a whole.
+    """
     dissipated = rows[-1].dissipated - rows[0].dissipated
+    if abs(dissipated) > lost:
+        return Reading(dissipated, ENERGY, {"solver": lost})
     work = sum(0.5 * (a.carried + b.carried) * abs(b.position - a.position) for a, b in pairwise(rows))
-    return Reading(dissipated, ENERGY, {"solver": lost}, scale=work if abs(dissipated) <= lost else None)
+    force, way = _unseen_slip(rows, scene)
+    most = force * way
+    known = most <= NOTHING * work
+    return Reading(dissipated, ENERGY, {"solver": lost, LATTICE: most}, scale=work if known else None, prescribed=known)
+
+
+def _unseen_slip(rows: Sequence[Drawn], scene: Scene) -> tuple[float, float]:
+    """Force [FU] and distance [LU] of the slip between the outermost particles, at most, where none of these slips.
+
+    The annulus that slips is as wide as k_t u/(μ Δf) spacings, with Δf the difference of the normal forces of the two
+    outermost particles, and one at most; its forces are below k_t u and μ f, and it slips by as much as the sliders
+    are moved beyond what a rising load lets them carry, k_t |Δu| − μ k_n Δd. A body with an edge has none.
+    """
+    assert scene.friction is not None
+    stiffness, coefficient = scene.tangential_stiffness, scene.friction.coefficient
+    outer = [np.sort(row.trace.profile(row.state).pressure) for row in rows]
+    # Both edges are alike: the next particle is the third.
+    second, first = max(((p[p > 0.0][2], p[p > 0.0][0]) for p in outer if (p > 0.0).sum() > 2), default=(0.0, 0.0))
+    limit, rise = (scene.bodies.spacing * coefficient * float(one) for one in (second, second - first))
+    slipped = 0.0
+    for before, after in pairwise(rows):
+        deeper = after.trace.displacement[after.state] - before.trace.displacement[before.state]
+        moved = abs(after.position - before.position) - coefficient * scene.bulk_stiffness * deeper / stiffness
+        slipped += max(0.0, float(moved)) if after.position != before.position or deeper < 0.0 else 0.0
+    force = stiffness * max(abs(row.position) for row in rows)
+    share = min(1.0, force / rise) if rise > 0.0 else 1.0
+    return (0.0 if scene.bodies.profile.has_edge else STUCK * share * min(force, limit)), slipped
 
 
 def _require_history(trace: Trace, rows: Sequence[Drawn]) -> None:
@@ -215,7 +250,7 @@ def _columns(rows: Sequence[Drawn]) -> dict[str, tuple[float, ...]]:
 
 def _chain(scene: Scene, settings: Settings) -> Sliders:
     """The sliders of the chain that runs."""
-    return sliders_of(scene, places(settings.particles, scene.bodies.spacing))
+    return sliders_of(scene, places(settings.chains.upper, scene.bodies.spacing))
 
 
 def passed(scene: Scene, chain: Sliders, settings: Settings, sparse: bool = False) -> list[tuple[Stop, bool]]:

@@ -8,27 +8,29 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contact1d.analysis.curve import SAMPLE_TABLE
+from contact1d.analysis.curve import PROFILE_COLUMNS, SAMPLE_TABLE
+from contact1d.analysis.friction import standard_error
 from contact1d.analysis.pressure import Profile, mean_pressure
+from contact1d.digits import apart
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import RunContext
-from contact1d.workflow.continuation.outcome import Outcome, Result
+from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Reading, Result
 from contact1d.workflow.continuation.state import RadiusRule, State
 from contact1d.workflow.continuation.trust import UntrustedError, doubts, require_trust
-from contact1d.workflow.deck.steps import DisplaceInTime, Phase, UnderLoad
+from contact1d.workflow.deck.steps import DisplaceInTime, Phase, Row, UnderLoad
+from contact1d.workflow.experiments.series import Series, begun, measured, recorded
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import Load
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
 CHUNK = 0.25
 """Time between two samples of a thermal contact over the settling time."""
 FEWEST_STEPS = 20
 SETTLING_LOOKS = 40
-"""Looks (of a quarter of a settling time each) that a thermal contact has to forget its start."""
+"""Looks (of a quarter of a settling time each) that a thermal contact has to forget its start: its run-in."""
 BLOCKS = 20
 """Blocks whose means give the standard error: each is long against the settling time."""
 SAMPLES = 200
@@ -44,26 +46,43 @@ CERTAIN = 2.0
 
 def chunk_steps(settings: Settings) -> int:
     """Timesteps between two samples of a thermal contact."""
-    return max(FEWEST_STEPS, math.ceil(CHUNK * settings.settle_time / settings.time_step))
+    return max(FEWEST_STEPS, math.ceil(CHUNK * settings.motion.settle_time / settings.motion.time_step))
 
 
-def sampled_phase(name: str, settings: Settings, load: float, samples: int, state: bool = False) -> Phase:
-    """A planned phase of samples under a load [FU]."""
-    return Phase(name, (UnderLoad(load, chunk_steps(settings)),) * samples, state)
+def run_in(name: str, settings: Settings, load: float) -> Phase:
+    """The phase in which a contact under a load [FU] forgets its start."""
+    return Phase(name, (UnderLoad(load, chunk_steps(settings)),) * SETTLING_LOOKS)
 
 
-def planned_samples(settings: Settings, load: float) -> tuple[Phase, ...]:
+def planned_samples(settings: Settings, load: float) -> tuple[Phase, Phase]:
     """The planned schedule of a load under noise."""
-    return (
-        sampled_phase("settling", settings, load, SETTLING_LOOKS),
-        sampled_phase("sampling", settings, load, SAMPLES, state=True),
+    samples = (UnderLoad(load, chunk_steps(settings)),) * SAMPLES
+    return run_in("settling", settings, load), Phase("sampling", samples, state=True)
+
+
+def blocks_of(samples: Sequence[State]) -> Series:
+    """Means over BLOCKS parts of the samples."""
+    profiles = recorded([one.profile for one in samples], PROFILE_COLUMNS)
+    return Series(recorded(samples, ("displacement", "force", "carried")) | profiles).parts(BLOCKS)
+
+
+def mean_profile(blocks: Series) -> Profile:
+    """The average over time, particle by particle."""
+    return Profile(*map(blocks.mean, PROFILE_COLUMNS))
+
+
+def mean_state(samples: Sequence[State]) -> State:
+    """The mean of samples in the place of one state. Its `residual` is CERTAIN standard errors of the force over N."""
+    blocks = blocks_of(samples)
+    return replace(
+        samples[-1],
+        force=float(blocks.mean("force")),
+        displacement=float(blocks.mean("displacement")),
+        profile=mean_profile(blocks),
+        smallest_distance=min(one.smallest_distance for one in samples),
+        depth=max(one.depth for one in samples),
+        residual=CERTAIN * standard_error(blocks["force"]) / len(blocks.mean("x")),
     )
-
-
-def standard_error(samples: Sequence[float]) -> float:
-    """Standard error of the mean of a correlated series, from the means of BLOCKS blocks."""
-    means = [float(np.mean(block)) for block in np.array_split(np.asarray(samples), BLOCKS)]
-    return float(np.std(means, ddof=1) / math.sqrt(BLOCKS))
 
 
 def sample_columns(states: Sequence[State], loads: Sequence[float], settings: Settings) -> dict[str, tuple[float, ...]]:
@@ -74,83 +93,56 @@ def sample_columns(states: Sequence[State], loads: Sequence[float], settings: Se
         loads: under which each was measured [FU].
         settings: with the length of a timestep.
     """
-    radii = [state.radius for state in states]
-    return {
-        "time": tuple(state.step * settings.time_step for state in states),
-        "load": tuple(loads),
-        "displacement": tuple(state.displacement for state in states),
-        "force": tuple(state.force for state in states),
-        "contact_radius": tuple(math.nan if radius is None else radius.value for radius in radii),
-    }
+    found = recorded(states, ("step", "displacement", "force"))
+    radii = [math.nan if state.radius is None else state.radius.value for state in states]
+    time = found.pop("step") * settings.motion.time_step
+    columns = {"time": time, "load": np.asarray(loads), **found, "contact_radius": np.asarray(radii)}
+    return Series(columns).table()
 
 
-def mean_profile(profiles: Sequence[Profile]) -> Profile:
-    """The average over time, particle by particle."""
-
-    def mean(name: str) -> NDArray[np.float64]:
-        return np.asarray(np.mean([getattr(profile, name) for profile in profiles], axis=0))
-
-    return Profile(*(mean(name) for name in ("x", "z_lower", "z_upper", "pressure", "shear")))
-
-
-def mean_state(samples: Sequence[State]) -> State:
-    """The mean of samples in the place of one state. Its `residual` is CERTAIN standard errors of the force over N."""
-    last, forces = samples[-1], [one.force for one in samples]
-    return replace(
-        last,
-        force=float(np.mean(forces)),
-        displacement=float(np.mean([one.displacement for one in samples])),
-        profile=mean_profile([one.profile for one in samples]),
-        smallest_distance=min(one.smallest_distance for one in samples),
-        depth=max(one.depth for one in samples),
-        residual=CERTAIN * standard_error(forces) / last.profile.x.size,
-    )
-
-
-def thermal_load(context: RunContext) -> Outcome:
-    """d, F, a and F/(πa²) of a load under noise, as means.
+def thermal_load(context: RunContext, load: float) -> Outcome:
+    """d, F, a and F/(πa²) of a load [FU] under noise, as means.
 
     Raises:
         UntrustedError: the bodies separate, or the mean force misses the load; see `require_trust`.
     """
     scene, settings = context.deck.scene, context.deck.settings
-    assert isinstance(scene.experiment, Load)
-    load, steps = scene.experiment.force, chunk_steps(settings)
-    goal = settings.tolerance * max(settings.rest, abs(settings.largest_displacement))
+    goal = settings.tolerance * max(settings.forces.rest, abs(settings.largest_displacement))
+    settling, sampling = planned_samples(settings, load)
+    samples: list[State] = []
     with context.contact() as contact:
-        contact.begin("settling", expected_steps=SETTLING_LOOKS * steps)
-        settling = _samples(contact, load, SETTLING_LOOKS)
-        contact.begin("sampling", expected_steps=SAMPLES * steps)
-        samples: list[State] = []
-        while len(samples) < MOST_SAMPLES:
-            samples += _samples(contact, load, SAMPLES)
-            if standard_error([s.displacement for s in samples]) <= goal:
-                break
+        settled = _looks(contact, begun(contact, settling))
+        rows, error = begun(contact, sampling), math.inf
+        while error > goal and len(samples) < MOST_SAMPLES:
+            samples += _looks(contact, rows)
+            blocks = blocks_of(samples)
+            error = standard_error(blocks["displacement"])
         contact.write_state()
         contact.finish()
         phases = contact.phases
     for state in samples:
         require_trust(scene, settings, state)
-    results = _load_results(context, samples, load)
+    results = measured(blocks, partial(read, rule=RadiusRule(scene, settings.tolerance)))
+    require_balance(results["force"], load)
     warnings = doubts(scene, settings, tuple(samples))
-    error = results["displacement"].uncertainty
     if error > goal:
+        found, wanted = apart(error, goal, 2)
         warnings["statistics"] = (
-            f"standard error of the displacement {error:.2g} LU after {MOST_SAMPLES} samples, above {goal:.2g} LU"
+            f"standard error of the displacement {found} LU after {MOST_SAMPLES} samples, above {wanted} LU"
         )
     if "contact_radius" not in results:
         warnings["no_radius"] = "the contact has no width, so there is no contact radius"
-    states = (*settling, *samples)
+    states = (*settled, *samples)
     table = {SAMPLE_TABLE: sample_columns(states, [load] * len(states), settings)}
     return Outcome(results, states, {"final": mean_state(samples)}, phases, warnings, tables=table)
 
 
-def _samples(contact: Contact, load: float, count: int) -> list[State]:
-    """So many samples of bodies that still reach each other."""
+def _looks(contact: Contact, rows: Sequence[Row]) -> list[State]:
+    """The states of load steps, in which the bodies still reach each other."""
     found = []
-    for _ in range(count):
-        state = contact.row(UnderLoad(load, chunk_steps(contact.settings)), trusted=False)
-        if contact.settings.law is not None and state.smallest_distance > contact.settings.cutoff:
+    for row in rows:
+        state = contact.row(row, trusted=False)
+        if 0.0 < contact.settings.forces.cutoff < state.smallest_distance:  # 0 on a plane
             raise UntrustedError(
                 "the bodies separated under the load and the noise: use a more compressive experiment.force or a lower "
                 "noise.temperature"
@@ -159,36 +151,35 @@ def _samples(contact: Contact, load: float, count: int) -> list[State]:
     return found
 
 
-def _load_results(context: RunContext, samples: list[State], load: float) -> dict[str, Result]:
-    """Means with their standard errors; of what is read off a profile, by blocks of samples."""
-    scene = context.deck.scene
-    forces, displacement = [s.carried for s in samples], [s.displacement for s in samples]
-    mean_force, force_error = float(np.mean(forces)), standard_error(forces)
-    if abs(mean_force - load) > BALANCE * force_error:
-        raise UntrustedError(
-            f"not in equilibrium: the mean force {mean_force:.4g} FU differs from the load {load:.4g} FU by "
-            f"{abs(mean_force - load) / force_error:.1f} standard errors"
-        )
+def read(blocks: Series, rule: RadiusRule) -> dict[str, Reading]:
+    """Means of displacement and force, and what is read off the mean profile."""
     found = {
-        "displacement": Result(float(np.mean(displacement)), LENGTH, {"statistics": standard_error(displacement)}),
-        "force": Result(mean_force, FORCE, {"statistics": force_error}),
+        "displacement": Reading(float(blocks.mean("displacement")), LENGTH),
+        "force": Reading(float(blocks.mean("carried")), FORCE),
     }
-    rule, mean = RadiusRule(scene, context.deck.settings.tolerance), mean_profile([s.profile for s in samples])
-    if (radius := rule.of(mean)) is None:
+    profile = mean_profile(blocks)
+    if (radius := rule.of(profile)) is None:
         return found
-    size = max(1, len(samples) // BLOCKS)
-    blocks = [samples[i : i + size] for i in range(0, size * BLOCKS, size)]
-    radii = [rule.of(mean_profile([s.profile for s in block])) for block in blocks]
-    values = [one.value for one in radii if one is not None]
-    spread = float(np.std(values, ddof=1) / math.sqrt(len(values))) if len(values) > 1 else radius.value
-    pressure = mean_pressure(mean, scene.bodies.spacing, radius.value)
-    share = force_error / max(abs(mean_force), 1e-300)
-    errors = {"statistics": spread, "discretisation": radius.uncertainty}
-    found["contact_radius"] = Result(radius.value, LENGTH, errors, read=radius.uncertainty)
-    by_radius = {source: 2.0 * error / radius.value * abs(pressure) for source, error in errors.items()}
-    by_radius["statistics"] += share * abs(pressure)
-    found["mean_pressure"] = Result(pressure, MEAN_PRESSURE, by_radius, read=by_radius["discretisation"])
-    return found
+    pressure = mean_pressure(profile, rule.scene.bodies.spacing, radius.value)
+    between = 2.0 * radius.uncertainty / radius.value * abs(pressure)
+    return found | {
+        "contact_radius": Reading(radius.value, LENGTH, {LATTICE: radius.uncertainty}),
+        "mean_pressure": Reading(pressure, MEAN_PRESSURE, {LATTICE: between}),
+    }
+
+
+def require_balance(force: Result, load: float) -> None:
+    """Refuse a mean force that misses its load [FU] by more than its scatter.
+
+    Raises:
+        UntrustedError: by how many standard errors it does.
+    """
+    off = abs(force.value - load)
+    if off > BALANCE * force.uncertainty:
+        raise UntrustedError(
+            f"not in equilibrium: the mean force {force.value:.4g} FU differs from the load {load:.4g} FU by "
+            f"{off / force.uncertainty:.1f} standard errors"
+        )
 
 
 def thermal_rows(
@@ -201,20 +192,21 @@ def thermal_rows(
         decay: time constant of a particle [TU].
         positions: displacement [LU], and whether the scene asks for it.
     """
-    look = max(chunk_steps(settings), math.ceil(APART * decay / settings.time_step))
+    look = max(chunk_steps(settings), math.ceil(APART * decay / settings.motion.time_step))
     return tuple(
-        DisplaceInTime(float(position), look)
-        for position, asked in positions
-        for _ in range(SETTLING_LOOKS + (SAMPLES if asked else 0))
+        DisplaceInTime(float(position), look) for position, asked in positions for _ in range(_looks_at(asked))
     )
 
 
 def averaged(states: Sequence[State], positions: Sequence[tuple[float, bool]]) -> list[State]:
     """One state for each position of a path: the mean of its samples, or the last one between two positions."""
-    found, first = [], 0
-    for _, asked in positions:
-        end = first + SETTLING_LOOKS + (SAMPLES if asked else 0)
-        samples, last = states[first + SETTLING_LOOKS : end], states[end - 1]
-        first = end
-        found.append(mean_state(samples) if asked else last)
-    return found
+    ends = np.cumsum([_looks_at(asked) for _, asked in positions]).tolist()
+    return [
+        mean_state(states[end - SAMPLES : end]) if asked else states[end - 1]
+        for end, (_, asked) in zip(ends, positions, strict=True)
+    ]
+
+
+def _looks_at(asked: bool) -> int:
+    """Load steps at a position."""
+    return SETTLING_LOOKS + asked * SAMPLES

@@ -65,7 +65,7 @@ def chosen(contact: AskedContact) -> Choice:
     """A scene for a contact.
 
     Raises:
-        IdentifyError: no chain can represent it; the message says what holds.
+        IdentifyError: no chain can represent it; the message says why.
         SceneError: the profile is none.
     """
     theories = theories_of(contact)
@@ -131,7 +131,7 @@ def from_material(source: AnyContact, folder: AnyPath, progress: Progress | None
 
     Raises:
         SceneError: the description has mistakes; all of them.
-        IdentifyError: no chain can represent this contact; the message says which theory holds, with its value.
+        IdentifyError: no chain can represent this contact; the message says why.
         SettingsError, RunError: see `workflow.runs.campaign.run`.
     """
     choice = chosen(read_contact(source))

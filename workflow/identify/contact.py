@@ -10,6 +10,7 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, Literal
 
+from contact1d.workflow.body.theory import ASSUMED_RANGE
 from contact1d.workflow.scene import Problem, Scene, SceneError, read_tables, scene_from_dict
 from contact1d.workflow.scene.problems import nearest, shown
 from contact1d.workflow.scene.profile_file import ProfileFileError, read_profile
@@ -22,8 +23,6 @@ AnyContact = str | PathLike[str] | Mapping[str, Any]
 Model = Literal["plane", "particles"]
 MODELS: tuple[Model, ...] = ("plane", "particles")
 DEFAULT_TOLERANCE = 1e-3
-USUAL_RANGE = 0.3e-9
-"""Range of attraction [m] where none is given: a distance between atoms, and z₀ of most solids."""
 RIGID = "rigid"
 PLACES = {
     "radius": "bodies.profile.radius",
@@ -86,7 +85,7 @@ class AskedContact:
     def range(self) -> float:
         """z₀ of the attraction [m]."""
         adhesion = self.scene.adhesion
-        return USUAL_RANGE if adhesion is None or adhesion.range is None else adhesion.range
+        return ASSUMED_RANGE if adhesion is None or adhesion.range is None else adhesion.range
 
     @property
     def load(self) -> float | None:
@@ -169,7 +168,7 @@ def _without_unit(data: Mapping[str, Any], folder: Path) -> Iterator[Problem]:
     profile = data.get("profile")
     if isinstance(profile, Mapping) and isinstance(profile.get("file"), str) and "scale" not in profile:
         with suppress(ProfileFileError):
-            if None in read_profile(folder / profile["file"])[1].values():
+            if read_profile(folder / profile["file"])[1] is None:
                 hint = 'write scale = "1 um", the length of one of its units, or name the columns r [µm] and z [nm]'
                 yield Problem("profile.scale", "missing: the file has no unit", hint=hint)
 

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from contact1d.analysis.theory.indenters import PowerLaw
+from contact1d.digits import apart
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.errors import Contact1dError, FolderError, RunError
 from contact1d.workflow.model.pairs import ContactEstimate, particles_estimate
@@ -127,20 +128,22 @@ def material_scene(
     coarsest = target.zero_load_radius / FEWEST_IN_RADIUS
     unit = target.zero_load_radius / RESOLUTION if length_unit is None else length_unit
     if unit > coarsest:
+        given, most = apart(unit, coarsest, 4)
         raise IdentifyError(
-            f"a length unit of {unit:.4g} m gives {target.zero_load_radius / unit:.2g} particles in the zero-load "
-            f"radius of {target.zero_load_radius:.4g} m: use at most {coarsest:.4g} m for {FEWEST_IN_RADIUS:g}"
+            f"a length unit of {given} m gives {target.zero_load_radius / unit:.2g} particles in the zero-load "
+            f"radius of {target.zero_load_radius:.4g} m: use at most {most} m for {FEWEST_IN_RADIUS:g}"
         )
     if unit < target.zero_load_radius / MOST_IN_RADIUS:
+        given, least = apart(unit, target.zero_load_radius / MOST_IN_RADIUS, 4)
         raise IdentifyError(
-            f"a length unit of {unit:.4g} m gives {target.zero_load_radius / unit:.2g} particles in the zero-load "
-            f"radius of {target.zero_load_radius:.4g} m: use at least {target.zero_load_radius / MOST_IN_RADIUS:.4g} m "
-            f"for {MOST_IN_RADIUS:g}"
+            f"a length unit of {given} m gives {target.zero_load_radius / unit:.2g} particles in the zero-load "
+            f"radius of {target.zero_load_radius:.4g} m: use at least {least} m for {MOST_IN_RADIUS:g}"
         )
     if target.zero_load_radius > LARGEST_RADIUS_SHARE * radius:
+        share, most = apart(target.zero_load_radius / radius, LARGEST_RADIUS_SHARE, 2)
         raise IdentifyError(
-            f"the zero-load radius of {target.zero_load_radius:.4g} m is {target.zero_load_radius / radius:.2g} of the "
-            f"sphere's: JKR is for a << R, here up to {LARGEST_RADIUS_SHARE:g}. Use a "
+            f"the zero-load radius of {target.zero_load_radius:.4g} m is {share} of the "
+            f"sphere's: JKR is for a << R, here up to {most}. Use a "
             "larger radius, a larger contact modulus or a smaller surface energy"
         )
     force_unit = 2.0 * contact_modulus * unit**2

@@ -17,6 +17,8 @@ from functools import cached_property
 
 from contact1d.analysis.theory.adhesion import MaugisDugdale, Verdict, of_tabor, valid_theory
 from contact1d.analysis.theory.indenters import PowerLaw
+from contact1d.digits import apart
+from contact1d.workflow.body.validity import beyond_jkr
 from contact1d.workflow.identify.contact import AskedContact
 from contact1d.workflow.identify.interaction import LARGEST_RADIUS_SHARE, IdentifyError
 from contact1d.workflow.units import prefixed
@@ -76,14 +78,7 @@ class Theories:
         """The theory of `values` that holds: by μ, DMT below 0.1, JKR above 5, else Maugis and Dugdale."""
         return str(of_tabor(self.tabor))
 
-    @property
-    def jkr_error(self) -> float:
-        """F_A of JKR over that of the theory that holds, less 1."""
-        return self.values["JKR"]["adhesion_force"] / self.values[self.holding]["adhesion_force"] - 1.0
 
-
-LEAST_TABOR = 0.5
-"""Tabor parameter μ below which no chain is offered: JKR's F_A is there 10 % below that of Maugis and Dugdale."""
 ATOM = 0.3e-9
 """Diameter of an atom [m]: continuum theory does not hold for narrower contacts."""
 ROUGH_SHARE, TOO_ROUGH_SHARE = 0.1, 1.0
@@ -104,8 +99,6 @@ def judged(contact: AskedContact, theories: Theories) -> dict[str, str]:
             f"{prefixed(held['zero_load_radius'], 'm')}, and an atom's diameter is {prefixed(ATOM, 'm')}. Continuum "
             "theory does not hold; use an atomistic model"
         )
-    if theories.tabor < LEAST_TABOR:
-        raise IdentifyError(_no_chain(theories))
     doubts = {}
     stretch, roughness = -_let_go(contact), contact.roughness or 0.0
     beside = f"asperities of {prefixed(roughness, 'm')} against an elastic stretch of {prefixed(stretch, 'm')}"
@@ -117,31 +110,9 @@ def judged(contact: AskedContact, theories: Theories) -> dict[str, str]:
         )
     if roughness > ROUGH_SHARE * stretch:
         doubts["roughness"] = f"{beside} at pull-off: the pull-off force is below that of a smooth sphere"
-    if theories.holding != "JKR":
-        doubts["tabor"] = (
-            f"the Tabor parameter {theories.verdict.reason}. The scene has JKR's theory, whose pull-off force is "
-            f"{-theories.jkr_error:.1%} below that of {theories.holding} with this range"
-        )
+    if words := beyond_jkr(theories.sphere, "range" not in contact.given):
+        doubts["tabor"] = words
     return doubts
-
-
-def _no_chain(theories: Theories) -> str:
-    """That μ is too small, with the values that hold."""
-    jkr, dmt = (theories.values[name]["adhesion_force"] for name in ("JKR", "DMT"))
-    between = ""
-    if theories.holding != "DMT":
-        held = theories.values[theories.holding]
-        between = (
-            f", or nearer {prefixed(held['adhesion_force'], 'N')} and {prefixed(held['zero_load_radius'], 'm')} by "
-        )
-        between += "Maugis and Dugdale, between it and JKR"
-    return (
-        f"DMT holds, which a chain cannot represent: the Tabor parameter μ is {theories.tabor:.2g}, so that the range "
-        f"of the attraction exceeds the elastic stretch. F_A = 2πWR = {prefixed(dmt, 'N')}, a_0 = "
-        f"{prefixed(theories.values['DMT']['zero_load_radius'], 'm')}{between}. A chain would have JKR's F_A, "
-        f"{prefixed(jkr, 'N')}, which is {-theories.jkr_error:.0%} too small here; a scene is offered from "
-        f"μ = {LEAST_TABOR:g} on"
-    )
 
 
 def _let_go(contact: AskedContact) -> float:
@@ -165,8 +136,9 @@ def require_size(contact: AskedContact, radius: float) -> None:
         )
     sphere = contact.radius and contact.shape.steepest.curvature_radius
     if sphere and radius > LARGEST_RADIUS_SHARE * sphere:
+        share, most = apart(radius / sphere, LARGEST_RADIUS_SHARE, 2)
         raise IdentifyError(
-            f"the contact radius is {prefixed(radius, 'm')}, {radius / sphere:.2g} of the sphere's: the "
-            f"theory is for a << R, here up to {LARGEST_RADIUS_SHARE:g}. Use a larger "
+            f"the contact radius is {prefixed(radius, 'm')}, {share} of the sphere's: the "
+            f"theory is for a << R, here up to {most}. Use a larger "
             "radius, a larger contact modulus, a smaller load or less attraction"
         )

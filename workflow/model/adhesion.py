@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.model.chain import FARTHEST_RATIO, SettingsError
-from contact1d.workflow.model.pairs import ContactEstimate, Profile, plane_estimate
+from contact1d.workflow.model.pairs import ContactEstimate, Profile, beside_kinks, plane_estimate
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
@@ -44,6 +44,8 @@ NARROWEST = 1e-12
 """Heights in which a particle separates that does so at once, over the spacing: no formula may divide by 0."""
 NEAR_AN_END = 0.1
 """Place of the middle of a cell between its ends, as h sees it, beyond which its bend would turn the share around."""
+BENDS, WHOLE = 401, 0.999
+"""Values of κ that are tried for the cell of the limit point, and share from which on it is held as a whole."""
 SOFTEST = 0.998
 """Tension over the largest one at which a contact counts as softest."""
 
@@ -51,6 +53,19 @@ SOFTEST = 0.998
 def elongation(x: Array, modulus: float, work: float) -> Array:
     """Δl(x) = √(2π x W/E*) [LU] at positions x ≥ 0 [LU]; E* [FU/LU²], W [FU/LU]."""
     return np.asarray(np.sqrt(2.0 * math.pi * work / modulus * x))
+
+
+def _from_share(share: float, middle: float) -> tuple[float, float]:
+    """q and κ of a cell of which this share is held up to the limit point: φ(q) is the share there.
+
+    `middle`: the height at which half of the rest separates, over the heights of that rest; κ is such that φ is then
+    half way between the share and 1.
+    """
+    bend = np.linspace(-1.0, 1.0, BENDS)
+    start = 2.0 * share / (1.0 + bend + np.sqrt((1.0 + bend) ** 2 - 4.0 * bend * share))
+    q = start + (1.0 - start) * middle
+    best = int(np.argmin(np.abs(q * (1.0 + bend * (1.0 - q)) - 0.5 * (1.0 + share))))
+    return float(min(start[best], WHOLE)), float(bend[best])
 
 
 @dataclass(frozen=True)
@@ -108,6 +123,7 @@ class AdhesiveEstimate(ContactEstimate):
     def _grid(self) -> tuple[Array, Array, Array, int]:
         """Positions x [LU], h(x) [LU], F of a contact up to there [FU], and the index of the least h."""
         x = np.concatenate([[0.0], np.geomspace(FIRST * self.known, self.known, PLACES)])
+        x = beside_kinks(x, self.profile)
         g = self.profile.height(x)
         h = g - elongation(x, self.modulus, self.work)
         area = np.concatenate([[0.0], np.cumsum(0.5 * (g[1:] + g[:-1]) * np.diff(x))])
@@ -120,7 +136,8 @@ class AdhesiveEstimate(ContactEstimate):
     def end(self) -> tuple[float, float, float]:
         """Radius [LU], displacement [LU] and force [FU] of the widest contact that is known."""
         x, h, force, _ = self._grid
-        return float(x[PLACES]), float(h[PLACES]), float(force[PLACES])
+        last = int(np.searchsorted(x, x[-1]))
+        return float(x[last]), float(h[last]), float(force[last])
 
     @property
     def fixed_grips(self) -> tuple[float, float]:
@@ -166,7 +183,17 @@ class AdhesiveEstimate(ContactEstimate):
         middle = np.clip((own - inner) / width, NEAR_AN_END, 1.0 - NEAR_AN_END)
         bend = np.clip((0.5 - middle) / (middle * (1.0 - middle)), -1.0, 1.0)
         bend = np.where(outer - inner > narrowest, bend, 0.0)
-        return Cells(heights, heights - inner, width, heights - body.height(np.abs(at - half)), bend)
+        fall = heights - body.height(np.abs(at - half))
+        for i in np.flatnonzero((at - half < least) & (least < at + half)):
+            share, middle = (least - at[i] + half) / (2.0 * half), threshold(0.5 * (least + at[i : i + 1] + half))[0]
+            rise = max(outer[i] - inner[i], narrowest)
+            start, bend[i] = _from_share(share, float(np.clip((middle - inner[i]) / rise, 0.0, 1.0)))
+            width[i] = rise / (1.0 - start)
+            inner[i] = outer[i] - width[i]
+            if share < WHOLE:
+                held = body.height(np.abs(0.5 * (at[i : i + 1] - half + least)))[0]
+                fall[i] = (heights[i] - held) / (1.0 - share)
+        return Cells(heights, heights - inner, width, fall, bend)
 
     def energy(self, displacement: float, radius: float) -> float | None:
         """U(d, a) = E* ∫_0^a (d − g)² dx − πa²W [FU·LU], 0 of bodies apart; ∂U/∂a = 0 in equilibrium."""

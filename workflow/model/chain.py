@@ -12,6 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from contact1d.digits import apart, digits_apart
 from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.model.dynamics import DriveLeg
 from contact1d.workflow.model.pairs import ContactEstimate
@@ -56,17 +57,19 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
         return
     half = 0.5 * (particles - 1) * bodies.spacing
     if half > bodies.reach:
+        wide, end = apart(half, bodies.reach, 6)
         raise SettingsError(
-            f"the chain of {particles} particles is {half:.6g} LU wide to each side, and the profile ends at "
-            f"{bodies.reach:.6g} LU: at most {_most_particles(bodies)} particles"
+            f"the chain of {particles} particles is {wide} LU wide to each side, and the profile ends at {end} LU: at "
+            f"most {_most_particles(bodies)} particles"
         )
     if bodies.reach < math.inf:
         longest = 0.5 * (max(particles, _most_particles(bodies)) - 1) * bodies.spacing
         deepest = float(bodies.height(np.asarray([longest]))[0])
         if largest >= deepest:
+            needed, possible = apart(largest, deepest, 4)
             raise SettingsError(
                 f"the contact would cover the profile, which ends at {bodies.reach:.6g} LU: the experiment "
-                f"needs a displacement of about {largest:.4g} LU, at most {deepest:.4g} LU is possible"
+                f"needs a displacement of about {needed} LU, at most {possible} LU is possible"
             )
     places = np.linspace(0.0, half, 2001)
     heights = bodies.height(places)
@@ -179,9 +182,10 @@ def require_reach(scene: Scene, cutoff: float) -> None:
     """
     spacing = scene.bodies.spacing
     if reaches_too_far(scene, cutoff):
+        partners, _ = apart(2.0 * cutoff / spacing, MOST_PARTNERS, 2)
         raise SettingsError(
             f"with a cutoff of {cutoff:.4g} LU and a spacing of {spacing:.4g} LU a particle would interact with "
-            f"{2.0 * cutoff / spacing:.2g} opposite ones, at most {MOST_PARTNERS} are possible: use shorter ranges in "
+            f"{partners} opposite ones, at most {MOST_PARTNERS} are possible: use shorter ranges in "
             f"[interaction], an interaction.cutoff below {0.5 * MOST_PARTNERS * spacing:.4g} LU, or a wider "
             f"bodies.spacing. {MIX_UP}"
         )
@@ -216,9 +220,10 @@ def require_travel(scene: Scene, largest: float, cutoff: float) -> None:
     """
     most = FARTHEST_RATIO * max(cutoff, scene.bodies.spacing)
     if abs(largest) > most:
+        digits = digits_apart(abs(largest), most)
         raise SettingsError(
-            f"the displacement would reach {largest:.3g} LU, at most {most:.3g} LU are possible with this range of "
-            f"forces: use a larger bodies.bulk_stiffness, or a smaller load or displacement. {MIX_UP}"
+            f"the displacement would reach {largest:.{digits}g} LU, at most {most:.{digits}g} LU are possible with "
+            f"this range of forces: use a larger bodies.bulk_stiffness, or a smaller load or displacement. {MIX_UP}"
         )
 
 
@@ -230,16 +235,17 @@ def require_memory(scene: Scene, particles: int, cutoff: float) -> None:
     """
     if particles > MOST_PARTICLES:
         raise SettingsError(
-            f"the contact would need {particles:.3g} particles per body, more than {MOST_PARTICLES:.0e}: a "
-            "wider bodies.spacing, a smaller radius, load or displacement needs fewer"
+            f"the contact would need {apart(particles, MOST_PARTICLES)[0]} particles per body, more than "
+            f"{MOST_PARTICLES:.0e}: a wider bodies.spacing, a smaller radius, load or displacement needs fewer"
         )
     felt = _felt(scene, particles, cutoff)
     needed = particles * (PER_PARTICLE + PER_PAIR * felt)
     available = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
     if needed > available:
+        large, there = apart(needed / 1e9, available / 1e9, 2)
         raise SettingsError(
-            f"{particles} particles per body, each within reach of {felt:.0f} opposite ones, need about "
-            f"{needed / 1e9:.2g} GB of memory, and this machine has {available / 1e9:.2g} GB: a wider bodies.spacing, "
+            f"{particles} particles per body, each within reach of {felt:.0f} opposite ones, need about {large} GB of "
+            f"memory, and this machine has {there} GB: a wider bodies.spacing, "
             "a smaller radius, load or displacement needs fewer particles, a shorter cutoff fewer pairs"
         )
 
@@ -262,11 +268,17 @@ def require_digits(scene: Scene, particles: int, deepest: float, force: float) -
     digit = 0.5 * float(np.spacing(abs(last) + abs(deepest)))
     left, allowed = scene.bulk_stiffness * digit, DIGIT_SHARE * force
     if left > allowed:
+        error, most = apart(left, allowed, 1)
         raise SettingsError(
             f"a bodies.bulk_stiffness of {scene.bulk_stiffness:.3g} FU/LU is too stiff to resolve: the round-off error "
-            f"of a position, {digit:.1g} LU, is a force of {left:.1g} FU, and the tolerance allows {allowed:.1g} FU. "
+            f"of a position, {digit:.1g} LU, is a force of {error} FU, and the tolerance allows {most} FU. "
             f"Use {float(f'{0.3 * allowed / digit:.1g}'):g} FU/LU, which is practically rigid"
         )
+
+
+def _steps(rows: float) -> str:
+    """A number of load steps beyond the largest one."""
+    return f"{apart(rows, MOST_ROWS)[0]} load steps, more than {MOST_ROWS:.0e}"
 
 
 def require_rows(scene: Scene, longest_move: float, drive: Sequence[DriveLeg]) -> None:
@@ -280,12 +292,12 @@ def require_rows(scene: Scene, longest_move: float, drive: Sequence[DriveLeg]) -
     experiment = scene.experiment
     if isinstance(experiment, Tangential) and len(experiment.along()) > MOST_ROWS:
         raise SettingsError(
-            f"the tangential path would need {len(experiment.along()):.3g} load steps, more than {MOST_ROWS:.0e}: use "
-            "fewer steps in experiment.displacements"
+            f"the tangential path would need {_steps(len(experiment.along()))}: use fewer steps in "
+            "experiment.displacements"
         )
     if (driven := sum(leg.rows for leg in drive)) > MOST_ROWS:
         raise SettingsError(
-            f"the slide would need {driven:.3g} load steps, more than {MOST_ROWS:.0e}: each spacing has some tens. "
+            f"the slide would need {_steps(driven)}: each spacing has some tens. "
             f"Use a shorter experiment.distance, or shorter legs of experiment.path. {MIX_UP}"
         )
     places = [0.0, *experiment.places()]
@@ -293,7 +305,7 @@ def require_rows(scene: Scene, longest_move: float, drive: Sequence[DriveLeg]) -
     rows = len(places) + math.floor(way / longest_move)
     if rows > MOST_ROWS:
         raise SettingsError(
-            f"the path would need {rows:.3g} load steps, more than {MOST_ROWS:.0e}: the ranges of the interaction "
+            f"the path would need {_steps(rows)}: the ranges of the interaction "
             f"limit a step to {longest_move:.3g} LU. Use smaller "
             f"experiment.displacements or longer ranges. {MIX_UP}"
         )
@@ -308,7 +320,8 @@ def require_steps(steps: Iterable[int]) -> None:
     most = max(steps, default=0)
     if most > MOST_TIMESTEPS:
         raise SettingsError(
-            f"a load step would need {most:.3g} timesteps, at most {MOST_TIMESTEPS} can be counted: the periods of the "
+            f"a load step would need {apart(most, MOST_TIMESTEPS)[0]} timesteps, at most {MOST_TIMESTEPS} can be "
+            "counted: the periods of the "
             "slowest and the fastest motion differ too much. Use masses ([bodies] and [plate]), stiffnesses and "
             'dampings of similar magnitude, or "auto"'
         )

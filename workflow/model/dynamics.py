@@ -1,15 +1,15 @@
 """Time step, damping, plate mass and settling time of a scene in time, and the rows of a slide's drive.
 
-The time step is the smallest of named limits (`time_step_limits`). In a slide it divides every leg of the drive, and
-every row has as many of them.
+The time step is the smaller one of those that a particle and the plate allow (`longest_step`). In a slide it divides
+every leg of the drive, and every load step has as many of them.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
-from contact1d.potentials import DoubleExponential
 from contact1d.workflow.model.pairs import ContactEstimate
 from contact1d.workflow.scene import Scene, Slide
 
@@ -36,32 +36,62 @@ LIGHT = 0.5
 """Drag over the mass of a plate far lighter than its particles, over the same of a particle (`_swinging_apart`)."""
 
 
+def measured(unit: str) -> Any:
+    """A field whose number a deck with units of its own converts (`deck.units`)."""
+    return field(metadata={"unit": unit})
+
+
 @dataclass(frozen=True)
-class Dynamics:
-    """What `Settings` has of the same names."""
+class DriveLeg:
+    """A leg of the drive.
 
-    time_step: float
-    damping: float
-    damped_stiffness: float
-    plate_mass: float
-    plate_damping: float
-    settle_time: float
-    calm_damping: float
-    calm_step: float
+    Attributes:
+        velocity: [LU/TU]; 0 where it rests.
+        rows: measured states.
+        steps: timesteps of each row, a multiple of FEWEST_STEPS.
+        time_step: [TU]; rows × steps of it are the leg's time exactly.
+    """
 
+    rows: int
+    steps: int
+    velocity: float = measured("LU/TU")
+    time_step: float = measured("TU")
 
-def stiffest_of(scene: Scene, law: DoubleExponential | None, closest: float, plane: float) -> float:
-    """Largest stiffness [FU/LU] acting on a particle: its springs, the plane, and a nearby chain of opposite ones."""
-    stiffest = max(scene.bulk_stiffness, scene.tangential_stiffness) + plane
-    if law is not None:
-        rows = 1.0 + 2.0 * law.repulsion.range / scene.bodies.spacing
-        stiffest += 2.0 * rows * float(law.stiffness(closest))
-    if scene.neighbours is not None:
-        stiffest += 4.0 * scene.neighbours.stiffness
-    return stiffest
+    @property
+    def row_time(self) -> float:
+        """Duration of a load step [TU]."""
+        return self.steps * self.time_step
 
 
-def dynamics_of(
+@dataclass(frozen=True)
+class Motion:
+    """Numbers of a motion in time.
+
+    Attributes:
+        time_step: [TU].
+        damping: coefficient of a particle [FU·TU/LU].
+        damped_stiffness: of the contact [FU/LU], for which that is critical; 0 where it is the same under every load.
+        plate_damping: [FU·TU/LU].
+        settle_time: about one period of the plate on its contact [TU].
+        calm_damping, calm_step: damping with which particles snap together and don't swing [FU·TU/LU], and the time
+            step for it [TU]; the usual ones where the scene gives its damping. In a slide the one under which it is
+            loaded, with which its plate does not swing.
+        plate_mass: [MU].
+        drive: the legs of a slide; `time_step` is that of the first one.
+    """
+
+    time_step: float = measured("TU")
+    damping: float = measured("FU·TU/LU")
+    damped_stiffness: float = measured("FU/LU")
+    plate_damping: float = measured("FU·TU/LU")
+    settle_time: float = measured("TU")
+    calm_damping: float = measured("FU·TU/LU")
+    calm_step: float = measured("TU")
+    plate_mass: float = 0.0
+    drive: tuple[DriveLeg, ...] = ()
+
+
+def motion_of(
     scene: Scene,
     tolerance: float,
     estimate: ContactEstimate,
@@ -69,7 +99,7 @@ def dynamics_of(
     particles: int,
     stiffest: float,
     still_step: float,
-) -> Dynamics:
+) -> Motion:
     """Time step, damping, plate mass and settling time from the stiffest and the softest motion of the scene."""
     bodies, plate, moves = scene.bodies, scene.plate, scene.experiment.motion_is_result
     touching = 2.0 * estimate.half_width(max(largest, 0.0), estimate.rest) / bodies.spacing
@@ -82,9 +112,15 @@ def dynamics_of(
     damping, plate_damping = _drags(scene, particles, critical, plate_mass)
     # The drag on a motion is part of what is looked at, so it is one and the same throughout.
     is_automatic = scene.damping is not None and scene.damping.coefficient == "auto"
-    limits = time_step_limits(scene, _product(scene, tolerance, still_step), stiffest, damping)
-    limits |= _plate_limits(scene, _product(scene, tolerance, still_step), particles, plate_mass, plate_damping)
-    step = min(limits.values())
+    product = _product(scene, tolerance, still_step)
+    beside = sum(effect.bond_drag(scene.bulk_stiffness) for effect in scene.present)
+    held = particles * scene.bulk_stiffness + scene.experiment.drawing_stiffness
+    if scene.cantilever is not None:
+        held += scene.cantilever.stiffness + particles * max(0.0, scene.tangential_stiffness - scene.bulk_stiffness)
+    step = min(
+        longest_step(product, stiffest, bodies.mass, damping + beside),
+        longest_step(product, held, plate_mass, plate_damping + particles * beside),
+    )
     slowest = contact / moving if plate is not None else scene.bulk_stiffness / bodies.mass
     settle_time = 2.0 * math.pi / math.sqrt(slowest)
     calm, calm_step = damping, step
@@ -101,32 +137,24 @@ def dynamics_of(
         enough = min(enough, CALM_STEP * bodies.mass / step)
         calm, calm_step = damping if enough <= damping <= CREEPING * enough else enough, step
     damped = SOFTENING * contact if is_automatic and not moves else 0.0
-    return Dynamics(step, damping, damped, plate_mass, plate_damping, settle_time, calm, calm_step)
+    drive = drive_steps(scene, step)
+    first = drive[0].time_step if drive else whole_steps(step, scene.experiment.lasts)
+    return Motion(first, damping, damped, plate_damping, settle_time, calm, calm_step, plate_mass, drive)
 
 
-def time_step_limits(scene: Scene, product: float, stiffest: float, damping: float) -> dict[str, float]:
-    """Longest time steps [TU] that the particles allow, by limit; the smallest of all limits is used."""
-    mass = scene.bodies.mass
-    limits = {"stiffest spring of a particle": product / math.sqrt(stiffest / mass)}
-    if damping > 0.0:
-        limits["drag of a particle"] = DRAG_STEP * mass / damping
-    return limits
+def whole_steps(longest: float, duration: float | None) -> float:
+    """The longest time step [TU] of which a motion's duration [TU] is a whole number, two at least."""
+    return longest if duration is None else duration / max(2, math.ceil(duration / longest - ROUND_OFF))
 
 
-def _plate_limits(
-    scene: Scene, product: float, particles: int, plate_mass: float, plate_damping: float
-) -> dict[str, float]:
-    """The same of a plate: its springs in parallel, and its drag."""
-    if plate_mass == 0.0:
-        return {}
-    held = particles * scene.bulk_stiffness
-    if scene.cantilever is not None:
-        held = particles * max(scene.bulk_stiffness, scene.tangential_stiffness) + scene.cantilever.stiffness
-    held += scene.experiment.drawing_stiffness
-    limits = {"springs of the plate": product / math.sqrt(held / plate_mass)}
-    if plate_damping > 0.0:
-        limits["drag of the plate"] = DRAG_STEP * plate_mass / plate_damping
-    return limits
+def longest_step(product: float, stiffness: float, mass: float, drag: float) -> float:
+    """Longest time step [TU] of a mass [MU] on springs [FU/LU] with a drag [FU·TU/LU]; inf of none.
+
+    ω Δt is the `product` at most, and Δt a share DRAG_STEP of m/γ.
+    """
+    if mass == 0.0:
+        return math.inf
+    return min(product / math.sqrt(stiffness / mass), DRAG_STEP * mass / drag if drag > 0.0 else math.inf)
 
 
 def _product(scene: Scene, tolerance: float, still_step: float) -> float:
@@ -174,28 +202,6 @@ FEWEST_STEPS = 5
 ROUND_OFF = 1e-9
 
 
-@dataclass(frozen=True)
-class DriveLeg:
-    """A leg of the drive.
-
-    Attributes:
-        velocity: [LU/TU]; 0 where it rests.
-        rows: measured states.
-        steps: timesteps of each row, a multiple of FEWEST_STEPS.
-        time_step: [TU]; rows × steps of it are the leg's time exactly.
-    """
-
-    velocity: float
-    rows: int
-    steps: int
-    time_step: float
-
-    @property
-    def row_time(self) -> float:
-        """Duration of a load step [TU]."""
-        return self.steps * self.time_step
-
-
 def drive_steps(scene: Scene, longest: float) -> tuple[DriveLeg, ...]:
     """The legs of a slide, with timesteps of at most `longest` [TU]; none of anything else."""
     experiment, cantilever = scene.experiment, scene.cantilever
@@ -208,5 +214,5 @@ def drive_steps(scene: Scene, longest: float) -> tuple[DriveLeg, ...]:
         each = min(MOST_ROWS, max(FEWEST_ROWS, int(time / spacings / longest / USUAL_STEPS)))
         rows = max(1, math.ceil(each * spacings - ROUND_OFF))
         steps = FEWEST_STEPS * max(1, math.ceil(time / rows / longest / FEWEST_STEPS - ROUND_OFF))
-        found.append(DriveLeg(leg.velocity, rows, steps, time / rows / steps))
+        found.append(DriveLeg(rows, steps, leg.velocity, time / rows / steps))
     return tuple(found)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 
+from contact1d.digits import apart
 from contact1d.workflow.errors import SceneEdit
 from contact1d.workflow.model.chain import SettingsError, felt_up_to
 from contact1d.workflow.model.settings import Settings
@@ -21,10 +22,10 @@ def inertia(scene: Scene, settings: Settings) -> tuple[float, float]:
 
     With noise the thermostat's own error, of the same order, is bounded by the timestep.
     """
-    late = 0.0
-    if settings.drive and scene.noise is None:
-        late = 0.5 * settings.time_step * (1.0 - 0.5 / settings.drive[0].steps)
-    return scene.bodies.mass + settings.damping * late, settings.plate_mass + settings.plate_damping * late
+    late, motion = 0.0, settings.motion
+    if motion.drive and scene.noise is None:
+        late = 0.5 * motion.time_step * (1.0 - 0.5 / motion.drive[0].steps)
+    return scene.bodies.mass + motion.damping * late, motion.plate_mass + motion.plate_damping * late
 
 
 SHORTEST = 4.0
@@ -35,7 +36,7 @@ def contact_half_width(scene: Scene, settings: Settings) -> float:
     """Half-width [LU] in which upper particles feel more than the tolerance's share of the largest force."""
     estimate, largest = settings.estimate, settings.largest_displacement
     half = estimate.half_width(max(largest, 0.0), felt_up_to(estimate, largest, scene.accuracy.tolerance))
-    return min(half, 0.5 * (settings.particles - 1) * scene.bodies.own_spacing)
+    return min(half, 0.5 * (settings.chains.upper - 1) * scene.bodies.own_spacing)
 
 
 def require_way(scene: Scene, settings: Settings) -> None:
@@ -48,7 +49,7 @@ def require_way(scene: Scene, settings: Settings) -> None:
     if not isinstance(scene.experiment, Slide) or bodies.periodic:
         return
     half, way = contact_half_width(scene, settings), scene.experiment.way + abs(bodies.upper_offset or 0.0)
-    end = 0.5 * settings.lower_particles * bodies.spacing
+    end = 0.5 * settings.chains.lower * bodies.spacing
     if end < half + way:
         needed = 2 * math.ceil((half + way) / bodies.spacing)
         room = end - half - abs(bodies.upper_offset or 0.0)
@@ -57,15 +58,15 @@ def require_way(scene: Scene, settings: Settings) -> None:
             f"the lower chain is too short for the sliding distance: it ends {end:.4g} LU from its middle, and a "
             f"contact of half-width {half:.4g} LU moves {way:.4g} LU along it. Use at least "
             f"{needed} bodies.particles (with upper_particles = "
-            f'{settings.particles}), or "auto"{shorter}',
-            changes=[SceneEdit({"bodies.particles": needed, "bodies.upper_particles": settings.particles})],
+            f'{settings.chains.upper}), or "auto"{shorter}',
+            changes=[SceneEdit({"bodies.particles": needed, "bodies.upper_particles": settings.chains.upper})],
         )
 
 
 def cantilever_swing(scene: Scene, settings: Settings) -> float:
     """Time [TU] of a swing of plate and particles on the cantilever, 2π √((M + N m)/k)."""
     assert scene.cantilever is not None
-    moving = settings.plate_mass + settings.particles * scene.bodies.mass
+    moving = settings.motion.plate_mass + settings.chains.upper * scene.bodies.mass
     return 2.0 * math.pi * math.sqrt(moving / scene.cantilever.stiffness)
 
 
@@ -78,8 +79,9 @@ def too_fast(scene: Scene) -> str:
     own = math.sqrt(min(scene.bulk_stiffness, scene.tangential_stiffness) / bodies.mass)
     if 2.0 * math.pi * fastest / bodies.spacing <= own:
         return ""
+    passing, period = apart(bodies.spacing / fastest, 2.0 * math.pi / own)
     return (
-        f"the drive passes a particle in {bodies.spacing / fastest:.3g} TU, less than the period of a particle on its "
-        f"springs, {2.0 * math.pi / own:.3g} TU: the bodies cannot follow, and the friction is that of a shock. "
+        f"the drive passes a particle in {passing} TU, less than the period of a particle on its "
+        f"springs, {period} TU: the bodies cannot follow, and the friction is that of a shock. "
         f"Use a velocity below {own * bodies.spacing / (2.0 * math.pi):.3g} LU/TU"
     )

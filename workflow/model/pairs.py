@@ -23,6 +23,9 @@ from contact1d.analysis.curve_marks import tops
 from contact1d.potentials import DoubleExponential
 
 Array = NDArray[np.float64]
+NEAREST, WIDEST, BESIDE, MOST_KINKS = 1e-9, 0.1, 60, 100
+"""Distances from a kink over its own position between which positions are added in geometric progression, how many on
+each side, and at how many kinks."""
 PLACES, NEAR = 1000, 0.01
 """Positions at which a profile is tabulated, and the first one beyond its apex over the spacing."""
 
@@ -43,6 +46,10 @@ class Profile(Protocol):
     def reach(self) -> float:
         """Half-width [LU] of the body."""
 
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Positions [LU] at which its slope jumps."""
+
     def __hash__(self) -> int:
         """The same for equal bodies, which share their estimate."""
 
@@ -56,6 +63,7 @@ class Tabulated:
 
     places: Array
     heights: Array
+    kinks: tuple[float, ...] = ()
 
     def height(self, x: Array) -> Array:
         """Height [LU] at x [LU]."""
@@ -72,8 +80,17 @@ def tabulated(profile: Profile, spacing: float) -> Tabulated:
 
     That holds for a reach of 0.1 to 1e10 spacings [LU]; closer to the apex than NEAR spacings it is a line.
     """
-    places = np.concatenate([[0.0], np.geomspace(NEAR * spacing, profile.reach, PLACES)])
-    return Tabulated(places, profile.height(places))
+    places = beside_kinks(np.concatenate([[0.0], np.geomspace(NEAR * spacing, profile.reach, PLACES)]), profile)
+    return Tabulated(places, profile.height(places), profile.kinks)
+
+
+def beside_kinks(places: Array, profile: Profile) -> Array:
+    """Rising positions [LU] with the kinks of a profile, and others ever nearer to them: g rises as a root there."""
+    most = float(places[-1])
+    near = np.append(0.0, np.geomspace(NEAREST, WIDEST, BESIDE))
+    found = [one * (1.0 + sign * near) for one in profile.kinks[:MOST_KINKS] for sign in (1.0, -1.0)]
+    every = np.unique(np.concatenate([places, *found]))
+    return np.asarray(every[every <= most])
 
 
 GRID = 4000

@@ -12,7 +12,7 @@ depends on it: it is a predictor, and it gives the discretisation error (`shifte
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from contact1d.analysis.shear import slip
 from contact1d.workflow.model.adhesion import AdhesiveEstimate, Cells
 from contact1d.workflow.model.friction import Sliders
+from contact1d.workflow.model.motion import inertia
 from contact1d.workflow.model.pairs import ContactEstimate, places_within
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
@@ -41,6 +42,26 @@ NEAREST = 1e-9
 """Distance from the limit point, over that to the largest displacement, from which positions are examined."""
 TOUCH = 1e-9
 """Distance over the spacing at which bodies touch: round-off of a displacement of 0."""
+
+
+@dataclass(frozen=True)
+class Path:
+    """What the plate does; arrays (m,).
+
+    Attributes:
+        displacement, along: [LU].
+        time: [TU]; 0 where the states are equilibria.
+    """
+
+    displacement: Array
+    along: Array
+    time: Array
+
+
+def path_of(displacement: Array) -> Path:
+    """Equilibria at displacements (m,) [LU]."""
+    none = np.zeros_like(displacement)
+    return Path(displacement, none, none)
 
 
 @dataclass(frozen=True)
@@ -75,8 +96,8 @@ class Reduced(ABC):
     deepest: float
 
     @abstractmethod
-    def follow(self, displacements: Array) -> Followed:
-        """Forces along a path that begins apart, (m,) [LU]."""
+    def follow(self, path: Path) -> Followed:
+        """Forces along a path that begins apart. Springs have no memory in time."""
 
     @abstractmethod
     def held(self, displacements: Array) -> Array:
@@ -85,7 +106,17 @@ class Reduced(ABC):
     @property
     @abstractmethod
     def apart(self) -> float:
-        """The limit point [LU]: nothing is held below it."""
+        """Displacement [LU] below which nothing is felt."""
+
+    @property
+    def limits(self) -> tuple[float, ...]:
+        """Limit points [LU], at which a contact that is unloaded is lost at once; none where its force falls to 0."""
+        return ()
+
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        """Displacements [LU] at which the force jumps, on the way in or out."""
+        return self.limits
 
     def shifted(self, phase: float) -> Reduced:
         """The same with the apex `phase` spacings off a particle."""
@@ -145,9 +176,9 @@ class Springs(Reduced):
         each = self._forces(heights - displacements[:, None], np.ones(heights.size, dtype=bool))
         return np.asarray(each @ np.bincount(own))
 
-    def follow(self, displacements: Array) -> Followed:
+    def follow(self, path: Path) -> Followed:
         """A pair that has snapped together stays so up to where it snaps apart; see `Reduced.follow`."""
-        heights, own = self.heights
+        (heights, own), displacements = self.heights, path.displacement
         counts = np.bincount(own)
         joined = np.zeros(heights.size, dtype=bool)
         total, memory = np.empty(displacements.size), []
@@ -175,23 +206,34 @@ class Springs(Reduced):
 class AdheringCells(Reduced):
     """The cells of a chain on a rigid plane, which adhere from touch to where fixed grips lose all of it at once."""
 
+    estimate: AdhesiveEstimate
+
     @cached_property
     def _cells(self) -> Cells:
-        assert isinstance(self.estimate, AdhesiveEstimate)
         return self.estimate.cells(self.x, self.estimate.profile)
 
     @property
     def apart(self) -> float:
         """Where fixed grips lose the contact [LU]."""
-        assert isinstance(self.estimate, AdhesiveEstimate)
         return self.estimate.fixed_grips[1]
 
     def held(self, displacements: Array) -> Array:
         """F [FU] while it is held."""
         return np.asarray(self._cells.forces(displacements, self.estimate.stiffness))
 
-    def follow(self, displacements: Array) -> Followed:
+    @property
+    def limits(self) -> tuple[float, ...]:
+        """There."""
+        return (self.apart,)
+
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        """There, and at touch."""
+        return (self.apart, 0.0)
+
+    def follow(self, path: Path) -> Followed:
         """Nothing is felt before touch; see `Reduced.follow`."""
+        displacements = path.displacement
         held = np.zeros(displacements.size, dtype=bool)
         now = False
         for i, displacement in enumerate(displacements.tolist()):
@@ -219,9 +261,9 @@ class Sliding(Springs):
         heights = np.asarray(self.estimate.profile.height(np.abs(self.x)), dtype=np.float64)
         return replace(self.sliders, x=self.x, heights=heights)
 
-    def drawn(self, stops: Sequence[tuple[float, float]]) -> Followed:
-        """Forces after each stop, a displacement and a position along x [LU]: straight from one to the next."""
-        chain = self.chain
+    def follow(self, path: Path) -> Followed:
+        """Straight from one state to the next; see `Reduced.follow`."""
+        chain, stops = self.chain, list(zip(path.displacement.tolist(), path.along.tolist(), strict=True))
         force = np.zeros_like(chain.heights)
         shears, normal = [force], [chain.normal_forces(stops[0][0])]
         for (before, start), (after, position) in pairwise(stops):
@@ -248,8 +290,8 @@ def reduced(scene: Scene, settings: Settings) -> Reduced:
     """The model of the particles that run, as far as the contact reaches."""
     estimate, spacing = settings.estimate, settings.estimate.spacing
     deepest = settings.largest_displacement
-    phase = 0.5 if settings.particles % 2 == 0 else 0.0
-    half = 0.5 * (settings.particles - 1) * spacing
+    phase = 0.5 if settings.chains.upper % 2 == 0 else 0.0
+    half = 0.5 * (settings.chains.upper - 1) * spacing
     if isinstance(estimate, AdhesiveEstimate) and scene.adheres:
         reach = min(half, scene.bodies.reach)
         return AdheringCells(estimate, places_within(reach * (1.0 + 1e-12), spacing, phase), deepest)
@@ -262,3 +304,32 @@ def reduced(scene: Scene, settings: Settings) -> Reduced:
         return Springs(estimate, x, deepest)
     sliders = Sliders(x, x, scene.bulk_stiffness, scene.tangential_stiffness, scene.friction.coefficient)
     return Sliding(estimate, x, deepest, sliders)
+
+
+MOST_STEPS = 20_000
+"""Timesteps of a swing that is followed; a longer one ends in equilibrium."""
+
+
+def swing(scene: Scene, settings: Settings, model: Reduced, start: float, load: float, duration: float) -> Array:
+    """Displacements [LU] of a plate under a load [FU] after the first timestep, and after a time [TU], (2,).
+
+        (M + N m) d″ = load − F(d) − c d′
+
+    from rest at `start` [LU], with F(d) and limit points of the reduced model, in LAMMPS's own steps (velocity Verlet,
+    drag half a step late).
+    """
+    total = sum(settings.steps_of(duration))
+    if total > MOST_STEPS:
+        return np.full(2, model.displacement_at(load))
+    particle, plate = inertia(scene, settings)
+    mass, drag, step = plate + settings.chains.upper * particle, settings.drag(), settings.motion.time_step
+    path, place, velocity, is_lost = np.empty(total), start, 0.0, False
+    force = load - float(model.held(np.asarray([place]))[0])
+    for i in range(total):
+        velocity += 0.5 * step * force / mass
+        place += step * velocity
+        is_lost = place < model.apart or (is_lost and place < 0.0)
+        force = load - drag * velocity - (0.0 if is_lost else float(model.held(np.asarray([place]))[0]))
+        velocity += 0.5 * step * force / mass
+        path[i] = place
+    return path[[0, total - 1]]

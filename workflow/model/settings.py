@@ -25,6 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.digits import apart
 from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.potentials.table import Table, table_for
 from contact1d.workflow.model.adhesion import estimate_on_plane
@@ -41,7 +42,7 @@ from contact1d.workflow.model.chain import (
     require_rows,
     require_travel,
 )
-from contact1d.workflow.model.dynamics import DriveLeg, drive_steps, dynamics_of, stiffest_of
+from contact1d.workflow.model.dynamics import Motion, measured, motion_of, whole_steps
 from contact1d.workflow.model.pairs import ContactEstimate, NotCarriedError, Profile, particles_estimate, tabulated
 from contact1d.workflow.scene import Measured, Scene
 from contact1d.workflow.scene.remedies import less_compression
@@ -174,28 +175,24 @@ def force_scale_of(scene: Scene, law: DoubleExponential | None, largest: float) 
     return (largest if largest > 0.0 else 1e-3 * scene.bodies.spacing) * scene.bulk_stiffness / 2
 
 
-def loading_step_of(law: DoubleExponential | None, spacing: float, step: float) -> float:
-    """The `step` [LU] if it is > 0, never more than a quarter of the longest range."""
-    limit = 0.25 * law.longest_range if law is not None else 0.1 * spacing
-    return min(step, limit) if step > 0 else limit
+def loading_step_of(most: float, step: float) -> float:
+    """The `step` [LU] if it is > 0, never more than `most` [LU]."""
+    return min(step, most) if step > 0 else most
 
 
 def plane_stiffness_of(scene: Scene, tolerance: float) -> float:
-    """One-sided stiffness of the rigid plane.
+    """One-sided stiffness of the rigid plane [FU/LU]: that of a particle, k, where particles are fixed in their body.
 
-    In series with a bond it is exact for a particle on its own (bond and plane 2k each give k), and without one, where
-    particles are moved with their body, it is k. Neighbour springs and thermal motion see the bond alone, so with them
-    the plane is 1/tolerance times stiffer than the chain.
+    An effect that acts on particles has bonds for them, and a plane 1/tolerance times stiffer.
     """
     if scene.bodies.lower != "rigid_plane":
         return 0.0
-    stiffness = scene.bulk_stiffness
-    if scene.stands:
-        return stiffness
-    if scene.neighbours is None and scene.noise is None:
-        return 2.0 * stiffness
-    neighbours = 0.0 if scene.neighbours is None else scene.neighbours.stiffness
-    return (stiffness + 4.0 * neighbours) / tolerance
+    return scene.bulk_stiffness if scene.stands else _stiffest_of(scene) / tolerance
+
+
+def _stiffest_of(scene: Scene) -> float:
+    """Bulk spring and what effects add to it [FU/LU]."""
+    return scene.bulk_stiffness + sum(effect.added_stiffness for effect in scene.present)
 
 
 TABLE_MARGIN = 0.8
@@ -221,102 +218,121 @@ least moment of inertia must be more than 1e-7 of the largest, and is 12 STAGGER
 """
 
 
+@dataclass(frozen=True)
+class Forces:
+    """What acts on a particle. Of a rigid plane law and table are None, cutoff, rest, table_from and closest 0.
+
+    Attributes:
+        law, cutoff, table, table_from: the interaction, its cutoff [LU], its table, and the distance [LU] from which on
+            the table was chosen to follow the interaction.
+        rest: apex distance at displacement 0 [LU].
+        closest: smallest distance for which moves and time step are chosen [LU].
+        bulk_stiffness: normal bond of a particle to its anchor [FU/LU].
+        plane_stiffness: one-sided stiffness of the rigid plane [FU/LU]; 0 without one.
+        scale: force of one particle [FU] against which residuals are judged.
+        residual: norm of the residual forces at which a minimisation stops [FU].
+    """
+
+    law: DoubleExponential | None
+    table: Table | None
+    cutoff: float = measured("LU")
+    table_from: float = measured("LU")
+    rest: float = measured("LU")
+    closest: float = measured("LU")
+    bulk_stiffness: float = measured("FU/LU")
+    plane_stiffness: float = measured("FU/LU")
+    scale: float = measured("FU")
+    residual: float = measured("FU")
+
+    @property
+    def range(self) -> float:
+        """Longest range of the interaction [LU]; 0 without one."""
+        return 0.0 if self.law is None else self.law.longest_range
+
+
+@dataclass(frozen=True)
+class Chains:
+    """Particles of the upper body, of the lower one where it has any, and the length of the long bonds.
+
+    Attributes:
+        upper, lower: how many.
+        far: length of the long bond that makes normal and tangential stiffness differ [LU]; 0 where they do not.
+    """
+
+    upper: int
+    lower: int
+    far: float = measured("LU")
+
+
+@dataclass(frozen=True)
+class Increments:
+    """Displacement increments of a search [LU].
+
+    Attributes:
+        displacement_step: where pairs snap, and on a rigid plane.
+        loading_step: the same where particles are so far from each other that it is no danger.
+        smooth_step: elsewhere, where the force is a smooth function of the displacement.
+        longest_move: of a body between two states at rest, inf on a rigid plane: a body that is moved by more than
+            its particles' distance from the opposite ones is put behind them. A search may come nearer than `closest`,
+            in moves down to NEAR_SHARE of this.
+        part: of increments, moves and loads over the usual ones, of a search that restarts in smaller steps.
+    """
+
+    displacement_step: float = measured("LU")
+    loading_step: float = measured("LU")
+    smooth_step: float = measured("LU")
+    longest_move: float = measured("LU")
+    part: float = 1.0
+
+    def scaled(self, part: float) -> Increments:
+        """All of them by this factor."""
+        lengths = {name: part * value for name, value in vars(self).items()}
+        return replace(self, **lengths | {"part": part})
+
+
 @dataclass(frozen=True, eq=False)
 class Settings:
     """The numbers of one run; units as in the scene. Two are equal if they are the same object.
 
     Attributes:
         tolerance: that all of this is for; that of a refined pass is smaller than the scene's.
-        particles: of the upper body.
-        drive: the legs of a slide; `time_step` is that of the first one.
-        beyond: how many more the lower body has, where it has any.
-        rest: apex distance at displacement 0 [LU].
-        law, cutoff, table, table_from: the interaction, its cutoff [LU], its table, and the distance [LU] from which on
-            the table was chosen to follow the interaction; None or 0 on a rigid plane.
-        closest: smallest distance for which moves and time step are chosen [LU].
-        bulk_stiffness: normal bond of a particle to its anchor [FU/LU]; on a rigid plane such that plane and bond in
-            series have the scene's value.
-        plane_stiffness: one-sided stiffness of the rigid plane [FU/LU]; 0 without one.
-        far: length of the long bond that makes normal and tangential stiffness differ [LU]; 0 where they do not.
-        force_scale: force of one particle [FU] against which residuals are judged.
-        force_tolerance: norm of the residual forces at which a minimisation stops [FU].
-        displacement_step: increment of a search where pairs snap, and on a rigid plane [LU].
-        loading_step: the same where particles are so far from each other that it is no danger [LU].
-        smooth_step: increment of a search elsewhere, where the force is a smooth function of the displacement [LU].
-        time_step: [TU].
-        damping: coefficient of a particle [FU·TU/LU].
-        damped_stiffness: of the contact [FU/LU], for which that is critical; 0 where it is the same under every load.
-        plate_mass, plate_damping: [MU], [FU·TU/LU].
-        settle_time: about one period of the plate on its contact [TU].
-        longest_move: of a body between two states at rest [LU], inf on a rigid plane: a body that is moved by more than
-            its particles' distance from the opposite ones is put behind them. A search may come nearer than `closest`,
-            in moves down to NEAR_SHARE of this.
+        estimate: the predictor.
+        forces, chains, increments, motion: see these.
         largest_displacement: what the predictor expects [LU].
-        calm_damping, calm_step: damping with which particles snap together and don't swing [FU·TU/LU], and the time
-            step for it [TU]; the usual ones where the scene gives its damping. In a slide the one under which it is
-            loaded, with which its plate does not swing.
-        part: of increments, moves and loads over the usual ones, of a search that restarts in smaller steps.
     """
 
     tolerance: float
-    particles: int
-    rest: float
-    law: DoubleExponential | None
-    cutoff: float
-    table: Table | None
-    table_from: float
-    closest: float
-    bulk_stiffness: float
-    plane_stiffness: float
-    far: float
-    force_scale: float
-    force_tolerance: float
-    displacement_step: float
-    loading_step: float
-    smooth_step: float
-    longest_move: float
-    time_step: float
-    damping: float
-    damped_stiffness: float
-    plate_mass: float
-    plate_damping: float
-    settle_time: float
-    largest_displacement: float
     estimate: ContactEstimate
-    calm_damping: float
-    calm_step: float
-    part: float = 1.0
-    beyond: int = 0
-    drive: tuple[DriveLeg, ...] = ()
-
-    @property
-    def lower_particles(self) -> int:
-        """Particles of the lower body, where it has any."""
-        return self.particles + self.beyond
+    forces: Forces
+    chains: Chains
+    increments: Increments
+    motion: Motion
+    largest_displacement: float = measured("LU")
 
     def drag(self, damping: float | None = None) -> float:
         """On all that moves with the plate [FU·TU/LU], with another coefficient of a particle where one is given."""
-        return self.particles * (self.damping if damping is None else damping) + self.plate_damping
+        each = self.motion.damping if damping is None else damping
+        return self.chains.upper * each + self.motion.plate_damping
 
     @property
     def gentle(self) -> bool:
         """Whether a relaxation moves no particle by more than `longest_move` at a time, and none oscillates in time."""
-        return self.part < 1.0
+        return self.increments.part < 1.0
 
     @property
     def snaps(self) -> bool:
         """Whether particles snap to the opposite ones and off them."""
-        return self.law is not None and self.estimate.snaps
+        return self.estimate.snaps
 
     @cached_property
     def is_toothed(self) -> bool:
         """Whether the tensile force has several maxima: pairs separate one by one; they snap, or nearly so."""
-        return self.snaps or (self.law is not None and self.estimate.tooth(self.particles) < math.inf)
+        return self.snaps or (self.is_smooth and self.estimate.tooth(self.chains.upper) < math.inf)
 
     @property
     def is_smooth(self) -> bool:
         """Whether the force is a smooth function of the displacement: particles, and none of them snaps."""
-        return self.law is not None and not self.snaps
+        return self.forces.law is not None and not self.snaps
 
     @property
     def strongest(self) -> tuple[float, float]:
@@ -324,28 +340,27 @@ class Settings:
 
         Of the predictor, whose grid of distances ends at the cutoff; (0, 0) on a rigid plane.
         """
-        if self.law is None:
-            return 0.0, 0.0
         force = self.estimate.force
         at = int(force.argmin())
-        return self.cutoff * (at + 1) / force.size, max(0.0, -float(force[at]))
+        return self.forces.cutoff * (at + 1) / force.size, max(0.0, -float(force[at]))
 
     def increment(self, smallest_distance: float = math.inf) -> float:
         """Longest increment [LU] of a search from a state with this smallest distance [LU]; unloading has no such."""
+        own = self.increments
         if not self.is_smooth:
-            near = MOVE_SHARE * self.part * smallest_distance if smallest_distance < math.inf else 0.0
-            return min(self.loading_step, max(self.displacement_step, near))
-        return min(self.smooth_step, max(NEAR_SHARE * self.longest_move, MOVE_SHARE * smallest_distance))
+            near = MOVE_SHARE * own.part * smallest_distance if smallest_distance < math.inf else 0.0
+            return min(own.loading_step, max(own.displacement_step, near))
+        return min(own.smooth_step, max(NEAR_SHARE * own.longest_move, MOVE_SHARE * smallest_distance))
 
-    def rows_of(self, duration: float) -> tuple[int, int]:
-        """Load steps of a motion of this duration [TU], and timesteps of each."""
-        total = max(1, math.ceil(duration / self.time_step))
-        rows = min(ROWS_IN_TIME, total)
-        return rows, math.ceil(total / rows)
+    def steps_of(self, duration: float) -> list[int]:
+        """Timesteps of each load step of a motion of this duration [TU], the first of which is one timestep."""
+        total = round(duration / self.motion.time_step)
+        ends = np.unique(np.linspace(1, total, min(ROWS_IN_TIME, total - 1) + 1).round())
+        return [int(steps) for steps in np.diff(ends, prepend=0.0)]
 
     def let_go_early(self, move: float) -> float:
         """Premature detachment [LU] of a pair under displacement increments `move` [LU]."""
-        return self.estimate.let_go_early(move, self.force_tolerance)
+        return self.estimate.let_go_early(move, self.forces.residual)
 
     def in_smaller_steps(self, part: float) -> Settings:
         """The same, with increments and moves, also those of a relaxation, scaled by this factor.
@@ -353,16 +368,10 @@ class Settings:
         In time a particle that comes to the opposite one is stopped by drag, not by its core, where the scene leaves
         the drag open; it needs timesteps of its own.
         """
-        return replace(
-            self,
-            part=part,
-            damping=self.damping if self.plate_mass > 0.0 else self.calm_damping,
-            time_step=self.calm_step,
-            displacement_step=part * self.displacement_step,
-            loading_step=part * self.loading_step,
-            smooth_step=part * self.smooth_step,
-            longest_move=part * self.longest_move,
-        )
+        motion = self.motion
+        damping = motion.damping if motion.plate_mass > 0.0 else motion.calm_damping
+        timed = replace(motion, damping=damping, time_step=motion.calm_step)
+        return replace(self, motion=timed, increments=self.increments.scaled(part))
 
 
 def settings_for(scene: Scene, tolerance: float | None = None, calibration: Calibration | None = None) -> Settings:
@@ -381,9 +390,10 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             chosen = _chosen(scene, tolerance or scene.accuracy.tolerance, calibration or CALIBRATION)
     except NotCarriedError as error:
+        load, most = apart(scene.experiment.compression or 0.0, error.most, 4)
         raise SettingsError(
-            f"a load of {scene.experiment.compression:.6g} FU exceeds what the repulsion of these particles can carry, "
-            f"about {error.most:.4g} FU. Lower the load, or use a stronger repulsion",
+            f"a load of {load} FU exceeds what the repulsion of these particles can carry, about {most} FU. "
+            "Lower the load, or use a stronger repulsion",
             changes=less_compression(scene, error.most),
         ) from None
     except (OverflowError, FloatingPointError, ZeroDivisionError, MemoryError) as error:
@@ -392,6 +402,42 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
             "ranges, radius), its energies (amplitudes) and its stiffnesses with each other"
         ) from None
     return chosen
+
+
+INERTIA, LONGER = 4.0, 2.0
+"""Masses that the program chose, in a slower motion over the usual one; its drags, which go with the root, and the
+timesteps of a coarser one. What is of first order in these changes by its own amount at least."""
+
+
+def slower(scene: Scene, settings: Settings) -> list[tuple[Scene, Settings]]:
+    """A motion in longer timesteps, on a less rigid plane; and with more mass and drag where these are not given."""
+    own, forces, duration = settings.motion, settings.forces, scene.experiment.lasts
+    longer = whole_steps(LONGER * own.time_step, duration)
+    if not scene.stands and forces.plane_stiffness > 0.0:
+        plane = forces.plane_stiffness / LONGER
+        forces = replace(forces, plane_stiffness=plane, bulk_stiffness=_beside_plane(scene.bulk_stiffness, plane))
+    found = [(scene, replace(settings, forces=forces, motion=replace(own, time_step=longer)))]
+    bodies, plate, damping = scene.bodies, scene.plate, scene.damping
+    if "mass" not in bodies.model_fields_set:
+        bodies = bodies.model_copy(update={"mass": INERTIA * bodies.mass})
+    if plate is not None and plate.mass == "auto":
+        plate = plate.model_copy(update={"mass": INERTIA * own.plate_mass})
+    drags = {
+        "damping": own.damping * (LONGER if damping is not None and damping.coefficient == "auto" else 1.0),
+        "plate_damping": own.plate_damping * (LONGER if plate is not None and plate.damping == "auto" else 1.0),
+    }
+    heavier = scene.model_copy(update={"bodies": bodies, "plate": plate})
+    motion = settings_for(heavier, settings.tolerance).motion
+    motion = replace(
+        motion, damping=drags["damping"], plate_damping=drags["plate_damping"],
+        time_step=whole_steps(motion.time_step, duration),
+    )  # fmt: skip
+    return [*found, (heavier, replace(settings, motion=motion))] if motion != own else found
+
+
+def _beside_plane(stiffness: float, plane: float) -> float:
+    """Stiffness of a bond [FU/LU] that in series with the plane has the particle's."""
+    return 1.0 / (1.0 / stiffness - 1.0 / plane)
 
 
 def _require_carried(scene: Scene) -> None:
@@ -411,76 +457,84 @@ def _require_carried(scene: Scene) -> None:
 
 
 def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Settings:
-    law = interaction_law(scene)
+    """Forces, load, chains, table, motion, increments: each by what was chosen before it."""
     bodies = scene.bodies
     require_room(bodies)
-    shape: Profile = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
-    plane = plane_stiffness_of(scene, tolerance)
-    in_series = law is None and not scene.stands
-    bond = 1.0 / (1.0 / scene.bulk_stiffness - 1.0 / plane) if in_series else scene.bulk_stiffness
-    cutoff, rest, closest = 0.0, 0.0, 0.0
-    if law is None:
-        estimate = estimate_on_plane(scene, shape)
-    else:
-        cutoff = cutoff_for(scene, law, calibration.cutoff * tolerance, tolerance)
-        require_reach(scene, cutoff)
-        rest = law.force_free_distance() if law.attraction is not None else cutoff
-        closest = CLOSEST_SHARE * (rest if law.attraction is not None else law.repulsion.range)
-        estimate = particles_estimate(
-            law, shape, bodies.own_spacing, scene.bulk_stiffness, cutoff, rest, chains=scene.chains, row=bodies.spacing
-        )
-        _require_carried(scene)
+    forces, estimate = _forces(scene, tolerance, calibration)
     load = scene.experiment.compression
     largest = max(scene.experiment.places()) if load is None else estimate.displacement_at(load)
-    particles, lower = chains_of(scene, estimate, largest, calibration.chain * tolerance)
-    require_body(bodies, largest, particles)
-    require_apex(scene, particles, cutoff)
-    require_memory(scene, max(particles, lower), cutoff)
-    require_travel(scene, largest, cutoff)
-    force_scale = force_scale_of(scene, law, largest)
-    require_digits(scene, particles, rest + largest, tolerance * force_scale)
-    table_from, table = 0.0, None
-    if law is not None:
-        nearest = closest if scene.noise is not None else NEAR_SHARE * closest
-        table_from = max(
-            nearest, TABLE_MARGIN * (innermost_distance(estimate, cutoff, largest) - thermal_motion(scene))
-        )
-        table = table_for(law, cutoff, table_from, calibration.table * tolerance * force_scale)
-    stiffest = stiffest_of(scene, law, closest, plane)
-    dynamics = dynamics_of(scene, tolerance, estimate, largest, particles, stiffest, calibration.still_step)
-    drive = drive_steps(scene, dynamics.time_step)
-    different = scene.horizontal is not None and scene.tangential_stiffness != scene.bulk_stiffness
-    longest_move = MOVE_SHARE * closest if law is not None else math.inf
-    require_rows(scene, longest_move, drive)
-    loading_step = loading_step_of(law, bodies.spacing, calibration.loading_increment * largest)
-    return Settings(
-        tolerance=tolerance,
-        particles=particles,
-        beyond=lower - particles,
-        rest=rest,
-        law=law,
-        cutoff=cutoff,
-        table=table,
-        table_from=table_from,
-        closest=closest,
-        bulk_stiffness=bond,
-        plane_stiffness=plane,
-        far=FAR_SHARE / tolerance * bodies.spacing if different else 0.0,
-        force_scale=force_scale,
-        force_tolerance=calibration.residual * tolerance * force_scale,
-        displacement_step=min(loading_step, longest_move),
-        loading_step=loading_step,
-        smooth_step=calibration.smooth_increment * law.longest_range if law is not None else 0.0,
-        longest_move=longest_move,
-        largest_displacement=largest,
-        estimate=estimate,
-        time_step=drive[0].time_step if drive else dynamics.time_step,
-        drive=drive,
-        damping=dynamics.damping,
-        damped_stiffness=dynamics.damped_stiffness,
-        plate_mass=dynamics.plate_mass,
-        plate_damping=dynamics.plate_damping,
-        settle_time=dynamics.settle_time,
-        calm_damping=dynamics.calm_damping,
-        calm_step=dynamics.calm_step,
+    chains = _chains(scene, estimate, forces, largest, calibration.chain * tolerance)
+    # A punch that adheres and carries nothing is not deep, and yet its springs hold it up to its limit.
+    scale = force_scale_of(scene, forces.law, max(largest, -estimate.parted(0.0)) if scene.adhesion else largest)
+    require_digits(scene, chains.upper, forces.rest + largest, tolerance * scale)
+    forces = replace(forces, scale=scale, residual=calibration.residual * tolerance * scale)
+    if forces.law is not None:
+        forces = _tabulated(scene, forces, estimate, largest, calibration.table * tolerance * scale)
+    motion = motion_of(
+        scene, tolerance, estimate, largest, chains.upper, _stiffest(scene, forces), calibration.still_step
     )
+    increments = _increments(bodies.spacing, forces, largest, calibration)
+    require_rows(scene, increments.longest_move, motion.drive)
+    different = scene.horizontal is not None and scene.tangential_stiffness != scene.bulk_stiffness
+    chains = replace(chains, far=FAR_SHARE / tolerance * bodies.spacing if different else 0.0)
+    return Settings(tolerance, estimate, forces, chains, increments, motion, largest)
+
+
+def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[Forces, ContactEstimate]:
+    """Springs, plane and interaction, without table and scales; the predictor of the contact that they make."""
+    law, bodies, spring = interaction_law(scene), scene.bodies, scene.bulk_stiffness
+    shape: Profile = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
+    if law is None:
+        plane = plane_stiffness_of(scene, tolerance)
+        bond = spring if scene.stands else _beside_plane(spring, plane)
+        return Forces(None, None, 0.0, 0.0, 0.0, 0.0, bond, plane, 0.0, 0.0), estimate_on_plane(scene, shape)
+    cutoff = cutoff_for(scene, law, calibration.cutoff * tolerance, tolerance)
+    require_reach(scene, cutoff)
+    rest, closest = cutoff, CLOSEST_SHARE * law.repulsion.range
+    if law.attraction is not None:
+        rest = law.force_free_distance()
+        closest = CLOSEST_SHARE * rest
+    estimate = particles_estimate(
+        law, shape, bodies.own_spacing, spring, cutoff, rest, chains=scene.chains, row=bodies.spacing
+    )
+    _require_carried(scene)
+    return Forces(law, None, cutoff, 0.0, rest, closest, spring, 0.0, 0.0, 0.0), estimate
+
+
+def _chains(scene: Scene, estimate: ContactEstimate, forces: Forces, largest: float, share: float) -> Chains:
+    """As many particles as the contact needs, or as the scene gives. Raises SettingsError where they do not fit."""
+    upper, lower = chains_of(scene, estimate, largest, share)
+    require_body(scene.bodies, largest, upper)
+    require_apex(scene, upper, forces.cutoff)
+    require_memory(scene, max(upper, lower), forces.cutoff)
+    require_travel(scene, largest, forces.cutoff)
+    return Chains(upper, lower, 0.0)
+
+
+def _tabulated(scene: Scene, forces: Forces, estimate: ContactEstimate, largest: float, error: float) -> Forces:
+    """With the table of the law, which follows it to `error` [FU] from the smallest distance on that is expected."""
+    assert forces.law is not None
+    nearest = forces.closest * (1.0 if scene.noise is not None else NEAR_SHARE)
+    innermost = innermost_distance(estimate, forces.cutoff, largest) - thermal_motion(scene)
+    start = max(nearest, TABLE_MARGIN * innermost)
+    return replace(forces, table_from=start, table=table_for(forces.law, forces.cutoff, start, error))
+
+
+def _stiffest(scene: Scene, forces: Forces) -> float:
+    """Largest stiffness [FU/LU] acting on a particle: its springs, effects, the plane, and nearby opposite ones."""
+    stiffest = _stiffest_of(scene) + max(0.0, scene.tangential_stiffness - scene.bulk_stiffness)
+    if forces.law is None:
+        return stiffest + forces.plane_stiffness
+    rows = 1.0 + 2.0 * forces.law.repulsion.range / scene.bodies.spacing
+    return stiffest + 2.0 * rows * float(forces.law.stiffness(forces.closest))
+
+
+def _increments(spacing: float, forces: Forces, largest: float, calibration: Calibration) -> Increments:
+    """Increments of searches, by the range of the interaction, or on a plane by the spacing [LU]."""
+    step = calibration.loading_increment * largest
+    if forces.law is None:
+        loading = loading_step_of(0.1 * spacing, step)
+        return Increments(loading, loading, 0.0, math.inf)
+    longest, move = forces.law.longest_range, MOVE_SHARE * forces.closest
+    loading = loading_step_of(0.25 * longest, step)
+    return Increments(min(loading, move), loading, calibration.smooth_increment * longest, move)

@@ -14,6 +14,7 @@ from contact1d.workflow.experiments.experiment import FINER_SPACING
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import FORCE, LENGTH
 
+LOSSES = ("dissipated_energy", "instability_energy")
 UNKNOWN = 0.5
 """Uncertainty over a value above which the value is not reported."""
 
@@ -30,7 +31,7 @@ def accuracy_warnings(scene: Scene, outcome: Outcome) -> dict[str, str]:
     by_lattice = _by_lattice(known, tolerance)
     others = {name: share for name, share in unmet(known, tolerance, (MODEL,)).items() if name not in by_lattice}
     if missing:
-        wide = ", ".join(f"{name} (± {float(f'{one.uncertainty:.2g}'):g} {one.unit})" for name, one in missing.items())
+        wide = ", ".join(f"{name} {_less_than(one)}" for name, one in missing.items())
         warnings["unknown"] = (
             f"not reported, because the uncertainty is more than half of the value: {wide}. "
             f"{_advice(scene, outcome, missing)}"
@@ -40,7 +41,7 @@ def accuracy_warnings(scene: Scene, outcome: Outcome) -> dict[str, str]:
     if others:
         ended = f" ({outcome.refinement.ended})" if outcome.refinement and outcome.refinement.ended else ""
         warnings["tolerance"] = (
-            f"relative uncertainties above the tolerance of {tolerance:g}: {in_words(others)}{ended}. "
+            f"relative uncertainties above the tolerance of {tolerance:g}: {in_words(others, tolerance)}{ended}. "
             f"{_advice(scene, outcome, others)}"
         )
     return warnings
@@ -50,7 +51,8 @@ def unknown(scene: Scene, outcome: Outcome) -> dict[str, Result]:
     """The results whose uncertainty exceeds UNKNOWN of the value and the tolerance of the run's own scale.
 
     The scale of a force or a displacement is the largest of the run, that of another result the largest one of its
-    unit: a number that is 0 beside it is known to be 0. Means are reported whatever their standard errors.
+    unit: a number that is 0 beside it is known to be 0. An energy that is lost is compared with itself alone: whether
+    there is a loss at all is what is asked. Means are reported whatever their standard errors.
     """
     if scene.noise is not None:
         return {}
@@ -97,8 +99,18 @@ def open_results(scene: Scene, outcome: Outcome) -> dict[str, float]:
 
 
 def _kind(name: str, one: Result) -> str:
-    """Radii are compared with radii, others by their unit."""
+    """Radii are compared with radii, a loss with itself, others by their unit."""
+    if one.scale is None and name.startswith(LOSSES):
+        return name
     return "radius" if name.endswith("radius") else one.unit
+
+
+def _less_than(one: Result) -> str:
+    """How large a result may be: "(less than 2.3 FU)" of one that may be 0, else "(± 2.3 FU)"."""
+    bound, words = one.uncertainty, "±"
+    if one.uncertainty >= abs(one.value):
+        bound, words = bound + abs(one.value), "less than"
+    return f"({words} {float(f'{bound:.2g}'):g} {one.unit})"
 
 
 def _advice(scene: Scene, outcome: Outcome, names: Iterable[str]) -> str:
@@ -119,9 +131,10 @@ def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, fl
 
 
 def _lattice_message(scene: Scene, shares: Mapping[str, float]) -> str:
-    spacing = scene.bodies.spacing * np.sqrt(0.5 * scene.accuracy.tolerance / min(1.0, max(shares.values())))
+    tolerance = scene.accuracy.tolerance
+    spacing = scene.bodies.spacing * np.sqrt(0.5 * tolerance / min(1.0, max(shares.values())))
     return (
-        f"relative discretisation errors above the tolerance of {scene.accuracy.tolerance:g}: {in_words(shares)}. "
+        f"relative discretisation errors above the tolerance of {tolerance:g}: {in_words(shares, tolerance)}. "
         f"Use a smaller bodies.spacing, about {spacing:.2g} LU, at the same stiffness and energy per "
         "length, or give bodies.particles if this discrete chain is intended"
     )

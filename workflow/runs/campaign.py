@@ -93,15 +93,15 @@ def run(
 def _run(context: RunContext, started: float, figures: bool | str, refine: bool) -> Run:
     scene, settings, folder = context.deck.scene, context.deck.settings, context.folder
     scales = scales_of(scene, {})
-    if large := in_words(scene, settings.particles, settings.cutoff):
+    if large := in_words(scene, settings.chains.upper, settings.forces.cutoff):
         context.progress.note(large)
     for doubt in implausible(scene, scales, {}).values():
         context.progress.note(doubt)
 
     def timing() -> dict[str, float]:
         total = time.perf_counter() - started
-        lammps = {"lammps_s": context.lammps_seconds, "lammps_cpu_s": context.lammps_cpu_seconds}
-        return {"total_s": total, **lammps, "rows_s": context.rows_seconds, "steps": context.steps}
+        lammps, cpu, rows, steps = context.clock.taken
+        return {"total_s": total, "lammps_s": lammps, "lammps_cpu_s": cpu, "rows_s": rows, "steps": steps}
 
     try:
         outcome = perform(context)

@@ -27,7 +27,7 @@ from contact1d.analysis.theory.indenters import Ellipsoid, PowerLaw
 from contact1d.analysis.theory.mindlin import mindlin_path
 from contact1d.workflow.body.derived import REPORTED
 from contact1d.workflow.body.reading import IMAGE, stands_for_spheres
-from contact1d.workflow.body.theory import Case, applying, drawn_along, sliding_contact
+from contact1d.workflow.body.theory import Case, applying, drawn_along, in_words, sliding_contact
 from contact1d.workflow.body.traction import row_of
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.state import RadiusRule
@@ -194,10 +194,12 @@ class Run:
         return atoms(self.folder, state)
 
     def __repr__(self) -> str:
-        """A few lines: title, status, folder, results, names of the warnings."""
+        """A few lines: title, status, folder, results with the closed forms beside, warnings."""
         lines = [f"Run {self.scene.title!r}: {self.status}, {self.folder}"]
-        lines += [f"  {name:<18} {quantity}" for name, quantity in self.results.items()]
-        return "\n".join(lines + [f"  warnings: {', '.join(self.warnings)}"] * bool(self.warnings))
+        for name, quantity in self.results.items():
+            beside = ", ".join(in_words(self.document, name))
+            lines.append(f"  {name:<18} {quantity!s:<24} {beside}".rstrip())
+        return "\n".join(lines + [f"  warning {name}: {message}" for name, message in self.warnings.items()])
 
     def _repr_html_(self) -> str:
         """The same as a table, for notebooks."""

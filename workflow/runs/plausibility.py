@@ -9,8 +9,9 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from contact1d.digits import apart
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.scene.check import BOLTZMANN
+from contact1d.workflow.scene.conversion import BOLTZMANN
 from contact1d.workflow.scene.quantities import places
 from contact1d.workflow.units import LENGTH, Quantity, Scales
 
@@ -106,4 +107,5 @@ def _radii(scales: Scales, quantities: Mapping[str, Quantity]) -> Iterator[tuple
     for name, quantity in quantities.items():
         size = quantity.value * scales.length
         if name.endswith("radius") and quantity.unit == LENGTH and 0.0 < size < ATOM:
-            yield "below_an_atom", f"the {name.replace('_', ' ')} is {size:.3g} m, less than that of an atom, 1e-10 m"
+            found, atom = apart(size, ATOM)
+            yield "below_an_atom", f"the {name.replace('_', ' ')} is {found} m, less than that of an atom, {atom} m"

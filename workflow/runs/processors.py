@@ -91,7 +91,7 @@ def require_ranks(deck: Deck, ranks: int) -> None:
     """
     if ranks == 1:
         return
-    scene, particles = deck.scene, deck.settings.particles
+    scene, particles = deck.scene, deck.settings.chains.upper
     if scene.noise is not None:
         raise RanksError(
             "with [noise] each rank draws its own random forces, so that the results depend on the number of ranks: "
@@ -102,7 +102,7 @@ def require_ranks(deck: Deck, ranks: int) -> None:
             "on a rigid plane there are no forces between particles but neighbour springs, so that LAMMPS exchanges no "
             "particles between ranks: use one rank"
         )
-    if deck.settings.far > 0.0 and scene.tangential_stiffness > scene.bulk_stiffness:
+    if deck.settings.chains.far > 0.0 and scene.tangential_stiffness > scene.bulk_stiffness:
         raise RanksError(
             "bulk springs that are stiffer along x have distant anchors, on other ranks: use one rank, or a "
             "bodies.bulk_stiffness_tangential of at most bulk_stiffness"

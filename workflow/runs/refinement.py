@@ -7,14 +7,12 @@ Where two nested passes differ by more than both uncertainties, these are increa
 from __future__ import annotations
 
 import os
-import shutil
 from dataclasses import dataclass, replace
 
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Refinement, in_words, unmet
 from contact1d.workflow.continuation.trust import UntrustedError, doubts
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import EngineError
 from contact1d.workflow.experiments import kind_of, perform
 from contact1d.workflow.model.settings import SettingsError, settings_for
@@ -25,8 +23,6 @@ TOLERANCE_RATIO = 5.0
 MOST_REFINEMENTS = 2
 HELP_RATIO = 0.8
 """Uncertainty of a result over that of the pass before from which on a refinement counts as no help."""
-FOLDER = ".refined"
-"""Of a pass under way, in the run folder: its files replace those of the pass before only when it is done."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +54,7 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
         if count == MOST_REFINEMENTS:
             ended = f"{_after(count)}, the limit"
             break
-        context.progress.note(f"refining: {in_words(left)}, tolerance {scene.accuracy.tolerance:g}")
+        context.progress.note(f"refining: {in_words(left, wanted)}, tolerance {scene.accuracy.tolerance:g}")
         try:
             finer_deck, finer = _pass(context, tolerance / TOLERANCE_RATIO)
         except (EngineError, UntrustedError, SettingsError) as error:
@@ -107,19 +103,11 @@ def _helped(names: dict[str, float], before: Outcome, after: Outcome) -> bool:
 
 
 def _pass(context: RunContext, tolerance: float) -> tuple[Deck, Outcome]:
-    """One pass with the settings of a tolerance; its files then replace those in the run folder."""
+    """One pass with the settings of a tolerance; its files replace those in the run folder only when it is done."""
     scene = context.deck.scene
     deck = Deck(scene, settings_for(scene, tolerance))
-    folder = context.folder / FOLDER
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir()
-    finer = RunContext(deck, folder, context.progress, context.time_limit, workers=context.workers, ranks=context.ranks)
-    try:
-        write_system(deck, folder)
+    with context.aside(deck) as finer:
         outcome = perform(finer)
-        for file in folder.iterdir():
+        for file in finer.folder.iterdir():
             os.replace(file, context.folder / file.name)
-    finally:
-        context.add_time_of(finer)
-        shutil.rmtree(folder, ignore_errors=True)
     return finer.deck, outcome

@@ -47,7 +47,7 @@ FIGURES = (
 FORMATS = ("png", "svg", "pdf")
 FILES = (
     RESULTS, "curve.csv", "profile.csv", "pressure_3d.csv", "shear_3d.csv", "friction.csv", "slips.csv",
-    "detachments.csv", "means.csv", "samples.csv", "scene.toml",
+    "detachments.csv", "cycles.csv", "means.csv", "samples.csv", "scene.toml",
     "system.data", "interaction.table", "adhesion.cells", "in.lammps", "log.lammps", "curve.txt", "rows.bin",
     "states.lammpstrj",
     "states.npz", "way.gif", "way.mp4", "view_in_ovito.py", "way.ovito", "way.png",
@@ -201,7 +201,7 @@ COLUMN_UNITS = {
     "stick_radius_uncertainty": LENGTH, "dissipated_energy": ENERGY, "r": LENGTH,
     "shear_stress": MEAN_PRESSURE, "shear_stress_uncertainty": MEAN_PRESSURE, "cantilever_force": FORCE,
     "cantilever_work": ENERGY, "place": LENGTH, "size": LENGTH, "time": TIME, "load": FORCE,
-    "force_standard_error": FORCE,
+    "force_standard_error": FORCE, "adhesion_force": FORCE,
 }  # fmt: skip
 """Unit of each column of the CSV files that has one made of LU, FU and MU."""
 OF_A_BODY = {"pressure": MEAN_PRESSURE, "pressure_uncertainty": MEAN_PRESSURE}

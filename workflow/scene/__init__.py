@@ -4,7 +4,7 @@ from contact1d.workflow.scene.effects import (
     Damping,
     Plate,
 )
-from contact1d.workflow.scene.experiments import Hold, Load, Path, PullOff, Slide, Span, Tangential
+from contact1d.workflow.scene.experiments import Hold, Kind, Load, Path, PullOff, Slide, Span, Tangential
 from contact1d.workflow.scene.problems import Problem, SceneError
 from contact1d.workflow.scene.profiles import (
     Circle,
@@ -31,6 +31,7 @@ __all__ = [
     "Ellipsoid",
     "FlatPunch",
     "Hold",
+    "Kind",
     "Load",
     "Material",
     "Measured",

@@ -53,11 +53,23 @@ class Effect(Table):
         timed: it exists in time only, so never in a quasistatic run.
         how: how to write it, for a scene that lacks it.
         excludes: effects that it cannot have beside it, and why.
+        needs_bonds: it acts on particles apart from their body, so that on a rigid plane each has a spring of its own;
+            where no effect does, particles are fixed in their body and the plane has their springs.
     """
 
     timed: ClassVar[bool] = False
+    needs_bonds: ClassVar[bool] = False
     how: ClassVar[str] = ""
     excludes: ClassVar[Mapping[str, str]] = {}
+
+    @property
+    def added_stiffness(self) -> float:
+        """Largest stiffness [FU/LU] that it adds to a particle: a time step follows it."""
+        return 0.0
+
+    def bond_drag(self, stiffness: float) -> float:
+        """Drag [FU·TU/LU] that it puts beside a bulk spring of this stiffness [FU/LU]: a time step follows it."""
+        return 0.0
 
 
 class Interaction(Effect):
@@ -76,8 +88,15 @@ class Interaction(Effect):
 class Neighbours(Effect):
     """Effect: springs between neighbouring particles of one body, with transverse rigidity."""
 
+    needs_bonds = True
+
     stiffness: Stiffness
     """stiffness of a spring between neighbours"""
+
+    @property
+    def added_stiffness(self) -> float:
+        """4 k_n, of neighbours that move against each other."""
+        return 4.0 * self.stiffness
 
 
 class Horizontal(Effect):
@@ -138,6 +157,7 @@ class Noise(Effect):
     """Effect: thermal forces on the particles; with the damping it makes one Langevin thermostat."""
 
     timed = True
+    needs_bonds = True
     how = "[noise] with temperature and seed"
 
     temperature: Temperature

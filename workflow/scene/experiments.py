@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Annotated, ClassVar, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from contact1d.workflow.scene.quantities import (
@@ -31,7 +31,6 @@ from contact1d.workflow.scene.quantities import (
     Table,
     Velocity,
     allowed_by,
-    either,
 )
 
 Method = Literal["quasistatic", "dynamic"]
@@ -68,10 +67,7 @@ class Span(Table):
         return there + there[-2::-1] if self.return_ else there
 
 
-Displacements = Annotated[
-    Annotated[Listed[Displacement], Tag("list")] | Annotated[Span, Tag("table")],
-    either("table", Mapping | Span, "list"),
-]
+Displacements = Listed[Displacement] | Span
 
 
 class Cycles(Table):
@@ -151,6 +147,11 @@ class Kind(Table):
         return 0.0
 
     @property
+    def lasts(self) -> float | None:
+        """How long a motion lasts that the scene gives [TU]; None of what comes to rest, or of a drive."""
+        return None
+
+    @property
     def compression(self) -> float | None:
         """Largest force [FU] that presses the bodies together; None where displacements are prescribed."""
         force = getattr(self, self.load_key or "", None)
@@ -222,6 +223,8 @@ class PullOff(Kind):
     """with velocity: stiffness of that spring; absent: that of the contact at zero load"""
     repeats: RepeatCount | None = None
     """with [noise]: number of repeats, each with the next seed; absent: 1"""
+    cycles: CycleCount | None = None
+    """times that the bodies are pressed together and pulled off, without [noise]; results of the last; absent: 1"""
     method: AnyMethod = None
 
     @property
@@ -360,6 +363,11 @@ class Hold(Kind):
     duration: Duration
     """how long it is held"""
 
+    @property
+    def lasts(self) -> float:
+        """The duration."""
+        return self.duration
+
     def places(self) -> list[float]:
         """The displacement, if it is given."""
         return [] if self.displacement is None else [self.displacement]
@@ -368,6 +376,6 @@ class Hold(Kind):
 Experiment = Annotated[Load | Path | PullOff | Slide | Tangential | Hold, Discriminator("kind")]
 
 KINDS: dict[str, type[Kind]] = {
-    str(choice.kind): choice.type for choice in allowed_by(Experiment).choices if issubclass(choice.type, Kind)
+    kind: table for kind, table in allowed_by(Experiment).kinds.items() if issubclass(table, Kind)
 }
 """The experiments by their `kind`."""

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import Any
@@ -15,6 +14,8 @@ SHOWN_LENGTH = 60
 """Characters of a given value that a message shows."""
 LONGEST = 1000
 """Characters of a path that a message shows."""
+BARE = re.compile(r"[A-Za-z0-9_-]+")
+"""A key that TOML has without quotes."""
 MOST_PROBLEMS = 20
 """Most problems that are listed; the number of the others is added."""
 
@@ -68,11 +69,11 @@ def as_toml(value: object) -> str:
     Anything else, which a scene cannot hold, comes out as Python shows it.
     """
     if isinstance(value, bool):
-        return "true" if value else "false"
+        return str(value).lower()
     if isinstance(value, str):
         return '"' + "".join(_escaped(c) for c in value) + '"'
     if isinstance(value, float):
-        return repr(float(value)) if math.isfinite(value) else f"{value}"
+        return repr(float(value))
     if isinstance(value, list | tuple):
         return "[" + ", ".join(as_toml(item) for item in value) + "]"
     if isinstance(value, Mapping):
@@ -96,18 +97,17 @@ def _cut(text: str, most: int) -> str:
 
 def as_key(key: str) -> str:
     """`key` as TOML writes it: bare where it can be, else in quotes."""
-    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else as_toml(key)
+    return key if BARE.fullmatch(key) else as_toml(key)
 
 
 def tables_as_toml(tables: Mapping[str, Any]) -> str:
     """The `tables` of a scene as a TOML file: one [table] each, nested ones inline."""
-    top = "\n".join(f"{as_key(key)} = {as_toml(value)}" for key, value in tables.items() if not isinstance(value, dict))
-    blocks = (
-        "\n".join([f"[{name}]", *(f"{as_key(key)} = {as_toml(value)}" for key, value in table.items())])
-        for name, table in tables.items()
-        if isinstance(table, dict)
+    inside = {f"[{name}]\n": table for name, table in tables.items() if isinstance(table, dict)}
+    above = {key: value for key, value in tables.items() if not isinstance(value, dict)}
+    return "\n".join(
+        head + "".join(f"{as_key(key)} = {as_toml(value)}\n" for key, value in table.items())
+        for head, table in {"": above, **inside}.items()
     )
-    return "\n\n".join((top, *blocks)) + "\n"
 
 
 def path_of(keys: Iterable[str | int]) -> str:
@@ -122,9 +122,16 @@ def nearest(word: str, allowed: Iterable[str]) -> str | None:
     """The one of `allowed` that a person who wrote `word` most likely meant, or None."""
     known, meant = list(allowed), plain(word)
     starting = [name for name in known if len(meant) > 2 and name.startswith(meant)]
-    if len(starting) == 1:
-        return starting[0]
+    if len(starting) == 1 or len(meant) > SHOWN_LENGTH:
+        return next(iter(starting), None)
     return next(iter(get_close_matches(meant, known, n=1, cutoff=0.7)), None)
+
+
+def suggestion(word: str, known: Collection[str], what: str = "allowed here") -> str:
+    """What to write in place of an unknown `word`: the one of the `known` that was meant, and all of these."""
+    meant = nearest(word, known)
+    begin = f'did you mean "{meant}"? ' if meant else ""
+    return f"{begin}{what}: {', '.join(known) or 'no keys'}"
 
 
 def plain(word: str) -> str:

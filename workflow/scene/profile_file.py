@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import math
 import re
-import sys
-from dataclasses import dataclass
-from itertools import pairwise
+from collections.abc import Sequence
+from itertools import chain, pairwise
 from pathlib import Path
 
 from contact1d.files import read_text
+from contact1d.workflow.scene.conversion import is_positive
 from contact1d.workflow.scene.profiles import FEWEST_POINTS
+from contact1d.workflow.scene.quantities import Place
+from contact1d.workflow.scene.schema import described
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
 
 RADII = ("r", "radius", "radii", "rho", "ρ")
 SIDES = ("x",)
 """Names of a place from one side to the other, which is read where no radius is there."""
 HEIGHTS = ("z", "h", "height", "heights")
-NAME = re.compile(r"([^\W_]+)\s*(?:\[(.*)\]|\((.*)\)|/\s*(.+)|_(\w+)|\sin\s+(.+)|)$")
+NAME = re.compile(r"([^\W_]+)(?:\s*[\[(/_]\s*|\sin\s+|\s*$)([^])]*)[])]?$", re.IGNORECASE)
+"""Name and unit of a column: r, r [µm], r (µm), r/µm, r_um, r in µm."""
 MODEL = "LU"
 MOST_LINES = 100_000
 """Lines of a file: a scene with as many points takes ten seconds to run."""
@@ -27,7 +30,6 @@ PLACE_DIFFERENCE = 1e-3
 HEIGHT_DIFFERENCE = 0.05
 """Largest difference of both sides of a profile that are averaged, over its height."""
 
-
 Row = tuple[int, list[str]]
 """A line of a file: its number and its cells."""
 
@@ -36,174 +38,172 @@ class ProfileFileError(ValueError):
     """A file that is not a profile; the message has the line and the error."""
 
 
-class ScaleError(ValueError):
-    """A scale that is invalid for this file; the message says why."""
+def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
+    """The points of the file, looked up in `folder`, that the profile of a scene names; none without one, or reported.
+
+    Its scale is a quantity of the scene like any other: where none is given, the unit of the numbers stands there.
+    """
+    profile, file, scale = (scene.at(f"bodies.profile{key}") for key in ("", ".file", ".scale"))
+    if not profile or not file or not scale or not isinstance(file.value, str):
+        return {}
+    if not {"r", "z"}.isdisjoint(profile.value):
+        file.doubt()  # a rule reports it
+        return {}
+    wrong = file
+    try:
+        lists, unit = read_profile(folder / file.value)
+        wrong = scale
+        if scale.absent:
+            scale.put(unit or 1.0)
+            scale.source = file
+        elif unit:
+            raise ValueError("not together with units in the file's names; remove it")
+        elif isinstance(scale.value, str):
+            si_value(scale.value, MODEL)
+        elif not is_positive(scale):
+            raise ValueError(f"must be {described(scale.allowed)}")
+    except ValueError as error:
+        wrong.fault(str(error))
+        profile.put({"kind": profile.value["kind"]})
+        return {}
+    return lists
 
 
-def read_profile(path: Path, scale: object = None) -> tuple[dict[str, list[float]], dict[str, str | None]]:
-    """The lists r and z of a measured profile, from the axis out, and the unit of each, "1 µm"; None: in LU.
+def put_points(scene: Place, lists: dict[str, list[float]]) -> None:
+    """Put the points of a file in its place in a scene, whose scale is a number by now."""
+    profile = scene.at("bodies.profile")
+    if not lists or not profile or not profile.sound:
+        return
+    scale = profile.inside["scale"]
+    scaled = {key: [scale.value * value for value in values] for key, values in lists.items()}
+    if all(map(math.isfinite, chain(*scaled.values()))):
+        profile.source = profile.inside["file"]
+        profile.put({"kind": profile.value["kind"], **scaled})
+    else:
+        scale.fault("is too large for the numbers of the file")
+
+
+def read_profile(path: Path) -> tuple[dict[str, list[float]], str | None]:
+    """The lists r and z of a measured profile, from the axis out, and the unit of their numbers, "1 µm"; None: LU.
 
     Messages name lines and never quote them: a path in a scene may point at any file.
 
     Lines that begin with # and empty ones are skipped; the first other line may be names. Columns of other names are
     ignored. Points may come from the edge in; those from −x to x are folded into the mean of both sides.
 
-    Args:
-        path: the file.
-        scale: size of one unit of its numbers by the scene: None, a number [LU], or "1 µm".
-
     Raises:
         UnreadableError: if there is no such file, or it is no text.
         ProfileFileError: if it has more than MOST_LINES, a cell is empty or no number, a line has one column, there
             are fewer than FEWEST_POINTS points, names are not known, or the two sides of a profile are not the same.
-        ScaleError: a scale that is no size, too large, or beside units of the file's own.
     """
-    header, rows = _header(path.name, _rows(path))
-    if not rows:
-        raise ProfileFileError(f"{path} has no points")
-    points = [_point(f"{path.name}, line {line}", cells, header.columns) for line, cells in rows]
+    rows = _rows(path)
+    columns, unit, ratio = _header(rows)
+    points = [_point(f"line {line}", cells, columns) for line, cells in rows]
+    if not points:
+        raise ProfileFileError("has no points")
     if all(after[0] < before[0] for before, after in pairwise(points)):
         points.reverse()
     r, z = ([*column] for column in zip(*points, strict=True))
     if len(r) > 1 and not _rising(r) and (_rising(z) or _rising(z[::-1])):
         raise ProfileFileError(
-            f"{path.name}: its heights increase and its radii do not: the columns may be swapped; name them r and z"
+            "its heights increase and its radii do not: the columns may be swapped; name them r and z"
         )
     if r[0] < 0.0 and _rising(r):
-        r, z = _folded(path, r, z)
+        r, z = _folded(r, z)
     if len(r) < FEWEST_POINTS:
-        raise ProfileFileError(f"{path} must have at least {FEWEST_POINTS} points from the axis out, not {len(r)}")
-    return _scaled({"r": r, "z": z}, dict(zip("rz", header.units, strict=True)), scale)
-
-
-def _scaled(
-    lists: dict[str, list[float]], units: dict[str, str | None], scale: object
-) -> tuple[dict[str, list[float]], dict[str, str | None]]:
-    """Lists and units by the scene's scale."""
-    if scale is None:
-        return lists, units
-    if any(units.values()):
-        raise ScaleError("not together with units in the file's names; remove it")
-    if isinstance(scale, str):
-        try:
-            si_value(scale, MODEL)
-        except UnitTextError as error:
-            raise ScaleError(str(error)) from None
-        return lists, dict.fromkeys(units, scale)
-    if isinstance(scale, bool) or not isinstance(scale, int | float) or not 0.0 < scale <= sys.float_info.max:
-        raise ScaleError("must be a number greater than 0 (LU), or text with a unit")
-    scaled = {key: [scale * value for value in values] for key, values in lists.items()}
-    if not all(map(math.isfinite, scaled["r"] + scaled["z"])):
-        raise ScaleError("is too large for the numbers of the file")
-    return scaled, units
+        raise ProfileFileError(f"must have at least {FEWEST_POINTS} points from the axis out, not {len(r)}")
+    return {"r": r, "z": [ratio * value for value in z]}, unit
 
 
 def _rows(path: Path) -> list[Row]:
     """The lines that have content, each with its number, as cells."""
     lines = read_text(path).splitlines()
     if len(lines) > MOST_LINES:
-        raise ProfileFileError(f"{path} has {len(lines)} lines, at most {MOST_LINES} are allowed; use fewer points")
+        raise ProfileFileError(f"has {len(lines)} lines, at most {MOST_LINES} are allowed; use fewer points")
     full = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
     if full and re.fullmatch(r"sep=.", full[0][1].strip()):
         del full[0]
-    separators = ((i, line, next((one for one in ";,\t" if one in line), None)) for i, line in full)
-    return [(i, line.split(one) if one else line.split()) for i, line, one in separators]
+    return [(i, line.split(next((one for one in ";,\t" if one in line), None))) for i, line in full]
 
 
-@dataclass(frozen=True)
-class Header:
-    """Places of the columns of radius and height, and their units as sizes, "1 µm"; None: none is given."""
+def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
+    """The columns of radius and height, the unit of the radii, and that of the heights over it, where there are units.
 
-    columns: tuple[int, int] = (0, 1)
-    units: tuple[str | None, str | None] = (None, None)
-
-
-def _header(file: str, rows: list[Row]) -> tuple[Header, list[Row]]:
-    """What the line of names says, or of names and of units below it, if there is one, and the rows below it."""
-    if not rows:
-        return Header(), rows
-    line, names = rows[0]
-    if any(_number(cell) is not None for cell in names):
+    Takes the lines of names and units from the rows.
+    """
+    line, names = rows[0] if rows else (0, ["0"])
+    if any(_number(name) is not None for name in names):
         many = sum(bool(cell.strip()) for cell in names)
         if many > 2:
-            raise ProfileFileError(f"{file} has {many} columns without names; {FORM}")
-        return Header(), rows
-    at, bare = f"{file}, line {line}", [name.strip().strip('"') for name in names]
-    words = [match[1] if (match := NAME.match(name.lower())) else "" for name in bare]
-    radius, height = _only(at, words, RADII if set(words) & set(RADII) else SIDES), _only(at, words, HEIGHTS)
-    if radius is None or height is None:
-        raise ProfileFileError(f"{at}: the names of its {len(names)} columns are not known; {FORM}, or leave them out")
-    matches = (NAME.match(bare[radius]), NAME.match(bare[height]))
-    units = [next((unit.strip() for unit in match.groups()[1:] if unit), "") if match else "" for match in matches]
-    below = rows[1][1] if len(rows) > 1 else []
-    beneath = len(below) == len(names) and not any(units)
-    beneath = beneath and not any(not cell.strip() or any(map(str.isdigit, cell)) for cell in below)
-    if beneath:
-        units = [below[column].strip().strip('[]()"') for column in (radius, height)]
-    if any(units) != all(units):
-        raise ProfileFileError(
-            f"{at}: only one of radius and height has a unit; give both the same way, r [µm], z [µm]"
-        )
-    sizes = (_size(at, units[0]), _size(at, units[1]))
-    return Header((radius, height), sizes), rows[2:] if beneath else rows[1:]
+            raise ProfileFileError(f"has {many} columns without names; {FORM}")
+        return (0, 1), None, 1.0
+    del rows[0]
+    found = [NAME.match(name.strip().strip('"')) for name in names]
+    words = [match[1].lower() if match else "" for match in found]
+    sides = RADII if set(words) & set(RADII) else SIDES
+    columns = [_only(line, words, allowed) for allowed in (sides, HEIGHTS)]
+    units = [match[2].strip() for column in columns if (match := found[column])]
+    below = rows[0][1] if rows and not any(units) and len(rows[0][1]) == len(names) else [""]
+    if all(cell.strip() and not any(map(str.isdigit, cell)) for cell in below):
+        units = [below[column].strip().strip('[]()"') for column in columns]
+        del rows[0]
+    sizes = []
+    for unit in units:
+        if unit not in ("", MODEL):
+            try:
+                sizes.append(si_value(f"1 {unit}", MODEL)[0])
+            except UnitTextError:
+                what = "the unit in the names is not a known length, such as µm"
+                raise ProfileFileError(f"line {line}: {what}; {FORM}") from None
+    if len(sizes) == 1:
+        what = "only one of radius and height has a unit"
+        raise ProfileFileError(f"line {line}: {what}; give both the same way, r [µm], z [µm]")
+    return columns, *((f"1 {units[0]}", float(sizes[1] / sizes[0])) if sizes else (None, 1.0))
 
 
-def _only(at: str, words: list[str], allowed: tuple[str, ...]) -> int | None:
-    """Where the one column of an allowed name is; None where there is none."""
+def _only(line: int, words: list[str], allowed: tuple[str, ...]) -> int:
+    """Where the one column of an allowed name is."""
     found = [i for i, word in enumerate(words) if word in allowed]
-    if len(found) > 1:
-        raise ProfileFileError(f"{at}: {len(found)} columns match {allowed[0]}; give this name to one of them")
-    return found[0] if found else None
-
-
-def _size(at: str, unit: str) -> str | None:
-    if unit in ("", MODEL):
-        return None
-    try:
-        si_value(f"1 {unit}", MODEL)
-    except UnitTextError:
-        raise ProfileFileError(f"{at}: the unit in the names is not a known length, such as µm; {FORM}") from None
-    return f"1 {unit}"
+    if len(found) == 1:
+        return found[0]
+    what = f"{len(found)} columns match {allowed[0]}; give this name to one of them"
+    if not found:
+        what = f"the names of its {len(words)} columns are not known; {FORM}, or leave them out"
+    raise ProfileFileError(f"line {line}: {what}")
 
 
 def _rising(values: list[float]) -> bool:
     return all(after > before for before, after in pairwise(values))
 
 
-def _folded(path: Path, x: list[float], z: list[float]) -> tuple[list[float], list[float]]:
+def _folded(x: list[float], z: list[float]) -> tuple[list[float], list[float]]:
     """The mean of both sides of a profile from −x to x. Raises ProfileFileError where they are not the same."""
-    n = len(x)
-    step = (x[-1] - x[0]) / (n - 1)
-    if any(abs(x[i] + x[n - 1 - i]) > PLACE_DIFFERENCE * step for i in range(n)):
+    places, heights = (list(zip(values, values[::-1], strict=True))[len(x) // 2 :] for values in (x, z))
+    apart, height, what = max(abs(right - left) for right, left in heights), max(z) - min(z), ""
+    if max(abs(right + left) for right, left in places) > PLACE_DIFFERENCE * (x[-1] - x[0]) / (len(x) - 1):
+        what = "their positions differ"
+    elif apart > HEIGHT_DIFFERENCE * height:
+        what = f"these differ by {apart / height:.0%} of its height, but the model is a body of revolution"
+    if what:
         raise ProfileFileError(
-            f"{path.name} has both sides of 0, and their positions differ; shift it so that "
-            "the apex is at 0, or give one side, r from 0 on"
+            f"has both sides of 0, and {what}; shift it so that the apex is at 0, or give one side, r from 0 on"
         )
-    height = max(z) - min(z)
-    apart = max(abs(z[i] - z[n - 1 - i]) for i in range(n))
-    if apart > HEIGHT_DIFFERENCE * height:
-        raise ProfileFileError(
-            f"{path.name} has both sides of 0, and these differ by {apart / height:.0%} of its height, but the model "
-            "is a body of revolution; shift it so that the apex is at 0, or give one side, r from 0 on"
-        )
-    kept = range(n // 2, n)
-    return [0.5 * (x[i] - x[n - 1 - i]) for i in kept], [0.5 * (z[i] + z[n - 1 - i]) for i in kept]
+    return [0.5 * (right - left) for right, left in places], [0.5 * (right + left) for right, left in heights]
 
 
-def _point(at: str, cells: list[str], columns: tuple[int, int]) -> list[float]:
+def _point(at: str, cells: list[str], columns: Sequence[int]) -> list[float]:
     """Radius and height of one line."""
     if len(cells) <= max(columns):
         many = "has one column" if len(cells) == 1 else f"has {len(cells)} columns"
         raise ProfileFileError(f"{at}: {many}; r and z are needed")
     values = []
     for name, cell in zip("rz", (cells[column] for column in columns), strict=True):
-        value, what, hint = _number(cell), "is empty", "leave out a line that has no value, or interpolate it"
-        if cell.strip():
-            what = "is not a number" if value is None else f"is {value}"
-        if _number(cell.replace(",", ".")) is not None:
-            hint = "leave out a line that has no value" if value is not None else "write it with a decimal point"
+        value, hint = _number(cell), "leave out a line that has no value, or interpolate it"
+        if value is None and _number(cell.replace(",", ".")) is not None:
+            hint = "write it with a decimal point"
         if value is None or not math.isfinite(value):
-            raise ProfileFileError(f"{at}: {name} {what}; {hint}")
+            what = "empty" if not cell.strip() else "not a number" if value is None else value
+            raise ProfileFileError(f"{at}: {name} is {what}; {hint}")
         values.append(value)
     return values
 

@@ -70,6 +70,16 @@ class Shape(Table):
         return None
 
     @property
+    def kinks(self) -> tuple[float, ...]:
+        """Radii [LU] off the axis at which the slope jumps: a pressure there has no bound, and g′ is not finite."""
+        return ()
+
+    @property
+    def alternatives(self) -> tuple[Shape, ...]:
+        """What the body may be instead, by all that is known of it; a formula leaves nothing open."""
+        return ()
+
+    @property
     def steepest(self) -> Self:
         """The steeper one of the two bodies, whose slope and size limit the theory: this one on a plane."""
         return self
@@ -276,7 +286,8 @@ Heights = Annotated[tuple[Height, ...], Field(strict=False), MinLen(FEWEST_POINT
 class Measured(Shape):
     """Profile of the upper body: a measured axisymmetric one, from a file or from two lists.
 
-    Between its points it is a monotone cubic: no overshoot, a continuous slope, a paraboloid met exactly.
+    Between its points it is a monotone cubic: no overshoot, a paraboloid met exactly, and a continuous slope but at
+    points where that jumps, as at the edge of a land.
     """
 
     kind: Literal["table"]
@@ -304,7 +315,7 @@ class Measured(Shape):
         """z(|x|) − z(0)."""
         import numpy as np
 
-        return np.asarray(self._spline()(np.minimum(np.abs(x), self.reach)))
+        return np.asarray(self._curve()(np.minimum(np.abs(x), self.reach)))
 
     def transformed(self, x: Array) -> Array:
         """g, exactly: the slope is a parabola p₀ + p₁ r + p₂ r² between two points.
@@ -313,7 +324,7 @@ class Measured(Shape):
         """
         import numpy as np
 
-        radii, p_0, p_1, p_2 = _slopes(self.r or (), self.z or ())
+        radii, p_0, p_1, p_2 = _slopes(self._curve())
         flat = np.minimum(np.abs(np.ravel(x)), self.reach)
         g = np.zeros_like(flat)
         chunk = max(1, CELLS // len(p_0))
@@ -333,8 +344,145 @@ class Measured(Shape):
         assert self.r is not None
         return self.r[-1]
 
-    def _spline(self) -> Any:
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Where the points show that."""
+        x, _, corners = _points(self.r or (), self.z or ())
+        return tuple(x[corners].tolist())
+
+    @property
+    def alternatives(self) -> tuple[Shape, ...]:
+        """Where the points show no smooth curve, chords, and the corners in which neighbouring chords meet.
+
+        A body whose slope only rises is between the two. Of heights with few digits, also the apex half a digit lower.
+        """
+        found: list[Shape] = [kind.model_construct(**dict(self)) for kind in (Chords, Corners)]
+        if digit := _digit(self.z or ()):
+            found.append(self.model_copy(update={"z": ((self.z or ())[0] - 0.5 * digit, *(self.z or ())[1:])}))
+        return tuple(found)
+
+    def _curve(self) -> Any:
         return _spline(self.r or (), self.z or ())
+
+
+class Chords(Measured):
+    """A measured profile that is straight between its points, where these show no smooth curve."""
+
+    def _curve(self) -> Any:
+        return _angular(self.r or (), self.z or (), False)
+
+
+class Corners(Measured):
+    """The same with a corner in each such cell where the chords on both sides of it meet in it."""
+
+    def _curve(self) -> Any:
+        return _angular(self.r or (), self.z or (), True)
+
+
+ROUGH, BESIDE = 3.0, 2
+"""Ratio of the curvatures at the four points around a cell from which on they show no smooth curve, and how many cells
+on either side do not, either."""
+SHARP = 8.0
+"""Curvature at a point, or at two beside each other, over that at both neighbours from which on the slope jumps."""
+MOST_DIGITS, NEARLY = 10, 1e-4
+"""Digits of heights that are rounded, at most, and how near to a whole multiple one is one."""
+LEAST_JUMP = 1e-6
+"""Such a jump over the largest slope at least: others are round-off."""
+FLANK = 3
+"""Points on either side of a jump whose parabola goes on to where it meets the other one."""
+
+
+@lru_cache(maxsize=8)
+def _points(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array, list[int]]:
+    """Radii and heights with a point where the slope jumps between two, and the numbers of all at which it does.
+
+    It jumps at a point whose curvature is SHARP times that of its neighbours, or between two of which that holds: where
+    the parabolas of either side meet. The body goes on beyond the axis as a mirror image.
+    """
+    import numpy as np
+
+    x, y = np.asarray(r), np.asarray(z) - z[0]
+    slope = np.diff(np.append(y[1], y)) / np.diff(np.append(-x[1], x))
+    jump = np.abs(np.diff(slope))
+    curvature = jump / np.append(2.0 * x[1], x[2:] - x[:-2])
+    strong = jump > LEAST_JUMP * np.abs(slope).max()
+    found: dict[float, float] = {}
+    for i in range(1, len(curvature) - 1):
+        if strong[i] and curvature[i] > SHARP * max(curvature[i - 1], curvature[i + 1]):
+            found[x[i]] = y[i]
+        elif i + 2 < len(curvature) and curvature[i : i + 2].sum() > SHARP * max(curvature[i - 1], curvature[i + 2]):
+            left, right = slice(max(0, i + 1 - FLANK), i + 1), slice(i + 1, i + 1 + FLANK)
+            step = x[i + 1] - x[i]
+            lines = [np.polyfit((x[own] - x[i]) / step, y[own], min(2, len(x[own]) - 1)) for own in (left, right)]
+            roots = np.roots(np.polysub(*lines))
+            meet = [one.real for one in roots if one.imag == 0.0 and 0.0 < one.real < 1.0]
+            if strong[i] and strong[i + 1] and len(meet) == 1:
+                found[x[i] + step * meet[0]] = float(np.polyval(lines[0], meet[0]))
+    every = dict(zip(x.tolist(), y.tolist(), strict=True)) | found
+    places = sorted(every)
+    return np.asarray(places), np.asarray([every[one] for one in places]), [places.index(one) for one in sorted(found)]
+
+
+def _cornered(r: tuple[float, ...], z: tuple[float, ...]) -> dict[str, tuple[float, ...]]:
+    """The points, and in each cell the one where the chords on both sides of it meet, if they do there."""
+    import numpy as np
+
+    x, y = np.asarray(r), np.asarray(z)
+    slope = np.diff(y) / np.diff(x)
+    before, after, start, end = slope[:-2], slope[2:], slice(1, -2), slice(2, -1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        meet = (y[end] - y[start] + before * x[start] - after * x[end]) / (before - after)
+    inside = (meet > x[start]) & (meet < x[end])
+    places = np.append(x, meet[inside])
+    heights = np.append(y, (y[start] + before * (meet - x[start]))[inside])
+    order = np.argsort(places)
+    return {"r": tuple(places[order].tolist()), "z": tuple(heights[order].tolist())}
+
+
+def _digit(z: tuple[float, ...]) -> float:
+    """The power of ten of which all heights are whole multiples; 0 where that is beyond MOST_DIGITS of the largest."""
+    import numpy as np
+
+    heights = np.asarray(z)
+    first = math.ceil(math.log10(np.abs(heights).max()))
+    for power in range(first, first - MOST_DIGITS, -1):
+        whole = heights / 10.0**power
+        if np.abs(whole - whole.round()).max() < NEARLY:
+            return float(10.0**power)
+    return 0.0
+
+
+@lru_cache(maxsize=8)
+def _angular(r: tuple[float, ...], z: tuple[float, ...], corners: bool) -> Any:
+    """The curve through the points, straight in rough cells, or with a corner there."""
+    import numpy as np
+    from scipy.interpolate import PPoly
+
+    own, points = _spline(r, z), _cornered(r, z) if corners else {"r": r, "z": z}
+    x, y = np.asarray(points["r"]), np.asarray(points["z"]) - z[0]
+    places = np.union1d(own.x, x)
+    start, cell = places[:-1], np.searchsorted(np.asarray(r), places[:-1], side="right") - 1
+    smooth = [own.derivative(k)(start) / math.factorial(k) for k in (3, 2, 1)]
+    chord = (np.diff(y) / np.diff(x))[np.searchsorted(x, start, side="right") - 1]
+    straight = [0.0 * start, 0.0 * start, chord]
+    curve = np.where(_is_rough(r, z)[cell], straight, smooth)
+    heights = np.where(_is_rough(r, z)[cell], np.interp(start, x, y), own(start))
+    return PPoly(np.vstack([curve, heights]), places, extrapolate=False)
+
+
+def _is_rough(r: tuple[float, ...], z: tuple[float, ...]) -> NDArray[np.bool_]:
+    """Of each cell, whether the curvatures at the points around it, or near by, differ by more than ROUGH, (n − 1,)."""
+    import numpy as np
+
+    x, y = np.asarray((-r[1], *r)), np.asarray((z[1], *z))
+    slope = np.diff(y) / np.diff(x)
+    bend = np.diff(slope) / (x[2:] - x[:-2])
+    bend = np.concatenate([bend[1:2], bend, bend[-1:], bend[-1:]])  # of the points from −1 to n
+    around = np.lib.stride_tricks.sliding_window_view(bend, 4)
+    low, high = around.min(axis=1), around.max(axis=1)
+    least = LEAST_JUMP * np.abs(slope).max() / x[-1]
+    rough = (np.abs(around).max(axis=1) > least) & ((low <= 0.0) | (high > ROUGH * low))
+    return np.asarray(np.convolve(rough, np.ones(2 * BESIDE + 1), mode="same") > 0.0)
 
 
 @lru_cache(maxsize=8)
@@ -343,12 +491,31 @@ def _spline(r: tuple[float, ...], z: tuple[float, ...]) -> Any:
 
     The slope at a point is that of the parabola through it and its neighbours, so that a sphere's paraboloid is met
     exactly, but no more than STEEPEST times the rise to either side, and 0 where that changes its sign: then no cubic
-    overshoots (F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238).
+    overshoots (F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238). Where the slope jumps, each side has
+    its own.
     """
+    import numpy as np
+    from scipy.interpolate import PPoly
+
+    x, y, corners = _points(r, z)
+    ends = [0]
+    for corner in corners:
+        if corner - ends[-1] >= MIDDLE and corner <= len(x) - 1 - MIDDLE:
+            ends.append(corner)
+    ends.append(len(x) - 1)
+    pieces = [_cubics(x[first : last + 1], y[first : last + 1]) for first, last in pairwise(ends)]
+    return PPoly(np.concatenate(pieces, axis=1), x, extrapolate=False)
+
+
+MIDDLE = 2
+"""Points that a curve needs beside the one where its slope jumps."""
+
+
+def _cubics(x: Array, y: Array) -> Array:
+    """Coefficients of monotone cubics through the points (x, y), (4, n − 1), as `PPoly` has them."""
     import numpy as np
     from scipy.interpolate import CubicHermiteSpline
 
-    x, y = np.asarray(r), np.asarray(z) - z[0]
     step, rise = np.diff(x), np.diff(y) / np.diff(x)
     before, after = rise[:-1], rise[1:]
     inner = (step[1:] * before + step[:-1] * after) / (step[1:] + step[:-1])
@@ -359,17 +526,14 @@ def _spline(r: tuple[float, ...], z: tuple[float, ...]) -> Any:
     wanted = np.concatenate([[first], inner, [last]])
     limit = np.where(turns, 0.0, STEEPEST * np.abs(least))
     slopes = np.sign(least) * np.clip(np.sign(least) * wanted, 0.0, limit)
-    return CubicHermiteSpline(x, y, slopes, extrapolate=False)
+    return np.asarray(CubicHermiteSpline(x, y, slopes).c)
 
 
-@lru_cache(maxsize=8)
-def _slopes(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array, Array, Array]:
+def _slopes(curve: Any) -> tuple[Array, Array, Array, Array]:
     """Radii, shape (n,), and p₀, p₁, p₂ of the slope p₀ + p₁ r + p₂ r² between them, each of shape (n − 1,)."""
-    import numpy as np
-
-    square, linear, constant = _spline(r, z).derivative().c
-    start = np.asarray(r)[:-1]
-    return np.asarray(r), constant - linear * start + square * start**2, linear - 2.0 * square * start, square
+    square, linear, constant = curve.derivative().c
+    start = curve.x[:-1]
+    return curve.x, constant - linear * start + square * start**2, linear - 2.0 * square * start, square
 
 
 GAP = 10.0

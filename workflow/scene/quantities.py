@@ -2,21 +2,24 @@
 
 Model units: length LU (the spacing), force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT in FU·LU.
 
-`keys_of` is the one reader of the tables' types, and `walk` the one walker of a scene: reading, checking, conversion
-between units, the schema and the documentation use both.
+`keys_of` is the one reader of the tables' types, and a tree of `Place`s the one way through a scene: reading, checking,
+conversion between units and rules ask it what stands at a key and what may stand there.
 """
 
 from __future__ import annotations
 
 import types
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, field
+from functools import cache, cached_property, reduce
+from operator import or_
 from typing import Annotated, Any, ClassVar, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from annotated_types import Ge, Gt, Le, MinLen
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import BaseModel, ConfigDict, Field
 
+from contact1d.workflow.scene.problems import Problem, path_of, shown
+from contact1d.workflow.scene.si_text import NUMBER
 from contact1d.workflow.units import SI
 
 Keys = tuple[str | int, ...]
@@ -75,118 +78,104 @@ class Table(BaseModel):
         return [name for name in super().__dir__() if name[0] != "_" and name not in vars(BaseModel)]
 
 
-Length = Annotated[float, Gt(0), Unit("LU")]
+POSITIVE, DIMENSIONLESS = Gt(0), Unit("1")
+
+Length = Annotated[float, POSITIVE, Unit("LU")]
 Height = Annotated[float, Unit("LU")]
 SignedRadius = Annotated[float, Unit("LU")]
-Ratio = Annotated[float, Gt(0), Unit("1")]
-RatioOrZero = Annotated[float, Ge(0), Unit("1")]
-Stiffness = Annotated[float, Gt(0), Unit("FU/LU")]
-Mass = Annotated[float, Gt(0), Unit("MU")]
-Energy = Annotated[float, Gt(0), Unit("FU·LU")]
+Ratio = Annotated[float, POSITIVE, DIMENSIONLESS]
+RatioOrZero = Annotated[float, Ge(0), DIMENSIONLESS]
+Stiffness = Annotated[float, POSITIVE, Unit("FU/LU")]
+Mass = Annotated[float, POSITIVE, Unit("MU")]
+Energy = Annotated[float, POSITIVE, Unit("FU·LU")]
 LineEnergy = Annotated[float, Ge(0), Unit("FU/LU", text=("J/m²",))]
-Temperature = Annotated[float, Gt(0), Unit("FU·LU", text=("K", "J"))]
-Velocity = Annotated[float, Gt(0), Unit("LU/TU")]
-LoadingRate = Annotated[float, Gt(0), Unit("FU/TU")]
-Duration = Annotated[float, Gt(0), Unit("TU")]
+Temperature = Annotated[float, POSITIVE, Unit("FU·LU", text=("K", "J"))]
+Velocity = Annotated[float, POSITIVE, Unit("LU/TU")]
+LoadingRate = Annotated[float, POSITIVE, Unit("FU/TU")]
+Duration = Annotated[float, POSITIVE, Unit("TU")]
 DriveVelocity = Annotated[float, Unit("LU/TU")]
-DampingCoefficient = Annotated[float, Gt(0), Unit("FU·TU/LU")]
+DampingCoefficient = Annotated[float, POSITIVE, Unit("FU·TU/LU")]
 DampingCoefficientOrZero = Annotated[float, Ge(0), Unit("FU·TU/LU")]
 Force = Annotated[float, Unit("FU")]
-Compression = Annotated[float, Gt(0), Unit("FU")]
+Compression = Annotated[float, POSITIVE, Unit("FU")]
 CompressionOrNone = Annotated[float, Ge(0), Unit("FU")]
 Displacement = Annotated[float, Unit("LU")]
-RelativeTolerance = Annotated[float, Ge(1e-7), Le(0.1), Unit("1")]
-ParticleCount = Annotated[int, Ge(3), Le(10_000_000), Unit("1")]
-RepeatCount = Annotated[int, Ge(1), Le(100_000), Unit("1")]
-AnyParticleCount = Annotated[int, Ge(1), Le(10_000_000), Unit("1")]
-StepCount = Annotated[int, Ge(1), Le(1_000_000), Unit("1")]
-CycleCount = Annotated[int, Ge(1), Le(1000), Unit("1")]
-StateCount = Annotated[int, Ge(2), Le(1_000_000), Unit("1")]
-Seed = Annotated[int, Ge(1), Le(2**31 - 1), Unit("1")]
-Pascal = Annotated[float, Gt(0), Unit("Pa")]
-SurfaceEnergy = Annotated[float, Gt(0), Unit("J/m²")]
-Metre = Annotated[float, Gt(0), Unit("m")]
-Newton = Annotated[float, Gt(0), Unit("N")]
-Kilogram = Annotated[float, Gt(0), Unit("kg")]
-Poisson = Annotated[float, Gt(-1), Le(0.5), Unit("1")]
+RelativeTolerance = Annotated[float, Ge(1e-7), Le(0.1), DIMENSIONLESS]
+ParticleCount = Annotated[int, Ge(3), Le(10_000_000), DIMENSIONLESS]
+RepeatCount = Annotated[int, Ge(1), Le(100_000), DIMENSIONLESS]
+AnyParticleCount = Annotated[int, Ge(1), Le(10_000_000), DIMENSIONLESS]
+StepCount = Annotated[int, Ge(1), Le(1_000_000), DIMENSIONLESS]
+CycleCount = Annotated[int, Ge(1), Le(1000), DIMENSIONLESS]
+StateCount = Annotated[int, Ge(2), Le(1_000_000), DIMENSIONLESS]
+Seed = Annotated[int, Ge(1), Le(2**31 - 1), DIMENSIONLESS]
+Pascal = Annotated[float, POSITIVE, Unit("Pa")]
+SurfaceEnergy = Annotated[float, POSITIVE, Unit("J/m²")]
+Metre = Annotated[float, POSITIVE, Unit("m")]
+Newton = Annotated[float, POSITIVE, Unit("N")]
+Kilogram = Annotated[float, POSITIVE, Unit("kg")]
+Poisson = Annotated[float, Gt(-1), Le(0.5), DIMENSIONLESS]
 
 
 T = TypeVar("T")
 Other = TypeVar("Other")
 
 
-def either(special: str, types: Any, otherwise: str) -> Discriminator:
-    """Which of two tagged types a value is meant to be, so that one mistake is one error."""
-    return Discriminator(lambda value: special if isinstance(value, types) else otherwise)
-
-
-_NumberOr = Annotated[Annotated[T, Tag("number")] | Annotated[Other, Tag("word")], either("word", str, "number")]
-Auto = _NumberOr[T, Literal["auto"]]
-AllOr = _NumberOr[T, Literal["all"]]
+Auto = Annotated[T | Literal["auto"], Field()]
+AllOr = Annotated[T | Literal["all"], Field()]
 # strict=False on the tuple alone: TOML has lists, a frozen table holds a tuple. Its items stay strict.
 Listed = Annotated[tuple[T, ...], Field(strict=False), MinLen(1)]
-OneOrMore = Annotated[
-    Annotated[T, Tag("number")] | Annotated[Listed[Other], Tag("list")], either("list", (list, tuple), "number")
-]
-
-
-@dataclass(frozen=True)
-class Choice:
-    """One of the types that a value may have.
-
-    Attributes:
-        type, marks: the type, and what its `Annotated` says of it.
-        items: what may stand in it, if it is a list.
-        table, kind: the table that it is, if it is one, and its word for `kind`, if it has one.
-        words: those that it allows.
-        unit: of a number.
-    """
-
-    type: Any
-    marks: tuple[Any, ...]
-    items: Allowed | None
-    table: type[Table] | None
-    kind: str | None
-    words: tuple[Any, ...]
-    unit: Unit | None
+OneOrMore = Annotated[T | Listed[Other], Field()]
 
 
 @dataclass(frozen=True)
 class Allowed:
-    """The allowed values of a key: one or more types."""
+    """What may stand at a key: a plain value, a list, a table, or a word; where it is several of these, any one.
 
-    choices: tuple[Choice, ...]
+    Attributes:
+        type: of a plain value: bool, str, int or float.
+        marks: what `Annotated` says of the value or the list.
+        items: what may stand in the list.
+        tables: by their `kind`; a table that has none by "".
+        words: those that are allowed.
+    """
 
-    @property
+    type: Any = None
+    marks: tuple[Any, ...] = ()
+    items: Allowed | None = None
+    tables: Mapping[str, type[Table]] = field(default_factory=dict)
+    words: tuple[str, ...] = ()
+
+    def __or__(self, other: Allowed) -> Allowed:
+        """Either of the two."""
+        tables = {**self.tables, **other.tables}
+        marks, words = self.marks + other.marks, self.words + other.words
+        return Allowed(self.type or other.type, marks, self.items or other.items, tables, words)
+
+    @cached_property
     def table(self) -> type[Table] | None:
         """The table that it must be, None if there are others or none."""
-        return self.choices[0].table if len(self.choices) == 1 else None
+        return None if self.items else self.tables.get("")
 
     @property
-    def kinds(self) -> dict[str, type[Table]]:
+    def kinds(self) -> Mapping[str, type[Table]]:
         """The tables of a union by their `kind`."""
-        return {choice.kind: choice.table for choice in self.choices if choice.kind and choice.table}
+        return {} if "" in self.tables else self.tables
 
-    @property
-    def words(self) -> tuple[Any, ...]:
-        """All words that are allowed."""
-        return tuple(word for choice in self.choices for word in choice.words)
-
-    @property
+    @cached_property
     def unit(self) -> Unit | None:
         """The unit of a number, or of the items of a list of numbers."""
-        units = (choice.unit or (choice.items.unit if choice.items else None) for choice in self.choices)
-        return next((unit for unit in units if unit), None)
+        own = (mark for mark in self.marks if isinstance(mark, Unit))
+        return next(own, self.items.unit if self.items else None)
 
-    @property
+    @cached_property
     def quantity(self) -> Unit | None:
         """The unit of a number that may have a dimension: counts have none."""
-        return next((choice.unit for choice in self.choices if choice.type is float), None)
+        return self.unit if self.type is float else None
 
     def table_for(self, value: Mapping[str, Any]) -> type[Table] | None:
         """The table that `value` is meant to be, by its kind where there are several."""
-        tables = {choice.kind: choice.table for choice in self.choices if choice.table}
-        return next((table for kind, table in tables.items() if len(tables) == 1 or kind == value.get("kind")), None)
+        alone = len(self.tables) == 1
+        return next((table for kind, table in self.tables.items() if alone or kind == value.get("kind")), None)
 
 
 @dataclass(frozen=True)
@@ -217,23 +206,94 @@ def allowed_by(annotation: Any, marks: tuple[Any, ...] = ()) -> Allowed:
     if origin is Annotated:
         return allowed_by(arguments[0], (*arguments[1:], *marks))
     if origin in (Union, types.UnionType):
-        members = [allowed_by(member, marks) for member in arguments if member is not type(None)]
-        return Allowed(tuple(choice for member in members for choice in member.choices))
-    items = allowed_by(arguments[0]) if origin is tuple else None
-    table = annotation if isinstance(annotation, type) and issubclass(annotation, Table) else None
-    kind = str(get_args(table.model_fields["kind"].annotation)[0]) if table and "kind" in table.model_fields else None
-    unit = next((mark for mark in marks if isinstance(mark, Unit)), None)
-    return Allowed((Choice(annotation, marks, items, table, kind, arguments if origin is Literal else (), unit),))
+        return reduce(or_, (allowed_by(member, marks) for member in arguments if member is not type(None)))
+    if origin is Literal:
+        return Allowed(words=arguments)
+    if origin is tuple:
+        return Allowed(marks=marks, items=allowed_by(arguments[0]))
+    if not issubclass(annotation, Table):
+        return Allowed(annotation, marks)
+    kind = annotation.model_fields.get("kind")
+    return Allowed(tables={get_args(kind.annotation)[0] if kind else "": annotation})
 
 
-@dataclass(frozen=True)
 class Place:
-    """A position in a scene: its `keys`, its value, and what is allowed; `absent`: the default without a value."""
+    """A position in a scene: a key of a table or an item of a list, the value there, and what may stand there.
 
-    keys: Keys
-    value: Any
-    allowed: Allowed
-    absent: bool = False
+    A scene is a tree of them, and what reads it asks this tree: spelling, units, types and rules alike.
+
+    Attributes:
+        value: what stands there; where nothing does, the default.
+        allowed: what may stand there.
+        key: the last of its `keys`.
+        absent: whether nothing stands there.
+        sound: whether its value, and all in it, can be relied on.
+        problems: what is wrong in the scene.
+        source: what was written, where the value follows from that: a text with a unit, or the name of a file.
+    """
+
+    __slots__ = ("_above", "_inside", "absent", "allowed", "key", "problems", "sound", "source", "value")
+
+    def __init__(
+        self, value: Any, allowed: Allowed, key: str | int = "", above: Place | None = None, absent: bool = False
+    ) -> None:
+        """The position `key` in the table or list `above`; without one the whole of something."""
+        self.value, self.allowed, self.key, self._above, self.absent = value, allowed, key, above, absent
+        self.problems: list[Problem] = above.problems if above else []
+        self.source: Place | None = None
+        self._inside: dict[Any, Place] | None = None
+        self.sound = True
+
+    def __iter__(self) -> Iterator[Place]:
+        """All places in it, a table before its content, which may be corrected meanwhile; absent keys, too."""
+        for place in self.inside.values():
+            yield place
+            if place.inside:
+                yield from place
+
+    @property
+    def inside(self) -> dict[Any, Place]:
+        """The places of its keys or items; of a table whose kind is not known that of the kind alone."""
+        if self._inside is None:
+            value, allowed = self.value, self.allowed
+            found: dict[Any, Place] = {}
+            if isinstance(value, dict):
+                table = allowed.table_for(value)
+                found = {
+                    name: Place(value.get(name, key.default), key.allowed, name, self, name not in value)
+                    for name, key in (keys_of(table) if table else {}).items()
+                }
+                if allowed.kinds:
+                    found["kind"] = self.kind
+            elif allowed.items and isinstance(value, list | tuple):
+                found = {i: Place(item, allowed.items, i, self) for i, item in enumerate(value)}
+            self._inside = found
+        return self._inside
+
+    @property
+    def kind(self) -> Place:
+        """The place that says which one of several tables it is."""
+        return Place(
+            self.value.get("kind"), Allowed(words=(*self.allowed.kinds,)), "kind", self, "kind" not in self.value
+        )
+
+    @property
+    def keys(self) -> Keys:
+        """The keys from the top of the scene down to it."""
+        return (*self._above.keys, self.key) if self._above else ()
+
+    def at(self, path: str) -> Place | None:
+        """The place at a dotted path from here; None where nothing may stand."""
+        place: Place | None = self
+        for key in path.split("."):
+            place = place.inside.get(key) if place else None
+        return place
+
+    def put(self, value: object) -> None:
+        """Put a value there."""
+        assert self._above is not None
+        self._above.value[self.key] = self.value = value
+        self.absent, self._inside = False, None
 
     @property
     def unit(self) -> Unit:
@@ -245,50 +305,56 @@ class Place:
     @property
     def is_text(self) -> bool:
         """Whether it is a text that can only have meant a number with a unit: one with digits, and no plain number."""
-        if not isinstance(self.value, str) or self.value in self.allowed.words or not any(map(str.isdigit, self.value)):
-            return False
-        try:
-            float(self.value)
-        except ValueError:
-            return True
-        return False
+        value = self.value
+        digits = isinstance(value, str) and value not in self.allowed.words and any(map(str.isdigit, value))
+        return digits and not NUMBER.fullmatch(value.strip())
 
     @property
     def is_number(self) -> bool:
         """Whether it is a number other than 0, which is the same in all units."""
         return isinstance(self.value, int | float) and not isinstance(self.value, bool) and self.value != 0
 
-    def put(self, data: Any, value: object) -> None:
-        """Put another value in its place in `data`."""
-        for key in self.keys[:-1]:
-            data = data[key]
-        data[self.keys[-1]] = value
+    @property
+    def path(self) -> str:
+        """The dotted path of what was written."""
+        return path_of((self.source or self).keys)
 
+    @property
+    def given(self) -> str | None:
+        """What was written, or a number by default, as TOML; None where there is neither."""
+        return None if self.absent and not self.is_number else shown((self.source or self).value)
 
-def walk(allowed: Allowed, value: Any, keys: Keys = (), absent: bool = False) -> Iterator[Place]:
-    """Every position in `value`, a table before its content, which may be corrected meanwhile; absent keys, too."""
-    yield Place(keys, value, allowed, absent)
-    if isinstance(value, Mapping) and (table := allowed.table_for(value)):
-        for name, key in keys_of(table).items():
-            yield from walk(key.allowed, value.get(name, key.default), (*keys, name), name not in value)
-    elif isinstance(value, list | tuple):
-        for items in (choice.items for choice in allowed.choices if choice.items):
-            for i, item in enumerate(value):
-                yield from walk(items, item, (*keys, i))
+    def report(self, message: str, hint: str = "") -> None:
+        """Add what is wrong with it to the problems."""
+        self.problems.append(Problem(self.path, message, self.given, hint))
+
+    def doubt(self) -> None:
+        """Take its value for no basis of anything else."""
+        self.sound = False
+        if self._above:
+            self._above.doubt()
+
+    def fault(self, message: str, hint: str = "") -> None:
+        """Doubt it, and report what is wrong."""
+        self.doubt()
+        self.report(message, hint)
 
 
 def places(table: type[Table], data: Mapping[str, Any]) -> Iterator[Place]:
-    """Every place of a number in `data`, a table of this type with the keys of a scene file; absent keys by default."""
-    for place in walk(allowed_by(table), data):
-        nothing = place.absent and not isinstance(place.value, float)
-        if place.allowed.quantity and not nothing and not isinstance(place.value, Mapping | list | tuple):
+    """The places of all numbers in `data`, a table of this type with the keys of a scene file: see `numbers_in`."""
+    return numbers_in(Place(data, allowed_by(table)))
+
+
+def numbers_in(whole: Place) -> Iterator[Place]:
+    """Every place of a number, or of what stands there in its stead; an absent key where it is a number by default."""
+    for place in whole:
+        if place.allowed.quantity and not place.inside and (isinstance(place.value, float) or not place.absent):
             yield place
 
 
-def tables_in(table: type[Table], path: str = "") -> Iterator[tuple[str, Choice]]:
-    """Every table inside `table`, with its dotted path, that itself first and each kind of a union."""
-    yield path, allowed_by(table).choices[0]
+def tables_in(table: type[Table], path: str = "", kind: str = "") -> Iterator[tuple[str, str, type[Table]]]:
+    """Every table inside `table`, that itself first and each kind of a union: dotted path, kind and type."""
+    yield path, kind, table
     for name, key in keys_of(table).items():
-        for choice in key.allowed.choices:
-            if choice.table:
-                yield from tables_in(choice.table, f"{path}.{name}" if path else name)
+        for one, inner in key.allowed.tables.items():
+            yield from tables_in(inner, f"{path}.{name}" if path else name, one)

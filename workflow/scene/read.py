@@ -10,16 +10,17 @@ from os import PathLike, fspath
 from pathlib import Path as FilePath
 from typing import Any
 
-from pydantic import ConfigDict
+from pydantic import ConfigDict, ValidationError
 
 from contact1d.files import UnreadableError, read_text
-from contact1d.workflow.scene.check import FILE, PROFILE, UNIT_KEYS, Conversion, PointsFile, check_tables, mend_words
-from contact1d.workflow.scene.problems import Problem, SceneError, nearest, path_of, shown
-from contact1d.workflow.scene.profile_file import ScaleError, read_profile
-from contact1d.workflow.scene.quantities import Table, keys_of
+from contact1d.workflow.scene.check import mend_words, report_faults
+from contact1d.workflow.scene.conversion import UNIT_KEYS, convert
+from contact1d.workflow.scene.problems import BARE, Problem, SceneError, shown, suggestion
+from contact1d.workflow.scene.profile_file import put_points, take_points
+from contact1d.workflow.scene.quantities import Place, Table, keys_of
 from contact1d.workflow.scene.rules import check_fit
-from contact1d.workflow.scene.si_text import MODEL_UNITS, split
-from contact1d.workflow.scene.tables import EFFECTS, Tables
+from contact1d.workflow.scene.si_text import MODEL_UNITS
+from contact1d.workflow.scene.tables import EFFECTS, WHOLE, Tables
 from contact1d.workflow.units import Scales
 
 DEEPEST = 100
@@ -78,7 +79,7 @@ class Scene(Tables):
             raise SceneError([Problem("changes", "must be a mapping of dotted keys to values", shown(given), form)])
         named = {key.replace("__", "."): value for key, value in keywords.items()}
         data: dict[str, Any] = plain_data(self)
-        problems = set_values(data, {str(key): value for key, value in {**given, **named}.items()})
+        problems = set_values(data, {**given, **named})
         problems += remove_effects(data, _listed(without))
         return _checked(plain_data(data), problems, FilePath())
 
@@ -148,88 +149,34 @@ def scene_from_dict(
 
 def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -> Scene:
     """The scene of `plain`, which is corrected meanwhile; `problems` are those found so far."""
-    problems += mend_words(plain, Scene)
-    source, unread = _with_points(plain, folder)
-    _with_legs(plain)
-    converted = Conversion(plain, source)
-    scene, wrong, unsound = check_tables(plain, Scene, converted.reported)
-    found = (*unread, *converted.problems, *wrong, *check_fit(plain, unsound))
-    problems += [_as_written(problem, converted.texts, source, plain) for problem in found]
+    tables = Place(plain, WHOLE)
+    mend_words(tables)
+    points = take_points(tables, folder)
+    has_texts = convert(tables)
+    put_points(tables, points)
+    scene = None
+    try:
+        scene = Scene.model_validate(plain)
+    except ValidationError as error:
+        report_faults(tables, error)
+    check_fit(tables)
+    problems += sorted(_in_si(tables, has_texts), key=_rank)
     if problems or scene is None:
-        raise SceneError(sorted(problems, key=_rank))
+        raise SceneError(problems)
     return scene
 
 
-def _as_written(
-    problem: Problem, texts: Mapping[str, str], source: PointsFile | None, data: Mapping[str, Any]
-) -> Problem:
-    """The problem with what stands in the scene: the text with its unit, the file in place of its points, and SI."""
-    material = data.get("material")
-    if isinstance(material, Mapping):
-        sizes = [size if isinstance(size := material.get(key), float) else None for key in UNIT_KEYS.values()]
-        if sizes[0] and sizes[1] and (texts or sizes[:2] == [1.0, 1.0]) and MODEL_UNITS not in problem.message:
-            words = Scales(sizes[0], sizes[1], mass=sizes[2]).in_words
-            problem = replace(problem, message=words(problem.message), hint=words(problem.hint))
-    if problem.path in texts:
-        ways = tuple({key: _with_unit(key, value, texts, data) for key, value in way.items()} for way in problem.ways)
-        hint = problem.hint
-        for way, written in zip(problem.ways, ways, strict=True):
-            for key, value in way.items():
-                hint = hint.replace(f" {value:g}", f" {written[key]}") if isinstance(value, float) else hint
-        return replace(problem, given=shown(texts[problem.path]), ways=ways, hint=hint)
-    if source and problem.path == path_of(PROFILE):
-        return replace(problem, path=path_of(FILE), given=shown(source.name))
-    return problem
-
-
-def _with_unit(key: str, value: object, texts: Mapping[str, str], data: Mapping[str, Any]) -> object:
-    """A number of the model for `key`, in the unit of the text that stands there now; else as it is."""
-    if key not in texts or not isinstance(value, float):
-        return value
-    now: Any = data
-    for part in key.split("."):
-        now = now[part]
-    number, unit = split(texts[key])
-    return f"{value / now * float(number):.6g}{unit}" if now else value
-
-
-def _with_points(data: dict[str, Any], folder: FilePath) -> tuple[PointsFile | None, list[Problem]]:
-    """Put the points of a profile's file, if it names one, in its place in `data`; says what their numbers are."""
-    bodies = data.get("bodies")
-    profile = bodies.get("profile") if isinstance(bodies, dict) else None
-    if not isinstance(profile, dict) or profile.get("kind") != "table":
-        return None, []
-    lists, key = "r" in profile or "z" in profile, "file"
-    if "file" not in profile and lists and "scale" in profile:
-        beside = "not together with the lists r and z, which have units of their own"
-        given, hint = shown(profile.pop("scale")), "it belongs to a file: remove it"
-        return None, [Problem("bodies.profile.scale", beside, given, hint)]
-    if not isinstance(profile.get("file"), str):
-        return None, []
-    file, scale = profile.pop("file"), profile.pop("scale", None)
-    message, hint = "not together with the lists r and z", "give one of the two"
-    if not lists:
-        try:
-            points, units = read_profile(folder / file, scale)
-            profile |= points
-            return PointsFile(file, units), []
-        except ValueError as error:
-            message, hint, key = str(error), "", "scale" if isinstance(error, ScaleError) else "file"
-    problem = Problem(f"bodies.profile.{key}", message, shown(scale if key == "scale" else file), hint)
-    profile |= {"r": [0.0, 1.0, 2.0, 3.0], "z": [0.0, 1.0, 4.0, 9.0]}  # so that the rest of the scene is still checked
-    return PointsFile(file, {}), [problem]
-
-
-def _with_legs(data: dict[str, Any]) -> None:
-    """Put tables in the place of a slide's legs [velocity, distance] in `data`."""
-    experiment = data.get("experiment")
-    if not isinstance(experiment, dict):
-        return
-    path = experiment.get("path")
-    if isinstance(path, list):
-        names = ("velocity", "distance")
-        legs = [dict(zip(names, leg, strict=True)) if isinstance(leg, list) and len(leg) == 2 else leg for leg in path]
-        experiment["path"] = legs
+def _in_si(tables: Place, has_texts: bool) -> list[Problem]:
+    """The problems of a scene with SI in place of LU, FU and MU, where its numbers are written in it."""
+    units = (tables.at(f"material.{key}") for key in UNIT_KEYS.values())
+    length, force, mass = (unit.value if unit and isinstance(unit.value, float) else None for unit in units)
+    if not (length and force and (has_texts or length == force == 1.0)):
+        return tables.problems
+    words = Scales(length, force, mass=mass).in_words
+    return [
+        one if MODEL_UNITS in one.message else replace(one, message=words(one.message), hint=words(one.hint))
+        for one in tables.problems
+    ]
 
 
 def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Problem]:
@@ -243,16 +190,36 @@ def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Prob
         path, _, text = override.partition("=")
         where = f"set {shown(override)}"
         if text.strip():
-            problems += _set(data, path, _toml_value(text.strip()), where, form)
+            problems += set_values(data, {path: _toml_value(text.strip())}, where, form)
         else:
             problems.append(Problem(where, "no value", hint=form))
     return problems
 
 
-def set_values(data: dict[str, Any], values: Mapping[str, Any]) -> list[Problem]:
-    """Set the value of each dotted key in `data`; None removes the key. Returns the problems."""
-    form = "write table.key, for example experiment.method"
-    return [problem for path, value in values.items() for problem in _set(data, path, value, f"set {path}", form)]
+def set_values(
+    data: dict[str, Any],
+    values: Mapping[str, Any],
+    where: str = "",
+    form: str = "write table.key, for example experiment.method",
+) -> list[Problem]:
+    """Set the value of each dotted key in `data`; None removes the key. Returns the problems, by `where` they are from.
+
+    `form`: what to write instead of what is no path of keys.
+    """
+    problems = []
+    for path, value in values.items():
+        table, at, keys = data, where or f"set {path}", [key.strip() for key in str(path).split(".")]
+        if len(keys) > DEEPEST or not all(map(BARE.fullmatch, keys)):
+            problems.append(Problem(at, "not a path of keys", hint=form))
+            continue
+        for depth, key in enumerate(keys[:-1], start=1):
+            table = table.setdefault(key, {})
+            if not isinstance(table, dict):
+                problems.append(Problem(at, f"{'.'.join(keys[:depth])} is not a table", hint="set it as a whole"))
+                break
+        else:
+            table[keys[-1]] = value
+    return problems
 
 
 def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
@@ -260,9 +227,7 @@ def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
     problems = []
     for name in dict.fromkeys(names):
         there = [effect for effect in EFFECTS if effect in data]
-        meant = nearest(name, EFFECTS)
-        message = "not an effect that can be removed"
-        hint = (f'did you mean "{meant}"? ' if meant else "") + f"effects: {', '.join(EFFECTS)}"
+        message, hint = "not an effect that can be removed", suggestion(name, EFFECTS, "effects")
         if name in EFFECTS:
             message, hint = "the scene has no such table", f"effects there: {', '.join(there) or 'none'}"
         if name in there:
@@ -270,19 +235,6 @@ def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
         else:
             problems.append(Problem(f"without {name}", message, hint=hint))
     return problems
-
-
-def _set(data: dict[str, Any], path: str, value: Any, where: str, form: str) -> list[Problem]:
-    keys = [key.strip() for key in path.split(".")]
-    if len(keys) > DEEPEST or not all(re.fullmatch(r"[A-Za-z0-9_-]+", key) for key in keys):
-        return [Problem(where, "not a path of keys", hint=form)]
-    table = data
-    for depth, key in enumerate(keys[:-1], start=1):
-        table = table.setdefault(key, {})
-        if not isinstance(table, dict):
-            return [Problem(where, f"{'.'.join(keys[:depth])} is not a table", hint="set it as a whole")]
-    table[keys[-1]] = value
-    return []
 
 
 def _toml_value(text: str) -> Any:
@@ -315,11 +267,8 @@ def plain_data(value: Any, levels: int = DEEPEST) -> Any:
 
 
 def _rank(problem: Problem) -> int:
-    """Place of a problem in a report: changes from outside, the tables in the order of a scene, what is unknown."""
-    order = list(Scene.model_fields)
-    table = re.split(r"[.\[]", problem.path)[0]
-    if problem.path.startswith(("set ", "without ")):
-        return -1
+    """Place of a problem in a report: the tables in the order of a scene, then what is unknown."""
+    order, table = list(Scene.model_fields), re.split(r"[.\[]", problem.path)[0]
     return order.index(table) if table in order else len(order)
 
 

@@ -16,15 +16,16 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import Any
 
+from contact1d.digits import apart
 from contact1d.workflow.scene.experiments import KINDS, Cycles, Kind, Span
-from contact1d.workflow.scene.problems import Problem, shown
-from contact1d.workflow.scene.quantities import Keys, Table, keys_of
+from contact1d.workflow.scene.problems import Problem
+from contact1d.workflow.scene.quantities import Place, Table, keys_of
+from contact1d.workflow.scene.si_text import split
 from contact1d.workflow.scene.tables import (
     ALIKE,
     EFFECT_TABLES,
     SPHERES,
     TIMED,
-    WHOLE,
     Bodies,
     default_method,
     default_reduction,
@@ -35,6 +36,8 @@ WHOLE_NUMBER_ERROR = 1e-9
 """Relative error of a quotient of two decimals up to which it counts as whole, or two lengths as equal."""
 LONGEST_CELL = 1000
 """Most particles of a pair of chains that is suggested in place of one that does not close."""
+DIGITS = 6
+"""Of a number in a message, at least."""
 PLANE = 'bodies.lower = "rigid_plane"'
 PARTICLES = 'bodies.lower = "particles"'
 GIVE_SPACING = "give bodies.spacing as a length (LU)"
@@ -42,10 +45,12 @@ ELASTICITY = "material.upper and material.lower with E and ν, or material.conta
 
 Row = tuple[str, object, str, str] | tuple[str, object, str, str, Mapping[str, float]]
 Rows = Iterator[Row]
+SAID_OF = {"miss": True, "not ": False, "only": False}
+"""Whether messages that begin so are about a key that is absent; others may be about any."""
 
 
 class Draft:
-    """A scene that may have wrong values: `data` as in the file, and the keys at which a value is `unsound`.
+    """A scene that may have wrong values.
 
     A dotted path is `in` it where anything stands, right or wrong. By a path it gives what stands there or counts where
     nothing does, and None where that is not known or there is no such table.
@@ -57,40 +62,37 @@ class Draft:
         effects: those whose tables are there.
     """
 
-    def __init__(self, data: Mapping[str, Any], unsound: frozenset[Keys]) -> None:
-        """Keep both."""
-        self.data, self.unsound = data, unsound
+    def __init__(self, scene: Place) -> None:
+        """Keep the scene."""
+        self.scene = scene
         self.kind, self.lower, self.profile = self["experiment.kind"], self["bodies.lower"], self["bodies.profile.kind"]
         self.experiment = KINDS.get(self.kind, Kind)
         self.on_plane = self.lower == "rigid_plane"
         self.on_chain = not self.on_plane and self.lower is not None
-        self.effects = tuple(name for name in EFFECT_TABLES if name in data)
-
-    def written(self, path: str) -> Any:
-        """The value at `path`, right or wrong; None without one."""
-        value: Any = self.data
-        for key in path.split("."):
-            value = value.get(key) if isinstance(value, Mapping) else None
-        return value
+        self.effects = tuple(name for name in EFFECT_TABLES if name in self)
 
     def __contains__(self, path: str) -> bool:
         """Whether something stands at `path`."""
-        return self.written(path) is not None
+        place = self.scene.at(path)
+        return place is not None and not place.absent
 
     def __getitem__(self, path: str) -> Any:
         """See above."""
-        keys = tuple(path.split("."))
-        if any(bad[: len(keys)] == keys[: len(bad)] for bad in self.unsound):
-            return None
-        value: Any = self.data
-        allowed = WHOLE
-        for name in keys:
-            table = allowed.table_for(value) if isinstance(value, Mapping) else None
-            key = keys_of(table).get(name) if table else None
-            if key is None:
-                return None
-            value, allowed = value.get(name, key.default), key.allowed
-        return value
+        place = self.scene.at(path)
+        return place.value if place and place.sound else None
+
+    def written(self, path: str, number: float) -> float | str:
+        """A number for `path` to six digits, in the unit of the text that stands there."""
+        place = self.scene.at(path)
+        if not place or not place.source or not place.value:
+            return float(f"{number:.{DIGITS}g}")
+        given, unit = split(place.source.value)
+        return f"{number / place.value * float(given):.{DIGITS}g}{unit}"
+
+
+def limit(value: float, of: float) -> str:
+    """The limit of a value that lies beyond it, as text that shows that."""
+    return apart(value, of, DIGITS)[1]
 
 
 # fmt: off
@@ -99,9 +101,9 @@ def _lower_body(d: Draft) -> Rows:
     # a rigid plane neither drags a slide nor holds a pull-off without adhesion
     inert = d.on_plane and (slides or (pulls_off and "adhesion" not in d))
     touched = d.on_plane and not inert
-    yield ("interaction", d.on_chain and "interaction" not in d,
+    yield ("interaction", d.on_chain,
            "missing, needed by a lower body of particles", f"add [interaction], or use {PLANE}")
-    yield ("interaction", touched and "interaction" in d,
+    yield ("interaction", touched,
            f"not with {PLANE}, which is touched directly", f"remove it, or use {PARTICLES}")
     yield ("horizontal", touched and "horizontal" in d,
            "has no effect on a rigid plane, which exerts no tangential force on a particle",
@@ -114,10 +116,10 @@ def _lower_body(d: Draft) -> Rows:
     yield ("bodies.lower", d.on_chain and along,
            'must be "rigid_plane" with kind = "tangential", whose friction is Coulomb\'s',
            'between two chains friction comes from the interaction: use kind = "slide"')
-    yield ("friction", d.on_chain and "friction" in d and not along,
+    yield ("friction", d.on_chain and not along,
            "not between two chains, whose friction comes from the interaction",
            f'remove it, or use {PLANE} and kind = "tangential"')
-    yield ("adhesion", d.on_chain and "adhesion" in d,
+    yield ("adhesion", d.on_chain,
            "not between two chains, which attract each other by the interaction",
            f"use interaction.attraction, or {PLANE}")
 
@@ -128,20 +130,22 @@ def _interaction(d: Draft) -> Rows:
     if None in (A, a, B, b):
         return
     yield (f"{attraction}.range", b <= a,
-           f"must be greater than the range of the repulsion, {a:g} (LU), else the bodies never attract each other",
-           f"raise it to {2.0 * a:g}, or lower {repulsion}.range to {0.5 * b:g}",
+           f"must be greater than the range of the repulsion, {limit(b, a)} (LU), else the bodies never attract each "
+           "other",
+           f"raise it to {{}}, or lower {repulsion}.range to {{}}",
            {f"{attraction}.range": 2.0 * a, f"{repulsion}.range": 0.5 * b})
     if b <= a:
         return
     most, least = A / a * b, B / b * a
     ratio = math.log(A) - math.log(a) - math.log(B) + math.log(b)
     yield (f"{attraction}.amplitude", ratio <= 0.0,
-           f"must be less than {most:.6g} (FU·LU), so that A/a > B/b and particles repel when they touch",
-           f"lower it to {0.25 * most:g}, or raise {repulsion}.amplitude to {4.0 * least:g}",
+           f"must be less than {limit(B, most)} (FU·LU), so that A/a > B/b and particles repel when they touch",
+           f"lower it to {{}}, or raise {repulsion}.amplitude to {{}}",
            {f"{attraction}.amplitude": 0.25 * most, f"{repulsion}.amplitude": 4.0 * least})
     cutoff, r_0 = d["interaction.cutoff"], ratio * a * b / (b - a)
-    yield ("interaction.cutoff", ratio > 0.0 and cutoff not in (None, "auto") and cutoff <= r_0,
-           f"must be greater than the force-free distance, {r_0:.6g} (LU)", 'raise it, or use "auto"')
+    if cutoff not in (None, "auto"):
+        yield ("interaction.cutoff", ratio > 0.0 and cutoff <= r_0,
+               f"must be greater than the force-free distance, {limit(cutoff, r_0)} (LU)", 'raise it, or use "auto"')
 
 
 def _attraction(d: Draft) -> Rows:
@@ -149,7 +153,7 @@ def _attraction(d: Draft) -> Rows:
     held = attracts or ("adhesion" in d and "adhesion" not in d.experiment.excludes)
     force = d[f"experiment.{d.experiment.load_key}"]
     yield ("interaction.attraction",
-           pulls_off and d.lower == "particles" and "interaction" in d and not attracts and "adhesion" not in d,
+           pulls_off and d.lower == "particles" and "interaction" in d and "adhesion" not in d,
            "missing, needed by a pull_off", "add interaction.attraction with amplitude and range")
     for key, tensile in (
         ("force", "a tensile force needs interaction.attraction, or on a rigid plane [adhesion]"),
@@ -165,7 +169,7 @@ def _attraction(d: Draft) -> Rows:
     yield ("bodies.reduction", adheres and d["bodies.reduction"] == "geike_popov",
            'must be "mdr" with [adhesion], whose contact edge is that of a contact of three dimensions',
            'write reduction = "mdr"')
-    yield ("damping", adheres and d.kind == "path" and "damping" in d,
+    yield ("damping", adheres and d.kind == "path",
            "not with [adhesion] in a path, which under displacement control has no dynamics",
            'remove it: method = "quasistatic" is the same without time')
 
@@ -174,13 +178,13 @@ def _plate(d: Draft) -> Rows:
     slides, free = d.experiment.motion_is_result, d["plate.free"]
     yield ("plate.free", slides and free is not None and "x" not in free,
            'must contain "x" in a slide', 'write free = ["x", "z"]')
-    yield ("horizontal", not slides and "x" in (free or ()) and "horizontal" not in d,
+    yield ("horizontal", not slides and "x" in (free or ()),
            'missing, needed by plate.free with "x"',
            f'write plate.free = ["z"], or add {EFFECT_TABLES["horizontal"].how}')
     held = d.kind == "hold"
-    yield ("plate", held and "plate" in d and "experiment.displacement" in d,
+    yield ("plate", held and "experiment.displacement" in d,
            "not with a displacement that is held: the plate has no motion of its own", "remove it, or give a force")
-    yield ("plate", held and "plate" not in d and "experiment.force" in d,
+    yield ("plate", held and "experiment.force" in d,
            "missing, needed by a force that is held", f"add {EFFECT_TABLES['plate'].how}")
 
 
@@ -194,8 +198,8 @@ def _normal_loads(d: Draft) -> Rows:
     load = d[given[0]] if d.experiment.goes_along and len(given) == 1 and not points % 4 else None
     if load is None:
         return
-    loads, rows = load if isinstance(load, list) else [load], d["experiment.cycles"] or d["experiment.displacements"]
-    table = Cycles if "experiment.cycles" in d else Span
+    loads, cycles = load if isinstance(load, list) else [load], d["experiment.cycles"]
+    rows, table = (cycles, Cycles) if cycles else (d["experiment.displacements"], Span)
     count = len(table.model_validate(rows).values() if isinstance(rows, Mapping) else rows or loads)
     yield (given[0], loads is load and len(loads) != count,
            f"must be one number or as many as there are displacements, {count}; these are {len(loads)}",
@@ -217,7 +221,7 @@ def _open_spacing(d: Draft) -> Rows:
     yield ("bodies.bulk_stiffness", d["bodies.bulk_stiffness"] not in (None, "auto"),
            'must be "auto" with spacing = "auto": the stiffness of a particle is E* times the spacing',
            f"write it, and {ELASTICITY}; or {GIVE_SPACING}")
-    yield ("bodies.bulk_stiffness_tangential", "bodies.bulk_stiffness_tangential" in d,
+    yield ("bodies.bulk_stiffness_tangential", True,
            'not with spacing = "auto": it is a property of one particle',
            f"remove it: it follows from ν of material.upper and lower; or {GIVE_SPACING}")
     yield ("bodies.spacing", d.profile == "flat",
@@ -250,9 +254,11 @@ def _punch(d: Draft) -> Rows:
 
 
 def _material(d: Draft) -> Rows:
-    """One elasticity, and one way to the units."""
-    modulus, upper, lower = (f"material.{key}" in d for key in ("contact_modulus", "upper", "lower"))
-    length, force, energy = (f"material.{key}" in d for key in ("length_unit", "force_unit", "surface_energy"))
+    """One elasticity, and one way to the units: given, or by F_A and a₀ of the run with γ and E*."""
+    upper, lower, modulus, length, force, energy = (
+        f"material.{key}" in d
+        for key in ("upper", "lower", "contact_modulus", "length_unit", "force_unit", "surface_energy")
+    )
     elastic, auto = modulus or upper or lower, d["bodies.bulk_stiffness"] == "auto"
     yield ("bodies.bulk_stiffness", auto and not elastic,
            "must be given (FU/LU): the scene has no elastic moduli from which it follows",
@@ -260,32 +266,23 @@ def _material(d: Draft) -> Rows:
     units_alone = length and force and not energy
     if "material" not in d or (not elastic and (auto or units_alone)):
         return
-    yield ("material.contact_modulus", modulus and (upper or lower),
+    yield ("material.contact_modulus", upper or lower,
            "not together with upper or lower", "give E*, or E and ν of both bodies")
-    for body, absent in (("upper", not upper), ("lower", upper and not lower)):
-        yield (f"material.{body}", absent and not modulus,
+    for body, needed in (("upper", not modulus), ("lower", upper and not modulus)):
+        yield (f"material.{body}", needed,
                "missing", "write upper and lower, each with youngs_modulus and poisson_ratio, or contact_modulus")
-    yield from (_units_by_run if energy else _units_given)(d, auto)
-
-
-def _units_given(d: Draft, auto: bool) -> Rows:
-    length, force = (f"material.{key}" in d for key in ("length_unit", "force_unit"))
-    yield ("material.length_unit", not length,
-           "missing", "give one LU in metres, or surface_energy, from which a pull_off finds both units")
-    yield ("material.force_unit", force and not auto and "bodies.bulk_stiffness" in d,
-           "not together with a given bulk_stiffness, from which it follows",
-           'remove it, or write bodies.bulk_stiffness = "auto"')
-    yield ("material.force_unit", auto and not force,
-           'missing, needed by bulk_stiffness = "auto"', "give one FU in newtons")
-
-
-def _units_by_run(d: Draft, auto: bool) -> Rows:
-    """γ and E* fix both units by F_A and a₀ of the run."""
     for unit in ("length_unit", "force_unit"):
-        yield (f"material.{unit}", f"material.{unit}" in d,
+        yield (f"material.{unit}", energy,
                "not together with surface_energy, with which both units follow from F_A and a₀ of the run",
                "remove one of the two")
-    yield ("bodies.bulk_stiffness", auto,
+    yield ("material.length_unit", not energy,
+           "missing", "give one LU in metres, or surface_energy, from which a pull_off finds both units")
+    yield ("material.force_unit", not energy and not auto and "bodies.bulk_stiffness" in d,
+           "not together with a given bulk_stiffness, from which it follows",
+           'remove it, or write bodies.bulk_stiffness = "auto"')
+    yield ("material.force_unit", not energy and auto,
+           'missing, needed by bulk_stiffness = "auto"', "give one FU in newtons")
+    yield ("bodies.bulk_stiffness", energy and auto,
            "must be a number: LU and FU are not known before the run",
            "give the stiffness (FU/LU), or length_unit and force_unit in place of surface_energy")
     key = "material.surface_energy"
@@ -293,7 +290,7 @@ def _units_by_run(d: Draft, auto: bool) -> Rows:
            "not in this experiment, which finds no F_A and a₀",
            'use kind = "pull_off", whose results give length_unit and force_unit')
     nothing = "adhesion" not in d if d.on_plane else "interaction" in d and "interaction.attraction" not in d
-    yield (key, d.kind == "path" and nothing,
+    yield (key, energy and d.kind == "path" and nothing,
            "has no effect without attraction: there is no F_A and no a₀",
            'use length_unit, or lower = "particles" with an interaction.attraction')
     yield (key, d.profile not in (None, *SPHERES),
@@ -307,7 +304,8 @@ def _counter_body(d: Draft) -> Rows:
     if None in (radius, counter):
         return
     yield (key, -radius <= counter <= 0.0,
-           f"must be greater than 0 (convex), or less than {-radius:g} (LU) (concave), else the bodies conform",
+           f"must be greater than 0 (convex), or less than {limit(counter, -radius)} (LU) (concave), else the "
+           "bodies conform",
            "a cup is wider than the ball in it; leave it out for a plane")
     chosen = d["bodies.reduction"] or default_reduction("material" in d, d.lower or "", "parabola")
     yield (key, chosen == "geike_popov",
@@ -331,14 +329,14 @@ def _reduction(d: Draft) -> Rows:
 def _pull_off(d: Draft) -> Rows:
     if d.kind != "pull_off":
         return
-    rate, velocity, stiffness = (f"experiment.{key}" in d for key in ("loading_rate", "velocity", "stiffness"))
+    rate, velocity = "experiment.loading_rate" in d, "experiment.velocity" in d
     thermal = "noise" in d and d["experiment.method"] != "quasistatic"
-    yield ("experiment.loading_rate", thermal and not rate and not velocity,
+    yield ("experiment.loading_rate", thermal and not velocity,
            "missing, needed by a pull_off with [noise]",
            "give the rate (FU/TU) at which the load decreases, or the velocity (LU/TU) of a spring that retracts the "
            "plate, or remove [noise]")
-    yield ("experiment.velocity", rate and velocity, "not together with a loading_rate", "remove one of the two")
-    yield ("experiment.stiffness", stiffness and not velocity,
+    yield ("experiment.velocity", rate, "not together with a loading_rate", "remove one of the two")
+    yield ("experiment.stiffness", not velocity,
            "only with a velocity: it is that of the spring",
            "remove it, or give the velocity of its far end")
 
@@ -356,12 +354,12 @@ def _periodic(d: Draft) -> Rows:
     normal, tangential = d["bodies.bulk_stiffness"], d["bodies.bulk_stiffness_tangential"]
     if normal not in (None, "auto") and tangential is not None:
         yield ("bodies.bulk_stiffness_tangential", tangential > normal,
-               f"must be at most bulk_stiffness, {normal:g} (FU/LU), with bodies.periodic",
+               f"must be at most bulk_stiffness, {limit(tangential, normal)} (FU/LU), with bodies.periodic",
                "lower it: a larger one needs distant anchors along x, which a periodic body cannot have")
     count, spacing = d["bodies.particles"], d["bodies.spacing"]
     upper, pitch = (
-        below if d.written(f"bodies.upper_{key}") is None else d[f"bodies.upper_{key}"]
-        for key, below in (("particles", count), ("spacing", spacing))
+        d[path] if path in d else below  # noqa: SIM401 (a draft is no dict)
+        for path, below in (("bodies.upper_particles", count), ("bodies.upper_spacing", spacing))
     )
     yield ("bodies.particles", count == "auto",
            "must be a number with bodies.periodic",
@@ -376,16 +374,17 @@ def _periodic(d: Draft) -> Rows:
             f", or particles = {cells * ratio.numerator} and upper_particles = {cells * ratio.denominator} with "
             f"upper_spacing = {ratio.numerator / ratio.denominator * spacing:.10g}"
         )
+    one, other = apart(spacing, pitch, DIGITS)
     yield ("bodies.upper_spacing", abs(count * spacing - upper * pitch) > WHOLE_NUMBER_ERROR * count * spacing,
-           f"the periodic chains differ in length: {count} · {spacing:g} LU below and {upper} · {pitch:g} LU above",
+           f"the periodic chains differ in length: {count} · {one} LU below and {upper} · {other} LU above",
            f"the nearest equal lengths: {nearest}")
 
 
 # What an experiment or an effect declares
 
 
-def _needed(d: Draft, name: str, by: str) -> Row:
-    return name, name not in d, f"missing, needed by {by}", f"add {EFFECT_TABLES[name].how}"
+def _needed(name: str, by: str) -> Row:
+    return name, True, f"missing, needed by {by}", f"add {EFFECT_TABLES[name].how}"
 
 
 def _methods(d: Draft) -> Rows:
@@ -393,24 +392,24 @@ def _methods(d: Draft) -> Rows:
     kind, experiment, given = d.kind, d.experiment, d["experiment.method"]
     if kind is None:
         if "noise" in d:
-            yield _needed(d, "damping", "[noise]")
+            yield _needed("damping", "[noise]")
         return
     excluded = experiment.excludes
     others = (one for one, table in KINDS.items() if not table.excludes.keys() & {*d.effects})
     other = next((f', or use kind = "{one}"' for one in others), "")
     for name, why in excluded.items():
-        yield (name, name in d, f"not in a {kind}: {why}", f"remove it{other}")
+        yield (name, True, f"not in a {kind}: {why}", f"remove it{other}")
     if given is None and "experiment.method" in d:
         return
     rest = tuple(name for name in d.effects if name not in excluded)
     method = experiment.only_method or given or default_method(rest)
     for name in experiment.needs:
-        yield _needed(d, name, f"a {kind}")
+        yield _needed(name, f"a {kind}")
     if method == "dynamic" and experiment.only_method is None:
         cause = "" if given else ", made dynamic by " + ", ".join(f"[{name}]" for name in rest if name in TIMED)
         for name in experiment.needs_in_time:
             also = " and by [noise]" if given and name == "damping" and "noise" in rest else ""
-            yield _needed(d, name, f"a dynamic {kind}{cause}{also}")
+            yield _needed(name, f"a dynamic {kind}{cause}{also}")
     for name in TIMED:
         yield (name, method == "quasistatic" and name in rest,
                f"not in a quasistatic {kind}, which does not depend on time",
@@ -428,12 +427,21 @@ def _declared_keys(d: Draft) -> Rows:
             for key in given[1:]:
                 yield (f"{name}.{key}", True, f"not together with {given[0]}", fix)
     for key in d.experiment.only_with_noise:
-        yield (f"experiment.{key}", "noise" not in d and f"experiment.{key}" in d,
+        yield (f"experiment.{key}", "noise" not in d,
                "only with [noise]: without thermal fluctuations all repeats are equal",
                "remove it, or add [noise] with temperature and seed")
+    yield ("experiment.cycles", d.kind == "pull_off" and "noise" in d,
+           "not with [noise], whose pulls are repeated with other seeds", "remove it, and give experiment.repeats")
+    yield ("experiment.preload", d.kind == "pull_off" and "experiment.cycles" in d and d["experiment.preload"] == 0.0,
+           "must be greater than 0 (FU) with cycles, whose bodies are pressed together again", "raise it")
+    listed = "bodies.profile.r" in d or "bodies.profile.z" in d
+    yield ("bodies.profile.file", listed,
+           "not together with the lists r and z", "give one of the two")
+    yield ("bodies.profile.scale", listed and "bodies.profile.file" not in d,
+           "not together with the lists r and z, which have units of their own", "it belongs to a file: remove it")
     for key in ("upper_particles", "upper_spacing", "upper_offset", "periodic"):
         path = f"bodies.{key}"
-        yield (path, d.on_plane and path in d and d[path] is not False,
+        yield (path, d.on_plane and d[path] is not False,
                f"not with {PLANE}, which has no particles", f"remove it, or use {PARTICLES}")
 
 
@@ -441,7 +449,7 @@ def _beside_effects(d: Draft) -> Rows:
     """Effects that another one cannot have beside it, on the lower body that this one belongs to."""
     for effect in d.effects if d.on_plane else ():
         for name, why in EFFECT_TABLES[effect].excludes.items():
-            yield (name, name in d, f"not with [{effect}]: {why}", f"remove [{name}], or [{effect}]")
+            yield (name, True, f"not with [{effect}]: {why}", f"remove [{name}], or [{effect}]")
 # fmt: on
 
 
@@ -464,14 +472,13 @@ RULES = (
 )
 
 
-def check_fit(data: Mapping[str, Any], unsound: frozenset[Keys] = frozenset()) -> list[Problem]:
-    """Every violation of a rule across the tables of `data` that does not depend on its `unsound` values."""
-    draft, problems = Draft(data, unsound), []
+def check_fit(scene: Place) -> None:
+    """Report every violation of a rule across the tables of a scene that does not depend on values that are doubted."""
+    draft = Draft(scene)
     for key, broken, message, fix, *ways in (row for rows in RULES for row in rows(draft)):
-        if broken:
-            value = draft.written(key)
-            given = None if value is None or isinstance(value, Mapping) else shown(value)
-            # to six digits, as the message says them
-            changes = tuple({path: float(f"{number:.6g}")} for way in ways for path, number in way.items())
-            problems.append(Problem(key, message, given, fix, changes))
-    return problems
+        place = scene.at(key)
+        if broken and place and SAID_OF.get(message[:4], place.absent) == place.absent:
+            changes = tuple({path: draft.written(path, number)} for way in ways for path, number in way.items())
+            texts = (f"{one:g}" if isinstance(one, float) else one for way in changes for one in way.values())
+            given = None if isinstance(place.value, Mapping) else place.given
+            scene.problems.append(Problem(key, message, given, fix.format(*texts) if ways else fix, changes))

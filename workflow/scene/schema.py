@@ -7,6 +7,7 @@ references and in the words of draft 7, which editors of TOML read (taplo, and w
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import astuple
 from typing import Any
 
@@ -14,14 +15,16 @@ from annotated_types import Ge, Gt, Le, MinLen
 from pydantic_core import PydanticUndefined
 
 from contact1d.workflow.scene.problems import as_toml
-from contact1d.workflow.scene.quantities import Allowed, Choice, Table, keys_of
+from contact1d.workflow.scene.quantities import Allowed, Table, keys_of
 from contact1d.workflow.scene.si_text import example
 from contact1d.workflow.scene.tables import Tables
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
 SIMPLE = {bool: "true or false", str: "text in quotes", int: "a whole number", float: "a number"}
 TYPES = {bool: "boolean", str: "string", int: "integer", float: "number"}
-BOUNDS = {Gt: "exclusiveMinimum", Ge: "minimum", Le: "maximum", MinLen: "minItems"}
+RANGES = {Gt: "exclusiveMinimum", Ge: "minimum", Le: "maximum"}
+IN_WORDS = {"exclusiveMinimum": "greater than", "minimum": "of at least", "maximum": "at most"}
+LENGTHS = {MinLen: "minItems"}
 TEXT_PATTERN = r"^[ \t]*[+\-−]?[0-9]*\.?[0-9]+.*[A-Za-zµμÅ°%]"
 """Of a text that is a number with a unit."""
 Node = dict[str, Any]
@@ -29,27 +32,28 @@ Node = dict[str, Any]
 
 def statement(allowed: Allowed) -> str:
     """The allowed values as text: "a number greater than 0 (LU), or "auto"", continues "must be"."""
-    if len(allowed.choices) > 1:
-        if len(allowed.kinds) == len(allowed.choices):
-            return f"a table with kind = {_either(tuple(allowed.kinds))}"
-        return ", or ".join(statement(Allowed((choice,))) for choice in allowed.choices)
-    choice = allowed.choices[0]
-    if choice.words:
-        return _either(choice.words)
-    if choice.items:
-        return f"a list, each item {statement(choice.items)}"
-    if choice.table:
-        keys = ", ".join(keys_of(choice.table))
-        name = f", or a name such as {as_toml(next(iter(names)))}" if (names := choice.table.by_name) else ""
-        table = f"a table {f'with {keys}' if keys else 'without keys'}{name}"
-        return f"a list [{keys}]" if choice.table.as_list else table
-    unit = f" ({choice.unit.name})" if choice.unit and choice.unit.name != "1" else ""
-    return SIMPLE[choice.type] + _range(choice.marks) + unit
+    parts = []
+    if allowed.type:
+        unit = allowed.unit
+        parts += [SIMPLE[allowed.type] + _range(allowed) + (f" ({unit.name})" if unit and unit.name != "1" else "")]
+    if allowed.items:
+        parts += [f"a list, each item {statement(allowed.items)}"]
+    if allowed.kinds:
+        parts += [f"a table with kind = {_either((*allowed.kinds,))}"]
+    elif table := allowed.tables.get(""):
+        keys = ", ".join(keys_of(table))
+        name = f", or a name such as {as_toml(next(iter(table.by_name)))}" if table.by_name else ""
+        parts += [
+            f"a list [{keys}]" if table.as_list else f"a table {f'with {keys}' if keys else 'without keys'}{name}"
+        ]
+    if allowed.words:
+        parts += [_either(allowed.words)]
+    return ", or ".join(parts)
 
 
 def text_of(allowed: Allowed) -> str:
     """An example of a text with a unit that a number may be, "10 mm"; nothing where it has no unit."""
-    unit = allowed.quantity or next((choice.items.quantity for choice in allowed.choices if choice.items), None)
+    unit = allowed.quantity or (allowed.items and allowed.items.quantity)
     return example(unit.texts[0]) if unit and unit.name != "1" else ""
 
 
@@ -78,20 +82,20 @@ def schema_text() -> str:
 
 def _nodes(allowed: Allowed) -> Node:
     """The schema of what a key allows."""
-    nodes = [_node(choice) for choice in allowed.choices]
+    nodes = [_table(table) for table in allowed.tables.values()]
+    if allowed.items:
+        nodes.insert(0, {"type": "array", "items": _nodes(allowed.items)} | _bounds(allowed, LENGTHS))
+    if allowed.type:
+        number = {"type": TYPES[allowed.type]} | _bounds(allowed, RANGES)
+        text = {"type": "string", "pattern": TEXT_PATTERN}
+        nodes.insert(0, {"anyOf": [number, text]} if allowed.quantity and text_of(allowed) else number)
+    if allowed.words:
+        nodes.append({"type": "string", "enum": [*allowed.words]})
     return nodes[0] if len(nodes) == 1 else {"oneOf": nodes}
 
 
-def _node(choice: Choice) -> Node:
-    if choice.table:
-        return _table(choice.table)
-    if choice.words:
-        return {"type": "string", "enum": list(choice.words)}
-    bounds = {BOUNDS[type(mark)]: next(iter(astuple(mark))) for mark in choice.marks if type(mark) in BOUNDS}
-    if choice.items:
-        return {"type": "array", "items": _nodes(choice.items)} | bounds
-    node = {"type": TYPES[choice.type]} | bounds
-    return {"anyOf": [node, {"type": "string", "pattern": TEXT_PATTERN}]} if text_of(Allowed((choice,))) else node
+def _bounds(allowed: Allowed, names: Mapping[Any, str]) -> Node:
+    return {names[type(mark)]: next(iter(astuple(mark))) for mark in allowed.marks if type(mark) in names}
 
 
 def _table(table: type[Table]) -> Node:
@@ -118,12 +122,8 @@ def _either(words: tuple[str, ...]) -> str:
     return f"{', '.join(others)} or {last}" if others else last
 
 
-def _range(marks: tuple[Any, ...]) -> str:
-    above = [f"greater than {mark.gt:g}" for mark in marks if isinstance(mark, Gt)]
-    least = [f"{mark.ge:.10g}" for mark in marks if isinstance(mark, Ge)]
-    most = [f"{mark.le:.10g}" for mark in marks if isinstance(mark, Le)]
-    if least and most:
-        return f" from {least[0]} to {most[0]}"
-    parts = [*above, *(f"of at least {bound}" for bound in least)]
-    parts += [f"at most {bound}" if parts else f"of at most {bound}" for bound in most]
-    return f" {' and '.join(parts)}" if parts else ""
+def _range(allowed: Allowed) -> str:
+    bounds = _bounds(allowed, RANGES)
+    if {"minimum", "maximum"} <= bounds.keys():
+        return f" from {bounds['minimum']:.10g} to {bounds['maximum']:.10g}"
+    return " and".join(f" {IN_WORDS[name]} {bound:.10g}" for name, bound in bounds.items())

@@ -16,33 +16,50 @@ from typing import Any
 from contact1d.workflow.units import SI
 
 DIMENSIONS = {
-    "m": ("a length", "10 mm"),
-    "N": ("a force", "10 N"),
-    "Pa": ("a pressure", "210 GPa"),
-    "kg": ("a mass", "1 ng"),
-    "s": ("a time", "1 µs"),
-    "K": ("a temperature", "300 K"),
-    "J": ("an energy", "1 aJ"),
-    "N/m": ("a force per length or energy per area", "100 N/m"),
-    "J/m²": ("an energy per area", "50 mJ/m²"),
-    "m/s": ("a velocity", "1 µm/s"),
-    "N·s/m": ("a drag coefficient", "1 mN·s/m"),
-    "N/s": ("a force per time", "1 mN/s"),
-    "m²": ("an area", "1 mm²"),
-    "m³": ("a volume", "1 mm³"),
-    "m/s²": ("an acceleration", "9.81 m/s²"),
-    "kg/m³": ("a density", "7.8 g/cm³"),
-    "W": ("a power", "1 W"),
-    "Hz": ("a frequency", "1 kHz"),
-    "Pa·s": ("a viscosity", "1 mPa·s"),
-    "V": ("a voltage", "1 V"),
-    "A": ("a current", "1 A"),
-    "mol": ("an amount of substance", "1 mol"),
-    "C": ("an electric charge", "1 C"),
-    "1": ("a number without a unit", "0.3"),
-    "rad": ("an angle", "80°"),
+    "m": "a length",
+    "N": "a force",
+    "Pa": "a pressure",
+    "kg": "a mass",
+    "s": "a time",
+    "K": "a temperature",
+    "J": "an energy",
+    "N/m": "a force per length or energy per area",
+    "J/m²": "an energy per area",
+    "m/s": "a velocity",
+    "N·s/m": "a drag coefficient",
+    "N/s": "a force per time",
+    "m²": "an area",
+    "m³": "a volume",
+    "m/s²": "an acceleration",
+    "kg/m³": "a density",
+    "W": "a power",
+    "Hz": "a frequency",
+    "Pa·s": "a viscosity",
+    "V": "a voltage",
+    "A": "a current",
+    "mol": "an amount of substance",
+    "C": "an electric charge",
+    "1": "a number without a unit",
+    "rad": "an angle",
 }
-"""Each dimension in words, with an example, by its unit in SI."""
+"""Each dimension in words, by its unit in SI."""
+EXAMPLES = {
+    "m": "10 mm",
+    "N": "10 N",
+    "Pa": "210 GPa",
+    "kg": "1 ng",
+    "s": "1 µs",
+    "K": "300 K",
+    "J": "1 aJ",
+    "N/m": "100 N/m",
+    "J/m²": "50 mJ/m²",
+    "m/s": "1 µm/s",
+    "N·s/m": "1 mN·s/m",
+    "N/s": "1 mN/s",
+    "1": "0.3",
+    "rad": "80°",
+}
+"""A text of those that a scene has."""
 COMMON = (
     "m", "mm", "µm", "nm", "pm", "cm", "Å", "N", "kN", "mN", "µN", "nN", "Pa", "kPa", "MPa", "GPa", "J", "J/m²",
     "mJ/m²", "N/m", "mN/m", "kg", "g", "mg", "K", "s", "ms", "µs", "ns", "m/s", "mm/s", "µm/s", "nm/s",
@@ -57,6 +74,14 @@ POWER = re.compile(r"(\*\*|\^)?[-+⁻]?[\d⁰¹²³⁴⁵⁶⁷⁸⁹]+")
 LONGEST = 60
 """Characters of a text that may be a number with a unit."""
 MODEL_UNITS = "is in units of the model"
+NO_UNIT = {
+    r"$": "has no unit",
+    r",": "has a comma in its number: write a decimal point, and no thousands separators",
+    r"[eE](?![^\W\d_])": "has an exponent that is not an integer",
+    r"[.'_\d]": "has text after the number {number} that is not a unit",
+    r"(LU|FU|MU|TU)\b": f"{MODEL_UNITS}: write {{number}} without quotes and unit",
+}
+"""How what follows a number begins where it is no unit, and what it is."""
 LARGEST = 1e300
 """Numbers beyond it are none."""
 
@@ -67,22 +92,27 @@ class UnitTextError(ValueError):
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit as read: its size in base units of SI, where its zero is, its dimension, and whether it is of angles."""
+    """A unit as read: its text, size in base units of SI, where its zero is, dimension, and whether it is of angles."""
 
+    text: str
     factor: Fraction
     zero: Fraction
     dimension: Any
     angular: bool = False
 
+    def measures(self, unit: str) -> bool:
+        """Whether it is of the dimension of this unit of SI; an angle is no number."""
+        return bool(self.dimension == _dimension(unit)) and self.angular == (unit == "rad")
+
 
 def in_words(unit: str) -> str:
     """What a quantity in `unit` (of SI or of the model) is, with an example: "a force, such as 10 N"."""
-    return f"{DIMENSIONS[in_si(unit)][0]}, such as {example(unit)}"
+    return f"{DIMENSIONS[in_si(unit)]}, such as {example(unit)}"
 
 
 def example(unit: str) -> str:
     """A text that a quantity in `unit` may be: "10 mm"."""
-    return DIMENSIONS[in_si(unit)][1]
+    return EXAMPLES[in_si(unit)]
 
 
 def in_si(unit: str) -> str:
@@ -97,17 +127,20 @@ def split(text: str) -> tuple[str, str]:
     if found is None or len(plain) > LONGEST:
         raise UnitTextError("does not begin with a number")
     number, unit = found[0], plain[found.end() :].strip()
-    if not unit:
-        raise UnitTextError("has no unit")
-    if unit[0] == ",":
-        raise UnitTextError("has a comma in its number: write a decimal point, and no thousands separators")
-    if re.match(r"[eE](?![^\W\d_])", unit):
-        raise UnitTextError("has an exponent that is not an integer")
-    if unit[0] in ".'_" or unit[0].isdigit():
-        raise UnitTextError(f"has text after the number {number} that is not a unit")
-    if re.fullmatch(r"(LU|FU|MU|TU)\b.*", unit):
-        raise UnitTextError(f"{MODEL_UNITS}: write {number} without quotes and unit")
+    for begin, message in NO_UNIT.items():
+        if re.match(begin, unit):
+            raise UnitTextError(message.format(number=number))
     return number, unit
+
+
+def quantity(text: str) -> tuple[Fraction, Unit]:
+    """The value in SI of a text such as "10 mm", exactly, and its unit. Raises UnitTextError: "has no unit"."""
+    number, given = split(text)
+    unit, size = _unit(given), float(number)
+    if not -LARGEST < size < LARGEST:
+        raise UnitTextError("exceeds the range of floating-point numbers")
+    exact = Fraction(number) if size else Fraction(0)  # 1e-999999999 is 0, and no fraction of so many digits
+    return exact * unit.factor + unit.zero, unit
 
 
 def si_value(text: str, unit: str, *also: str) -> tuple[Fraction, str]:
@@ -121,28 +154,19 @@ def si_value(text: str, unit: str, *also: str) -> tuple[Fraction, str]:
     Raises:
         UnitTextError: with a sentence that begins "must be …".
     """
-    wanted = f"must be {in_words(unit)}"
-    meant = _meant(text, unit)
-    instead = f"; did you mean {meant}?" if meant else ""
     try:
-        number, given = split(text)
-        found = _unit(given)
+        value, found = quantity(text)
+        for name in (unit, *also):
+            if found.measures(in_si(name)):
+                return value, name
+        what = next((words for name, words in DIMENSIONS.items() if found.measures(name)), "another quantity")
+        if found.angular and in_si(unit) == "1":
+            slope = math.tan(value)
+            half = math.degrees(math.atan2(1.0, slope))
+            what += f': its tangent is {slope:.6g}; a cone may have half_angle = "{half:.6g}°" in place of this slope'
+        raise UnitTextError(f"is {what}")
     except UnitTextError as error:
-        raise UnitTextError(f"{wanted}; {_quoted(text)} {error}{instead}") from None
-    size = float(number)
-    if not -LARGEST < size < LARGEST:
-        raise UnitTextError(f"{wanted}; {_quoted(text)} exceeds the range of floating-point numbers")
-    exact = Fraction(number) if size else Fraction(0)  # 1e-999999999 is 0, and no fraction of so many digits
-    value = exact * found.factor + found.zero
-    for name in (unit, *also):
-        if found.dimension == _dimension(in_si(name)) and found.angular == (name == "rad"):
-            return value, name
-    if found.angular and in_si(unit) == "1":
-        slope = math.tan(value)
-        half = math.degrees(math.atan2(1.0, slope))
-        instead = f': its tangent is {slope:.6g}; a cone may have half_angle = "{half:.6g}°" in place of this slope'
-    what = "an angle" if found.angular else _named(found.dimension)
-    raise UnitTextError(f"{wanted}; {_quoted(text)} is {what}{instead}")
+        raise UnitTextError(f"must be {in_words(unit)}; {_quoted(text)} {error}{_meant(text, unit)}") from None
 
 
 def si_base(text: str) -> tuple[float, str]:
@@ -150,12 +174,11 @@ def si_base(text: str) -> tuple[float, str]:
 
     Of N/m and J/m², which are one, that which the text has; an angle keeps its unit. Raises UnitTextError.
     """
-    number, given = split(text)
-    found = _unit(given)
-    names = [name for name in DIMENSIONS if found.dimension == _dimension(name)]
+    value, found = quantity(text)
+    names = [name for name in DIMENSIONS if found.measures(name)]
     if found.angular or not names:
-        return float(number), given
-    return float(Fraction(number) * found.factor + found.zero), max(names, key=lambda name: name[0] in given)
+        return float((value - found.zero) / found.factor), found.text
+    return float(value), max(names, key=lambda name: name[0] in found.text)
 
 
 def _quoted(text: str) -> str:
@@ -163,27 +186,16 @@ def _quoted(text: str) -> str:
     return "".join(c if c.isprintable() else "?" for c in short).strip() or "an empty text"
 
 
-def _named(dimension: Any) -> str:
-    """What has this dimension, in words."""
-    for name, (words, _) in DIMENSIONS.items():
-        if dimension == _dimension(name):
-            return words
-    return "another quantity"
-
-
 def _meant(text: str, unit: str) -> str:
-    """The text with the unit that was meant, or nothing: 10 GPa where it says 10 gpa."""
+    """The question whether another unit was meant: 10 GPa where it says 10 gpa."""
     try:
         number, given = split(text)
     except UnitTextError:
         return ""
+    same = [one for one in COMMON if one.lower() == given.lower() and one != given and _unit(one).measures(in_si(unit))]
     if given.replace("·", "").replace(" ", "") == "Nm" and in_si(unit) == "J":
-        return f"{number} N·m"
-    for common in COMMON:
-        same = common.lower() == given.lower() and common != given
-        if same and _dimension(common) == _dimension(in_si(unit)):
-            return f"{number} {common}"
-    return ""
+        same = ["N·m"]
+    return f"; did you mean {number} {same[0]}?" if same else ""
 
 
 @cache
@@ -207,9 +219,9 @@ def _for_pint(unit: str) -> str:
 
 
 @cache
-def _unit(unit: str) -> Unit:
-    """What the text `unit` means. Raises UnitTextError."""
-    unit = re.sub("°(?![CF])", "deg", unit)  # pint's parser knows the sign, and its names don't
+def _unit(text: str) -> Unit:
+    """What the text of a unit means. Raises UnitTextError."""
+    unit = re.sub("°(?![CF])", "deg", text)  # pint's parser knows the sign, and its names don't
     names = [part for part in re.split(r"[\s·*×/()]+", POWER.sub("", unit)) if part]
     unknown = [name for name in names if not NAME.fullmatch(name) or not _is_known(name)]
     if unknown or not names:
@@ -228,7 +240,7 @@ def _unit(unit: str) -> Unit:
     if relative and (unit not in names or known.isdisjoint(OFFSET)):
         raise UnitTextError("is a relative scale: give a temperature in K or °C; levels (dB) are not allowed")
     zero = registry.Quantity(Fraction(0), found).to("K").magnitude if relative else Fraction(0)
-    return Unit(Fraction(factor), zero, found.dimensionality, not known.isdisjoint(ANGLES))
+    return Unit(text, Fraction(factor), zero, found.dimensionality, not known.isdisjoint(ANGLES))
 
 
 def _is_known(name: str) -> bool:

@@ -216,6 +216,11 @@ class Bodies(Table):
         return self.profile.reach
 
     @property
+    def kinks(self) -> tuple[float, ...]:
+        """Positions [LU] beside the apex at which the slope of the profile jumps."""
+        return self.profile.kinks
+
+    @property
     def spacing(self) -> float:
         """Distance [LU] of neighbouring particles; "auto" is a number once `settings.spacing.with_spacing` chose it."""
         assert self.given_spacing != "auto", "no spacing was chosen yet"
@@ -318,6 +323,11 @@ class Tables(Table):
         return tuple(name for name in EFFECTS if getattr(self, name) is not None)
 
     @property
+    def present(self) -> tuple[Effect, ...]:
+        """These effects."""
+        return tuple(getattr(self, name) for name in self.effects)
+
+    @property
     def bulk_stiffness(self) -> float:
         """Stiffness k [FU/LU] of each particle to its bulk: the given one, else the material's.
 
@@ -354,13 +364,12 @@ class Tables(Table):
     @property
     def stands(self) -> bool:
         """Whether particles are fixed in the upper body, on a rigid plane that has their springs."""
-        return self.is_stepped or self.adhesion is not None
+        return self.bodies.lower == "rigid_plane" and not any(effect.needs_bonds for effect in self.present)
 
     @property
     def is_stepped(self) -> bool:
-        """Whether particles need no relaxation: on a rigid plane without neighbour springs they follow the plate."""
-        alone = self.bodies.lower == "rigid_plane" and self.neighbours is None
-        return alone and self.method == "quasistatic"
+        """Whether particles follow the plate without relaxation, so that load steps are timesteps of one run."""
+        return self.stands and self.method == "quasistatic"
 
     @property
     def method(self) -> Method:

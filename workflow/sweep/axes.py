@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from contact1d.digits import cleaned
 from contact1d.workflow.scene import Problem, Scene, SceneError, read_tables, scene_from_dict
 from contact1d.workflow.scene.problems import nearest, shown
 from contact1d.workflow.scene.read import plain_data, set_values
@@ -207,10 +208,10 @@ def _span(table: Mapping[str, Any], where: str, problems: list[Problem]) -> tupl
     start, end = ends if unit else given
     if scale == "linear" and isinstance(start, int) and isinstance(end, int) and (end - start) % steps == 0:
         return tuple(start + i * ((end - start) // steps) for i in range(steps + 1))
-    inner = (np.linspace if scale == "linear" else np.geomspace)(start, end, steps + 1)[1:-1]
+    inner = map(cleaned, (np.linspace if scale == "linear" else np.geomspace)(start, end, steps + 1)[1:-1])
     if unit:
-        return given[0], *(f"{value!r} {unit}" for value in inner.tolist()), given[1]
-    return float(start), *inner.tolist(), float(end)
+        return given[0], *(f"{value!r} {unit}" for value in inner), given[1]
+    return float(start), *inner, float(end)
 
 
 def _is_number(value: object) -> bool:

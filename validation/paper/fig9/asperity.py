@@ -126,7 +126,10 @@ def velocity_checks(row: Rows) -> tuple[list[Row], Panel]:
     for (eta, expected), stiffness in zip(SINUSOID.items(), cantilevers, strict=True):
         scene = points.scenes[velocities[0], stiffness]
         wells, settings = wells_of(scene), settings_for(scene)
-        inertia, drag = scene.bodies.mass + settings.plate_mass, settings.damping + settings.plate_damping
+        inertia, drag = (
+            scene.bodies.mass + settings.motion.plate_mass,
+            settings.motion.damping + settings.motion.plate_damping,
+        )
         names = [points.names[velocity, stiffness] for velocity in velocities]
         over = {v: mean(row.runs[name]) / wells.largest_force for v, name in zip(velocities, names, strict=True)}
         for velocity, value in over.items():
@@ -218,7 +221,7 @@ def smoluchowski(scene: Scene, temperature: float) -> float:
     assert scene.cantilever is not None
     assert isinstance(scene.experiment, Slide)
     wells = free_corrugation(law_of(scene), scene.bodies.spacing, scene.experiment.normal_force, temperature)
-    drag, mass = settings.damping + settings.plate_damping, scene.bodies.mass + settings.plate_mass
+    drag, mass = settings.motion.damping + settings.motion.plate_damping, scene.bodies.mass + settings.motion.plate_mass
     return thermal_friction(*wells, series_stiffness(scene), drag, temperature, scene.cantilever.velocity, mass)
 
 

@@ -43,8 +43,8 @@ def integrated(scene: Scene) -> Integrated:
     """A slide of the scene by the integrator, measured where the program measures."""
     settings = settings_for(scene)
     body = Integrator(slide_model(scene, settings))
-    body.settle(settings.time_step, RESIDUAL, drag=settings.calm_damping)
-    (leg,) = settings.drive
+    body.settle(settings.motion.time_step, RESIDUAL, drag=settings.motion.calm_damping)
+    (leg,) = settings.motion.drive
     period = scene.bodies.spacing / leg.velocity
     rows = min(leg.rows, round(PERIODS * period / leg.row_time))
     trace = body.run(rows * leg.steps, leg.time_step, leg.velocity, every=leg.steps)

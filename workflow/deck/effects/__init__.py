@@ -76,7 +76,7 @@ def sphere_radius(scene: Scene, settings: Settings) -> float:
 def first_upper_anchor(scene: Scene, settings: Settings) -> int:
     """Its number among the atoms: first come the particles of both bodies, then the lower anchors."""
     below = {"particles": 2, "rigid_chain": 1, "rigid_plane": 0}[scene.bodies.lower]
-    return settings.particles + below * settings.lower_particles + 1
+    return settings.chains.upper + below * settings.chains.lower + 1
 
 
 EFFECTS: dict[str, Callable[[Scene, Settings], Contribution]] = {

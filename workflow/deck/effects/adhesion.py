@@ -1,7 +1,6 @@
 """Effect [adhesion]: d = g(a) − √(2π a W/E*) at the edge a of the contact, the rule of Heß, which makes it JKR's."""
 
 from contact1d.workflow.deck.effects import Contribution, Stage, number
-from contact1d.workflow.model.adhesion import AdhesiveEstimate
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
@@ -11,8 +10,7 @@ TOUCH = 1e-9
 
 def adhesion(scene: Scene, settings: Settings) -> Contribution:
     """The cells of the particles are in a file of their own. The effect follows the plane."""
-    assert isinstance(settings.estimate, AdhesiveEstimate)
-    last = settings.estimate.fixed_grips[1] / settings.estimate.spacing
+    last = settings.estimate.parted(0.0) / settings.estimate.spacing
     variables = {
         "adhesion_stiffness": number(scene.bulk_stiffness),
         "adhesion_touch": number(-TOUCH * scene.bodies.spacing),

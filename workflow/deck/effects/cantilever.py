@@ -15,15 +15,15 @@ from contact1d.workflow.scene import Scene
 def cantilever(scene: Scene, settings: Settings) -> Contribution:
     """The drive starts with the phase that slides; see `steps/drive` and, for the further legs, `steps/turn`."""
     assert scene.cantilever is not None
-    legs = settings.drive
+    legs = settings.motion.drive
     velocities, clocks = [leg.velocity for leg in legs], [leg.time_step for leg in legs]
     variables = {
         "cantilever_grip_id": str(first_upper_anchor(scene, settings)),
         "cantilever_stiffness": number(scene.cantilever.stiffness),
         "cantilever_velocity": " ".join(map(number, velocities)),
         "cantilever_time_step": " ".join(map(number, clocks)),
-        "cantilever_drag": number(settings.damping),
-        "cantilever_plate_drag": number(settings.plate_damping),
+        "cantilever_drag": number(settings.motion.damping),
+        "cantilever_plate_drag": number(settings.motion.plate_damping),
     }
     return Contribution(
         "cantilever",

@@ -9,4 +9,4 @@ def damping(scene: Scene, settings: Settings) -> Contribution:
     """With noise the Langevin thermostat includes the damping, and this effect adds nothing."""
     if scene.noise is not None:
         return Contribution("damping", Stage.DRAG, ())
-    return Contribution("damping", Stage.DRAG, ("damping",), {"damping_coefficient": number(settings.damping)})
+    return Contribution("damping", Stage.DRAG, ("damping",), {"damping_coefficient": number(settings.motion.damping)})

@@ -9,7 +9,7 @@ def friction(scene: Scene, settings: Settings) -> Contribution:
     """Shared slots: `atom_style`, which needs spheres in system.data."""
     assert scene.friction is not None
     variables = {
-        "friction_normal_stiffness": number(settings.plane_stiffness),
+        "friction_normal_stiffness": number(settings.forces.plane_stiffness),
         "friction_tangential_stiffness": number(scene.tangential_stiffness),
         "friction_coefficient": number(scene.friction.coefficient),
         "friction_level": number(-sphere_radius(scene, settings)),

@@ -9,15 +9,15 @@ from contact1d.workflow.scene import Scene
 
 def horizontal(scene: Scene, settings: Settings) -> Contribution:
     """Shared slots: the guide's direction x; with k_t ≠ k_n the far anchors and their bond type in system.data."""
-    if settings.far == 0.0:
+    if settings.chains.far == 0.0:
         return Contribution("horizontal", Stage.SPRINGS, ("horizontal",))
     # A body without end is a box as narrow as its period, whatever the length of its far bonds.
-    narrow = settings.lower_particles * scene.bodies.spacing if scene.bodies.periodic else math.inf
-    difference = abs(scene.tangential_stiffness - settings.bulk_stiffness)
+    narrow = settings.chains.lower * scene.bodies.spacing if scene.bodies.periodic else math.inf
+    difference = abs(scene.tangential_stiffness - settings.forces.bulk_stiffness)
     variables = {
         "far_bond_type": "2" if scene.neighbours is None else "3",
         "far_bond_coefficient": number(difference / 2),
-        "far_length": number(settings.far),
-        "far_bin": number(min(max(settings.far / BINS, settings.cutoff), narrow / LEAST_SLENDERNESS)),
+        "far_length": number(settings.chains.far),
+        "far_bin": number(min(max(settings.chains.far / BINS, settings.forces.cutoff), narrow / LEAST_SLENDERNESS)),
     }
     return Contribution("horizontal", Stage.SPRINGS, ("horizontal", "far"), variables)

@@ -10,13 +10,13 @@ SKIN = 0.5
 
 def interaction(scene: Scene, settings: Settings) -> Contribution:
     """Shared slots: `pair_style`, and the tally of opposite forces in every measurement."""
-    assert settings.table is not None
+    assert settings.forces.table is not None
     return Contribution(
         "interaction",
         Stage.SPRINGS,
         ("interaction",),
         {"interaction_skin": number(SKIN * scene.bodies.spacing)},
-        pair_style=f"table spline {settings.table.points}",
+        pair_style=f"table spline {settings.forces.table.points}",
         step_begin=("steps/measuring_opposite",),
         step_end=("steps/measured_opposite",),
     )

@@ -10,21 +10,23 @@ def noise(scene: Scene, settings: Settings) -> Contribution:
     assert scene.noise is not None
     variables = {
         "noise_temperature": number(scene.noise.temperature),
-        "noise_damp": number(scene.bodies.mass / settings.damping),
+        "noise_damp": number(scene.bodies.mass / settings.motion.damping),
         "noise_seed": str(scene.noise.seed),
     }
     fragments: tuple[str, ...] = ("noise",)
     before: tuple[str, ...] = ("steps/heat",)
     after: tuple[str, ...] = ("steps/heating",)
-    if scene.plate is not None and settings.plate_damping > 0.0:
+    if scene.plate is not None and settings.motion.plate_damping > 0.0:
         fragments += ("noise_plate",)
         before += ("steps/heat_plate",)
         after = ("steps/heating_plate",)
-        variables["noise_plate_damp"] = number(settings.plate_mass / settings.particles / settings.plate_damping)
+        variables["noise_plate_damp"] = number(
+            settings.motion.plate_mass / settings.chains.upper / settings.motion.plate_damping
+        )
         variables["noise_plate_id"] = str(first_upper_anchor(scene, settings))
-    if settings.drive and settings.calm_damping != settings.damping:  # until `steps/told`
+    if settings.motion.drive and settings.motion.calm_damping != settings.motion.damping:  # until `steps/told`
         fragments += ("noise_calm",)
-        variables["noise_calm_damp"] = number(scene.bodies.mass / settings.calm_damping)
-    if not settings.drive:  # nobody asks for the heat
+        variables["noise_calm_damp"] = number(scene.bodies.mass / settings.motion.calm_damping)
+    if not settings.motion.drive:  # nobody asks for the heat
         before = after = ()
     return Contribution("noise", Stage.DRAG, fragments, variables, step_begin=before, step_end=after)

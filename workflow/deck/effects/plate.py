@@ -8,17 +8,17 @@ from contact1d.workflow.scene import Scene
 def plate(scene: Scene, settings: Settings) -> Contribution:
     """Shared slot: the mass of the anchors in system.data. The drag is shared out among them."""
     assert scene.plate is not None
-    anchors = settings.particles * (1 if settings.far == 0.0 else 2)
+    anchors = settings.chains.upper * (1 if settings.chains.far == 0.0 else 2)
     alone = anchors == 1
     free = {True: "NULL", False: "0.0"} if alone else {True: "on", False: "off"}
     # Drag on the plate comes with heat where there is noise, and then from there.
-    drag = 0.0 if scene.noise is not None else settings.plate_damping
+    drag = 0.0 if scene.noise is not None else settings.motion.plate_damping
     variables = {"plate_damping_per_anchor": number(drag / anchors), "plate_free_x": free["x" in scene.plate.free]}
     fragments: tuple[str, ...] = ("plate_alone" if alone else "plate",)
     if scene.experiment.draws_off:
         fragments = ("drawn", *fragments)
-    width = 2.0 * STAGGER_SHARE * settings.particles * scene.bodies.own_spacing
-    own = max(settings.cutoff, settings.far / BINS)
+    width = 2.0 * STAGGER_SHARE * settings.chains.upper * scene.bodies.own_spacing
+    own = max(settings.forces.cutoff, settings.chains.far / BINS)
     if scene.interaction is not None and width / BINS > own:
         fragments += ("wide",)
         variables["wide_bin"] = number(width / BINS)

@@ -1,0 +1,52 @@
+"""What a script asks of a driver: LAMMPS under displacement or load control, or the reduced model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.workflow.model.reduced import Reduced
+from contact1d.workflow.model.settings import Settings
+
+
+class Driver(Protocol):
+    """Moves a contact from state to state, as often to and fro as a script wants.
+
+    A leg begins where the loading turns; a force is approached from where the contact is.
+    """
+
+    @property
+    def settings(self) -> Settings:
+        """The numbers of the run."""
+
+    @property
+    def model(self) -> Reduced:
+        """The reduced model."""
+
+    @property
+    def scale(self) -> float:
+        """The force maximum that is expected [FU]."""
+
+    def begin(self, name: str) -> None:
+        """Begin a phase with the next load step."""
+
+    def visit(self, positions: Sequence[float] | NDArray[np.float64], along: Sequence[float] | None = None) -> None:
+        """Go to displacements [LU] one after the other, and positions along x [LU]."""
+
+    def reach(self, force: float, scale: float) -> None:
+        """Go on until the contact carries a force [FU], within a share of the tolerance of `scale` [FU]."""
+
+    def maximum(self) -> None:
+        """Unload to the force maximum; the last state is then at it."""
+
+    def open(self) -> None:
+        """Pull the bodies apart."""
+
+    def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
+        """Hold a displacement [LU] or a force [FU] for a time [TU]."""
+
+    def mark(self, name: str) -> None:
+        """Report the last state."""

@@ -1,0 +1,136 @@
+"""Numbers with units in a scene, "10 mm", as numbers in the scene's own units LU, FU, MU, TU = √(MU·LU/FU).
+
+What LU, FU and MU are stands in [material]; where it gives none and no plain number of the scene needs it, it is 1 m,
+1 N or 1 kg, so that the results' model units are those of SI. It is then written into [material], and the scene that
+is kept says what it means.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Mapping
+from copy import copy
+from fractions import Fraction
+
+from contact1d.workflow.scene.quantities import Place, numbers_in
+from contact1d.workflow.scene.si_text import UnitTextError, example, si_value
+from contact1d.workflow.units import SI
+
+BOLTZMANN = Fraction(1380649, 10**29)
+"""k_B [J/K], exact since 2019."""
+UNIT_KEYS = {"LU": "length_unit", "FU": "force_unit", "MU": "mass_unit"}
+"""Keys of [material] that say what a unit of the model is in SI."""
+ELASTIC = frozenset({"upper", "lower", "contact_modulus"})
+"""Keys of [material] that say how stiff the bodies are."""
+LISTED = 3
+"""Places that a message names before it counts the rest."""
+
+
+def convert(scene: Place) -> bool:
+    """Put numbers in the place of the texts with units of a scene; whether it has any.
+
+    What is wrong with them is reported. Their places, and those whose numbers are unknown by that, are then doubted.
+    """
+    texts = [place for place in numbers_in(scene) if place.is_text]
+    read = {place: value for place in texts if (value := _si(place)) is not None}
+    for place, value in read.items():
+        if not place.unit.bases:  # these say what LU, FU and MU are
+            _put(place, value)
+    in_model_units = [place for place in texts if place.unit.bases]
+    scales = _scales(scene, in_model_units) if in_model_units else {}
+    for place in in_model_units:
+        if scales is None:
+            place.doubt()
+        elif place in read:
+            _put(place, read[place] / size(place.unit.name, scales))
+    return bool(texts)
+
+
+def _si(place: Place) -> Fraction | None:
+    """The quantity that the text says, in SI, a temperature as k_B T; None, and reported, where it is none."""
+    try:
+        value, dimension = si_value(place.value, *place.unit.texts)
+    except UnitTextError as error:
+        place.fault(str(error))
+        return None
+    return value * BOLTZMANN if dimension == "K" else value
+
+
+def _put(place: Place, value: Fraction) -> None:
+    """Put the number in the text's place."""
+    text = copy(place)
+    try:
+        place.put(float(value))
+    except OverflowError:
+        place.fault("exceeds the range of floating-point numbers")
+    place.source = place.source or text
+
+
+def _scales(scene: Place, texts: list[Place]) -> dict[str, Fraction] | None:
+    """What LU, FU and MU are in SI, those that `texts` need; chosen and put into the scene where they are open.
+
+    None, and reported, where they cannot be known.
+    """
+    material, own = scene.inside["material"], scene.at("bodies.bulk_stiffness")
+    if material.absent:
+        material.put({})
+    if not isinstance(material.value, dict):
+        return None  # reported where tables are checked
+    first, stiffness = texts[0], own.value if own else "auto"
+    if "surface_energy" in material.value:
+        message = "LU and FU follow from the run (material.surface_energy), so that units are not known before it"
+        first.fault(message, f"write a number in {first.unit.name}")
+        return None
+    needed = frozenset[str]().union(*(place.unit.bases for place in texts))
+    elastic = not ELASTIC.isdisjoint(material.value)
+    if stiffness == "auto" or not elastic or "MU" in needed:
+        needed |= {"LU", "FU"}
+    units = {base: material.inside[key] for base, key in UNIT_KEYS.items()}
+    scales = {base: Fraction(repr(unit.value)) for base, unit in units.items() if is_positive(unit)}
+    chosen = frozenset(base for base in needed if units[base].absent)
+    fixed = "FU" in chosen and elastic and stiffness != "auto"
+    plain = [place for place in numbers_in(scene) if place.is_number and place.unit.bases & chosen]
+    if fixed and own and own.sound:
+        own.report("follows from the material here", 'write "auto"')
+    elif plain and not fixed:
+        _report_mixed(plain, first, chosen, elastic)
+    # also where a problem was reported, so that the rules across tables don't report its consequences
+    for base in sorted(chosen):
+        if base != "FU" or not fixed:
+            units[base].put(1.0)
+    scales |= dict.fromkeys(chosen, Fraction(1))
+    return None if plain or fixed or not needed <= scales.keys() else scales
+
+
+def _report_mixed(plain: list[Place], text: Place, chosen: frozenset[str], elastic: bool) -> None:
+    """Plain numbers beside numbers with a unit, and nothing says what the units of the model are."""
+    first = plain[0]
+    open_ = {base for place in plain for base in place.unit.bases} & chosen
+    if not elastic:
+        open_ |= {"LU", "FU"} & chosen
+    bases = [base for base in UNIT_KEYS if base in open_]
+    what = f"what {' and '.join(bases)} stand{'s' * (len(bases) == 1)} for"
+    others = ", ".join(place.path for place in plain[1:LISTED])
+    more = f" and {len(plain) - LISTED} more" if len(plain) > LISTED else ""
+    unit = f'give it a unit as well, such as "{example(first.unit.texts[0])}"'
+    if first.source:
+        unit = 'name its columns with their units, r [µm], z [µm], or write scale = "1 µm"'
+    first.report(
+        f"is {'by default ' if first.absent else ''}in {first.unit.name}, while {text.path} = {text.given} has a unit, "
+        f"and nothing says {what}",
+        f"{unit}{f'; so too {others}{more}' if others else ''}; "
+        f"or give {' and '.join(f'material.{UNIT_KEYS[base]}' for base in bases)}",
+    )
+
+
+def is_positive(place: Place) -> bool:
+    """Whether a finite number greater than 0 stands there."""
+    return place.is_number and 0.0 < place.value <= sys.float_info.max
+
+
+def size(unit: str, scales: Mapping[str, Fraction]) -> Fraction:
+    """One unit of the model in SI; exact where that is a fraction."""
+    square = math.prod((scales[base] ** int(2 * power) for base, power in SI[unit].powers.items()), start=Fraction(1))
+    root = Fraction(math.isqrt(square.numerator), math.isqrt(square.denominator))
+    return root if root**2 == square else Fraction(math.sqrt(square))
