@@ -209,6 +209,17 @@ def test_the_pull_off_force_is_drawn_across_with_its_uncertainty(tmp_path: Path)
     assert [ends.min(), ends.max()] == pytest.approx([-tension.value - spread, -tension.value + spread], rel=1e-9)
 
 
+def test_each_cycle_of_a_pull_off_has_its_own_legs(tmp_path: Path) -> None:
+    pull = {"kind": "pull_off", "preload": 0.2, "cycles": 2}
+    tables = chains(50.0, bodies={"particles": 40}, accuracy={"tolerance": 1e-2}, experiment=pull)
+    done = run(scene_from_dict(tables), tmp_path / "run", figures=False)
+    legs = [line for line in done.plot().axes[0].get_lines() if line.get_label() in ("loading", "unloading")]
+    assert [line.get_label() for line in legs] == ["loading", "unloading"] * 2
+    for number, line in enumerate(legs):
+        rows = (done.curve.cycle == 1 + number // 2) & (done.curve.branch == line.get_label())
+        np.testing.assert_array_equal(line.get_xdata(), np.sort(done.curve.displacement[rows]))
+
+
 def test_particles_within_the_stick_radius_stick_and_the_others_slip(tmp_path: Path) -> None:
     """Of a loop: at its end c < a. No shear exceeds μp."""
     bodies = {"lower": "rigid_plane", "reduction": "mdr", "bulk_stiffness_tangential": 0.4}

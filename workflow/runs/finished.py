@@ -279,7 +279,7 @@ def main_curve(run: Run) -> dict[str, Array]:
 def legs_of(run: Run, along: Array) -> list[tuple[str, NDArray[np.int64]]]:
     """Name and rows of each leg of a prescribed path, which begins where the one before it ends.
 
-    Otherwise of each branch, in the order of the positions `along`: a search goes to and fro.
+    Otherwise of each branch of a cycle, in the order of the positions `along`: a search goes to and fro.
     """
     branch, kind = run.curve.branch, run.scene.experiment
     if kind.way_is_given or kind.goes_along:
@@ -287,7 +287,8 @@ def legs_of(run: Run, along: Array) -> list[tuple[str, NDArray[np.int64]]]:
         legs = [np.arange(max(start - 1, 0), end) for start, end in pairwise(starts)]
     else:
         order = np.argsort(along, kind="stable")
-        legs = [order[branch[order] == name] for name in dict.fromkeys(branch.tolist())]
+        names = np.char.add(branch, run.curve.get("cycle", np.zeros(branch.size)).astype(str))
+        legs = [order[names[order] == name] for name in dict.fromkeys(names.tolist())]
     return [(str(branch[rows[-1]]), rows) for rows in legs]
 
 
