@@ -21,7 +21,7 @@ from contact1d.workflow.units import LENGTH, LINE_PRESSURE, Quantity, scale_of
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#999933")
 """Okabe and Ito's, which the colour-blind can tell apart."""
-GREY = "#999999"
+GREY = "#bbbbbb"
 DASHES = {"": "solid", "-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
 """Plotly's names of line styles."""
 INDEX = re.compile(r"(?<!\w)([^\W\d_][\u0303\u0304]?)_(\w{1,3})(?!\w)")
@@ -71,15 +71,12 @@ def drawn(chart: Chart) -> Data:
     """A written chart of one panel for plotly; a series that moves has a list for each state."""
     (panel,) = chart.panels
     heading = ": ".join(filter(None, [f"{panel.y.name} over {chart.x.name}", panel.heading]))
-    layout: Data = {
-        "template": "none", "margin": {"l": 70, "r": 15, "t": 30, "b": 65}, "hovermode": "closest",
-        "legend": {"orientation": "h", "x": 0, "y": 1.02, "yanchor": "bottom"},
-    }  # fmt: skip
+    layout: Data = {}
     for key, axis in (("xaxis", chart.x), ("yaxis", panel.y)):
         layout[key] = {
-            "title": {"text": _words(axis.label)}, "type": "log" if axis.log else "linear", "showline": True,
-            "range": listed(np.log10(axis.view) if axis.log else axis.view), "ticks": "outside", "automargin": True,
-            "zerolinecolor": BLACK if axis.zero else "#bbb",
+            "title": {"text": _words(axis.label)}, "type": "log" if axis.log else "linear",
+            "range": listed(np.log10(axis.view) if axis.log else axis.view),
+            "zerolinecolor": BLACK if axis.zero else GREY,
         }  # fmt: skip
         if axis.ticks:
             layout[key] |= {"tickvals": [*axis.ticks], "ticktext": [*axis.ticks.values()]}
