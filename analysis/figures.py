@@ -33,6 +33,7 @@ from contact1d.analysis.chart import (
 )
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius
+from contact1d.analysis.shear import stick_margin
 
 BARQUINS = 4.0 ** (4.0 / 3.0) / 3.0
 """2.1165: makes the minimum of BARQUINS (ã² − √ã), at ã = 4^(−2/3) = 0.397, equal to −1: the 2D
@@ -92,19 +93,11 @@ def level(value: float, uncertainty: float, name: str) -> list[Series]:
     return [band, Series(ENDLESS, np.full(2, value), name, TENSION, ":")]
 
 
-def reduced_radius(
-    radius: Array, force: Array, legs: Legs, spread: Array, adhesion_force: float, zero_load_radius: float
-) -> Chart:
-    """F/F_A over a/a₀ beside JKR and Barquins (the paper's Fig. 8); arrays (n,), spread that of the radius."""
-    radius, force, spread = radius / zero_load_radius, force / adhesion_force, spread / zero_load_radius
-    a = np.linspace(0.0, float(np.nanmax(radius)), 400)
+def reduced(largest: float) -> list[Series]:
+    """F/F_A over a/a₀ of JKR and Barquins up to a radius (the paper's Fig. 8)."""
+    a = np.linspace(0.0, largest, 400)
     jkr, barquins = 4.0 * a**3 - 4.0 * a**1.5, BARQUINS * (a**2 - np.sqrt(a))
-    panel = (
-        Axis("force $F/F_A$", remark=COMPRESSIVE, zero=True),
-        force,
-        lines(("JKR", a, jkr), ("Barquins (2D)", a, barquins), colour=BLACK),
-    )
-    return path(Axis("contact radius $a/a_0$"), radius, legs, panel, spread=spread)
+    return lines(("JKR", a, jkr), ("Barquins (2D)", a, barquins), colour=BLACK)
 
 
 def detachments(forces: Array) -> Chart:
@@ -140,19 +133,21 @@ def pressure(profiles: Mapping[str, Profile], radii: Mapping[str, ContactRadius]
     return Chart(Axis("x", "LU"), panels)
 
 
-def stick_slip(states: Mapping[str, tuple[Profile, Array, float, float]], coefficient: float) -> Chart:
+def stick_slip(
+    profiles: Mapping[str, Profile], coefficient: float, zones: Mapping[str, tuple[float, float, int]]
+) -> Chart:
     """Shear traction over x of each state between ±μp, the particles that stick and those that slip in two colours.
 
     Args:
-        states: by name the profile, the rest of μp of each particle [FU/LU], (n,), 0 where it slips, the half-width
-            of the zone that sticks [LU], and the place of the body along x [LU].
+        profiles: by state.
         coefficient: μ.
+        zones: by state the half-width of the zone that sticks, and the place of the body along x [LU]; its direction.
     """
     panels = []
-    for name, (profile, margin, radius, place) in states.items():
-        limit, note = coefficient * np.maximum(profile.pressure, 0.0), f"u = {place:.4g} LU"
-        shear = np.where(limit > 0.0, -profile.shear, 0.0)
-        series = [*_bars(profile.x, shear, margin > 0.0, ("sticks", "slips"))]
+    for name, profile in profiles.items():
+        limit, (radius, place, direction) = coefficient * np.maximum(profile.pressure, 0.0), zones[name]
+        shear, note = np.where(limit > 0.0, -profile.shear, 0.0), f"u = {place:.4g} LU"
+        series = [*_bars(profile.x, shear, stick_margin(profile, coefficient, direction) > 0.0, ("sticks", "slips"))]
         series += [Series(profile.x, bound, "±μp", BLACK, "--") for bound in (limit, -limit)]
         if radius > 0.0:
             series.append(area([-radius, radius], ENDLESS, colour=COMPRESSION, opacity=0.08))
@@ -169,10 +164,13 @@ def _bars(x: Array, load: Array, first: NDArray[np.bool_], names: tuple[str, str
 
 
 def half_width(x: Array, p: Array) -> float:
-    """Half-width of a picture in which a pressure is to be seen; a tenth of the body's where there is none."""
-    carrying = np.abs(p) > SHOWN_SHARE * np.abs(p).max(initial=0.0)
+    """Half-width of a picture in which a pressure is to be seen, (n,) or of m states (m, n).
+
+    A tenth of the body's where there is none.
+    """
+    carrying = np.abs(p) > SHOWN_SHARE * np.abs(p).max(axis=-1, keepdims=True)
     reach = np.abs(x[carrying]).max() if carrying.any() else 0.1 * np.abs(x).max()
-    return float(WIDER * reach + (2.0 * np.median(np.diff(x)) if x.size > 1 else 0.0))
+    return float(WIDER * reach + 2.0 * np.ptp(x) / x.shape[-1])
 
 
 def _state(name: str) -> str:

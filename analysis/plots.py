@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import io
+import math
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 WIDTH, BESIDE = 6.4, 1.0
 """Of a figure, and the height of title and axis that its panels leave [inch]."""
 DPI = 120
+FEW_DECADES = 1e3
+"""Span of a logarithmic axis up to which 2 and 5 of each decade have numbers."""
 
 
 def draw(chart: Chart) -> Figure:
@@ -31,25 +34,34 @@ def draw(chart: Chart) -> Figure:
         draw_panel(one, chart.x, panel, panel.legend != legend)
         one.label_outer()
         legend = panel.legend
-    figure.suptitle(chart.title, fontsize=11, parse_math=False)
+    figure.suptitle(chart.title, fontsize=11)
     return plain_axes(figure)
 
 
 def draw_panel(axes: Axes, x: Axis, panel: Panel, legend: bool = True) -> None:
     """Draw a panel of a chart over its axis along x."""
+    from matplotlib.ticker import LogLocator
+
     for one in panel.series:
         along, up = x.ended(one.x), panel.y.ended(one.y)
+        look: dict[str, Any] = {"color": one.colour, "alpha": one.opacity, "linewidth": one.width, "label": one.name}
         if one.look == FILL:
-            axes.fill(along, up, color=one.colour, alpha=one.opacity, linewidth=0.0, label=one.name)
+            axes.fill(along, up, **look | {"linewidth": 0.0})
             continue
-        size = 3.0 + one.width / 2.0
-        axes.plot(along, up, one.look, color=one.colour, linewidth=one.width, markersize=size, label=one.name)
-        if np.any(one.dx) or np.any(one.dy):
-            axes.errorbar(along, up, one.dy, one.dx, fmt="none", ecolor=one.colour, capsize=2, alpha=0.4)
-    for key, axis in (("x", x), ("y", panel.y)):
+        axes.plot(along, up, one.look, markersize=3.0 + one.width / 2.0, **look)
+        for dx, dy in ((one.dx, 0.0), (0.0, one.dy)):
+            if np.any(dx) or np.any(dy):
+                bars = (np.ravel([at - d, at + d, math.nan * at], order="F") for at, d in ((along, dx), (up, dy)))
+                axes.plot(*bars, color=one.colour, alpha=0.3)
+    for key, axis, own in (("x", x, axes.xaxis), ("y", panel.y, axes.yaxis)):
         axes.set(**{f"{key}scale": "log" if axis.log else "linear", f"{key}lim": axis.view})
+        if axis.log:
+            few = axis.view[1] < FEW_DECADES * axis.view[0]
+            own.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,)))
+            own.set_major_formatter("{x:g}")
+            own.set_minor_formatter("")
         if axis.ticks:
-            axes.set(**{f"{key}ticks": [*axis.ticks], f"{key}ticklabels": [*axis.ticks.values()]})
+            own.set_ticks([*axis.ticks], labels=[*axis.ticks.values()])
     describe(axes, x.label, panel.y.label, panel.heading, panel.y.zero)
     handles, names = axes.get_legend_handles_labels()
     if shown := panel.legend if legend else []:
@@ -61,7 +73,7 @@ def describe(axes: Axes, x: str = "", y: str = "", title: str = "", zero: bool =
     if zero:
         axes.axhline(0.0, color=BLACK, linewidth=0.8)
     axes.set(xlabel=x, ylabel=y)
-    axes.set_title(title, loc="left", fontsize=10, parse_math=False)
+    axes.set_title(title, loc="left", fontsize=10)
 
 
 def new_figure(size: tuple[float, float]) -> Figure:
@@ -92,6 +104,8 @@ def plain_axes(figure: Figure) -> Figure:
 
 def save_figure(figure: Figure, path: Path) -> None:
     """Save in the format that the name ends on (png, svg, pdf), whole or not at all."""
-    plain_axes(figure)
+    if layout := plain_axes(figure).get_layout_engine():
+        layout.execute(figure)
+        figure.set_layout_engine(None)  # savefig would draw it twice, to find the layout again
     with whole(path) as part:
         figure.savefig(part, format=path.suffix[1:])

@@ -47,13 +47,6 @@ def test_axes_without_a_unit_stay_as_they_are() -> None:
     assert axis.get_xlabel() == r"contact radius $a/a_0$"
 
 
-def test_a_title_is_drawn_as_it_is_written() -> None:
-    """Marks of TeX in it are signs like others."""
-    line = Series(np.arange(2.0), np.arange(2.0))
-    (axis,) = drawn(Chart(Axis("x"), [Panel(Axis("y"), [line], "5 $ or \\frac{ $")], "cost: 3 $\\x$"))
-    assert axis.figure.get_suptitle() == "cost: 3 $\\x$"
-
-
 @pytest.mark.parametrize(("log", "numbers"), [(False, (-3.0, 5.0)), (True, (0.01, 300.0)), (False, (0.5, 0.5 + 1e-13))])
 def test_an_axis_ends_around_its_numbers_and_a_line_across_at_its_ends(log: bool, numbers: tuple[float, float]) -> None:
     across = Series(np.array([-np.inf, np.inf]), np.full(2, numbers[0]))

@@ -15,6 +15,7 @@ from contact1d.analysis.chart import Axis, Chart
 from contact1d.analysis.curve import Columns
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius
+from contact1d.workflow.report.report import report
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.units import scale_of
@@ -22,9 +23,8 @@ from tests.scenes import chains
 
 ROUND_OFF = 1e-12  # relative; closed forms of a few operations
 GRID = 2e-3  # of F_A; the theory is drawn with 400 points
+SPACING = 1.0
 PNG = b"\x89PNG\r\n\x1a\n"
-
-BODY_RADIUS, ADHESION, ZERO_LOAD = 1000.0, 1.5, 28.0
 
 
 def profile(depth: float) -> Profile:
@@ -153,20 +153,93 @@ def test_hertz_is_the_integral_of_the_springs_under_the_parabola(reduction: str,
     np.testing.assert_array_equal(again, force)
 
 
-def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(curve: Columns) -> None:
-    columns = curve.contact_radius, curve.force, LEGS, curve.contact_radius_uncertainty
-    (axis,) = drawn(figures.reduced_radius(*columns, ADHESION, ZERO_LOAD))
-    found = lines(axis)
-    run = found["unloading"]
-    run = run[np.isfinite(run[:, 0])]
-    assert len(run) == 39
-    np.testing.assert_allclose(run[:, 0] * ZERO_LOAD, curve.contact_radius[30:69], rtol=ROUND_OFF)
-    np.testing.assert_allclose(run[:, 1] * ADHESION, curve.force[30:69], rtol=ROUND_OFF)
+def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(tmp_path: Path) -> None:
+    pull = {"kind": "pull_off", "preload": 0.2}
+    tables = chains(50.0, bodies={"particles": 40}, accuracy={"tolerance": 1e-2}, experiment=pull)
+    done = run(scene_from_dict(tables), tmp_path / "run", figures=False)
+    adhesion, zero_load = done.results.adhesion_force.value, done.results.zero_load_radius.value
+    found = lines(done.plot("force_radius").axes[0])
+    points = found["unloading"][np.isfinite(found["unloading"][:, 0])]
+    rows = (done.curve.branch == "unloading") & (done.curve.contact_radius > 0.0)
+    rows = np.flatnonzero(rows)[np.argsort(done.curve.contact_radius[rows])]
+    np.testing.assert_allclose(points[:, 0] * zero_load, done.curve.contact_radius[rows], rtol=ROUND_OFF)
+    np.testing.assert_allclose(points[:, 1] * adhesion, done.curve.force[rows], rtol=ROUND_OFF)
     jkr, barquins = found["JKR"], found["Barquins (2D)"]
     np.testing.assert_allclose(jkr[:, 1], 4.0 * jkr[:, 0] ** 3 - 4.0 * jkr[:, 0] ** 1.5, atol=ROUND_OFF)
     assert jkr[:, 1].min() == pytest.approx(-1.0, abs=GRID)
     assert barquins[:, 1].min() == pytest.approx(-1.0, abs=GRID)
     assert barquins[np.argmin(barquins[:, 1]), 0] == pytest.approx(0.397, abs=0.01)  # (1/4)^(2/3), grid of 400
+
+
+HELD = {
+    "title": "held",
+    "bodies": {"particles": 41, "spacing": 1.0, "lower": "rigid_plane", "bulk_stiffness": 1.0, "mass": 1.0,
+               "profile": {"kind": "parabola", "radius": 200.0}},
+    "damping": {"coefficient": 0.3},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", ["force", "displacement"])
+def test_a_hold_is_drawn_over_time(kind: str, tmp_path: Path) -> None:
+    """What is free over the time of its states; in a file and on the page."""
+    held = {"force": {"displacement": 0.5}, "displacement": {"force": 4.0}}[kind] | {"kind": "hold", "duration": 5.0}
+    plate = {"plate": {"mass": 20.0}} if kind == "displacement" else {}
+    done = run(scene_from_dict(HELD | plate | {"experiment": held}), tmp_path / "run")
+    (axis,) = done.plot().axes
+    assert axis.get_xlabel() == "time (TU)"
+    assert axis.get_ylabel().startswith(kind)
+    np.testing.assert_array_equal(lines(axis)["holding"], np.column_stack([done.curve.time, done.curve[kind]]))
+    assert (done.folder / f"{kind}_time.png").read_bytes().startswith(PNG)
+    assert (done.folder / "force_displacement.png").is_file() == (kind == "displacement")  # it is held otherwise
+    page = report([done.folder], tmp_path / "r.html").read_text()
+    assert f'"title": "{kind.capitalize()} over time"' in page
+
+
+def test_the_pull_off_force_is_drawn_across_with_its_uncertainty(tmp_path: Path) -> None:
+    pull = {"kind": "pull_off", "preload": 0.2}
+    tables = chains(50.0, bodies={"particles": 40}, accuracy={"tolerance": 1e-2}, experiment=pull)
+    done = run(scene_from_dict(tables), tmp_path / "run", figures=False)
+    tension = done.results.adhesion_force
+    (axis,) = done.plot("force_displacement").axes
+    (across,) = (points for name, points in lines(axis).items() if name.startswith("$F_A$"))
+    np.testing.assert_array_equal(across, [[axis.get_xlim()[i], -tension.value] for i in (0, 1)])
+    (band,) = axis.patches
+    ends = np.asarray(band.get_xy())[:, 1]
+    spread = tension.uncertainty
+    assert [ends.min(), ends.max()] == pytest.approx([-tension.value - spread, -tension.value + spread], rel=1e-9)
+
+
+def test_each_cycle_of_a_pull_off_has_its_own_legs(tmp_path: Path) -> None:
+    pull = {"kind": "pull_off", "preload": 0.2, "cycles": 2}
+    tables = chains(50.0, bodies={"particles": 40}, accuracy={"tolerance": 1e-2}, experiment=pull)
+    done = run(scene_from_dict(tables), tmp_path / "run", figures=False)
+    legs = [line for line in done.plot().axes[0].get_lines() if line.get_label() in ("loading", "unloading")]
+    assert [line.get_label() for line in legs] == ["loading", "unloading"] * 2
+    for number, line in enumerate(legs):
+        rows = (done.curve.cycle == 1 + number // 2) & (done.curve.branch == line.get_label())
+        np.testing.assert_array_equal(line.get_xdata(), np.sort(done.curve.displacement[rows]))
+
+
+def test_particles_within_the_stick_radius_stick_and_the_others_slip(tmp_path: Path) -> None:
+    """Of a loop: at its end c < a. No shear exceeds μp."""
+    bodies = {"lower": "rigid_plane", "reduction": "mdr", "bulk_stiffness_tangential": 0.4}
+    move = {"kind": "tangential", "normal_force": 40.0, "displacements": [0.0, 0.2, 0.4, 0.2, 0.1]}
+    scene = chains(1000.0, 0.5, interaction=None, bodies=bodies, friction={"coefficient": 0.3}, experiment=move)
+    done = run(scene_from_dict(scene), tmp_path / "run", figures=False)
+    radii = {"farthest": done.curve.stick_radius[2], "final": done.results.stick_radius.value}
+    assert 0.0 < radii["final"] < done.results.contact_radius.value
+    for axis, (state, radius) in zip(done.plot("stick_slip").axes, radii.items(), strict=True):
+        assert axis.get_title(loc="left").startswith(f"{state} state, u = ")
+        sticks, slips = (
+            {place for place, shear in part.get_xy() if shear != 0.0} for part in axis.patches if part.get_label()
+        )
+        assert max(map(abs, sticks)) == pytest.approx(radius, abs=SPACING)
+        assert min(map(abs, slips)) == pytest.approx(radius, abs=SPACING)
+        bound = lines(axis)["±μp"]
+        shear = max(abs(part.get_xy()[:, 1]).max() for part in axis.patches if part.get_label())
+        assert shear <= np.abs(bound[:, 1]).max() * (1.0 + ROUND_OFF)
+    marks = [text.get_text() for text in done.plot("shear_3d").axes[-1].get_legend().get_texts()]
+    assert f"stick radius c = {done.results.stick_radius.value:.4g} LU" in marks
 
 
 def test_every_figure_is_a_whole_file(curve: Columns, tmp_path: Path) -> None:

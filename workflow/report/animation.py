@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from contact1d.workflow.runs.campaign import AnyPath
 from contact1d.workflow.runs.finished import Run, load_run
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
 HEIGHT = 6.0
@@ -86,57 +87,55 @@ def _draw(run: Run, states: States, path: Path, frames_per_second: int) -> None:
     moves = _bodies(above, run, bodies, loads.panels[0]), _trace(below, curve)
     plain_axes(figure)
     figure.draw_without_rendering()
-    figure.set_layout_engine("none")  # it is the same for all states
-
-    def show(frame: int) -> list[Any]:
-        return [artist for move in moves for artist in move(frame)]
-
-    moving_figure = FuncAnimation(figure, show, frames=len(states.rows), blit=False)
+    figure.set_layout_engine(None)  # it is the same for all states
+    animation = FuncAnimation(
+        figure, lambda frame: [move(frame) for move in moves], frames=len(states.rows), blit=False
+    )  # fmt: skip
     writer = (PillowWriter if path.suffix == ".gif" else FFMpegWriter)(fps=frames_per_second)
     with whole(path) as part:
         named = part.with_suffix(part.suffix + path.suffix)  # the writer goes by the ending
-        moving_figure.save(str(named), writer=writer, dpi=DPI)
+        animation.save(str(named), writer=writer, dpi=DPI)
         named.replace(part)
 
 
-def _bodies(axes: Axes, run: Run, chart: Chart, loads: Panel) -> Callable[[int], list[Any]]:
+def _bodies(axes: Axes, run: Run, chart: Chart, loads: Panel) -> Callable[[int], Artist]:
     """Particles, coloured by pressure, with their bulk springs; returns what moves them. A plane has no particles."""
     from matplotlib.collections import LineCollection
 
-    (panel,), pressure = chart.panels, loads.series[0].y
-    upper, lower = (np.stack(np.broadcast_arrays(one.x, one.y), axis=-1) for one in panel.series)
-    length, on_plane = SPRING_LENGTH * float(np.ptp(panel.y.view)), run.scene.bodies.lower == "rigid_plane"
-    chains = [(upper, length)] if on_plane else [(upper, length), (lower, -length)]
-    scale = float(np.abs(pressure).max()) or 1.0
+    (panel,), on_plane = chart.panels, run.scene.bodies.lower == "rigid_plane"
+    chains = panel.series[:1] if on_plane else panel.series
+    places = np.concatenate([np.stack(np.broadcast_arrays(one.x, one.y), axis=-1) for one in chains], axis=1)
+    pressure = np.tile(loads.series[0].y, len(chains))
+    length, scale = SPRING_LENGTH * float(np.ptp(panel.y.view)), float(np.abs(pressure).max()) or 1.0
+    count = places.shape[1] // len(chains)
+    ends = np.repeat([[0.0, length], [0.0, -length]], count, axis=0)[: places.shape[1]]
     springs = LineCollection([], colors="#bbbbbb", linewidths=0.6)
     axes.add_collection(springs)
-    look: dict[str, Any] = {"cmap": "coolwarm_r", "vmin": -scale, "vmax": scale, "s": 12, "zorder": 3}
-    dots = [axes.scatter(places[0][:, 0], places[0][:, 1], c=pressure[0], **look) for places, _ in chains]
-    axes.figure.colorbar(dots[0], ax=axes, label=f"{loads.y.label}, compression positive", shrink=0.9)
+    dots = axes.scatter([], [], c=[], s=12, cmap="coolwarm_r", vmin=-scale, vmax=scale, zorder=3)
+    axes.figure.colorbar(dots, ax=axes, label=f"{loads.y.label}, compression positive", shrink=0.9)
     low, high = panel.y.view
     axes.set(xlim=chart.x.view, ylim=(low - length, high + length))
     describe(axes, chart.x.label, panel.y.label, run.scene.title, zero=on_plane)
 
-    def move(frame: int) -> list[Any]:
-        for own, (places, _) in zip(dots, chains, strict=True):
-            own.set_offsets(places[frame])
-            own.set_array(pressure[frame])
-        if upper.shape[1] <= SPRINGS_SHOWN:
-            springs.set_segments([(end, np.add(end, (0.0, up))) for places, up in chains for end in places[frame]])
-        return [*dots, springs]
+    def move(frame: int) -> Artist:
+        dots.set_offsets(places[frame])
+        dots.set_array(pressure[frame])
+        if count <= SPRINGS_SHOWN:
+            springs.set_segments(list(np.stack([places[frame], places[frame] + ends], axis=1)))
+        return dots
 
     return move
 
 
-def _trace(axes: Axes, chart: Chart) -> Callable[[int], list[Any]]:
+def _trace(axes: Axes, chart: Chart) -> Callable[[int], Artist]:
     """The main curve with a mark; returns what moves it."""
     (panel,) = chart.panels
     *curve, state = panel.series
     draw_panel(axes, chart.x, replace(panel, series=curve))
     (mark,) = axes.plot([], [], state.look, color=state.colour, markersize=8)
 
-    def move(frame: int) -> list[Any]:
+    def move(frame: int) -> Artist:
         mark.set_data(state.x[frame], state.y[frame])
-        return [mark]
+        return mark
 
     return move

@@ -21,7 +21,7 @@ from contact1d.workflow.units import LENGTH, LINE_PRESSURE, Quantity, scale_of
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#999933")
 """Okabe and Ito's, which the colour-blind can tell apart."""
-GREY = "#999999"
+GREY = "#bbbbbb"
 DASHES = {"": "solid", "-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
 """Plotly's names of line styles."""
 INDEX = re.compile(r"(?<!\w)([^\W\d_][\u0303\u0304]?)_(\w{1,3})(?!\w)")
@@ -71,15 +71,12 @@ def drawn(chart: Chart) -> Data:
     """A written chart of one panel for plotly; a series that moves has a list for each state."""
     (panel,) = chart.panels
     heading = ": ".join(filter(None, [f"{panel.y.name} over {chart.x.name}", panel.heading]))
-    layout: Data = {
-        "template": "none", "margin": {"l": 70, "r": 15, "t": 30, "b": 65}, "hovermode": "closest",
-        "legend": {"orientation": "h", "x": 0, "y": 1.02, "yanchor": "bottom"},
-    }  # fmt: skip
+    layout: Data = {}
     for key, axis in (("xaxis", chart.x), ("yaxis", panel.y)):
         layout[key] = {
-            "title": {"text": _words(axis.label)}, "type": "log" if axis.log else "linear", "showline": True,
-            "range": listed(np.log10(axis.view) if axis.log else axis.view), "ticks": "outside", "automargin": True,
-            "zerolinecolor": BLACK if axis.zero else "#bbb",
+            "title": {"text": _words(axis.label)}, "type": "log" if axis.log else "linear",
+            "range": listed(np.log10(axis.view) if axis.log else axis.view),
+            "zerolinecolor": BLACK if axis.zero else GREY,
         }  # fmt: skip
         if axis.ticks:
             layout[key] |= {"tickvals": [*axis.ticks], "ticktext": [*axis.ticks.values()]}
@@ -97,14 +94,8 @@ def _trace(one: Series, x: Axis, y: Axis) -> Data:
         "opacity": one.opacity, "line": {"color": one.colour, "width": 1.4 * one.width, "dash": DASHES.get(look)},
     }  # fmt: skip
     if one.look == FILL:
-        outline = {"width": 0, "color": one.colour}
-        return trace | {
-            "mode": "lines",
-            "fill": "toself",
-            "fillcolor": one.colour,
-            "line": outline,
-            "hoverinfo": "skip",
-        }
+        filled = {"mode": "lines", "fill": "toself", "fillcolor": one.colour, "hoverinfo": "skip"}
+        return trace | filled | {"line": {"width": 0, "color": one.colour}}
     for key, spread in (("error_x", one.dx), ("error_y", one.dy)):
         if np.any(spread):
             trace[key] = {"array": listed(spread), "thickness": 1, "width": 0, "color": one.colour}
@@ -115,10 +106,10 @@ def _trace(one: Series, x: Axis, y: Axis) -> Data:
 def moving(run: Run, states: States) -> list[Chart]:
     """What a slider moves: a mark on the main curve, line loads and bodies; their series have a row for each state."""
     main = path_chart(run.model)
-    x, y, *_ = main_curve(run.model).values()
+    panel, (x, y, *_) = main.panels[0], main_curve(run.model).values()
+    along, up = (replace(axis, remark="") for axis in (main.x, panel.y))
     mark = Series(x[states.rows, None], y[states.rows, None], "state", TENSION, "o", 16.0)
-    half = max(half_width(*state) for state in zip(states.x, states.pressure, strict=True))
-    view = np.abs(states.x).min(axis=0) <= half
+    view = np.abs(states.x).min(axis=0) <= half_width(states.x, states.pressure)
     places = states.x[:, view]
     places = places if np.ptp(places, axis=0).any() else places[0]
 
@@ -131,11 +122,11 @@ def moving(run: Run, states: States) -> list[Chart]:
 
     shear = {"shear": -states.shear} if states.shear.any() else {}
     charts = [
-        Chart(main.x, [replace(main.panels[0], series=[*main.panels[0].series, mark])]),
+        Chart(along, [replace(panel, y=up, series=[*panel.series, mark])]),
         over_x(Axis("line load", LINE_PRESSURE), normal=states.pressure, **shear),
         over_x(Axis("z", LENGTH, ", magnified"), upper=states.z_upper, lower=states.z_lower),
     ]
-    return [chart.written(lambda _, unit: run.scales.base(unit)).written(scale_of) for chart in charts]
+    return [chart.written(run.scales.written) for chart in charts]
 
 
 def path_of(run: Run, states: States) -> Data:
@@ -154,9 +145,12 @@ def path_of(run: Run, states: States) -> Data:
 
 def listed(values: Any) -> list[Any]:
     """Numbers for JSON, in seven digits; None where there is none."""
-    return [
-        listed(one) if np.ndim(one) else float(f"{one:.7g}") if math.isfinite(one) else None for one in values
-    ]  # fmt: skip
+    numbers = np.asarray(values, dtype=np.float64)
+    size = np.where(np.isfinite(numbers) & (numbers != 0.0), np.abs(numbers), 1.0)
+    digits = 10.0 ** (6.0 - np.floor(np.log10(size)))
+    found = (np.round(numbers * digits) / digits).astype(object)
+    found[~np.isfinite(numbers)] = None
+    return list(found.tolist())
 
 
 def _words(text: str) -> str:

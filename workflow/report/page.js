@@ -2,7 +2,17 @@
 // Draws the figures of the page, and moves through the states of a run: line load, force and bodies together.
 const data = JSON.parse(document.getElementById("data").textContent);
 const config = { responsive: true, displaylogo: false, showSendToCloud: false };
-data.charts.forEach((chart, i) => Plotly.newPlot(`chart-${i}`, chart.data, chart.layout, config));
+// What all charts have in common.
+const axis = { showline: true, ticks: "outside", automargin: true };
+const common = {
+  template: "none",
+  margin: { l: 70, r: 15, t: 30, b: 65 },
+  hovermode: "closest",
+  legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom" },
+};
+const draw = (id, traces, { xaxis, yaxis }) =>
+  Plotly.newPlot(id, traces, { ...common, xaxis: { ...axis, ...xaxis }, yaxis: { ...axis, ...yaxis } }, config);
+data.charts.forEach((chart, i) => draw(`chart-${i}`, chart.data, chart.layout));
 
 // Logarithmic or linear axes, for a figure whose numbers allow it; the ranges are then those of the data.
 document.querySelectorAll("input[data-axis]").forEach((box) => {
@@ -26,7 +36,7 @@ if (data.path) {
   // A series that moves has a list for each state.
   const at = (values) => (Array.isArray(values[0]) ? values[Number(slider.value)] : values);
   const moved = (chart) => chart.data.map((trace) => ({ ...trace, x: at(trace.x), y: at(trace.y) }));
-  charts.forEach((chart, i) => Plotly.newPlot(`path-${i}`, moved(chart), chart.layout, config));
+  charts.forEach((chart, i) => draw(`path-${i}`, moved(chart), chart.layout));
   const show = () => {
     charts.forEach((chart, i) => {
       const traces = moved(chart);

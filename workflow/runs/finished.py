@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from html import escape
+from itertools import pairwise
 from math import nan, pi
 from os import PathLike
 from pathlib import Path
@@ -22,7 +23,6 @@ from contact1d.analysis.curve import DETACHMENTS, PROFILE_COLUMNS, SAMPLE_TABLE,
 from contact1d.analysis.named import Named
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius
-from contact1d.analysis.shear import stick_margin
 from contact1d.analysis.theory.indenters import Ellipsoid, PowerLaw
 from contact1d.analysis.theory.mindlin import mindlin_path
 from contact1d.workflow.body.derived import REPORTED
@@ -36,7 +36,7 @@ from contact1d.workflow.runs.report import COLUMN_UNITS, FILES, in_units, quanti
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
 from contact1d.workflow.scene.tables import SPHERES, WIDER_THAN_SPHERES
-from contact1d.workflow.units import FORCE, LENGTH, MASS, Quantity, Scales, scale_of
+from contact1d.workflow.units import FORCE, LENGTH, MASS, NUMBER, Quantity, Scales, scale_of
 
 if TYPE_CHECKING:
     from ase import Atoms
@@ -45,6 +45,10 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 CONTACT_RADIUS = "contact radius a"
+MAIN = {
+    "tangential_displacement": "tangential_force", "drive": "friction", "time": "displacement", "displacement": "force",
+}  # fmt: skip
+"""What the path of a run is drawn over, the first that it has, and what is drawn over it."""
 FROM_ZERO = ("contact_radius", "force", "friction", "tangential_force")
 """Columns whose 0 a figure shows."""
 SAME_LOAD = 1e-9
@@ -172,8 +176,9 @@ class Run:
         """Draw a figure, by default the experiment's main one; `.savefig(path)` keeps it.
 
         Args:
-            name: "force_displacement", "force_radius", "pressure", "pressure_3d", "friction", "tangential",
-                "stick_slip", "shear_3d", "detachments" or "samples", as the files in the folder are called.
+            name: "force_displacement", "force_radius", "force_time", "displacement_time", "pressure", "pressure_3d",
+                "friction", "tangential", "stick_slip", "shear_3d", "detachments" or "samples", as the files in the
+                folder are called.
 
         Raises:
             ValueError: the run has no such figure; the message says which it has.
@@ -253,7 +258,8 @@ def draw(run: Run, form: str) -> None:
 def axis_of(column: str) -> Axis:
     """The axis of a column of the tables, in units of the model."""
     remark = figures.COMPRESSIVE if column in CURVE_COLUMNS[:2] else ""
-    return Axis(column.replace("_", " "), COLUMN_UNITS[column], remark, zero=column in FROM_ZERO)
+    name = "displacement of the drive" if column == "drive" else column.replace("_", " ")
+    return Axis(name, COLUMN_UNITS[column], remark, zero=column in FROM_ZERO)
 
 
 def main_curve(run: Run) -> dict[str, Array]:
@@ -261,30 +267,29 @@ def main_curve(run: Run) -> dict[str, Array]:
 
     A row for each state: a slide begins with one under the load, before it is driven.
     """
-    names, columns = ["displacement", "force"], run.curve
-    if run.scene.experiment.goes_along:
-        names = ["tangential_displacement", "tangential_force"]
-    elif run.friction:
-        names, columns = ["drive", "friction"], run.friction
-    elif "time" in columns:
-        names = ["time", "force" if run.scene.experiment.places() else "displacement"]
+    columns = run.friction or run.curve
+    over = next(name for name in MAIN if name in columns)
+    names = [over, "force" if over == "time" and run.scene.experiment.places() else MAIN[over]]
     if "normal_force" in columns and np.ptp(load := columns["normal_force"]) > SAME_LOAD * np.abs(load).max():
         names.append("normal_force")
-    missing = np.full(len(run.curve.force) - len(columns[names[0]]), nan)
+    missing = np.full(run.curve.force.size - columns[over].size, nan)
     return {name: np.append(missing, columns[name]) for name in names}
 
 
 def legs_of(run: Run, along: Array) -> list[tuple[str, NDArray[np.int64]]]:
     """Name and rows of each leg of a prescribed path, which begins where the one before it ends.
 
-    Otherwise of each branch, in the order of the positions `along`: a search goes to and fro.
+    Otherwise of each branch of a cycle, in the order of the positions `along`: a search goes to and fro.
     """
     branch, kind = run.curve.branch, run.scene.experiment
-    if not (kind.way_is_given or kind.goes_along):
-        rows = [np.flatnonzero(branch == name) for name in dict.fromkeys(branch.tolist())]
-        return [(str(branch[part[0]]), part[np.argsort(along[part], kind="stable")]) for part in rows]
-    parts = np.split(np.arange(branch.size), np.flatnonzero(branch[1:] != branch[:-1]) + 1)
-    return [(str(branch[part[0]]), np.arange(max(part[0] - 1, 0), part[-1] + 1)) for part in parts]
+    if kind.way_is_given or kind.goes_along:
+        starts = [0, *np.flatnonzero(branch[1:] != branch[:-1]) + 1, branch.size]
+        legs = [np.arange(max(start - 1, 0), end) for start, end in pairwise(starts)]
+    else:
+        order = np.argsort(along, kind="stable")
+        names = np.char.add(branch, run.curve.get("cycle", np.zeros(branch.size)).astype(str))
+        legs = [order[names[order] == name] for name in dict.fromkeys(names.tolist())]
+    return [(str(branch[rows[-1]]), rows) for rows in legs]
 
 
 def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
@@ -297,9 +302,9 @@ def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
         yield DETACHMENTS, figures.detachments(run.detachments["force"])
     if SAMPLE_TABLE in run.tables:
         yield SAMPLE_TABLE, _samples(run)
-    if scene.experiment.goes_along:
+    if scene.friction is not None:
         yield "tangential", path_chart(run, tangential_force=_mindlin(run))
-        yield "stick_slip", _stick_slip(run, profiles)
+        yield "stick_slip", figures.stick_slip(profiles, scene.friction.coefficient, _zones(run, profiles))
     elif over != "displacement":
         yield "friction" if run.friction else f"{up}_{over}", path_chart(run)
     if "displacement" in (over, up) and (scene.noise is None or scene.experiment.way_is_given):
@@ -331,37 +336,50 @@ def _samples(run: Run) -> Chart:
 
 def _under_load(run: Run) -> Iterator[tuple[str, Chart]]:
     """Force over displacement and, where that changes, over the contact radius."""
-    scene, curve, values = run.scene, run.curve, _values(run)
-    theory, tension = _theory(run, values), run.results.get("adhesion_force")
-    beside = [] if theory is None else figures.lines((theory[0], *theory[1][1:]))
+    curve, theory, scale, tension = run.curve, _theory(run), _pull_off(run), run.results.get("adhesion_force")
+    beside = figures.lines(*((name, d, force) for name, _, d, force in theory))
     if tension and tension.value:
         beside += figures.level(-tension.value, tension.uncertainty, f"$F_A$ = {tension.value:.4g} FU")
     yield "force_displacement", path_chart(run, {name: curve[name] for name in CURVE_COLUMNS[:2]}, force=beside)
-    radius, spread = np.where(curve.contact_radius > 0.0, curve.contact_radius, nan), curve.contact_radius_uncertainty
-    legs = legs_of(run, radius)
-    if _adheres_over_a_width(values) and scene.bodies.profile.kind in SPHERES:
-        scale = values["adhesion_force"], values["zero_load_radius"]
-        yield "force_radius", figures.reduced_radius(radius, curve.force, legs, spread, *scale)
-    elif np.unique(radius[np.isfinite(radius)]).size > 1:
-        beside = [] if theory is None or scene.adheres else figures.lines((theory[0], *theory[1][::2]))
-        panel = axis_of("force"), curve.force, beside
-        yield "force_radius", figures.path(axis_of("contact_radius"), radius, legs, panel, spread=spread)
+    radius = np.where(curve.contact_radius > 0.0, curve.contact_radius, nan)
+    x, y = axis_of("contact_radius"), axis_of("force")
+    beside = [] if run.scene.adheres else figures.lines(*((name, a, force) for name, a, _, force in theory))
+    width, height = 1.0, 1.0
+    if scale and run.scene.bodies.profile.kind in SPHERES:
+        height, width = scale
+        x, y = Axis("contact radius $a/a_0$"), replace(y, name="force $F/F_A$", unit=NUMBER)
+        beside = figures.reduced(float(np.nanmax(radius)) / width)
+    elif np.unique(radius[np.isfinite(radius)]).size < 2:
+        return
+    panel, spread = (y, curve.force / height, beside), curve.contact_radius_uncertainty / width
+    yield "force_radius", figures.path(x, radius / width, legs_of(run, radius), panel, spread=spread)
 
 
-def _values(run: Run) -> dict[str, float]:
-    """The results by name, of lengths those of the image: they belong to the curve."""
-    values = {name: quantity.value for name, quantity in run.results.items()}
-    return values | {name.removeprefix(IMAGE): value for name, value in values.items() if name.startswith(IMAGE)}
+def _pull_off(run: Run) -> tuple[float, float] | None:
+    """F_A and a₀ of the image, to which the curve belongs; None where there is none, or no width at F = 0."""
+    found = [run.results.get(name) for name in ("adhesion_force", f"{IMAGE}zero_load_radius", "zero_load_radius")]
+    force, radius = found[0], found[1] or found[2]
+    return (force.value, radius.value) if force and radius and radius.value > 0.0 else None
+
+
+def _zones(run: Run, states: Iterable[str]) -> dict[str, tuple[float, float, int]]:
+    """Stick radius, place along x and direction of each state: as the row of the curve has them."""
+    zones, places = {}, run.curve.tangential_displacement
+    for state in states:
+        row = row_of(state, run.curve)
+        moves = np.trim_zeros(np.diff(places[: row + 1], prepend=0.0))
+        zones[state] = run.curve.stick_radius[row], places[row], int(np.sign(moves[-1:]).sum())
+    return zones
 
 
 def _marks(run: Run, radii: Mapping[str, ContactRadius]) -> dict[str, dict[str, float]]:
     """What has a radius on the body, by state."""
     wider = WIDER_THAN_SPHERES if stands_for_spheres(run.scene) else 1.0
-    marks = {state: {CONTACT_RADIUS: radius.value / wider} for state, radius in radii.items()}
-    if run.scene.experiment.goes_along:
-        for state, own in marks.items():
-            own["stick radius c"] = float(run.friction["stick_radius"][row_of(state, run.friction)])
-    return marks
+    sticks = _zones(run, radii) if run.scene.experiment.goes_along else {}
+    return {
+        state: {CONTACT_RADIUS: radius.value / wider} | ({"stick radius c": sticks[state][0]} if sticks else {})
+        for state, radius in radii.items()
+    }
 
 
 def _body_theory(run: Run, marks: Mapping[str, Mapping[str, float]]) -> dict[str, figures.Theory]:
@@ -375,20 +393,6 @@ def _body_theory(run: Run, marks: Mapping[str, Mapping[str, float]]) -> dict[str
     return {}
 
 
-def _stick_slip(run: Run, profiles: Mapping[str, Profile]) -> Chart:
-    """The stick zone of each state, as the row at its place has it."""
-    assert run.scene.friction is not None
-    places, coefficient = run.friction["tangential_displacement"], run.scene.friction.coefficient
-    states = {}
-    for name, profile in profiles.items():
-        row = row_of(name, run.friction)
-        moves = np.diff(places[: row + 1], prepend=0.0)
-        direction = int(np.sign(moves[moves != 0.0][-1])) if moves.any() else 0
-        margin = stick_margin(profile, coefficient, direction)
-        states[name] = profile, margin, float(run.friction["stick_radius"][row]), float(places[row])
-    return figures.stick_slip(states, coefficient)
-
-
 def _mindlin(run: Run) -> list[Series]:
     """F_x of Cattaneo and Mindlin over u along the path of a parabola under one load; of others nothing."""
     case, places = Case(run.scene, run.results), run.friction["tangential_displacement"]
@@ -400,17 +404,12 @@ def _mindlin(run: Run) -> list[Series]:
     return figures.lines(("Cattaneo–Mindlin", dense, np.asarray(force)))
 
 
-def _adheres_over_a_width(values: Mapping[str, float]) -> bool:
-    """Whether the run has F_A and an a₀ that is not 0, by which a reduced curve can be divided."""
-    return "adhesion_force" in values and values.get("zero_load_radius", 0.0) > 0.0
-
-
-def _theory(run: Run, values: Mapping[str, float]) -> tuple[str, Array] | None:
+def _theory(run: Run) -> list[tuple[str, Array, Array, Array]]:
     """Name, and a, d, F of the closed form of the body; of two chains that of JKR with the run's own F_A and a₀.
 
     The image x²/2R₁ on springs E* per length is the contact of R = 2R₁; its a₀ is twice that of the two spheres.
     """
-    scene, half, case = run.scene, run.scene.bodies.plane_radius, Case(run.scene, run.results)
+    scene, half, case, pull_off = run.scene, run.scene.bodies.plane_radius, Case(run.scene, run.results), _pull_off(run)
     radius, forms = 2.0 * (half or 0.0), applying(case)
     body: PowerLaw | Ellipsoid
     if half is not None:
@@ -422,13 +421,13 @@ def _theory(run: Run, values: Mapping[str, float]) -> tuple[str, Array] | None:
     elif forms and case.kind != "flat_punch":
         name, body = forms[0].name, case.body
     else:
-        return None
+        return []
     if scene.adhesion is not None and scene.adheres:
-        return name, body.curve(body.fixed_grips_radius(), LARGEST * body.zero_load_radius())
-    if _adheres_over_a_width(values):
-        force, a_0 = values["adhesion_force"], values["zero_load_radius"]
+        return [(name, *body.curve(body.fixed_grips_radius(), LARGEST * body.zero_load_radius()))]
+    if pull_off is not None:
+        force, a_0 = pull_off
         fitted = PowerLaw.sphere(radius, 3.0 * force * radius / a_0**3, force / (1.5 * pi * radius))
-        return "JKR, same $F_A$ and $a_0$", fitted.curve(LEAST * a_0, LARGEST * a_0)
+        return [("JKR, same $F_A$ and $a_0$", *fitted.curve(LEAST * a_0, LARGEST * a_0))]
     if scene.interaction is None:
-        return name, body.curve(0.0, body.radius_at(max(float(run.curve.displacement.max()), 0.0)))
-    return None
+        return [(name, *body.curve(0.0, body.radius_at(max(float(run.curve.displacement.max()), 0.0))))]
+    return []

@@ -64,12 +64,12 @@ def sweep_charts(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> dic
     x = chart.Axis(title_of(plan, along), along.numbers[1] or "1", log=_spans(along.numbers[0]), ticks=words)
     found = {}
     for name, lines in _read(folder, plan, units, {word: place for place, word in words.items()}).items():
-        series = [_series(lines, *key) for key in sorted(lines, key=lambda key: not key[1])]
-        values = np.concatenate([one.y for one in series])
+        series = {key: _series(lines, *key) for key in sorted(lines, key=lambda key: not key[1])}
+        values = np.concatenate([one.y for (_, form), one in series.items() if not form])
         # What a scene prescribes is the same everywhere, but for a search's accuracy: there is nothing to see.
         if np.ptp(values) > CONSTANT * np.abs(values).max():
             y = chart.Axis(name.replace("_", " "), units[name], log=_spans(values))
-            found[name] = Chart(x, [Panel(y, series, plan.title)])
+            found[name] = Chart(x, [Panel(y, [*series.values()], plan.title)])
     return found
 
 
@@ -77,11 +77,12 @@ def _read(
     folder: Path, plan: SweepPlan, names: Iterable[str], places: Mapping[str, float]
 ) -> dict[str, dict[tuple[str, str], Seeds]]:
     """The lines of each result that a sweep's table has: by the values of the other axes and the closed form, or ""."""
-    along, *others = [(axis, title_of(plan, axis)) for axis in (roles_of(plan)[0], *roles_of(plan)[1])]
+    along, others = roles_of(plan)
+    titles = {axis.key: title_of(plan, axis) for axis in others}
     found: dict[str, Any] = {name: defaultdict(lambda: defaultdict(list)) for name in names}
     for row in read_table(folder):
-        label = ", ".join(f"{title} = {label_in(axis, row[axis.key])}" for axis, title in others)
-        place = float(places.get(row[along[0].key], row[along[0].key]))
+        label = ", ".join(f"{titles[axis.key]} = {label_in(axis, row[axis.key])}" for axis in others)
+        place = float(places.get(row[along.key], row[along.key]))
         theory = document_in(folder / row["run"]).get("theory", ())
         for name, lines in found.items():
             if row[name]:
@@ -96,19 +97,16 @@ def _series(lines: Mapping[tuple[str, str], Seeds], label: str, form: str) -> Se
     """The runs as points, of several seeds mean and standard error; or a closed form, in the colour of its runs."""
     labels, forms = (list(dict.fromkeys(part)) for part in zip(*lines, strict=True))
     colour = DARK_TO_LIGHT[labels.index(label) * (len(DARK_TO_LIGHT) - 1) // max(1, len(labels) - 1)]
-    seeds = sorted(lines[label, form].items())
-    x, y = np.asarray([place for place, _ in seeds]), np.asarray([np.mean(values, axis=0)[0] for _, values in seeds])
+    points = []
+    for place, seeds in sorted(lines[label, form].items()):
+        values, spread = np.transpose(seeds)
+        error = values.std(ddof=1) / math.sqrt(values.size) if values.size > 1 else spread[0]
+        points.append((place, values.mean(), error))
+    x, y, dy = np.transpose(points)
     if form:
         look = LOOKS[forms.index(form) % len(LOOKS) - 1] if x.size > 1 else "x"
         return Series(*_dense(x, y), form, colour, look)
-    errors = np.asarray([_error(*np.transpose(values)) for _, values in seeds])
-    return Series(x, y, label or "runs", colour, "o" if len(forms) > 1 else "o:", dy=errors)
-
-
-def _error(values: Array, uncertainties: Array) -> float:
-    """The standard error of several seeds; of one its uncertainty."""
-    several = values.size > 1
-    return float(values.std(ddof=1) / math.sqrt(values.size) if several else uncertainties[0])
+    return Series(x, y, label or "runs", colour, "o" if len(forms) > 1 else "o:", dy=dy)
 
 
 def _spans(values: Collection[float]) -> bool:
