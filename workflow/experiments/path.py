@@ -225,8 +225,8 @@ def _lost(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
     same = noisy or (ends[0] is None) == (ends[1] is None)
     if same and closes(d, force, ANY_FORCE if noisy else settings.tolerance):
         # Springs lose nothing, nor does a contact that is held all along, where particles neither snap nor buckle.
-        held = not (_is_unstable(trace) or settings.snaps or scene.horizontal)
-        known = not noisy and (held or not scene.adheres)
+        may_jump = scene.adheres and (settings.snaps or scene.horizontal is not None or _is_unstable(trace))
+        known = not (noisy or may_jump)
         scale = work.whole if known else None
         return {"dissipated_energy": Reading(work.area, ENERGY, errors, scale=scale, prescribed=known)}
     first, last = (settings.estimate.energy(d[i], radius or 0.0) for i, radius in zip((0, -1), ends, strict=True))
