@@ -400,6 +400,8 @@ MOST_DIGITS, NEARLY = 10, 1e-4
 """Digits of heights that are rounded, at most, and how near to a whole multiple one is one."""
 LEAST_JUMP = 1e-6
 """Such a jump over the largest slope at least: others are round-off."""
+INSIDE = 1e-3
+"""Of a cell, the least distance of such a jump from its ends: there the points beside it would have shown it."""
 FLANK = 3
 """Points on either side of a jump whose parabola goes on to where it meets the other one."""
 
@@ -418,18 +420,20 @@ def _points(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array, l
     jump = np.abs(np.diff(slope))
     curvature = jump / np.append(2.0 * x[1], x[2:] - x[:-2])
     strong = jump > LEAST_JUMP * np.abs(slope).max()
-    found: dict[float, float] = {}
-    for i in range(1, len(curvature) - 1):
-        if strong[i] and curvature[i] > SHARP * max(curvature[i - 1], curvature[i + 1]):
-            found[x[i]] = y[i]
-        elif i + 2 < len(curvature) and curvature[i : i + 2].sum() > SHARP * max(curvature[i - 1], curvature[i + 2]):
-            left, right = slice(max(0, i + 1 - FLANK), i + 1), slice(i + 1, i + 1 + FLANK)
-            step = x[i + 1] - x[i]
-            lines = [np.polyfit((x[own] - x[i]) / step, y[own], min(2, len(x[own]) - 1)) for own in (left, right)]
-            roots = np.roots(np.polysub(*lines))
-            meet = [one.real for one in roots if one.imag == 0.0 and 0.0 < one.real < 1.0]
-            if strong[i] and strong[i + 1] and len(meet) == 1:
-                found[x[i] + step * meet[0]] = float(np.polyval(lines[0], meet[0]))
+    beside = np.maximum(curvature[:-2], curvature[2:])
+    sharp = {int(i) for i in np.flatnonzero(strong[1:-1] & (curvature[1:-1] > SHARP * beside)) + 1}
+    found = {float(x[i]): float(y[i]) for i in sharp}
+    for i in range(1, len(curvature) - 2):
+        pair = curvature[i : i + 2].sum() > SHARP * max(curvature[i - 1], curvature[i + 2])
+        if not (pair and strong[i] and strong[i + 1]) or sharp & {i - 1, i, i + 1, i + 2}:
+            continue
+        left, right, step = slice(max(0, i + 1 - FLANK), i + 1), slice(i + 1, i + 1 + FLANK), x[i + 1] - x[i]
+        lines = [np.polyfit((x[own] - x[i]) / step, y[own], min(2, len(x[own]) - 1)) for own in (left, right)]
+        meet = [
+            one.real for one in np.roots(np.polysub(*lines)) if one.imag == 0.0 and INSIDE < one.real < 1.0 - INSIDE
+        ]
+        if len(meet) == 1:
+            found[float(x[i] + step * meet[0])] = float(np.polyval(lines[0], meet[0]))
     every = dict(zip(x.tolist(), y.tolist(), strict=True)) | found
     places = sorted(every)
     return np.asarray(places), np.asarray([every[one] for one in places]), [places.index(one) for one in sorted(found)]
