@@ -15,7 +15,6 @@ Nothing here depends on the experiment: whatever a script passes and a reader re
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -121,20 +120,20 @@ class Reduction:
     @cached_property
     def inputs(self) -> Values:
         """By name of a result, by how much the bodies that the scene may mean differ from the one that runs, in sum."""
-        profile, others = self.scene.bodies.profile, []
-        try:
-            others = [self._of_shape(shape) for shape in profile.alternatives]
-        except SettingsError:  # a corner where the edge of an adhesive contact would jump
-            for shape in profile.coarser:
-                with suppress(SettingsError):
-                    others.append(self._of_shape(shape))
+        profile = self.scene.bodies.profile
+        others = [model for shape in profile.alternatives if (model := self._of_shape(shape))]
+        if len(others) < len(profile.alternatives):
+            others += [model for shape in profile.coarser if (model := self._of_shape(shape))]
         each = [self._apart([other]) for other in others]
         return {name: sum(one[name] for one in each) for name in self.own}
 
-    def _of_shape(self, shape: Shape) -> Reduced:
-        """The model of another body. Raises SettingsError."""
+    def _of_shape(self, shape: Shape) -> Reduced | None:
+        """The model of another body; None of one that is no contact, as where its edge would jump at a corner."""
         scene = self.scene.model_copy(update={"bodies": self.scene.bodies.model_copy(update={"profile": shape})})
-        return reduced(scene, replace(self.settings, estimate=settings_for(scene).estimate))
+        try:
+            return reduced(scene, replace(self.settings, estimate=settings_for(scene).estimate))
+        except SettingsError:
+            return None
 
     def _apart(self, models: Sequence[Reduced]) -> Values:
         """How far results of other models are off, at most."""

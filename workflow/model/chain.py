@@ -20,7 +20,7 @@ from contact1d.workflow.scene import Bodies, Scene, Tangential
 
 CHAIN_MARGIN = 1.1
 """Length of an automatic chain over what the predictor asks for."""
-FALL_SHARE = 1e-9
+FALL_SHARE = 1e-5
 """A profile counts as falling where it does by more than this share of its height."""
 ROUND_OFF = 1e-9
 """Relative, of a length that a chain only just fits into."""
