@@ -18,7 +18,7 @@ from validation.hard import (
     random_scenes,
     settling,
     sharp,
-    sideways,
+    lateral,
     similarity,
     slides,
     stiffness,
@@ -31,5 +31,5 @@ STUDIES: tuple[Study, ...] = (
     stiffness.STIFFNESS, sharp.SHARP, random_scenes.RANDOM, loads.LOADS, settling.SETTLING, loops.LOOPS,
     friction.FRICTION, similarity.SIMILARITY, forces.FORCES, motion.MOTION, modes.EQUIPARTITION, *thermal.CLASSES,
     extremes.EXTREMES, *pressed.CLASSES, plane_adhesive.ADHESIVE, slides.SLIDES, faults.FAULTS, fuzz.FUZZ,
-    random_plane.RANDOM_PLANE, *kinks.CLASSES, coarse_paths.COARSE_PATHS, sideways.SIDEWAYS, transient.TRANSIENT,
+    random_plane.RANDOM_PLANE, *kinks.CLASSES, coarse_paths.COARSE_PATHS, lateral.LATERAL, transient.TRANSIENT,
 )  # fmt: skip

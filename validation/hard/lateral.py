@@ -1,4 +1,4 @@
-"""Aligned chains with freedom along x on a path: where an equilibrium loses its stability sideways, the chain jumps.
+"""Aligned chains with freedom along x on a path: where an equilibrium loses its stability along x, the chain jumps.
 
 Followed in fine steps by the independent solver, the upper chain jumps along x if the largest move of a particle in one
 step does not shrink with the step. Such a path has more than one answer at a displacement, and which one a run has
@@ -18,7 +18,7 @@ from validation.references.solver import ChainSolver
 from validation.row import Row, at_most, so
 from validation.study import Bench, Findings, Refused, Study, said
 
-NAME, WARNING = "sideways", "buckling"
+NAME, WARNING = "lateral", "buckling"
 LAW = (0.0916, 0.451, 0.0675, 0.597)
 """A, a, B, b [FU·LU, LU] of the interaction."""
 PARTICLES, RADIUS, SPACING, FIRST, LAST = 7, 1.72, 2.0, -2.498, 0.6825
@@ -92,10 +92,10 @@ def _followed(stiffness: float, along: float | None, steps: int) -> tuple[float,
     return float(np.abs(np.diff(places, axis=0)).max()), displacements, np.asarray(forces)
 
 
-SIDEWAYS = Study(
+LATERAL = Study(
     NAME,
     "Aligned chains that jump along x on a path",
-    "A chain that loses its stability sideways between two load steps ends in a state that depends on the steps. Does "
+    "A chain that loses its stability along x between two load steps ends in a state that depends on the steps. Does "
     "a run say so, and only then?",
     measure,
 )
