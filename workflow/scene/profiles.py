@@ -448,7 +448,9 @@ def _cornered(r: tuple[float, ...], z: tuple[float, ...]) -> dict[str, tuple[flo
     before, after, start, end = slope[:-2], slope[2:], slice(1, -2), slice(2, -1)
     with np.errstate(divide="ignore", invalid="ignore"):
         meet = (y[end] - y[start] + before * x[start] - after * x[end]) / (before - after)
-    inside = (meet > x[start]) & (meet < x[end])
+    # Where a point is a corner by itself, it is not beside it.
+    own = np.isin(x, _points(r, z)[0][_points(r, z)[2]])
+    inside = (meet > x[start]) & (meet < x[end]) & ~own[start] & ~own[end]
     places = np.append(x, meet[inside])
     heights = np.append(y, (y[start] + before * (meet - x[start]))[inside])
     order = np.argsort(places)
