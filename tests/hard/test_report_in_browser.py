@@ -18,6 +18,8 @@ from tests.scenes import chains
 HERE = ("file:", "data:", "blob:")
 """Addresses that need no network."""
 THEORY = "#555555"
+PATIENCE = 180_000
+"""Time for a page of some megabytes on a machine with other work [ms]."""
 PHONE = {"width": 390, "height": 844}
 
 
@@ -56,7 +58,7 @@ def test_the_slider_moves_force_profile_and_words_by_mouse_and_keyboard(browser:
     page.on(
         "request", lambda asked: None if asked.url.startswith(("file:", "data:", "blob:")) else errors.append(asked.url)
     )
-    page.goto(address)
+    page.goto(address, timeout=PATIENCE)
     assert page.locator(".js-plotly-plot").count() >= 5
     titles = page.locator(".modebar-btn").evaluate_all("buttons => buttons.map(one => one.dataset.title)")
     assert titles
@@ -88,14 +90,14 @@ def test_the_slider_moves_force_profile_and_words_by_mouse_and_keyboard(browser:
 @pytest.mark.browser
 def test_a_phone_shows_the_page_without_scrolling_sideways(browser: Any, address: str) -> None:
     page = browser.new_page(viewport=PHONE)
-    page.goto(address)
+    page.goto(address, timeout=PATIENCE)
     assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
 
 
 @pytest.mark.browser
 def test_on_paper_the_numbers_are_there_and_the_slider_is_not(browser: Any, address: str) -> None:
     page = browser.new_page()
-    page.goto(address)
+    page.goto(address, timeout=PATIENCE)
     page.emulate_media(media="print")
     assert not page.locator("#state").is_visible()
     assert page.get_by_text("adhesion force").first.is_visible()
@@ -107,7 +109,7 @@ def test_a_loop_is_drawn_leg_by_leg_in_si_beside_mindlins_and_its_axes_change_by
     browser: Any, loop: str, width: int
 ) -> None:
     page = browser.new_page(viewport=PHONE | {"width": width})
-    page.goto(loop)
+    page.goto(loop, timeout=PATIENCE)
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     chart = page.evaluate("(({data, layout}) => ({data, layout}))(document.getElementById('chart-0'))")
     legs = [trace for trace in chart["data"] if trace["line"]["color"] != THEORY]
