@@ -17,7 +17,9 @@ PERIODS, VELOCITY = 12, 0.5
 
 
 MASS = 2.0
-SPACED: Any = SimpleNamespace(bodies=SimpleNamespace(spacing=1.0, mass=MASS), cantilever=SimpleNamespace(stiffness=0.5))
+SPACED: Any = SimpleNamespace(
+    bodies=SimpleNamespace(spacing=1.0, mass=MASS), the=lambda kind: SimpleNamespace(stiffness=0.5)
+)
 """A scene, as far as it is asked."""
 
 

@@ -131,7 +131,7 @@ def test_jkr_over_displacement_obeys_its_own_equations(tmp_path: Path) -> None:
     displacement = a**2 / effective - np.sqrt(2.0 * math.pi * a * work / modulus)
     force = 4.0 * modulus * a**3 / (3.0 * effective) - np.sqrt(8.0 * math.pi * modulus * work * a**3)
     drawn = lines(done.plot("force_displacement").axes[0])["JKR, same $F_A$ and $a_0$"]
-    shown = (displacement >= done.curve.displacement.min()) & (drawn[:, 1].max() >= force)
+    shown = (displacement >= done.curve.displacement.min()) & (drawn[:, 1].max() * (1.0 + ROUND_OFF) >= force)
     np.testing.assert_allclose(drawn, np.column_stack([displacement, force])[shown], atol=ROUND_OFF)
     assert force.min() == pytest.approx(-tension, abs=GRID * tension)
 

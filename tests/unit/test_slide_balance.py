@@ -25,7 +25,7 @@ SAMPLED = 1e-4
 LEGS = (DriveLeg(ROWS, STEPS, VELOCITY, STEP), DriveLeg(ROWS, STEPS, -2.0 * VELOCITY, STEP))
 SCENE: Any = SimpleNamespace(
     bodies=SimpleNamespace(mass=MASS, own_spacing=0.5, spacing=1.0),
-    cantilever=SimpleNamespace(stiffness=STIFFNESS),
+    the=lambda kind: SimpleNamespace(stiffness=STIFFNESS),
     noise=None,
 )
 SETTINGS: Any = SimpleNamespace(

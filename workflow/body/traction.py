@@ -18,7 +18,7 @@ from contact1d.analysis.pressure import Array, Profile
 from contact1d.analysis.radius import ContactRadius, whole_cells
 from contact1d.analysis.shear import kinks_of, shear_load
 from contact1d.workflow.body.reading import stands_for_spheres
-from contact1d.workflow.continuation.state import RadiusRule
+from contact1d.workflow.continuation.state import radius_rule
 from contact1d.workflow.scene import Measured, Scene
 from contact1d.workflow.scene.tables import WIDER_THAN_SPHERES
 from contact1d.workflow.units import MEAN_PRESSURE, Quantity
@@ -96,7 +96,7 @@ def body_pressures(scene: Scene, profiles: Mapping[str, Profile]) -> dict[str, B
     """p(r) of the reported states in which the bodies touch over a width; none where there is no body for them."""
     if not is_of_a_body(scene):
         return {}
-    rule = RadiusRule(scene, scene.accuracy.tolerance)
+    rule = radius_rule(scene, scene.accuracy.tolerance)
     return {
         name: one
         for name, profile in profiles.items()

@@ -25,7 +25,6 @@ from contact1d.workflow.continuation.model_branch import MOST_NUMBERS, ModelBran
 from contact1d.workflow.continuation.outcome import LATTICE, Reading, Result
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
-from contact1d.workflow.continuation.trust import law_error
 from contact1d.workflow.model.reduced import Reduced, reduced
 from contact1d.workflow.model.settings import Settings, SettingsError, settings_for
 from contact1d.workflow.scene import Scene, Shape
@@ -79,7 +78,7 @@ class Reduction:
     def on_lattice(self) -> bool:
         """Whether the positions of the particles are chosen by the program, and not part of the scene."""
         bodies = self.scene.bodies
-        return bodies.particles == "auto" and not bodies.profile.has_edge
+        return bodies.particles == "auto" and bodies.own_count is None
 
     @property
     def converges(self) -> bool:
@@ -87,7 +86,7 @@ class Reduction:
 
         Whole particles touch or don't, and what they miss goes up and down with the spacing.
         """
-        return self.scene.adhesion is not None and self.scene.adheres
+        return bool(self.scene.adhesion) and self.settings.estimate.attracts
 
     @cached_property
     def own(self) -> Values:
@@ -108,7 +107,7 @@ class Reduction:
         kinks = self.scene.bodies.profile.kinks
         beside = [model.resized(factor) for factor in UNEVEN if kinks]
         if not self.converges or kinks:
-            phases = MORE_PHASES if self.scene.friction is not None or kinks else PHASES
+            phases = MORE_PHASES if self.scene.friction or kinks else PHASES
             beside += [model.shifted(phase) for phase in phases]
         found = self._apart(beside)
         if self.converges:
@@ -190,7 +189,7 @@ def force_errors(
 ) -> ForceErrors:
     """Of states, by their displacement between `marked` ones; `left`: in place of residual forces [FU]."""
     count = float(settings.chains.upper)
-    law = {state.displacement: law_error(scene, settings, state) for state in marked}
+    law = {state.displacement: settings.forces.error(scene, state.profile) for state in marked}
     own = {
         state.displacement: law[state.displacement] + (count * state.residual if left is None else left)
         for state in marked
@@ -198,8 +197,7 @@ def force_errors(
     positions = sorted(own)
     displacement = np.asarray([state.displacement for state in states])
     common = np.interp(displacement, positions, [own[position] for position in positions])
-    several = count if scene.noise is not None else np.sqrt(count)
-    turning = several * np.asarray([state.residual for state in states])
+    turning = np.sqrt(count) * np.asarray([state.residual for state in states])
     return ForceErrors(common, turning, max(law.values()), list(marked)[-1].displacement)
 
 

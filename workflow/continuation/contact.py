@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.pressure import Profile, penetration_depth, pressure_profile, smallest_distance
-from contact1d.workflow.continuation.state import RadiusRule, State
+from contact1d.workflow.continuation.state import State, radius_rule
 from contact1d.workflow.continuation.trust import is_converged, require_trust
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import bodies, period
@@ -56,7 +56,7 @@ class Contact:
         self._unfinished = ""
         self._written = self._heat_is_reported = False
         self._latest: list[State] = []
-        self._rule = RadiusRule(deck.scene, deck.settings.tolerance)
+        self._rule = radius_rule(deck.scene, deck.settings.tolerance)
         self._pushes = tuple(part.pushes for part in deck.parts if part.pushes)
         session.execute(deck.head, phase="setting up", meanwhile=meanwhile)
         if deck.stepped:
@@ -125,7 +125,7 @@ class Contact:
     def replay(self, phases: Sequence[Phase], relaxed: bool = False) -> list[State]:
         """Run a whole schedule; one state for each load step. `relaxed`: one in time is repeated until at rest."""
         states: list[State] = []
-        trusted = self.scene.noise is None
+        trusted = not self.scene.noise
         for phase in phases:
             steps = sum(getattr(row, "steps", 0) for row in phase.rows)
             self.begin(phase.name, phase.begin, steps or None)
@@ -211,11 +211,11 @@ class Contact:
     def _values(self) -> dict[str, str]:
         """What is measured beside the atoms, and its unit."""
         names = {"plate_displacement": "LU", "step": "1"}
-        if self.scene.plate is not None:
+        if self.scene.plate:
             names["plate_velocity"] = "LU/TU"
-        if self.scene.cantilever is not None:
+        if self.scene.cantilever:
             names |= {"cantilever_plate": "LU", "cantilever_force": "FU"} | MOTION
-            if self.scene.noise is not None and self._heat_is_reported:
+            if self._heat_is_reported:
                 names |= dict.fromkeys(HEAT if self.settings.motion.plate_damping > 0.0 else HEAT[:1], "FU·LU")
         return names | dict.fromkeys(self._pushes, "FU")
 
@@ -246,7 +246,7 @@ class Contact:
         profile = pressure_profile(
             x, z, z_below, atoms["v_opposite_x"][upper], atoms["v_opposite_z"][upper], self.scene.bodies.own_spacing
         )
-        free = [0, 2] if self.scene.horizontal is not None else [2]
+        free = [0, 2] if self.scene.horizontal else [2]
         moving = upper if self.scene.bodies.lower == "rigid_chain" else upper | lower
         return State(
             phase=phase,

@@ -201,6 +201,6 @@ def _through(settings: Settings) -> float:
 
 def _lost(contact: Contact, state: State, load: float) -> bool:
     """Out of reach, or moving off with a tension that has fallen below what is pulled with."""
-    if contact.settings.forces.law is not None and state.smallest_distance > contact.settings.forces.cutoff:
+    if 0.0 < contact.settings.forces.cutoff < state.smallest_distance:
         return True
     return load < 0.0 and state.plate_velocity < 0.0 and -state.force < -LOSS_SHARE * load

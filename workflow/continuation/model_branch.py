@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.workflow.continuation.state import RadiusRule
+from contact1d.workflow.continuation.state import radius_rule
 from contact1d.workflow.continuation.trace import Trace, of_model
 from contact1d.workflow.model.reduced import Path, Reduced, swing
 from contact1d.workflow.model.settings import Settings
@@ -139,7 +139,7 @@ class ModelBranch:
         """What a reader sees."""
         phases, legs, *columns = zip(*self._rows, strict=True)
         path = Path(*(np.asarray(column, dtype=np.float64) for column in columns))
-        rule = RadiusRule(self.scene, self.settings.tolerance)
+        rule = radius_rule(self.scene, self.settings.tolerance)
         whole = of_model(phases, legs, path, self.model.follow(path), rule, self.model)
         return whole.chosen([i for i, name in enumerate(phases) if name != UNSEEN])
 

@@ -2,49 +2,110 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import ClassVar
 
-from contact1d.analysis.pressure import Profile
+from contact1d.analysis.pressure import Profile, end_pressure_share
 from contact1d.analysis.radius import ContactRadius, compressive_radius, held_radius, tensile_radius
 from contact1d.workflow.model.settings import CALIBRATION
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Bodies, Scene
 
 OUTSIDE = 1.5
 """Position over the spacing of the second particle of a chain whose apex lies between two."""
+INSIDE_SHARE = 0.5
+"""Pressure at a chain's end over the largest one from which on the end of the chain is inside the contact."""
 
 
 @dataclass(frozen=True)
-class RadiusRule:
-    """The definition of the contact radius of a scene; `tolerance` limits the residual of a pressure."""
+class RadiusRule(ABC):
+    """What the contact radius of a scene is, as the contract defines it.
 
-    scene: Scene
-    tolerance: float
+    Attributes:
+        bodies: the scene's.
+        share: pressure over the largest one that is left of nothing.
+        ends_with_chain: whether the end of its chain may cut the contact.
+    """
 
+    bodies: Bodies
+    share: float
+    ends_with_chain: ClassVar[bool] = True
+
+    @abstractmethod
     def of(self, profile: Profile) -> ContactRadius | None:
-        """The contact radius as the contract defines it; None where the bodies do not touch."""
-        scene = self.scene
-        has_edge, on_plane = scene.bodies.profile.has_edge, scene.bodies.lower == "rigid_plane"
-        # A punch that adheres and stands on the plane without any force is held all over.
-        held = has_edge and scene.adhesion is not None and bool((profile.z_upper <= 0.0).any())
-        carries = ((has_edge or on_plane) and profile.pressure.any()) or held
-        if not (-profile.pressure if scene.adheres else profile.pressure).max() > 0.0 and not carries:
-            return None
-        if has_edge:
-            edge = scene.bodies.reach
-            return ContactRadius(edge, 0.0, -edge, edge, reaches_end=False)
-        if scene.adheres:
-            return held_radius(profile) if on_plane else tensile_radius(profile)
-        return compressive_radius(profile, CALIBRATION.residual * self.tolerance)
+        """The contact radius; None where the bodies do not touch."""
 
     def or_spot(self, profile: Profile) -> ContactRadius:
         """The contact radius; 0 where no particle is in tension, as where F = 0 and the pairs at the apex just touch.
 
         The force maximum is then nearer than the next particle, OUTSIDE spacings from the apex at most.
         """
-        outside = OUTSIDE * self.scene.bodies.spacing
-        return self.of(profile) or ContactRadius(0.0, outside, 0.0, 0.0, reaches_end=False)
+        return self.of(profile) or ContactRadius(0.0, OUTSIDE * self.bodies.spacing, 0.0, 0.0, reaches_end=False)
+
+    def is_cut(self, profile: Profile) -> bool:
+        """Whether the contact's edge, its last loaded particle, is a chain's last particle."""
+        return bool(max(abs(profile.pressure[0]), abs(profile.pressure[-1])) > 0.0)
+
+
+class Compressed(RadiusRule):
+    """Up to the last particle that is pressed."""
+
+    def of(self, profile: Profile) -> ContactRadius | None:
+        """See `compressive_radius`."""
+        return compressive_radius(profile, self.share) if profile.pressure.max() > 0.0 else None
+
+
+class Held(RadiusRule):
+    """Up to where a rigid plane holds the body."""
+
+    def of(self, profile: Profile) -> ContactRadius | None:
+        """See `held_radius`."""
+        return held_radius(profile) if profile.pressure.any() else None
+
+
+class InTension(RadiusRule):
+    """Up to the force maximum of the tension about the contact."""
+
+    def of(self, profile: Profile) -> ContactRadius | None:
+        """See `tensile_radius`."""
+        return tensile_radius(profile) if profile.pressure.min() < 0.0 else None
+
+    def is_cut(self, profile: Profile) -> bool:
+        """Whether the force maximum is at an end, or the chain is shorter than the compressed middle."""
+        pressure = profile.pressure
+        largest = float(pressure.min())
+        return end_pressure_share(profile) > INSIDE_SHARE or (largest < 0.0 and largest in (pressure[0], pressure[-1]))
+
+
+@dataclass(frozen=True)
+class ToTheEdge(RadiusRule):
+    """A body with an edge touches up to there; one that `clings` does so without any force where it stands."""
+
+    clings: bool = False
+    ends_with_chain: ClassVar[bool] = False
+
+    def of(self, profile: Profile) -> ContactRadius | None:
+        """Its reach."""
+        if not (profile.pressure.any() or (self.clings and (profile.z_upper <= 0.0).any())):
+            return None
+        edge = self.bodies.reach
+        return ContactRadius(edge, 0.0, -edge, edge, reaches_end=False)
+
+    def is_cut(self, profile: Profile) -> bool:
+        """The chain ends there as well."""
+        return False
+
+
+def radius_rule(scene: Scene, tolerance: float) -> RadiusRule:
+    """The one of a scene; `tolerance` limits the residual of a pressure."""
+    share = CALIBRATION.residual * tolerance
+    if scene.bodies.own_count is not None:
+        return ToTheEdge(scene.bodies, share, bool(scene.adhesion))
+    if not scene.adheres:
+        return Compressed(scene.bodies, share)
+    return (Held if scene.adhesion else InTension)(scene.bodies, share)
 
 
 @dataclass(frozen=True)

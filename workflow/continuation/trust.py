@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from contact1d.analysis.pressure import Profile, end_pressure_share, left_out
+from contact1d.analysis.pressure import end_pressure_share
 from contact1d.digits import apart
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.errors import ChainEndError as ChainEndError
@@ -24,15 +24,8 @@ from contact1d.workflow.scene.remedies import against_passing, longer_chain
 
 END_SHARE_LIMIT = 1.0
 """Pressure at a chain's end over the largest one, per unit of tolerance, from which on the chain cuts the contact."""
-INSIDE_SHARE = 0.5
-"""The same from which on the end of the chain is inside the contact."""
 RESIDUAL_LIMIT = 0.1
 """Largest residual force of a particle over the force scale, per unit of tolerance, for a converged state."""
-TAIL = 10.0
-"""Force of the tail beyond the cutoff, summed over particles, over the force at the cutoff times a particle's share."""
-COMPLIANCE_FACTOR = 2.0
-"""Error of an equilibrium over that of the force on particles held in place: they follow it, and a table's error, here
-at the distances that happen to be there, is half of what it is between two entries on average."""
 SLOWNESS_RATIO = 10.0
 """Timesteps to settle over those with automatic values from which on it is reported: seconds become minutes."""
 
@@ -46,14 +39,14 @@ def require_trust(scene: Scene, settings: Settings, state: State, moving: bool =
     """
     at = f"at displacement {state.displacement:.4g} LU (phase {state.phase})"
     if state.depth > 0.0:
-        heat = "" if scene.noise is None else " at this temperature"
+        heat = " at this temperature" if scene.noise else ""
         raise ThroughError(
             f"the bodies went through each other {at}: a particle lies {state.depth:.3g} LU below the opposite "
             f"surface. One layer of particles cannot carry this load{heat}",
             f"{_against_passing(scene)}lower the load or the displacement, or take a stronger repulsion",
             against_passing(scene),
         )
-    if not moving and scene.plate is None and scene.noise is None and not is_converged(settings, state):
+    if not (moving or scene.plate or scene.noise or is_converged(settings, state)):
         residual, limit = apart(state.residual, RESIDUAL_LIMIT * settings.tolerance * settings.forces.scale, 2)
         if scene.is_stepped:
             raise DigitsError(
@@ -67,7 +60,7 @@ def require_trust(scene: Scene, settings: Settings, state: State, moving: bool =
             + ("more [damping]" if scene.method == "dynamic" else "a smaller load or smaller displacements")
             + ", or a larger [accuracy] tolerance"
         )
-    if _reaches_end(scene, state.profile):
+    if state.rule.is_cut(state.profile):
         raise ChainEndError(
             f"the contact reaches the end of the chain {at}",
             f"use {_more_particles(scene, settings)}, or a smaller load",
@@ -77,8 +70,8 @@ def require_trust(scene: Scene, settings: Settings, state: State, moving: bool =
 
 def _against_passing(scene: Scene) -> str:
     """What else keeps particles from passing each other; "" where there is nothing."""
-    cooler = "" if scene.noise is None else f"lower noise.temperature from {scene.noise.temperature:g} FU·LU, "
-    if scene.horizontal is None or scene.experiment.motion_is_result:  # a slide needs it
+    cooler = f"lower noise.temperature from {scene.temperature:g} FU·LU, " if scene.noise else ""
+    if not scene.horizontal or scene.experiment.motion_is_result:  # a slide needs it
         return cooler
     return f"{cooler}leave out [horizontal], which lets particles move aside, "
 
@@ -110,38 +103,30 @@ def require_no_contradiction(settings: Settings, tension: float, uncertainty: fl
             )
 
 
-def _reaches_end(scene: Scene, profile: Profile) -> bool:
-    """Whether the contact's edge, the force maximum or else the last loaded particle, is a chain's last particle.
-
-    That of a flat punch is meant to be.
-    """
-    if scene.bodies.profile.has_edge:
-        return False
-    pressure = profile.pressure
-    if scene.adheres and scene.adhesion is None:
-        largest = float(pressure.min())
-        inside = end_pressure_share(profile) > INSIDE_SHARE  # the chain is shorter than the compressed middle
-        return inside or (largest < 0.0 and largest in (pressure[0], pressure[-1]))
-    return bool(max(abs(pressure[0]), abs(pressure[-1])) > 0.0)
+def _cut(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:
+    """A warning where a chain ends too near to its contact."""
+    share = max(end_pressure_share(state.profile) for state in states)
+    ends = reflected(scene, settings.estimate, settings.largest_displacement, settings.chains.upper)
+    if ends > settings.tolerance:
+        why = (
+            f"neighbour springs spread the load over {decay_length(scene):.3g} LU to each side, and the chain of "
+            f"{settings.chains.upper} particles ends so near to the contact that up to {ends:.1g} of it is reflected "
+            "by its end"
+        )
+    elif share > END_SHARE_LIMIT * settings.tolerance:
+        why = (
+            f"the outermost particles carry up to {share:.2g} of the largest pressure, so the chain of "
+            f"{settings.chains.upper} particles truncates the contact"
+        )
+    else:
+        return {}
+    return {"chain_end": f"{why}: use {_more_particles(scene, settings)}"}
 
 
 def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:
     """Named warnings about states that are results, but limited ones."""
-    found = {}
-    share = max(end_pressure_share(state.profile) for state in states)
-    if not scene.bodies.profile.has_edge and share > END_SHARE_LIMIT * settings.tolerance:
-        found["chain_end"] = (
-            f"the outermost particles carry up to {share:.2g} of the largest pressure, so the chain of "
-            f"{settings.chains.upper} particles truncates the contact: use {_more_particles(scene, settings)}"
-        )
-    ends = reflected(scene, settings.estimate, settings.largest_displacement, settings.chains.upper)
-    if not scene.bodies.profile.has_edge and ends > settings.tolerance:
-        found["chain_end"] = (
-            f"neighbour springs spread the load over {decay_length(scene):.3g} LU to each side, and the chain of "
-            f"{settings.chains.upper} particles ends so near to the contact that up to {ends:.1g} of it is reflected "
-            f"by its end: use {_more_particles(scene, settings)}"
-        )
-    share = law_share(scene, settings)
+    found = _cut(scene, settings, states) if states[0].rule.ends_with_chain else {}
+    share = settings.forces.share(scene)
     if share > settings.tolerance:
         found["cutoff"] = (
             f"the truncation error of the interaction (a cutoff of {settings.forces.cutoff:.3g} LU, its table near "
@@ -168,34 +153,11 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
     return found
 
 
-def law_share(scene: Scene, settings: Settings) -> float:
-    """Relative error of a force that table and cutoff, or a plane that is not quite rigid, may cause, before a run."""
-    if settings.forces.table is None or settings.forces.law is None:
-        return _plane_share(scene, settings)
-    tail = TAIL * abs(float(settings.forces.law.force(settings.forces.cutoff)))
-    return (tail + settings.forces.table.error_beyond(settings.forces.table_from)) / settings.forces.scale
-
-
-def law_error(scene: Scene, settings: Settings, state: State) -> float:
-    """Error of the force of a measured state that table and cutoff, or the plane, cause [FU].
-
-    COMPLIANCE_FACTOR Σ |F_table(r) - f(r)| |z|/r over the pairs of opposite particles, F_table = 0 beyond the cutoff.
-    """
-    if settings.forces.table is None or settings.forces.law is None:
-        return _plane_share(scene, settings) * abs(state.force)
-    return COMPLIANCE_FACTOR * left_out(settings.forces.law, settings.forces.table, state.profile)
-
-
-def _plane_share(scene: Scene, settings: Settings) -> float:
-    neighbours = 0.0 if scene.neighbours is None else scene.neighbours.stiffness
-    return 4.0 * neighbours / settings.forces.plane_stiffness
-
-
 def slowness(scene: Scene, settings: Settings) -> str:
     """The reason why the scene is slow; empty where it is not, or where the motion itself is studied (a slide)."""
-    if scene.method != "dynamic" or scene.damping is None or scene.experiment.motion_is_result:
+    if scene.method != "dynamic" or not scene.damping or scene.experiment.motion_is_result:
         return ""
-    plate = None if scene.plate is None else Plate(free=scene.plate.free)
+    plate = Plate(free=scene.plate.free) if scene.plate else None
     same = scene.model_copy(update={"damping": Damping(coefficient="auto"), "plate": plate})
     if same == scene:
         return ""
@@ -215,12 +177,12 @@ def slowness(scene: Scene, settings: Settings) -> str:
 def _mass(scene: Scene, settings: Settings) -> float:
     """What moves [MU]: plate and upper particles, or without a plate each particle by itself."""
     alone = scene.bodies.mass
-    return alone if scene.plate is None else settings.motion.plate_mass + settings.chains.upper * alone
+    return settings.motion.plate_mass + settings.chains.upper * alone if scene.plate else alone
 
 
 def _drag(scene: Scene, settings: Settings) -> float:
     """Drag on that [FU·TU/LU]."""
-    return settings.motion.damping if scene.plate is None else settings.drag()
+    return settings.drag() if scene.plate else settings.motion.damping
 
 
 def _steps(scene: Scene, settings: Settings) -> float:

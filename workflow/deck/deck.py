@@ -52,7 +52,7 @@ class Deck:
         brought = [*contributions(scene, settings), *(standing if scene.stands else moving)(scene, settings)]
         if self.units.are_own:
             brought.append(own_units(self.units))
-        if scene.interaction is not None:
+        if scene.interaction:
             brought += bins(scene, settings, brought)
         return tuple(sorted(brought, key=lambda part: part.stage))
 
@@ -165,7 +165,7 @@ class Deck:
             step += "_gently" * self.settings.gentle or "_snapping" * self.settings.snaps
         if self.stepped:
             return (*["steps/keep"] * self.keeps, "steps/sweep" if kind is Displace else f"steps/{step}")
-        again = ["steps/again"] * (kind is Hold and self.scene.adhesion is not None)
+        again = ["steps/again"] * (kind is Hold and bool(self.scene.adhesion))
         return (*again, f"steps/{step}", *self._measuring, self._named("steps/line"), *kept)
 
     @property
@@ -176,7 +176,7 @@ class Deck:
     def _measuring(self) -> tuple[str, ...]:
         if self.stepped:
             return ()
-        measure = "steps/measuring" if self.scene.cantilever is None else "steps/measuring_energy"
+        measure = "steps/measuring_energy" if self.scene.cantilever else "steps/measuring"
         return (*(name for part in self.parts for name in part.step_begin), measure)
 
     @property

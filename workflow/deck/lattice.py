@@ -62,7 +62,7 @@ def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
     """The bodies of a scene, lower one first; on a rigid plane the upper one alone."""
     x = places(settings.chains.upper, scene.bodies.own_spacing)
     flat = np.zeros_like(x)
-    offset = settings.forces.table.plane_offset if settings.forces.table is not None else 0.0
+    offset = settings.forces.table.plane_offset if settings.forces.table else 0.0
     along = x + start_offset(scene, settings)
     if scene.bodies.periodic:
         half = 0.5 * period(scene, settings)
@@ -105,9 +105,9 @@ def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body
     tangential = scene.tangential_stiffness
     softer = min(settings.forces.bulk_stiffness, tangential) if settings.chains.far else settings.forces.bulk_stiffness
     shift = np.zeros_like(particles)
-    if scene.neighbours is not None and not scene.bodies.periodic:
+    if scene.neighbours and not scene.bodies.periodic:
         shift = -neighbour_forces(particles, scene.neighbours.stiffness) / softer
-        if scene.horizontal is None:
+        if not scene.horizontal:
             shift[:, 0] = 0.0
     if name == "upper":
         shift += _staggered(particles, scene)
@@ -125,6 +125,6 @@ def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body
 def _staggered(particles: Array, scene: Scene) -> Array:
     """Shift of a plate's atoms out of the plane, (N, 3) [LU]; 0 without a plate."""
     shift = np.zeros_like(particles)
-    if scene.plate is not None:
+    if scene.plate:
         shift[:, 1] = STAGGER_SHARE * len(particles) * scene.bodies.own_spacing * (-1.0) ** np.arange(len(particles))
     return shift

@@ -46,7 +46,7 @@ def moving(scene: Scene, settings: Settings) -> list[Contribution]:
     coefficient = softer if settings.chains.far else settings.forces.bulk_stiffness
     found = [
         Contribution("bodies", Stage.BODIES, ("bodies",), {"bulk_bond_coefficient": number(coefficient / 2)}),
-        Contribution("guide", Stage.GUIDE, ("guide",), {} if scene.horizontal is not None else {"guide_x": "0.0"}),
+        Contribution("guide", Stage.GUIDE, ("guide",), {} if scene.horizontal else {"guide_x": "0.0"}),
         _method(scene, settings),
     ]
     if scene.bodies.lower == "rigid_plane":
@@ -125,7 +125,7 @@ def margins(scene: Scene, settings: Settings) -> Lengths:
     """Free space along x, y and z [LU] between the bodies and the walls of the box."""
     side = SIDE_MARGIN * scene.bodies.spacing + scene.experiment.way
     head = HEAD_MARGIN * max(scene.bodies.spacing, settings.forces.cutoff) + 2 * abs(settings.largest_displacement)
-    if scene.plate is not None and (scene.noise is not None or scene.experiment.motion_is_result):
+    if scene.plate and (scene.noise or scene.experiment.motion_is_result):
         head *= FLIGHT
     head -= min([0.0, *scene.experiment.places()])
     least = max(BIN_MARGIN * settings.chains.far, LEAST_SLENDERNESS * reach(scene, settings))

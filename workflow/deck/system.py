@@ -160,22 +160,22 @@ def write_system(deck: Deck, folder: Path) -> None:
     both = bodies(scene, settings)
     anchors = settings.chains.upper
     particle, plate = inertia(scene, settings)
-    mass = plate / anchors if scene.plate is not None else particle
-    if scene.stands and scene.plate is not None:
+    mass = plate / anchors if scene.plate else particle
+    if scene.stands and scene.plate:
         particle += mass  # there are no anchors that would have it
     system = assemble(
         both,
-        scene.neighbours is not None,
+        bool(scene.neighbours),
         particle,
         mass,
         margins(scene, settings),
-        driver=scene.cantilever is not None,
+        driver=bool(scene.cantilever),
         period=period(scene, settings) if scene.bodies.periodic else 0.0,
     )
     write_data(replace(system, radius=sphere_radius(scene, settings)), scene.title, folder / "system.data")
-    if settings.forces.table is not None:
+    if settings.forces.table:
         write_table(settings.forces.table, settings.forces.table_from, folder / "interaction.table")
-    if scene.adhesion is not None:
+    if scene.adhesion:
         _write_cells(deck, folder / CELLS)
 
 

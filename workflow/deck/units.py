@@ -78,11 +78,10 @@ class DeckUnits:
         if not self.are_own:
             return settings
         found: Settings = self._converted(settings)
-        if settings.forces.law is None:
+        if (own := settings.forces.table) is None:
             return found
-        law, table = self._law(settings.forces.law), settings.forces.table
-        forces = replace(found.forces, law=law, table=table and LawTable(law, found.forces.cutoff, table.points))
-        return replace(found, forces=forces)
+        table = LawTable(self._law(own.law), found.forces.cutoff, own.points)
+        return replace(found, forces=replace(found.forces, table=table))
 
     def _converted(self, record: Any) -> Any:
         """A record in deck units, and those in it: the fields whose `metadata` has a unit."""

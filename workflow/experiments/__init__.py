@@ -9,10 +9,10 @@ from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.experiment import Experiment, in_smaller_steps
 from contact1d.workflow.experiments.hold import HoldExperiment
 from contact1d.workflow.experiments.keeping import kept_way, planned_way
-from contact1d.workflow.experiments.load import LoadExperiment
-from contact1d.workflow.experiments.path import PathExperiment
-from contact1d.workflow.experiments.pull_off import PullOffExperiment
-from contact1d.workflow.experiments.slide import SlideExperiment
+from contact1d.workflow.experiments.load import LoadExperiment, ThermalLoad
+from contact1d.workflow.experiments.path import PathExperiment, ThermalPath
+from contact1d.workflow.experiments.pull_off import PullOffExperiment, ThermalPullOff
+from contact1d.workflow.experiments.slide import SlideExperiment, ThermalSlide
 from contact1d.workflow.experiments.tangential import TangentialExperiment
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
@@ -28,11 +28,19 @@ KINDS: dict[str, Experiment[Any]] = {
     "tangential": TangentialExperiment(),
 }
 """By the word that a scene has for it."""
+THERMAL: dict[str, Experiment[Any]] = {
+    "load": ThermalLoad(),
+    "path": ThermalPath(),
+    "pull_off": ThermalPullOff(),
+    "slide": ThermalSlide(),
+}
+"""Those that are others under noise."""
 
 
 def kind_of(scene: Scene) -> Experiment[Any]:
     """The scene's experiment."""
-    return KINDS[scene.experiment.kind]
+    kinds = KINDS | THERMAL if scene.noise else KINDS
+    return kinds[scene.experiment.kind]
 
 
 def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:

@@ -30,7 +30,7 @@ from contact1d.workflow.engine.session import LOG
 from contact1d.workflow.experiments.series import Series, begun, measured, recorded
 from contact1d.workflow.experiments.thermal import SETTLING_LOOKS, run_in, sample_columns
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import PullOff, Scene
+from contact1d.workflow.scene import Noise, PullOff, Scene
 from contact1d.workflow.units import FORCE
 
 INCREMENTS = 400
@@ -138,7 +138,7 @@ def ramp_of(scene: Scene, settings: Settings, experiment: PullOff) -> Ramp:
     rate = experiment.loading_rate or spring * (experiment.velocity or 0.0)
     largest = estimate.pull_off_force()
     steps = max(FEWEST_STEPS, round(largest / INCREMENTS / rate / step))
-    surely = SURELY * scene.noise.temperature if scene.noise else 0.0
+    surely = SURELY * scene.temperature
     places = estimate.parted(BARRIER), estimate.parted(GONE)
     slack = estimate.displacement_at(0.0)
     return Ramp(steps, steps * step, rate * steps * step, largest, *places, surely, spring, slack)
@@ -180,8 +180,8 @@ def pulls(context: RunContext, experiment: PullOff) -> list[Detachment]:
 def _apart(context: RunContext, experiment: PullOff, number: int, stop: threading.Event) -> Detachment:
     """The pull of the seed that is `number` after the scene's, in a folder of its own."""
     scene, folder = context.deck.scene, context.folder / FOLDER / str(number) if number else context.folder
-    assert scene.noise is not None
-    seeded = scene.model_copy(update={"noise": scene.noise.model_copy(update={"seed": scene.noise.seed + number})})
+    noise = scene.the(Noise)
+    seeded = scene.model_copy(update={"noise": noise.model_copy(update={"seed": noise.seed + number})})
     own = replace(context, deck=Deck(seeded, context.deck.settings), folder=folder, progress=Silent(), ranks=1)
     if number:
         folder.mkdir(parents=True, exist_ok=True)
@@ -240,8 +240,7 @@ def pull_off_thermal(context: RunContext, experiment: PullOff) -> Outcome:
     """
     scene, settings = context.deck.scene, context.deck.settings
     found, ramp = pulls(context, experiment), ramp_of(scene, settings, experiment)
-    assert scene.noise is not None
-    seeds = scene.noise.seed + np.arange(float(len(found)))
+    seeds = scene.the(Noise).seed + np.arange(float(len(found)))
     each = Series({"seed": seeds} | recorded(found, ("force", "time")))
 
     def read(each: Series) -> dict[str, Reading]:

@@ -45,9 +45,11 @@ class Experiment(ABC, Generic[K]):
     Attributes:
         main_results: names of the results that an error is judged by, as far as a scene has them.
         branches: phases whose branch of the curve has another name than they.
+        is_statistical: whether results are means, the errors of which follow from their scatter.
     """
 
     main_results: ClassVar[tuple[str, ...]]
+    is_statistical: ClassVar[bool] = False
     branches: ClassVar[Mapping[str, str]] = {}
 
     def given(self, scene: Scene) -> K:
@@ -75,7 +77,7 @@ class Experiment(ABC, Generic[K]):
         """What makes the uncertainty of a result smaller."""
         if scene.method == "dynamic":
             return 'Use method = "quasistatic"'
-        if scene.interaction is None:
+        if not scene.interaction:
             return f"Use {FINER_SPACING}"
         return f'Use "auto" for interaction.cutoff and bodies.particles; for a radius also {FINER_SPACING}'
 
@@ -128,7 +130,7 @@ class Scripted(Experiment[K]):
 
     def _slower(self, context: RunContext, case: Reduction, trace: Trace) -> dict[str, list[Trace]]:
         """A motion once more in longer timesteps, and slower where inertia or drag is the program's choice."""
-        if not trace.time.any() or context.deck.scene.noise is not None:
+        if not trace.time.any():
             return {}
         found = []
         for scene, settings in slower(context.deck.scene, context.deck.settings):
@@ -176,7 +178,7 @@ def in_smaller_steps(run: Callable[[RunContext], Outcome]) -> Callable[[RunConte
             return tried(context)
         except ThroughError as error:
             # Under noise it is the noise that drives particles through, and a motion is not begun anew.
-            if deck.scene.noise is not None or deck.scene.experiment.motion_is_result or not context.retries:
+            if deck.scene.noise or deck.scene.experiment.motion_is_result or not context.retries:
                 raise
             latest = error
         for part in RETRY_SHARES:

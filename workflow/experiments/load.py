@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -27,14 +28,12 @@ from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 class LoadExperiment(Scripted[Load]):
     """d, F, a and F/(πa²) under a force. A tension is approached from F = 0, as an experiment would."""
 
-    main_results = ("displacement", "force", "contact_radius")
+    main_results: ClassVar[tuple[str, ...]] = ("displacement", "force", "contact_radius")
 
     def run(self, context: RunContext) -> Outcome:
-        """With noise an average over samples; in time with a warning where a tension is only just held, or not."""
+        """In time with a warning where a tension is only just held, or not."""
         scene, settings = context.deck.scene, context.deck.settings
         load = self.given(scene).force
-        if scene.noise is not None:
-            return thermal_load(context, load)
         surely = scene.method != "dynamic" or LoadBranch(context).holds_more(load)
         outcome = super().run(context)
         if surely:
@@ -82,8 +81,6 @@ class LoadExperiment(Scripted[Load]):
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule by the model."""
         force = self.given(scene).force
-        if scene.noise is not None:
-            return planned_samples(settings, force)
         if scene.method == "dynamic":
             scale = max(abs(force), settings.forces.scale)
             return (held_phase("loading", scene, settings, (force,), scale, state=True),)
@@ -97,3 +94,19 @@ class LoadExperiment(Scripted[Load]):
             return outcome
         missing = {"no_radius": "the contact has no width, so there is no contact radius"}
         return replace(outcome, warnings={**outcome.warnings, **missing})
+
+
+class ThermalLoad(LoadExperiment):
+    """The same under noise, as averages over samples."""
+
+    is_statistical = True
+    main_results = ("displacement", "contact_radius")
+
+    def run(self, context: RunContext) -> Outcome:
+        """Sample until the mean displacement is known."""
+        scene = context.deck.scene
+        return self.finish(thermal_load(context, self.given(scene).force), scene, context.deck.settings)
+
+    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+        """The run-in and the first samples."""
+        return planned_samples(settings, self.given(scene).force)

@@ -25,7 +25,7 @@ from contact1d.workflow.continuation.state import State
 from contact1d.workflow.experiments.series import Array, Series, measured, recorded
 from contact1d.workflow.model.motion import cantilever_swing, inertia
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Cantilever, Scene
 from contact1d.workflow.units import ENERGY, FORCE, NUMBER
 
 EVERY = 5
@@ -216,7 +216,6 @@ def motion_of(scene: Scene, settings: Settings, load: float, states: Sequence[St
         A series of the columns of friction.csv, and integrals over time of friction and cantilever force [FU·TU], of
         the plate's velocity [LU] and its square [LU²/TU].
     """
-    assert scene.cantilever is not None
     bodies, moving, drive = scene.bodies, settings.motion, settings.motion.drive
     rows = [leg for leg in drive for _ in range(leg.rows)][: len(states) - 1]
     span, velocity, step = recorded(rows, ("row_time", "velocity", "time_step")).values()
@@ -248,7 +247,7 @@ def motion_of(scene: Scene, settings: Settings, load: float, states: Sequence[St
     momentum = settings.chains.upper * bodies.mass * read("vcm(upper,x)") + mass * read("vcm(plate,x)")
     dragged = drag * (driven - carried) + c * (driven - gone) - momentum
     energy = read("c_measuring_energy") + bodies.mass / heavy * read("cantilever_kinetic") + 0.5 * mass * speeds
-    energy += 0.5 * pull**2 / scene.cantilever.stiffness - load * depth
+    energy += 0.5 * pull**2 / scene.the(Cantilever).stiffness - load * depth
     energies = {
         "cantilever_work": summed(velocity * pulled),
         "dissipated_energy": summed(lost - velocity * np.diff(drag * carried + c * gone)),

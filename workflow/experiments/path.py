@@ -11,10 +11,8 @@ from itertools import pairwise
 import numpy as np
 
 from contact1d.analysis.curve_marks import closes, work_of
-from contact1d.workflow.continuation.budget import (
-    budgeted,
-    force_errors,
-)
+from contact1d.workflow.continuation.budget import ForceErrors, budgeted, force_errors
+from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.marks import unloading
@@ -31,6 +29,8 @@ from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Path, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
 
+Positions = Sequence[tuple[float, bool]]
+"""Displacements [LU], and whether the scene asks for the state there."""
 RELAXATIONS = 14.0
 """Time that a dynamic path gives the particles at each displacement, over the time constant of their slowest decay."""
 ROUND_OFF = 1e-9
@@ -46,33 +46,50 @@ class PathExperiment(Scripted[Path]):
     main_results = ("adhesion_force", "zero_load_radius", "critical_radius", "largest_force", "largest_radius")
 
     def run(self, context: RunContext) -> Outcome:
-        """Run the schedule; with noise, each state is a mean over time."""
+        """Run the schedule."""
         scene, settings = context.deck.scene, context.deck.settings
         case, positions = self.reduction(scene, settings), way(scene, settings)
-        in_time = scene.method == "dynamic" and scene.noise is None
         with context.contact(meanwhile=lambda: case.lattice) as contact:
-            states = contact.replay(schedule(scene, settings), relaxed=in_time)
+            states = self.states(contact, positions)
             phases = contact.phases
-        if scene.noise is not None:
-            states = averaged(states, positions)
-            for state in states:
-                require_trust(scene, settings, state)
         asked = [one for _, one in positions]
         reported = [state for state, one in zip(states, asked, strict=True) if one]
         # Where pairs snap, all rows show the jumps; else the same positions there and back show what a curve loses.
         seen = states[asked.index(True) :] if settings.estimate.snaps else reported
         ends = {"deepest": max(reported, key=lambda s: s.displacement), "final": reported[-1]}
         strongest = (ends["deepest"], min(seen, key=lambda s: s.force), ends["final"])
-        errors = force_errors(scene, settings, seen, strongest)
+        errors = self.force_errors(scene, settings, seen, strongest)
         trace = of_states(seen, reduced(scene, settings))
         kept = {id(state) for state in seen}
         other = self._in_half_steps(context, [i for i, state in enumerate(states) if id(state) in kept])
         repeated = {} if other is None else {"instability": [other]}
-        results = budgeted(case, trace, errors, sampled=scene.noise is None, repeated=repeated)
+        results = budgeted(case, trace, errors, sampled=not self.is_statistical, repeated=repeated)
         warnings = self._missing(results, scene, settings, phases) | doubts(scene, settings, tuple(reported))
         warnings |= _buckling(trace, other, settings)
-        tables = {} if scene.noise is None else {"means": _means(settings, reported)}
-        return Outcome(results, tuple(reported), ends, phases, warnings, tables=tables)
+        return Outcome(results, tuple(reported), ends, phases, warnings)
+
+    def states(self, contact: Contact, positions: Positions) -> list[State]:
+        """A state at each of the positions; in time when particles are at rest."""
+        phases = self.planned(contact.scene, contact.settings)
+        return contact.replay(phases, relaxed=contact.scene.method == "dynamic")
+
+    def rows(self, scene: Scene, settings: Settings, positions: Positions) -> tuple[Row, ...]:
+        """The load steps at positions."""
+        if scene.method == "quasistatic":
+            return displacements([position for position, _ in positions])
+        steps = math.ceil(RELAXATIONS * _decay(scene, settings) / settings.motion.time_step)
+        return tuple(DisplaceInTime(float(position), steps) for position, _ in positions)
+
+    def force_errors(
+        self, scene: Scene, settings: Settings, states: Sequence[State], marked: Sequence[State]
+    ) -> ForceErrors:
+        """Of states: residual forces of particles are independent of each other."""
+        return force_errors(scene, settings, states, marked)
+
+    def closes(self, trace: Trace, settings: Settings) -> bool:
+        """Whether a path ends in its first state."""
+        ends = [trace.radius(state) is None for state in (0, len(trace) - 1)]
+        return ends[0] == ends[1] and closes(*trace.lists, settings.tolerance)
 
     def _in_half_steps(self, context: RunContext, seen: Sequence[int]) -> Trace | None:
         """The states of these numbers of a second run with twice as many; None where no particle can move aside.
@@ -80,10 +97,10 @@ class PathExperiment(Scripted[Path]):
         Chains that may buckle along x jump to another equilibrium between two load steps; to which depends on these.
         """
         scene, deck = context.deck.scene, context.deck
-        if scene.horizontal is None or scene.method != "quasistatic":
+        if not scene.horizontal or scene.method != "quasistatic":
             return None
         phases, before = [], 0.0
-        for phase in schedule(scene, deck.settings):
+        for phase in self.planned(scene, deck.settings):
             rows = []
             for row in phase.rows:
                 assert isinstance(row, Displace)
@@ -111,14 +128,37 @@ class PathExperiment(Scripted[Path]):
                     branch.begin(phase)
                     branch.visit(positions)
 
+    def _lost(self, trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
+        """The area of a closed path; of an open one what its instabilities lose, ∫F dd less the energy gained."""
+        if (work := work_of(*trace.lists)) is None:
+            return {}
+        errors, d = {"sampling": work.uncertainty}, trace.displacement
+        if self.closes(trace, settings):
+            # Springs lose nothing, nor does a contact that is held all along, where particles neither snap nor buckle.
+            may_jump = settings.snaps or scene.horizontal or _is_unstable(trace)
+            known = not (self.is_statistical or (settings.estimate.attracts and may_jump))
+            scale = work.whole if known else None
+            return {"dissipated_energy": Reading(work.area, ENERGY, errors, scale=scale, prescribed=known)}
+        ends = (0, len(trace) - 1)
+        first, last = (settings.estimate.energy(float(d[i]), trace.radius(i) or 0.0) for i in ends)
+        if first is None or last is None or not _is_unstable(trace):
+            return {}
+        return {"instability_energy": Reading(work.area - (last - first), ENERGY, errors)}
+
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The schedule that runs."""
-        return schedule(scene, settings)
+        """The schedule that runs: a phase for each stretch of rising ("loading") or falling displacement."""
+        positions = way(scene, settings)
+        phases, first = [], 0
+        for name, stretch in stretches([position for position, _ in positions]):
+            rows = self.rows(scene, settings, positions[first : first + len(stretch)])
+            phases.append(Phase(name, rows, state=True))
+            first += len(stretch)
+        return tuple(phases)
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """What the last unloading has, or without adhesion the deepest state; and the energy that is lost."""
-        found = _adhesion(trace, scene, settings) if scene.adheres else _largest(trace)
-        return found | _lost(trace, scene, settings)
+        found = _adhesion(trace, settings) if settings.estimate.attracts else _largest(trace)
+        return found | self._lost(trace, scene, settings)
 
     def advice(self, scene: Scene) -> str:
         """The load steps are the scene's own."""
@@ -128,7 +168,7 @@ class PathExperiment(Scripted[Path]):
         self, results: Mapping[str, Result], scene: Scene, settings: Settings, phases: Sequence[Phase]
     ) -> dict[str, str]:
         """Warnings of results that the path does not reach."""
-        if not scene.adheres:
+        if not settings.estimate.attracts:
             return {}
         warnings: dict[str, str] = {}
         if _passes_jump(scene, settings) and not any(name.startswith(LOSSES) for name in results):
@@ -153,12 +193,44 @@ class PathExperiment(Scripted[Path]):
         return warnings
 
 
+class ThermalPath(PathExperiment):
+    """The same under noise: each state is a mean over time. Forces and radii differ at each visit."""
+
+    is_statistical = True
+
+    def run(self, context: RunContext) -> Outcome:
+        """With the means and their standard errors."""
+        found = super().run(context)
+        return replace(found, tables={"means": _means(context.deck.settings, found.states)})
+
+    def states(self, contact: Contact, positions: Positions) -> list[State]:
+        """The mean at each of the positions."""
+        scene, settings = contact.scene, contact.settings
+        states = averaged(contact.replay(self.planned(scene, settings)), positions)
+        for state in states:
+            require_trust(scene, settings, state)
+        return states
+
+    def rows(self, scene: Scene, settings: Settings, positions: Positions) -> tuple[Row, ...]:
+        """Equilibration and samples at each."""
+        return thermal_rows(settings, _decay(scene, settings), positions)
+
+    def force_errors(
+        self, scene: Scene, settings: Settings, states: Sequence[State], marked: Sequence[State]
+    ) -> ForceErrors:
+        """Of means, the residual of each being its uncertainty over the number of particles."""
+        found = super().force_errors(scene, settings, states, marked)
+        return replace(found, turning=settings.chains.upper * np.asarray([one.residual for one in states]))
+
+    def closes(self, trace: Trace, settings: Settings) -> bool:
+        """Whether the displacement does."""
+        return closes(*trace.lists, ANY_FORCE)
+
+
 def _passes_jump(scene: Scene, settings: Settings) -> bool:
-    """Whether an adhesive contact on a plane is made or lost along the path."""
-    places = scene.experiment.places()
-    if scene.adhesion is None or max(places) <= 0.0:
-        return False
-    return places[0] < 0.0 or min(places) < settings.estimate.parted(0.0)
+    """Whether a contact that is made and lost at once is so along the path."""
+    places, jumps = scene.experiment.places(), reduced(scene, settings).jumps
+    return bool(jumps) and max(places) > 0.0 and (places[0] < 0.0 or min(places) < min(jumps))
 
 
 def _buckling(trace: Trace, other: Trace | None, settings: Settings) -> dict[str, str]:
@@ -178,7 +250,7 @@ def _buckling(trace: Trace, other: Trace | None, settings: Settings) -> dict[str
     }
 
 
-def _means(settings: Settings, states: list[State]) -> dict[str, tuple[float, ...]]:
+def _means(settings: Settings, states: Sequence[State]) -> dict[str, tuple[float, ...]]:
     """Columns of means.csv: the mean force at each position, and its standard error."""
     return {
         "displacement": tuple(one.displacement for one in states),
@@ -196,44 +268,20 @@ def _largest(trace: Trace) -> dict[str, Reading]:
     return found
 
 
-def _adhesion(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
+def _adhesion(trace: Trace, settings: Settings) -> dict[str, Reading]:
     """Of the last phase of unloading; where a smooth curve has none, of the last phase.
 
     Where pairs snap, or an edge has no range, the tension while loading is that at which the bodies snap in.
     """
     apart = [name for name in trace.phase if name.startswith("unloading")]
-    jumps = settings.estimate.snaps or scene.adhesion is not None
-    if not apart and jumps:
+    if not apart and (settings.snaps or trace.model.jumps):
         return {}
     name = apart[-1] if apart else trace.phase[-1]
     branch = trace.chosen(np.flatnonzero([phase == name for phase in trace.phase]))
     found = unloading(branch, settings)
-    if scene.adhesion is not None:
+    if branch.model.limits:
         found |= _fixed_grips(branch)
     return found
-
-
-def _lost(trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
-    """The area of a closed path; of an open one on a plane what its instabilities lose, ∫F dd less the energy gained.
-
-    Under noise forces and radii differ at each visit: a path closes where its displacement does.
-    """
-    if (work := work_of(*trace.lists)) is None:
-        return {}
-    errors, ends = {"sampling": work.uncertainty}, [trace.radius(state) for state in (0, len(trace) - 1)]
-    (d, force), noisy = trace.lists, scene.noise is not None
-    same = noisy or (ends[0] is None) == (ends[1] is None)
-    if same and closes(d, force, ANY_FORCE if noisy else settings.tolerance):
-        # Springs lose nothing, nor does a contact that is held all along, where particles neither snap nor buckle.
-        may_jump = scene.adheres and (settings.snaps or scene.horizontal is not None or _is_unstable(trace))
-        known = not (noisy or may_jump)
-        scale = work.whole if known else None
-        return {"dissipated_energy": Reading(work.area, ENERGY, errors, scale=scale, prescribed=known)}
-    first, last = (settings.estimate.energy(d[i], radius or 0.0) for i, radius in zip((0, -1), ends, strict=True))
-    if first is None or last is None or not _is_unstable(trace):
-        return {}
-    lost = work.area - (last - first)
-    return {"instability_energy": Reading(lost, ENERGY, errors)}
 
 
 def _is_unstable(trace: Trace) -> bool:
@@ -251,17 +299,6 @@ def _fixed_grips(branch: Trace) -> dict[str, Reading]:
     before, beyond = branch.displacement[lost - 1 : lost + 1].tolist()
     errors = {"sampling": 0.5 * abs(before - beyond)}
     return {"fixed_grips_displacement": Reading(0.5 * (before + beyond), LENGTH, errors)}
-
-
-def schedule(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-    """One phase for each stretch of rising ("loading") or falling ("unloading") displacement."""
-    positions = way(scene, settings)
-    phases, first = [], 0
-    for name, stretch in stretches([position for position, _ in positions]):
-        rows = _rows(scene, settings, positions[first : first + len(stretch)])
-        phases.append(Phase(name, rows, state=True))
-        first += len(stretch)
-    return tuple(phases)
 
 
 def stretches(positions: Sequence[float]) -> list[tuple[str, list[float]]]:
@@ -317,15 +354,6 @@ def _longest_drop(settings: Settings) -> float:
     if not settings.snaps:
         return math.inf
     return min(settings.increments.longest_move, math.sqrt(EARLINESS * settings.tolerance) * settings.forces.range)
-
-
-def _rows(scene: Scene, settings: Settings, positions: Sequence[tuple[float, bool]]) -> tuple[Row, ...]:
-    if scene.noise is not None:
-        return thermal_rows(settings, _decay(scene, settings), positions)
-    if scene.method == "quasistatic":
-        return displacements([position for position, _ in positions])
-    steps = math.ceil(RELAXATIONS * _decay(scene, settings) / settings.motion.time_step)
-    return tuple(DisplaceInTime(float(position), steps) for position, _ in positions)
 
 
 def _decay(scene: Scene, settings: Settings) -> float:

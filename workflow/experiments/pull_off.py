@@ -21,6 +21,7 @@ from contact1d.workflow.continuation.trust import require_no_contradiction
 from contact1d.workflow.deck.steps import Phase, displacements
 from contact1d.workflow.experiments.detachment import planned_detachment, pull_off_thermal
 from contact1d.workflow.experiments.experiment import Scripted
+from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import PullOff, Scene
 from contact1d.workflow.units import FORCE, LENGTH
@@ -32,18 +33,10 @@ LARGEST_TENSION = 1.2
 
 
 class PullOffExperiment(Scripted[PullOff]):
-    """F_A, a_cr and a₀ after a preload; with noise the detachment force of each pull."""
+    """F_A, a_cr and a₀ after a preload."""
 
     main_results = ("adhesion_force", "zero_load_radius", "critical_radius")
     branches = {"pulling": "unloading", "separating": "unloading", "critical": "unloading"}  # noqa: RUF012
-
-    def run(self, context: RunContext) -> Outcome:
-        """With noise a ramp until the bodies separate, once for each seed."""
-        return (
-            super().run(context)
-            if context.deck.scene.noise is None
-            else pull_off_thermal(context, self.given(context.deck.scene))
-        )
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """Compress, unload to F = 0, retract to the force maximum, separate; as many times as there are cycles."""
@@ -81,8 +74,6 @@ class PullOffExperiment(Scripted[PullOff]):
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule by the model."""
-        if scene.noise is not None:
-            return planned_detachment(scene, settings, self.given(scene))
         preload, tension = self.given(scene).preload, settings.estimate.pull_off_force()
         if scene.method == "dynamic":
             tensions = [float(-t) for t in np.linspace(0.0, LARGEST_TENSION * tension, TENSIONS + 1)[1:]]
@@ -91,9 +82,7 @@ class PullOffExperiment(Scripted[PullOff]):
                 held_phase("unloading", scene, settings, (0.0,), max(preload, tension), state=True),
                 held_phase("pulling", scene, settings, tensions, tension, state=True),
             )
-        deepest, apart = settings.largest_displacement, settings.forces.rest - settings.forces.cutoff
-        if scene.is_stepped:
-            apart = BEYOND_LIMIT * settings.estimate.parted(0.0)
+        deepest, apart = settings.largest_displacement, BEYOND_LIMIT * reduced(scene, settings).apart
         down = displacements(np.linspace(0.0, deepest, LOADING_STEPS + 1).tolist())
         back = displacements(np.linspace(deepest, apart, UNLOADING_STEPS).tolist())
         return (Phase("loading", down), Phase("unloading", back, state=True))
@@ -111,6 +100,20 @@ class PullOffExperiment(Scripted[PullOff]):
         """With the limitation of load control in time."""
         since = ", since load control never reaches the pull-off itself" if scene.method == "dynamic" else ""
         return super().advice(scene) + since
+
+
+class ThermalPullOff(PullOffExperiment):
+    """The detachment force of each pull under noise: a ramp until the bodies separate, once for each seed."""
+
+    is_statistical = True
+
+    def run(self, context: RunContext) -> Outcome:
+        """Pull."""
+        return pull_off_thermal(context, self.given(context.deck.scene))
+
+    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+        """Up to a tension that the predictor does not hold."""
+        return planned_detachment(scene, settings, self.given(scene))
 
 
 def _unloadings(trace: Trace) -> list[Trace]:

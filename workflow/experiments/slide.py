@@ -9,6 +9,7 @@ the cantilever.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import ClassVar
 
 from contact1d.analysis.friction import FEWEST_PERIODS
 from contact1d.digits import apart
@@ -49,6 +50,7 @@ class SlideExperiment(Experiment[Slide]):
     """
 
     main_results = ("mean_friction", "static_friction")
+    start: ClassVar[tuple[str, ...]] = ("steps/drive",)
 
     def run(self, context: RunContext) -> Outcome:
         """Load, then drive leg by leg.
@@ -59,7 +61,7 @@ class SlideExperiment(Experiment[Slide]):
         scene, settings = context.deck.scene, context.deck.settings
         load, legs = self.given(scene).normal_force, self.planned(scene, settings)[1:]
         with context.contact() as contact:
-            states = [loaded(contact, load)]
+            states = [self.loaded(contact, load)]
             try:
                 for leg in legs:
                     for row in begun(contact, leg):
@@ -80,13 +82,40 @@ class SlideExperiment(Experiment[Slide]):
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule, without the relaxation under the normal force."""
         load, phases = self.given(scene).normal_force, list[Phase]()
-        start = ("steps/drive",) if scene.noise is None else ("steps/drive", TOLD)
         for leg in settings.motion.drive:
             name = numbered("sliding", [phase.name for phase in phases])
-            begin = ("steps/turn",) if phases else start
+            begin = ("steps/turn",) if phases else self.start
             phases.append(Phase(name, (UnderLoad(load, leg.steps),) * leg.rows, begin=begin))
         phases[-1] = replace(phases[-1], state=True)
-        return loading_phase(scene, settings, load), *phases
+        return self.loading(scene, settings, load), *phases
+
+    def loading(self, scene: Scene, settings: Settings, force: float) -> Phase:
+        """The planned application of the normal force [FU]."""
+        scale = abs(force) or settings.forces.scale
+        rows = [hold_row(scene, _calm(settings), force, scale, Start.KEPT)]
+        if settings.motion.calm_damping != settings.motion.damping:
+            rows.append(hold_row(scene, settings, force, scale, Start.HERE))
+        return Phase("loading", tuple(rows))
+
+    def loaded(self, contact: Contact, force: float) -> State:
+        """At rest under the normal force [FU].
+
+        Raises:
+            PartedError: the bodies separate under it.
+            UntrustedError: see `hold`; or the plate oscillates on along x.
+        """
+        phase = self.loading(contact.scene, contact.settings, force)
+        scale = abs(force) or contact.settings.forces.scale
+        contact.begin(phase.name)
+        held = hold(contact, force, scale, settings=_calm(contact.settings))
+        if not held.held:
+            raise PartedError(
+                f"the contact does not sustain {force:.4g} FU: the bodies separate", "use a smaller tension"
+            )
+        state = _settled_along(contact, force, scale, held.last)
+        for row in phase.rows[1:]:  # with the drag of the scene again
+            state = contact.row(row, trusted=False)
+        return state
 
     def advice(self, scene: Scene) -> str:
         """The uncertainty of a mean depends on the averaging length."""
@@ -95,6 +124,22 @@ class SlideExperiment(Experiment[Slide]):
             f"Use a longer {way}, with more whole periods of the spacing; this does not improve static_friction, whose "
             f"uncertainty is the change between two of {MOST_ROWS} points in a spacing"
         )
+
+
+class ThermalSlide(SlideExperiment):
+    """The same under noise: it begins when the contact has forgotten its start, and its heat baths are measured."""
+
+    is_statistical = True
+    start = ("steps/drive", TOLD)
+
+    def loading(self, scene: Scene, settings: Settings, force: float) -> Phase:
+        """The run-in."""
+        return run_in("loading", settings, force)
+
+    def loaded(self, contact: Contact, force: float) -> State:
+        """The last state of the run-in."""
+        phase = self.loading(contact.scene, contact.settings, force)
+        return contact.rows(begun(contact, phase), trusted=False)[-1]
 
 
 def outcome_of(motion: Motion, states: list[State], phases: tuple[Phase, ...]) -> Outcome:
@@ -131,38 +176,6 @@ def _doubts(motion: Motion) -> dict[str, str]:
             f"{MOVING_TOLERANCE:g}, which shortens the timesteps"
         )
     return found
-
-
-def loading_phase(scene: Scene, settings: Settings, force: float) -> Phase:
-    """The planned application of the normal force."""
-    if scene.noise is not None:
-        return run_in("loading", settings, force)
-    scale = abs(force) or settings.forces.scale
-    rows = [hold_row(scene, _calm(settings), force, scale, Start.KEPT)]
-    if settings.motion.calm_damping != settings.motion.damping:
-        rows.append(hold_row(scene, settings, force, scale, Start.HERE))
-    return Phase("loading", tuple(rows))
-
-
-def loaded(contact: Contact, force: float) -> State:
-    """At rest under the normal force; with noise, after it has forgotten its start.
-
-    Raises:
-        PartedError: the bodies separate under it.
-        UntrustedError: see `hold`; or the plate oscillates on along x.
-    """
-    scene, settings = contact.scene, contact.settings
-    phase, scale = loading_phase(scene, settings, force), abs(force) or settings.forces.scale
-    if scene.noise is not None:
-        return contact.rows(begun(contact, phase), trusted=False)[-1]
-    contact.begin(phase.name)
-    held = hold(contact, force, scale, settings=_calm(settings))
-    if not held.held:
-        raise PartedError(f"the contact does not sustain {force:.4g} FU: the bodies separate", "use a smaller tension")
-    state = _settled_along(contact, force, scale, held.last)
-    for row in phase.rows[1:]:  # with the drag of the scene again
-        state = contact.row(row, trusted=False)
-    return state
 
 
 def _calm(settings: Settings) -> Settings:

@@ -120,9 +120,10 @@ def contact_curve(scene: Scene) -> tuple[Array, Array, Array]:
     (V. L. Popov, M. Heß, Method of Dimensionality Reduction, 2015, sections 3.1 and 4.4), E* that of the layer.
     """
     bodies, modulus = scene.bodies, _spaced(scene, 1.0, 1).bulk_stiffness
-    work = 0.0 if scene.adhesion is None else scene.adhesion.work
-    reach, edge = bodies.profile.reach, bodies.profile.has_edge
-    radii = np.asarray([reach]) if edge else np.geomspace(SHORTEST, min(LONGEST, INSIDE * reach), PLACES)
+    work, reach = scene.work_of_adhesion, bodies.profile.reach
+    radii = (
+        np.asarray([reach]) if bodies.profile.has_edge else np.geomspace(SHORTEST, min(LONGEST, INSIDE * reach), PLACES)
+    )
     with np.errstate(over="ignore"):
         heights = bodies.height(radii)
     radii, heights = radii[np.isfinite(heights)], heights[np.isfinite(heights)]

@@ -32,7 +32,7 @@ from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.model.friction import Sliders, Stop, sliders_of, stops, without_rests
 from contact1d.workflow.model.reduced import Sliding, reduced
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import Scene, Tangential
+from contact1d.workflow.scene import Friction, Scene, Tangential
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
 
 Array = NDArray[np.float64]
@@ -150,9 +150,8 @@ class Drawn:
     @cached_property
     def stick(self) -> ContactRadius:
         """Half-width of the zone that sticks; a flat punch sticks or slips as a whole."""
-        assert self.scene.friction is not None
-        profile, coefficient = self.trace.profile(self.state), self.scene.friction.coefficient
-        if not self.scene.bodies.profile.has_edge:
+        profile, coefficient = self.trace.profile(self.state), self.scene.the(Friction).coefficient
+        if self.scene.bodies.own_count is None:
             return stick_radius(profile, coefficient, self.direction)
         edge = self.trace.contact(self.state)
         sticks = edge is not None and stick_margin(profile, coefficient, self.direction).any()
@@ -161,8 +160,7 @@ class Drawn:
 
 def drawn(trace: Trace, scene: Scene) -> list[Drawn]:
     """What friction made of each state, from the one before it; at the first the load is just there."""
-    assert scene.friction is not None
-    coefficient, spacing, stiffness = scene.friction.coefficient, scene.bodies.spacing, scene.tangential_stiffness
+    coefficient, spacing, stiffness = scene.the(Friction).coefficient, scene.bodies.spacing, scene.tangential_stiffness
     rows: list[Drawn] = []
     dissipated, direction, before, limit = 0.0, 0, np.empty(0), np.empty(0)
     for i in range(len(trace)):
@@ -205,8 +203,7 @@ def _unseen_slip(rows: Sequence[Drawn], scene: Scene) -> tuple[float, float]:
     outermost particles, and one at most; its forces are below k_t u and μ f, and it slips by as much as the sliders
     are moved beyond what a rising load lets them carry, k_t |Δu| − μ k_n Δd. A body with an edge has none.
     """
-    assert scene.friction is not None
-    stiffness, coefficient = scene.tangential_stiffness, scene.friction.coefficient
+    stiffness, coefficient = scene.tangential_stiffness, scene.the(Friction).coefficient
     outer = [np.sort(row.trace.profile(row.state).pressure) for row in rows]
     # Both edges are alike: the next particle is the third.
     second, first = max(((p[p > 0.0][2], p[p > 0.0][0]) for p in outer if (p > 0.0).sum() > 2), default=(0.0, 0.0))
@@ -218,13 +215,12 @@ def _unseen_slip(rows: Sequence[Drawn], scene: Scene) -> tuple[float, float]:
         slipped += max(0.0, float(moved)) if after.position != before.position or deeper < 0.0 else 0.0
     force = stiffness * max(abs(row.position) for row in rows)
     share = min(1.0, force / rise) if rise > 0.0 else 1.0
-    return (0.0 if scene.bodies.profile.has_edge else STUCK * share * min(force, limit)), slipped
+    return STUCK * share * min(force, limit) * (scene.bodies.own_count is None), slipped
 
 
 def _require_history(trace: Trace, rows: Sequence[Drawn]) -> None:
     """Refuse forces that are not the history's."""
-    assert rows[0].scene.friction is not None
-    coefficient, spacing = rows[0].scene.friction.coefficient, rows[0].scene.bodies.spacing
+    coefficient, spacing = rows[0].scene.the(Friction).coefficient, rows[0].scene.bodies.spacing
     limit = max(coefficient * spacing * float(trace.profile(i).pressure.max()) for i in range(len(trace)))
     for row in rows:
         if row.wrong > AS_PREDICTED * limit:

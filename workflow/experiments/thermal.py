@@ -19,7 +19,7 @@ from contact1d.digits import apart
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Reading, Result
-from contact1d.workflow.continuation.state import RadiusRule, State
+from contact1d.workflow.continuation.state import RadiusRule, State, radius_rule
 from contact1d.workflow.continuation.trust import UntrustedError, doubts, require_trust
 from contact1d.workflow.deck.steps import DisplaceInTime, Phase, Row, UnderLoad
 from contact1d.workflow.experiments.series import Series, begun, measured, recorded
@@ -122,7 +122,7 @@ def thermal_load(context: RunContext, load: float) -> Outcome:
         phases = contact.phases
     for state in samples:
         require_trust(scene, settings, state)
-    results = measured(blocks, partial(read, rule=RadiusRule(scene, settings.tolerance)))
+    results = measured(blocks, partial(read, rule=radius_rule(scene, settings.tolerance)))
     require_balance(results["force"], load)
     warnings = doubts(scene, settings, tuple(samples))
     if error > goal:
@@ -130,8 +130,6 @@ def thermal_load(context: RunContext, load: float) -> Outcome:
         warnings["statistics"] = (
             f"standard error of the displacement {found} LU after {MOST_SAMPLES} samples, above {wanted} LU"
         )
-    if "contact_radius" not in results:
-        warnings["no_radius"] = "the contact has no width, so there is no contact radius"
     states = (*settled, *samples)
     table = {SAMPLE_TABLE: sample_columns(states, [load] * len(states), settings)}
     return Outcome(results, states, {"final": mean_state(samples)}, phases, warnings, tables=table)
@@ -160,7 +158,7 @@ def read(blocks: Series, rule: RadiusRule) -> dict[str, Reading]:
     profile = mean_profile(blocks)
     if (radius := rule.of(profile)) is None:
         return found
-    pressure = mean_pressure(profile, rule.scene.bodies.spacing, radius.value)
+    pressure = mean_pressure(profile, rule.bodies.spacing, radius.value)
     between = 2.0 * radius.uncertainty / radius.value * abs(pressure)
     return found | {
         "contact_radius": Reading(radius.value, LENGTH, {LATTICE: radius.uncertainty}),

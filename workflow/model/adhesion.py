@@ -222,6 +222,11 @@ class AdhesiveEstimate(ContactEstimate):
         top = least + int(np.argmin(force[least:]))
         return h[top:], force[top:]
 
+    @cached_property
+    def attracts(self) -> bool:
+        """Whether W > 0."""
+        return self.work > 0.0
+
     def pull_off_force(self) -> float:
         """F_A [FU]."""
         return max(0.0, -float(self._rising[1][0]))
@@ -253,7 +258,7 @@ def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
     """
     bodies, stiffness = scene.bodies, scene.bulk_stiffness
     springs = plane_estimate(profile, bodies.spacing, stiffness)
-    if scene.adhesion is None:
+    if not scene.adhesion:
         return springs
     wanted, load = max([0.0, *scene.experiment.places()]), scene.experiment.compression or 0.0
     known, work, estimate = bodies.spacing, scene.adhesion.work, None
@@ -263,7 +268,7 @@ def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
             work=work, known=min(known, profile.reach),
         )  # fmt: skip
         known *= 2.0
-    if not bodies.profile.has_edge:
+    if bodies.own_count is None:
         widest = float(estimate.radii(np.asarray([max(wanted, estimate.displacement_at(load))]))[0])
         limit = min(profile.reach, bodies.profile.steepest.curvature_radius or math.inf)
         if widest > SPANNED * limit:

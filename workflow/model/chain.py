@@ -38,7 +38,7 @@ def require_room(bodies: Bodies) -> None:
     """
     fewest = 4 if bodies.particles == "auto" else 3
     widest = 2.0 * bodies.reach / (fewest - 1)
-    if not bodies.profile.has_edge and bodies.spacing > (1.0 - ROUND_OFF) * widest:
+    if bodies.own_count is None and bodies.spacing > (1.0 - ROUND_OFF) * widest:
         raise SettingsError(
             f"the profile ends at {bodies.reach:.6g} LU, which is too narrow for {fewest} particles, the fewest"
             f"{' of an automatic chain' if fewest == 4 else ''}: take a bodies.spacing below {widest:.6g} LU"
@@ -53,7 +53,7 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
     Raises:
         SettingsError: with the nearest value that is possible.
     """
-    if bodies.profile.has_edge:
+    if bodies.own_count is not None:
         return
     half = 0.5 * (particles - 1) * bodies.spacing
     if half > bodies.reach:
@@ -93,9 +93,9 @@ def decay_length(scene: Scene) -> float:
     Beside the push, k u_i = k_n (u_{i+1} − 2 u_i + u_{i−1}) has the solutions exp(±x/ℓ), cosh(s/ℓ) = 1 + k/(2 k_n): for
     stiff neighbours ℓ = s √(k_n/k).
     """
-    if scene.neighbours is None:
+    if not scene.neighbours:
         return 0.0
-    softest = min(scene.bulk_stiffness, scene.tangential_stiffness if scene.horizontal is not None else math.inf)
+    softest = min(scene.bulk_stiffness, scene.tangential_stiffness if scene.horizontal else math.inf)
     return scene.bodies.spacing / math.acosh(1.0 + 0.5 * softest / scene.neighbours.stiffness)
 
 
@@ -141,11 +141,10 @@ def chain_length(scene: Scene, estimate: ContactEstimate, largest: float, share:
 
     A flat punch has its own length; no chain is longer than its profile is wide.
     """
-    if scene.bodies.profile.has_edge:
-        return round(2.0 * scene.bodies.reach / scene.bodies.own_spacing)
-    reach = felt_up_to(estimate, largest, share)
-    if scene.interaction is not None and scene.interaction.attraction is None:
-        reach = float(estimate.gap[-1])  # the contact ends where nothing is felt at all
+    if (own := scene.bodies.own_count) is not None:
+        return own
+    # Without attraction the contact ends where nothing is felt at all.
+    reach = felt_up_to(estimate, largest, share) if estimate.attracts else estimate.felt
     half = CHAIN_MARGIN * estimate.half_width(max(largest, 0.0), reach)
     half = max(half, _edge(estimate, largest) - 0.5 * decay_length(scene) * math.log(share))
     wanted = 2 * (math.ceil(half / scene.bodies.own_spacing) + 2)
@@ -262,7 +261,7 @@ def require_digits(scene: Scene, particles: int, deepest: float, force: float) -
     Raises:
         SettingsError: with springs that are possible.
     """
-    if scene.method != "quasistatic" or scene.interaction is None:
+    if scene.method != "quasistatic" or not scene.interaction:
         return
     last = float(scene.bodies.height(np.asarray([0.5 * (particles - 1) * scene.bodies.spacing]))[0])
     digit = 0.5 * float(np.spacing(abs(last) + abs(deepest)))
@@ -339,4 +338,4 @@ def in_words(scene: Scene, particles: int, cutoff: float) -> str:
 
 
 def _felt(scene: Scene, particles: int, cutoff: float) -> float:
-    return 0.0 if scene.interaction is None else min(particles, 2.0 * cutoff / scene.bodies.spacing + 2.0)
+    return min(particles, 2.0 * cutoff / scene.bodies.spacing + 2.0) if cutoff else 0.0

@@ -7,11 +7,11 @@ every leg of the drive, and every load step has as many of them.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import MISSING, dataclass, field
 from typing import Any
 
 from contact1d.workflow.model.pairs import ContactEstimate
-from contact1d.workflow.scene import Scene, Slide
+from contact1d.workflow.scene import Cantilever, Damping, Scene, Slide
 
 RELAXING_STEP = 0.5
 """ω_max·Δt without time, where a minimiser is the only one that takes steps (`workflow.deck.deck.RELAXATION`)."""
@@ -28,17 +28,15 @@ CALM_STEP = 0.4
 """The same during relaxation, whose drag is no part of what is examined."""
 CREEPING = 10.0
 """Drag over the critical one from which on the relaxation of a plate is too slow."""
-NOISE_BIAS = 0.4
-"""Relative error of ⟨u²⟩ over (ω Δt)² with `fix langevin` and `fix nve`, measured at ω Δt = 0.1: 0.4 %."""
 SOFTENING = 0.6
 """Stiffness of the contact under tension over that under the preload: automatic damping is critical for the former."""
 LIGHT = 0.5
 """Drag over the mass of a plate far lighter than its particles, over the same of a particle (`_swinging_apart`)."""
 
 
-def measured(unit: str) -> Any:
+def measured(unit: str, default: Any = MISSING) -> Any:
     """A field whose number a deck with units of its own converts (`deck.units`)."""
-    return field(metadata={"unit": unit})
+    return field(default=default, metadata={"unit": unit})
 
 
 @dataclass(frozen=True)
@@ -105,23 +103,23 @@ def motion_of(
     touching = 2.0 * estimate.half_width(max(largest, 0.0), estimate.rest) / bodies.spacing
     contact = max(touching, 1.0) * estimate.stiffness
     plate_mass = 0.0
-    if plate is not None:
+    if plate:
         plate_mass = particles * bodies.mass if plate.mass == "auto" else plate.mass
     moving = plate_mass + particles * bodies.mass
     critical = 2.0 * math.sqrt(SOFTENING * contact * moving)
     damping, plate_damping = _drags(scene, particles, critical, plate_mass)
     # The drag on a motion is part of what is looked at, so it is one and the same throughout.
-    is_automatic = scene.damping is not None and scene.damping.coefficient == "auto"
+    is_automatic = scene.damping == Damping(coefficient="auto")
     product = _product(scene, tolerance, still_step)
     beside = sum(effect.bond_drag(scene.bulk_stiffness) for effect in scene.present)
     held = particles * scene.bulk_stiffness + scene.experiment.drawing_stiffness
-    if scene.cantilever is not None:
+    if scene.cantilever:
         held += scene.cantilever.stiffness + particles * max(0.0, scene.tangential_stiffness - scene.bulk_stiffness)
     step = min(
         longest_step(product, stiffest, bodies.mass, damping + beside),
         longest_step(product, held, plate_mass, plate_damping + particles * beside),
     )
-    slowest = contact / moving if plate is not None else scene.bulk_stiffness / bodies.mass
+    slowest = contact / moving if plate else scene.bulk_stiffness / bodies.mass
     settle_time = 2.0 * math.pi / math.sqrt(slowest)
     calm, calm_step = damping, step
     if is_automatic:
@@ -163,20 +161,20 @@ def _product(scene: Scene, tolerance: float, still_step: float) -> float:
         product = MOVING_STEP * math.sqrt(min(1.0, tolerance / MOVING_TOLERANCE))
     else:
         product = still_step if scene.method == "dynamic" else RELAXING_STEP
-    return product if scene.noise is None else min(product, math.sqrt(tolerance / NOISE_BIAS))
+    return min([product, *(effect.largest_phase(tolerance) for effect in scene.present)])
 
 
 def _drags(scene: Scene, particles: int, critical: float, plate_mass: float) -> tuple[float, float]:
     """Drag [FU·TU/LU] of a particle and of the plate, given or together critical for the contact."""
     mass, damping = scene.bodies.mass, 0.0
-    if scene.damping is not None:
-        automatic = critical / particles if scene.plate is not None else math.sqrt(scene.bulk_stiffness * mass)
+    if scene.damping:
+        automatic = critical / particles if scene.plate else math.sqrt(scene.bulk_stiffness * mass)
         damping = automatic if scene.damping.coefficient == "auto" else scene.damping.coefficient
-    if scene.plate is None:
+    if not scene.plate:
         return damping, 0.0
     if scene.plate.damping != "auto":
         return damping, scene.plate.damping
-    if scene.noise is not None:  # drag without its noise would cool the plate; the particles' heat bath is its
+    if scene.noise:  # drag without its noise would cool the plate; the particles' heat bath is its
         return damping, 0.0
     swinging = _swinging_apart(plate_mass, particles * mass, damping / mass)
     return damping, max(0.0, critical - particles * damping, swinging)
@@ -204,10 +202,10 @@ ROUND_OFF = 1e-9
 
 def drive_steps(scene: Scene, longest: float) -> tuple[DriveLeg, ...]:
     """The legs of a slide, with timesteps of at most `longest` [TU]; none of anything else."""
-    experiment, cantilever = scene.experiment, scene.cantilever
-    if not isinstance(experiment, Slide) or cantilever is None:
+    experiment = scene.experiment
+    if not isinstance(experiment, Slide):
         return ()
-    found = []
+    cantilever, found = scene.the(Cantilever), []
     for leg in experiment.legs(cantilever.velocity):
         time = leg.distance / (abs(leg.velocity) or cantilever.velocity)
         spacings = leg.distance / scene.bodies.spacing

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.workflow.scene import Scene, Tangential
+from contact1d.workflow.scene import Friction, Scene, Tangential
 
 Array = NDArray[np.float64]
 CLEAR = 1e-9
@@ -76,9 +76,8 @@ def without_rests(way: Sequence[Stop]) -> list[Stop]:
 
 def sliders_of(scene: Scene, x: Array) -> Sliders:
     """The sliders of a scene with [friction], at positions `x` [LU] from the apex."""
-    assert scene.friction is not None
     heights = np.asarray(scene.bodies.height(x), dtype=np.float64)
-    return Sliders(x, heights, scene.bulk_stiffness, scene.tangential_stiffness, scene.friction.coefficient)
+    return Sliders(x, heights, scene.bulk_stiffness, scene.tangential_stiffness, scene.the(Friction).coefficient)
 
 
 def stops(experiment: Tangential, sliders: Sliders) -> list[Stop]:

@@ -14,7 +14,7 @@ from contact1d.digits import apart
 from contact1d.workflow.errors import SceneEdit
 from contact1d.workflow.model.chain import SettingsError, felt_up_to
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import Scene, Slide
+from contact1d.workflow.scene import Cantilever, Scene, Slide
 
 
 def inertia(scene: Scene, settings: Settings) -> tuple[float, float]:
@@ -23,7 +23,7 @@ def inertia(scene: Scene, settings: Settings) -> tuple[float, float]:
     With noise the thermostat's own error, of the same order, is bounded by the timestep.
     """
     late, motion = 0.0, settings.motion
-    if motion.drive and scene.noise is None:
+    if motion.drive and not scene.noise:
         late = 0.5 * motion.time_step * (1.0 - 0.5 / motion.drive[0].steps)
     return scene.bodies.mass + motion.damping * late, motion.plate_mass + motion.plate_damping * late
 
@@ -65,17 +65,16 @@ def require_way(scene: Scene, settings: Settings) -> None:
 
 def cantilever_swing(scene: Scene, settings: Settings) -> float:
     """Time [TU] of a swing of plate and particles on the cantilever, 2π √((M + N m)/k)."""
-    assert scene.cantilever is not None
     moving = settings.motion.plate_mass + settings.chains.upper * scene.bodies.mass
-    return 2.0 * math.pi * math.sqrt(moving / scene.cantilever.stiffness)
+    return 2.0 * math.pi * math.sqrt(moving / scene.the(Cantilever).stiffness)
 
 
 def too_fast(scene: Scene) -> str:
     """A warning where the drive passes particles quicker than they swing, 2π v/s > √(k/m); else empty."""
     experiment, bodies = scene.experiment, scene.bodies
-    if not isinstance(experiment, Slide) or scene.cantilever is None:
+    if not isinstance(experiment, Slide):
         return ""
-    fastest = max(abs(leg.velocity) for leg in experiment.legs(scene.cantilever.velocity))
+    fastest = max(abs(leg.velocity) for leg in experiment.legs(scene.the(Cantilever).velocity))
     own = math.sqrt(min(scene.bulk_stiffness, scene.tangential_stiffness) / bodies.mass)
     if 2.0 * math.pi * fastest / bodies.spacing <= own:
         return ""

@@ -156,6 +156,11 @@ class ContactEstimate:
         """What goes to another process: not what was found before, which keeps functions."""
         return {one.name: getattr(self, one.name) for one in fields(self)}
 
+    @cached_property
+    def attracts(self) -> bool:
+        """Whether the bodies hold each other."""
+        return bool(self.force.min() < 0.0)
+
     def contact_force(self, displacement: float) -> float:
         """F(d) [FU], compression positive."""
         return float(self.contact_forces(np.asarray([displacement]))[0])

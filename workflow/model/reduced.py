@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.shear import slip
 from contact1d.workflow.model.adhesion import AdhesiveEstimate, Cells
-from contact1d.workflow.model.friction import Sliders
+from contact1d.workflow.model.friction import Sliders, sliders_of
 from contact1d.workflow.model.motion import inertia
 from contact1d.workflow.model.pairs import ContactEstimate, places_within
 from contact1d.workflow.model.settings import Settings
@@ -292,18 +292,16 @@ def reduced(scene: Scene, settings: Settings) -> Reduced:
     deepest = settings.largest_displacement
     phase = 0.5 if settings.chains.upper % 2 == 0 else 0.0
     half = 0.5 * (settings.chains.upper - 1) * spacing
-    if isinstance(estimate, AdhesiveEstimate) and scene.adheres:
+    if isinstance(estimate, AdhesiveEstimate) and estimate.attracts:
         reach = min(half, scene.bodies.reach)
         return AdheringCells(estimate, places_within(reach * (1.0 + 1e-12), spacing, phase), deepest)
-    wide = estimate.half_width(max(MARGIN * deepest if scene.interaction is None else deepest, 0.0), estimate.felt)
+    margin = 1.0 if settings.forces.range else MARGIN
+    wide = estimate.half_width(max(margin * deepest, 0.0), estimate.felt)
     reach = min(max(wide, FEWEST * spacing), scene.bodies.reach)
-    if scene.bodies.particles != "auto" or scene.bodies.profile.has_edge:
+    if scene.bodies.particles != "auto" or scene.bodies.own_count is not None:
         reach = min(reach, half * (1.0 + 1e-12))
     x = places_within(reach, spacing, phase)
-    if scene.friction is None:
-        return Springs(estimate, x, deepest)
-    sliders = Sliders(x, x, scene.bulk_stiffness, scene.tangential_stiffness, scene.friction.coefficient)
-    return Sliding(estimate, x, deepest, sliders)
+    return Sliding(estimate, x, deepest, sliders_of(scene, x)) if scene.friction else Springs(estimate, x, deepest)
 
 
 MOST_STEPS = 20_000

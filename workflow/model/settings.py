@@ -25,9 +25,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.analysis.pressure import Profile, left_out
 from contact1d.digits import apart
 from contact1d.potentials import DoubleExponential, Exponential
-from contact1d.potentials.table import Table, table_for
+from contact1d.potentials.table import FEWEST_POINTS, Table, table_for
 from contact1d.workflow.model.adhesion import estimate_on_plane
 from contact1d.workflow.model.chain import SettingsError as SettingsError
 from contact1d.workflow.model.chain import (
@@ -43,8 +44,9 @@ from contact1d.workflow.model.chain import (
     require_travel,
 )
 from contact1d.workflow.model.dynamics import Motion, measured, motion_of, whole_steps
-from contact1d.workflow.model.pairs import ContactEstimate, NotCarriedError, Profile, particles_estimate, tabulated
-from contact1d.workflow.scene import Measured, Scene
+from contact1d.workflow.model.pairs import ContactEstimate, NotCarriedError, particles_estimate, tabulated
+from contact1d.workflow.model.pairs import Profile as Undeformed
+from contact1d.workflow.scene import Interaction, Measured, Scene
 from contact1d.workflow.scene.remedies import less_compression
 
 FILE = Path(__file__).with_name("calibration.json")
@@ -145,9 +147,9 @@ def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: fl
 
     In a slide also below what the tolerance leaves of the force along x.
     """
-    assert scene.interaction is not None
-    if scene.interaction.cutoff != "auto":
-        return scene.interaction.cutoff
+    given = scene.the(Interaction).cutoff
+    if given != "auto":
+        return given
     reach = law.cutoff_for(share)
     if scene.experiment.motion_is_result and not reaches_too_far(scene, reach):
         return max(reach, slide_cutoff(law, scene.bodies.spacing, 0.0, tolerance))
@@ -162,17 +164,7 @@ def innermost_distance(estimate: ContactEstimate, cutoff: float, displacement: f
 
 def thermal_motion(scene: Scene) -> float:
     """Thermal approach [LU] of two particles on their springs: THERMAL_SIGMAS √(2 k_BT/k)."""
-    return (
-        0.0 if scene.noise is None else THERMAL_SIGMAS * math.sqrt(2.0 * scene.noise.temperature / scene.bulk_stiffness)
-    )
-
-
-def force_scale_of(scene: Scene, law: DoubleExponential | None, largest: float) -> float:
-    """The force maximum of one pair, or without attraction the force of the deepest particle."""
-    if law is not None and law.attraction is not None:
-        r = law.force_free_distance() + law.longest_range * np.linspace(0.0, 5.0, 2001)
-        return float(-law.force(r).min())
-    return (largest if largest > 0.0 else 1e-3 * scene.bodies.spacing) * scene.bulk_stiffness / 2
+    return THERMAL_SIGMAS * math.sqrt(2.0 * scene.temperature / scene.bulk_stiffness)
 
 
 def loading_step_of(most: float, step: float) -> float:
@@ -218,13 +210,13 @@ least moment of inertia must be more than 1e-7 of the largest, and is 12 STAGGER
 """
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Forces:
-    """What acts on a particle. Of a rigid plane law and table are None, cutoff, rest, table_from and closest 0.
+    """What acts on a particle on a rigid plane, which has no table, and 0 for cutoff, rest, table_from and closest.
 
     Attributes:
-        law, cutoff, table, table_from: the interaction, its cutoff [LU], its table, and the distance [LU] from which on
-            the table was chosen to follow the interaction.
+        table, cutoff, table_from: of an interaction, its cutoff [LU], and the distance [LU] from which on the table was
+            chosen to follow it.
         rest: apex distance at displacement 0 [LU].
         closest: smallest distance for which moves and time step are chosen [LU].
         bulk_stiffness: normal bond of a particle to its anchor [FU/LU].
@@ -233,21 +225,108 @@ class Forces:
         residual: norm of the residual forces at which a minimisation stops [FU].
     """
 
-    law: DoubleExponential | None
-    table: Table | None
-    cutoff: float = measured("LU")
-    table_from: float = measured("LU")
-    rest: float = measured("LU")
-    closest: float = measured("LU")
     bulk_stiffness: float = measured("FU/LU")
-    plane_stiffness: float = measured("FU/LU")
-    scale: float = measured("FU")
-    residual: float = measured("FU")
+    plane_stiffness: float = measured("FU/LU", 0.0)
+    table: Table | None = None
+    cutoff: float = measured("LU", 0.0)
+    table_from: float = measured("LU", 0.0)
+    rest: float = measured("LU", 0.0)
+    closest: float = measured("LU", 0.0)
+    scale: float = measured("FU", 0.0)
+    residual: float = measured("FU", 0.0)
+
+    @property
+    def law(self) -> DoubleExponential | None:
+        """The interaction."""
+        return None
 
     @property
     def range(self) -> float:
         """Longest range of the interaction [LU]; 0 without one."""
-        return 0.0 if self.law is None else self.law.longest_range
+        return 0.0
+
+    def with_table(self, scene: Scene, estimate: ContactEstimate, largest: float, error: float) -> Forces:
+        """With a table of the law that follows it to an error [FU] from the smallest distance on that is expected."""
+        return self
+
+    def scale_of(self, scene: Scene, deepest: float) -> float:
+        """The force of the deepest particle [FU], so deep [LU]."""
+        return (deepest if deepest > 0.0 else 1e-3 * scene.bodies.spacing) * scene.bulk_stiffness / 2
+
+    def stiffest(self, spacing: float) -> float:
+        """The largest stiffness [FU/LU] that the opposite body has for a particle."""
+        return self.plane_stiffness
+
+    def increments(self, spacing: float, largest: float, calibration: Calibration) -> Increments:
+        """Increments of searches, by the spacing [LU]."""
+        loading = loading_step_of(0.1 * spacing, calibration.loading_increment * largest)
+        return Increments(loading, loading, 0.0, math.inf)
+
+    def share(self, scene: Scene) -> float:
+        """Relative error of a force, before a run: the plane is not quite rigid for springs between particles."""
+        return sum(effect.added_stiffness for effect in scene.present) / self.plane_stiffness
+
+    def error(self, scene: Scene, profile: Profile) -> float:
+        """Error of the force of a measured state [FU]."""
+        return self.share(scene) * abs(scene.bodies.spacing * float(profile.pressure.sum()))
+
+
+TAIL = 10.0
+"""Force of the tail beyond the cutoff, summed over particles, over the force at the cutoff times a particle's share."""
+COMPLIANCE_FACTOR = 2.0
+"""Error of an equilibrium over that of the force on particles held in place: they follow it, and a table's error, here
+at the distances that happen to be there, is half of what it is between two entries on average."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairForces(Forces):
+    """What acts on a particle that feels those of the opposite chain."""
+
+    table: Table
+
+    @property
+    def law(self) -> DoubleExponential:
+        """The interaction."""
+        return self.table.law
+
+    @property
+    def range(self) -> float:
+        """Longest range of the interaction [LU]."""
+        return self.law.longest_range
+
+    def with_table(self, scene: Scene, estimate: ContactEstimate, largest: float, error: float) -> Forces:
+        """See `Forces`; `largest`: the displacement [LU]."""
+        nearest = self.closest * (1.0 if scene.noise else NEAR_SHARE)
+        innermost = innermost_distance(estimate, self.cutoff, largest) - thermal_motion(scene)
+        start = max(nearest, TABLE_MARGIN * innermost)
+        return replace(self, table_from=start, table=table_for(self.law, self.cutoff, start, error))
+
+    def scale_of(self, scene: Scene, deepest: float) -> float:
+        """The force maximum of one pair [FU]; without attraction as on a plane."""
+        if self.law.attraction is None:
+            return super().scale_of(scene, deepest)
+        r = self.law.force_free_distance() + self.law.longest_range * np.linspace(0.0, 5.0, 2001)
+        return float(-self.law.force(r).min())
+
+    def stiffest(self, spacing: float) -> float:
+        """Of nearby opposite particles."""
+        rows = 1.0 + 2.0 * self.law.repulsion.range / spacing
+        return 2.0 * rows * float(self.law.stiffness(self.closest))
+
+    def increments(self, spacing: float, largest: float, calibration: Calibration) -> Increments:
+        """By the range of the interaction."""
+        move = MOVE_SHARE * self.closest
+        loading = loading_step_of(0.25 * self.range, calibration.loading_increment * largest)
+        return Increments(min(loading, move), loading, calibration.smooth_increment * self.range, move)
+
+    def share(self, scene: Scene) -> float:
+        """What table and cutoff may cause."""
+        tail = TAIL * abs(float(self.law.force(self.cutoff)))
+        return (tail + self.table.error_beyond(self.table_from)) / self.scale
+
+    def error(self, scene: Scene, profile: Profile) -> float:
+        """COMPLIANCE_FACTOR Σ |F_table(r) - f(r)| |z|/r over opposite particles, F_table = 0 beyond the cutoff."""
+        return COMPLIANCE_FACTOR * left_out(self.law, self.table, profile)
 
 
 @dataclass(frozen=True)
@@ -332,7 +411,7 @@ class Settings:
     @property
     def is_smooth(self) -> bool:
         """Whether the force is a smooth function of the displacement: particles, and none of them snaps."""
-        return self.forces.law is not None and not self.snaps
+        return self.forces.range > 0.0 and not self.snaps
 
     @property
     def strongest(self) -> tuple[float, float]:
@@ -420,11 +499,11 @@ def slower(scene: Scene, settings: Settings) -> list[tuple[Scene, Settings]]:
     bodies, plate, damping = scene.bodies, scene.plate, scene.damping
     if "mass" not in bodies.model_fields_set:
         bodies = bodies.model_copy(update={"mass": INERTIA * bodies.mass})
-    if plate is not None and plate.mass == "auto":
+    if plate and plate.mass == "auto":
         plate = plate.model_copy(update={"mass": INERTIA * own.plate_mass})
     drags = {
-        "damping": own.damping * (LONGER if damping is not None and damping.coefficient == "auto" else 1.0),
-        "plate_damping": own.plate_damping * (LONGER if plate is not None and plate.damping == "auto" else 1.0),
+        "damping": own.damping * (LONGER if damping and damping.coefficient == "auto" else 1.0),
+        "plate_damping": own.plate_damping * (LONGER if plate and plate.damping == "auto" else 1.0),
     }
     heavier = scene.model_copy(update={"bodies": bodies, "plate": plate})
     motion = settings_for(heavier, settings.tolerance).motion
@@ -448,9 +527,9 @@ def _require_carried(scene: Scene) -> None:
     """
     bodies, load = scene.bodies, scene.experiment.compression
     particles = bodies.particles if bodies.upper_particles is None else bodies.upper_particles
-    if load is None or scene.interaction is None or particles == "auto":
+    if load is None or particles == "auto":
         return
-    repulsion = scene.interaction.repulsion
+    repulsion = scene.the(Interaction).repulsion
     most = particles * repulsion.amplitude / repulsion.range
     if load > most:
         raise NotCarriedError(most)
@@ -465,17 +544,16 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     largest = max(scene.experiment.places()) if load is None else estimate.displacement_at(load)
     chains = _chains(scene, estimate, forces, largest, calibration.chain * tolerance)
     # A punch that adheres and carries nothing is not deep, and yet its springs hold it up to its limit.
-    scale = force_scale_of(scene, forces.law, max(largest, -estimate.parted(0.0)) if scene.adhesion else largest)
+    scale = forces.scale_of(scene, max(largest, -estimate.parted(0.0)) if scene.adhesion else largest)
     require_digits(scene, chains.upper, forces.rest + largest, tolerance * scale)
     forces = replace(forces, scale=scale, residual=calibration.residual * tolerance * scale)
-    if forces.law is not None:
-        forces = _tabulated(scene, forces, estimate, largest, calibration.table * tolerance * scale)
-    motion = motion_of(
-        scene, tolerance, estimate, largest, chains.upper, _stiffest(scene, forces), calibration.still_step
-    )
-    increments = _increments(bodies.spacing, forces, largest, calibration)
+    forces = forces.with_table(scene, estimate, largest, calibration.table * tolerance * scale)
+    stiffest = _stiffest_of(scene) + max(0.0, scene.tangential_stiffness - scene.bulk_stiffness)
+    stiffest += forces.stiffest(bodies.spacing)
+    motion = motion_of(scene, tolerance, estimate, largest, chains.upper, stiffest, calibration.still_step)
+    increments = forces.increments(bodies.spacing, largest, calibration)
     require_rows(scene, increments.longest_move, motion.drive)
-    different = scene.horizontal is not None and scene.tangential_stiffness != scene.bulk_stiffness
+    different = scene.horizontal and scene.tangential_stiffness != scene.bulk_stiffness
     chains = replace(chains, far=FAR_SHARE / tolerance * bodies.spacing if different else 0.0)
     return Settings(tolerance, estimate, forces, chains, increments, motion, largest)
 
@@ -483,11 +561,11 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
 def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[Forces, ContactEstimate]:
     """Springs, plane and interaction, without table and scales; the predictor of the contact that they make."""
     law, bodies, spring = interaction_law(scene), scene.bodies, scene.bulk_stiffness
-    shape: Profile = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
+    shape: Undeformed = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
     if law is None:
         plane = plane_stiffness_of(scene, tolerance)
         bond = spring if scene.stands else _beside_plane(spring, plane)
-        return Forces(None, None, 0.0, 0.0, 0.0, 0.0, bond, plane, 0.0, 0.0), estimate_on_plane(scene, shape)
+        return Forces(bulk_stiffness=bond, plane_stiffness=plane), estimate_on_plane(scene, shape)
     cutoff = cutoff_for(scene, law, calibration.cutoff * tolerance, tolerance)
     require_reach(scene, cutoff)
     rest, closest = cutoff, CLOSEST_SHARE * law.repulsion.range
@@ -498,7 +576,8 @@ def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[F
         law, shape, bodies.own_spacing, spring, cutoff, rest, chains=scene.chains, row=bodies.spacing
     )
     _require_carried(scene)
-    return Forces(law, None, cutoff, 0.0, rest, closest, spring, 0.0, 0.0, 0.0), estimate
+    table = Table(law, cutoff, FEWEST_POINTS)  # until it is known how near particles come
+    return PairForces(bulk_stiffness=spring, table=table, cutoff=cutoff, rest=rest, closest=closest), estimate
 
 
 def _chains(scene: Scene, estimate: ContactEstimate, forces: Forces, largest: float, share: float) -> Chains:
@@ -509,32 +588,3 @@ def _chains(scene: Scene, estimate: ContactEstimate, forces: Forces, largest: fl
     require_memory(scene, max(upper, lower), forces.cutoff)
     require_travel(scene, largest, forces.cutoff)
     return Chains(upper, lower, 0.0)
-
-
-def _tabulated(scene: Scene, forces: Forces, estimate: ContactEstimate, largest: float, error: float) -> Forces:
-    """With the table of the law, which follows it to `error` [FU] from the smallest distance on that is expected."""
-    assert forces.law is not None
-    nearest = forces.closest * (1.0 if scene.noise is not None else NEAR_SHARE)
-    innermost = innermost_distance(estimate, forces.cutoff, largest) - thermal_motion(scene)
-    start = max(nearest, TABLE_MARGIN * innermost)
-    return replace(forces, table_from=start, table=table_for(forces.law, forces.cutoff, start, error))
-
-
-def _stiffest(scene: Scene, forces: Forces) -> float:
-    """Largest stiffness [FU/LU] acting on a particle: its springs, effects, the plane, and nearby opposite ones."""
-    stiffest = _stiffest_of(scene) + max(0.0, scene.tangential_stiffness - scene.bulk_stiffness)
-    if forces.law is None:
-        return stiffest + forces.plane_stiffness
-    rows = 1.0 + 2.0 * forces.law.repulsion.range / scene.bodies.spacing
-    return stiffest + 2.0 * rows * float(forces.law.stiffness(forces.closest))
-
-
-def _increments(spacing: float, forces: Forces, largest: float, calibration: Calibration) -> Increments:
-    """Increments of searches, by the range of the interaction, or on a plane by the spacing [LU]."""
-    step = calibration.loading_increment * largest
-    if forces.law is None:
-        loading = loading_step_of(0.1 * spacing, step)
-        return Increments(loading, loading, 0.0, math.inf)
-    longest, move = forces.law.longest_range, MOVE_SHARE * forces.closest
-    loading = loading_step_of(0.25 * longest, step)
-    return Increments(min(loading, move), loading, calibration.smooth_increment * longest, move)

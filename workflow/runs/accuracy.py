@@ -23,7 +23,7 @@ def accuracy_warnings(scene: Scene, outcome: Outcome) -> dict[str, str]:
 
     `lattice` has those whose discretisation error alone exceeds it. Noise has its own statistics.
     """
-    if scene.noise is not None:
+    if kind_of(scene).is_statistical:
         return {}
     missing, tolerance, warnings = unknown(scene, outcome), scene.accuracy.tolerance, {}
     known = {name: one for name, one in outcome.results.items() if name not in missing}
@@ -53,7 +53,7 @@ def unknown(scene: Scene, outcome: Outcome) -> dict[str, Result]:
     unit: a number that is 0 beside it is known to be 0. An energy that is lost is compared with itself alone: whether
     there is a loss at all is what is asked. Means are reported whatever their standard errors.
     """
-    if scene.noise is not None:
+    if kind_of(scene).is_statistical:
         return {}
     scales = {
         FORCE: max((abs(state.force) for state in outcome.states), default=0.0),
@@ -92,9 +92,8 @@ def reported(scene: Scene, outcome: Outcome) -> Outcome:
 
 def open_results(scene: Scene, outcome: Outcome) -> dict[str, float]:
     """Results whose uncertainty exceeds the tolerance, without the discretisation error; with noise none."""
-    return (
-        {} if scene.noise is not None else unmet(outcome.results, scene.accuracy.tolerance, (LATTICE, "input", MODEL))
-    )
+    left_out = (LATTICE, "input", MODEL)
+    return {} if kind_of(scene).is_statistical else unmet(outcome.results, scene.accuracy.tolerance, left_out)
 
 
 def _kind(name: str, one: Result) -> str:

@@ -30,7 +30,7 @@ from contact1d.workflow.body.reading import IMAGE, stands_for_spheres
 from contact1d.workflow.body.theory import Case, applying, drawn_along, in_words, sliding_contact
 from contact1d.workflow.body.traction import row_of
 from contact1d.workflow.continuation.outcome import Outcome
-from contact1d.workflow.continuation.state import RadiusRule
+from contact1d.workflow.continuation.state import radius_rule
 from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.runs.report import COLUMN_UNITS, FILES, in_units, quantities_in, read_results
 from contact1d.workflow.runs.scales import scales_of
@@ -296,18 +296,18 @@ def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
     """The charts of a run in units of the model, by their names."""
     scene, profiles = run.scene, figures.seen(run.profiles)
     over, up, *_ = main_curve(run)
-    rule = RadiusRule(scene, scene.accuracy.tolerance)
+    rule = radius_rule(scene, scene.accuracy.tolerance)
     radii = {state: radius for state in profiles if (radius := rule.of(run.profiles[state]))}
     if run.detachments and run.detachments["force"].size > 1:
         yield DETACHMENTS, figures.detachments(run.detachments["force"])
     if SAMPLE_TABLE in run.tables:
         yield SAMPLE_TABLE, _samples(run)
-    if scene.friction is not None:
+    if scene.friction:
         yield "tangential", path_chart(run, tangential_force=_mindlin(run))
         yield "stick_slip", figures.stick_slip(profiles, scene.friction.coefficient, _zones(run, profiles))
     elif over != "displacement":
         yield "friction" if run.friction else f"{up}_{over}", path_chart(run)
-    if "displacement" in (over, up) and (scene.noise is None or scene.experiment.way_is_given):
+    if "displacement" in (over, up) and (not scene.noise or scene.experiment.way_is_given):
         yield from _under_load(run)
     if all(profile.x.size > 1 for profile in profiles.values()):  # one particle has no pressure over x
         yield "pressure", figures.pressure(profiles, radii)
@@ -413,7 +413,7 @@ def _theory(run: Run) -> list[tuple[str, Array, Array, Array]]:
     radius, forms = 2.0 * (half or 0.0), applying(case)
     body: PowerLaw | Ellipsoid
     if half is not None:
-        work = scene.adhesion.work if scene.adhesion is not None else 0.0
+        work = scene.work_of_adhesion
         name, body = (
             "JKR" if work else "Hertz",
             PowerLaw.sphere(radius, scene.bulk_stiffness / scene.bodies.spacing, work),
@@ -422,12 +422,12 @@ def _theory(run: Run) -> list[tuple[str, Array, Array, Array]]:
         name, body = forms[0].name, case.body
     else:
         return []
-    if scene.adhesion is not None and scene.adheres:
+    if scene.work_of_adhesion:
         return [(name, *body.curve(body.fixed_grips_radius(), LARGEST * body.zero_load_radius()))]
     if pull_off is not None:
         force, a_0 = pull_off
         fitted = PowerLaw.sphere(radius, 3.0 * force * radius / a_0**3, force / (1.5 * pi * radius))
         return [("JKR, same $F_A$ and $a_0$", *fitted.curve(LEAST * a_0, LARGEST * a_0))]
-    if scene.interaction is None:
+    if not scene.interaction:
         return [(name, *body.curve(0.0, body.radius_at(max(float(run.curve.displacement.max()), 0.0))))]
     return []

@@ -92,7 +92,7 @@ def require_ranks(deck: Deck, ranks: int) -> None:
     if ranks == 1:
         return
     scene, particles = deck.scene, deck.settings.chains.upper
-    if scene.noise is not None:
+    if scene.noise:
         raise RanksError(
             "with [noise] each rank draws its own random forces, so that the results depend on the number of ranks: "
             "use one rank, and run several seeds in parallel (contact1d sweep over noise.seed)"

@@ -41,7 +41,7 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
     limit what is found. With noise a load goes on sampling until it is known well enough, which is its own refinement.
     """
     scene, deck = context.deck.scene, context.deck
-    if scene.noise is not None or scene.experiment.way_is_given:
+    if kind_of(scene).is_statistical or scene.experiment.way_is_given:
         return Refined(deck, outcome)
     wanted, count, ended = scene.accuracy.tolerance, 0, ""
     tolerance = wanted

@@ -1,9 +1,6 @@
 """The typed scene: TOML in, either a `Scene` whose tables fit together or every problem at once."""
 
-from contact1d.workflow.scene.effects import (
-    Damping,
-    Plate,
-)
+from contact1d.workflow.scene.effects import Cantilever, Damping, Friction, Interaction, Neighbours, Noise, Plate
 from contact1d.workflow.scene.experiments import Hold, Kind, Load, Path, PullOff, Slide, Span, Tangential
 from contact1d.workflow.scene.problems import Problem, SceneError
 from contact1d.workflow.scene.profiles import (
@@ -25,17 +22,22 @@ __all__ = [
     "EFFECTS",
     "AnyScene",
     "Bodies",
+    "Cantilever",
     "Circle",
     "Cone",
     "Damping",
     "Elastic",
     "Ellipsoid",
     "FlatPunch",
+    "Friction",
     "Hold",
+    "Interaction",
     "Kind",
     "Load",
     "Material",
     "Measured",
+    "Neighbours",
+    "Noise",
     "Parabola",
     "Path",
     "Plate",

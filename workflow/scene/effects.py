@@ -6,6 +6,7 @@ repulsion and B, b those of the attraction.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal
 
@@ -35,6 +36,10 @@ REVERSED = (
     "there may be negative or 0"
 )
 """What to do about a cantilever's velocity that is no positive number."""
+
+
+NOISE_BIAS = 0.4
+"""Relative error of ⟨u²⟩ over (ω Δt)² with `fix langevin` and `fix nve`, measured at ω Δt = 0.1: 0.4 %."""
 
 
 class Exponential(Table):
@@ -70,6 +75,10 @@ class Effect(Table):
     def bond_drag(self, stiffness: float) -> float:
         """Drag [FU·TU/LU] that it puts beside a bulk spring of this stiffness [FU/LU]: a time step follows it."""
         return 0.0
+
+    def largest_phase(self, tolerance: float) -> float:
+        """Largest ω·Δt with which it is exact to a relative tolerance."""
+        return math.inf
 
 
 class Interaction(Effect):
@@ -164,6 +173,10 @@ class Noise(Effect):
     """temperature as energy k_BT"""
     seed: Seed
     """seed of the random forces"""
+
+    def largest_phase(self, tolerance: float) -> float:
+        """√(tolerance/NOISE_BIAS)."""
+        return math.sqrt(tolerance / NOISE_BIAS)
 
 
 def _free_directions(free: tuple[str, ...]) -> tuple[str, ...]:

@@ -30,10 +30,10 @@ def less_compression(scene: Scene, carried: float | None = None) -> Iterator[Sce
 
 def against_passing(scene: Scene) -> Iterator[SceneEdit]:
     """Against bodies that go through each other: less heat, no lateral motion unless it is examined, less load."""
-    if scene.noise is not None:
-        yield SceneEdit({"noise.temperature": float(f"{COLDER * scene.noise.temperature:.3g}")})
-    pulled = scene.experiment.motion_is_result or (scene.plate is not None and "x" in scene.plate.free)
-    if scene.horizontal is not None and not pulled:
+    if scene.noise:
+        yield SceneEdit({"noise.temperature": float(f"{COLDER * scene.temperature:.3g}")})
+    pulled = scene.experiment.motion_is_result or (scene.plate and "x" in scene.plate.free)
+    if scene.horizontal and not pulled:
         yield SceneEdit(without=("horizontal",))
     yield from less_compression(scene)
 
@@ -43,6 +43,6 @@ def longer_chain(scene: Scene) -> Iterator[SceneEdit]:
     bodies = scene.bodies
     if bodies.upper_particles is not None and not bodies.periodic:
         yield SceneEdit({"bodies.upper_particles": 2 * bodies.upper_particles, "bodies.particles": "auto"})
-    elif bodies.particles != "auto" and not bodies.profile.has_edge:
+    elif bodies.particles != "auto":
         yield SceneEdit({"bodies.particles": "auto"})
     yield from less_compression(scene)

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, cast
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeVar, cast
 
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
@@ -81,6 +81,9 @@ ALIKE = ("flat_punch", "flat")
 """Profiles that both reductions leave as they are: in model units, where springs are given, nothing differs."""
 WIDER_THAN_SPHERES = 2.0
 """Half-width of the paper's image over the contact radius of its two equal spheres."""
+
+
+E = TypeVar("E", bound=Effect)
 
 
 class Elastic(Table):
@@ -216,6 +219,11 @@ class Bodies(Table):
         return self.profile.reach
 
     @property
+    def own_count(self) -> int | None:
+        """Particles of the upper chain that its shape decides: a body with an edge is as wide as its chain."""
+        return round(2.0 * self.reach / self.own_spacing) if self.profile.has_edge else None
+
+    @property
     def kinks(self) -> tuple[float, ...]:
         """Positions [LU] beside the apex at which the slope of the profile jumps."""
         return self.profile.kinks
@@ -327,6 +335,20 @@ class Tables(Table):
         """These effects."""
         return tuple(getattr(self, name) for name in self.effects)
 
+    def the(self, kind: type[E]) -> E:
+        """The effect of this kind, which a rule or the experiment needs."""
+        return next(effect for effect in self.present if isinstance(effect, kind))
+
+    @property
+    def temperature(self) -> float:
+        """k_BT [FU·LU]; 0 without noise."""
+        return self.noise.temperature if self.noise else 0.0
+
+    @property
+    def work_of_adhesion(self) -> float:
+        """W on a rigid plane [FU/LU]; 0 without adhesion."""
+        return self.adhesion.work if self.adhesion else 0.0
+
     @property
     def bulk_stiffness(self) -> float:
         """Stiffness k [FU/LU] of each particle to its bulk: the given one, else the material's.
@@ -358,8 +380,7 @@ class Tables(Table):
     @property
     def adheres(self) -> bool:
         """Whether the bodies hold each other: by an attraction, or by an energy on a rigid plane."""
-        attracts = self.interaction is not None and self.interaction.attraction is not None
-        return attracts or (self.adhesion is not None and self.adhesion.work > 0.0)
+        return bool(self.interaction and self.interaction.attraction) or self.work_of_adhesion > 0.0
 
     @property
     def stands(self) -> bool:

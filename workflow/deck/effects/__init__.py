@@ -70,7 +70,7 @@ def number(value: float) -> str:
 def sphere_radius(scene: Scene, settings: Settings) -> float:
     """Radius [LU] of particles that are spheres; 0 where they are points."""
     deepest = max(settings.largest_displacement, scene.bodies.spacing)
-    return DEEP * deepest if scene.friction is not None else 0.0
+    return DEEP * deepest if scene.friction else 0.0
 
 
 def first_upper_anchor(scene: Scene, settings: Settings) -> int:

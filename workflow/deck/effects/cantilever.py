@@ -9,17 +9,16 @@ since the bulk goes with its body. Otherwise the cantilever would pull at a drag
 
 from contact1d.workflow.deck.effects import Contribution, Stage, first_upper_anchor, number
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Cantilever, Scene
 
 
 def cantilever(scene: Scene, settings: Settings) -> Contribution:
     """The drive starts with the phase that slides; see `steps/drive` and, for the further legs, `steps/turn`."""
-    assert scene.cantilever is not None
     legs = settings.motion.drive
     velocities, clocks = [leg.velocity for leg in legs], [leg.time_step for leg in legs]
     variables = {
         "cantilever_grip_id": str(first_upper_anchor(scene, settings)),
-        "cantilever_stiffness": number(scene.cantilever.stiffness),
+        "cantilever_stiffness": number(scene.the(Cantilever).stiffness),
         "cantilever_velocity": " ".join(map(number, velocities)),
         "cantilever_time_step": " ".join(map(number, clocks)),
         "cantilever_drag": number(settings.motion.damping),

@@ -2,16 +2,15 @@
 
 from contact1d.workflow.deck.effects import Contribution, Stage, number, sphere_radius
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Friction, Scene
 
 
 def friction(scene: Scene, settings: Settings) -> Contribution:
     """Shared slots: `atom_style`, which needs spheres in system.data."""
-    assert scene.friction is not None
     variables = {
         "friction_normal_stiffness": number(settings.forces.plane_stiffness),
         "friction_tangential_stiffness": number(scene.tangential_stiffness),
-        "friction_coefficient": number(scene.friction.coefficient),
+        "friction_coefficient": number(scene.the(Friction).coefficient),
         "friction_level": number(-sphere_radius(scene, settings)),
     }
     return Contribution("friction", Stage.DRAG, ("friction",), variables, atom_style="sphere")

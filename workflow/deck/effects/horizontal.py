@@ -15,7 +15,7 @@ def horizontal(scene: Scene, settings: Settings) -> Contribution:
     narrow = settings.chains.lower * scene.bodies.spacing if scene.bodies.periodic else math.inf
     difference = abs(scene.tangential_stiffness - settings.forces.bulk_stiffness)
     variables = {
-        "far_bond_type": "2" if scene.neighbours is None else "3",
+        "far_bond_type": "3" if scene.neighbours else "2",
         "far_bond_coefficient": number(difference / 2),
         "far_length": number(settings.chains.far),
         "far_bin": number(min(max(settings.chains.far / BINS, settings.forces.cutoff), narrow / LEAST_SLENDERNESS)),

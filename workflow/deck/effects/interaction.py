@@ -10,7 +10,7 @@ SKIN = 0.5
 
 def interaction(scene: Scene, settings: Settings) -> Contribution:
     """Shared slots: `pair_style`, and the tally of opposite forces in every measurement."""
-    assert settings.forces.table is not None
+    assert settings.forces.table
     return Contribution(
         "interaction",
         Stage.SPRINGS,

@@ -2,11 +2,10 @@
 
 from contact1d.workflow.deck.effects import Contribution, Stage, number
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Neighbours, Scene
 
 
 def neighbours(scene: Scene, settings: Settings) -> Contribution:
     """Shared slots: a bond type in system.data, and the positions of the anchors (`workflow.deck.lattice`)."""
-    assert scene.neighbours is not None
-    coefficient = number(scene.neighbours.stiffness / 2)
+    coefficient = number(scene.the(Neighbours).stiffness / 2)
     return Contribution("neighbours", Stage.SPRINGS, ("neighbours",), {"neighbours_bond_coefficient": coefficient})

@@ -2,21 +2,20 @@
 
 from contact1d.workflow.deck.effects import Contribution, Stage, first_upper_anchor, number
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Noise, Scene
 
 
 def noise(scene: Scene, settings: Settings) -> Contribution:
     """`fix langevin` takes the relaxation time m/γ. A drag on the plate has its random force, on one of its anchors."""
-    assert scene.noise is not None
     variables = {
-        "noise_temperature": number(scene.noise.temperature),
+        "noise_temperature": number(scene.the(Noise).temperature),
         "noise_damp": number(scene.bodies.mass / settings.motion.damping),
-        "noise_seed": str(scene.noise.seed),
+        "noise_seed": str(scene.the(Noise).seed),
     }
     fragments: tuple[str, ...] = ("noise",)
     before: tuple[str, ...] = ("steps/heat",)
     after: tuple[str, ...] = ("steps/heating",)
-    if scene.plate is not None and settings.motion.plate_damping > 0.0:
+    if settings.motion.plate_damping > 0.0:
         fragments += ("noise_plate",)
         before += ("steps/heat_plate",)
         after = ("steps/heating_plate",)

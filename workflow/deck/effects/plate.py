@@ -2,24 +2,23 @@
 
 from contact1d.workflow.deck.effects import BINS, Contribution, Stage, number
 from contact1d.workflow.model.settings import STAGGER_SHARE, Settings
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Plate, Scene
 
 
 def plate(scene: Scene, settings: Settings) -> Contribution:
     """Shared slot: the mass of the anchors in system.data. The drag is shared out among them."""
-    assert scene.plate is not None
     anchors = settings.chains.upper * (1 if settings.chains.far == 0.0 else 2)
     alone = anchors == 1
     free = {True: "NULL", False: "0.0"} if alone else {True: "on", False: "off"}
     # Drag on the plate comes with heat where there is noise, and then from there.
-    drag = 0.0 if scene.noise is not None else settings.motion.plate_damping
-    variables = {"plate_damping_per_anchor": number(drag / anchors), "plate_free_x": free["x" in scene.plate.free]}
+    drag = 0.0 if scene.noise else settings.motion.plate_damping
+    variables = {"plate_damping_per_anchor": number(drag / anchors), "plate_free_x": free["x" in scene.the(Plate).free]}
     fragments: tuple[str, ...] = ("plate_alone" if alone else "plate",)
     if scene.experiment.draws_off:
         fragments = ("drawn", *fragments)
     width = 2.0 * STAGGER_SHARE * settings.chains.upper * scene.bodies.own_spacing
     own = max(settings.forces.cutoff, settings.chains.far / BINS)
-    if scene.interaction is not None and width / BINS > own:
+    if scene.interaction and width / BINS > own:
         fragments += ("wide",)
         variables["wide_bin"] = number(width / BINS)
     return Contribution("plate", Stage.PLATE, fragments, variables, integrates="plate")
