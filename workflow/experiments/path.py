@@ -135,8 +135,8 @@ class PathExperiment(Scripted[Path]):
         errors, d = {"sampling": work.uncertainty}, trace.displacement
         if self.closes(trace, settings):
             # Springs lose nothing, nor does a contact that is held all along, where particles neither snap nor buckle.
-            may_jump = settings.snaps or scene.horizontal or _is_unstable(trace)
-            known = not (self.is_statistical or (settings.estimate.attracts and may_jump))
+            may_jump = settings.estimate.attracts and (settings.snaps or scene.horizontal or _is_unstable(trace))
+            known = not (self.is_statistical or may_jump)
             scale = work.whole if known else None
             return {"dissipated_energy": Reading(work.area, ENERGY, errors, scale=scale, prescribed=known)}
         ends = (0, len(trace) - 1)
