@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,8 +29,11 @@ MOST_ROUNDS = 60
 """Refinements of a force maximum, each of which may halve the increment beside it: a sharp one needs some."""
 SEPARATION_ROWS = 1_000.0
 """Load steps in which an unloading comes from any displacement to where nothing is felt any more."""
-FORCE_ACCURACY = 1e-3
+FORCE_ACCURACY = 5e-4
 """How near to a wanted force a search must come, over the tolerance."""
+EDGE, CONVERGING = 0.05, 0.1
+"""How near to the ends of a bracket a search looks, over it; where it misses its force by less than this share of what
+it missed before, it looks anywhere."""
 SEARCH_SHARE = 0.3
 """Part of the tolerance that a search may use up."""
 SEPARATION_SHARE = 0.02
@@ -37,8 +41,6 @@ SEPARATION_SHARE = 0.02
 GROWTH_SHARE = 0.5
 """Tension over the largest one below which increments may grow."""
 GROWTH = 1.6
-OVERSHOOT = 1.02
-"""Secant steps aim a little beyond, so that a bracket forms instead of a slow approach from one side."""
 RETURN_SHARE = 0.5
 """Move of a search back to a previous position, over the smallest distance of particles there."""
 SAME = 1e-12
@@ -69,6 +71,7 @@ class Branch(ContactBranch):
         """Prepare a contact."""
         super().__init__(context, meanwhile)
         self.tolerance = SEARCH_SHARE * self.settings.tolerance
+        self._expected = cache(self.model.displacement_at)
 
     @property
     def unloading(self) -> Trace:
@@ -137,11 +140,30 @@ class Branch(ContactBranch):
                 )
             self._require_within_reach(force, rises, before, beyond)
             step = self.settings.increment(last.smallest_distance if rises else math.inf)
-            self._at(_secant(before, beyond, states, force, direction * step))
+            self._at(self._towards(before, beyond, force, direction * step))
 
     def _first_rows(self, force: float, direction: int) -> None:
         """The first load steps of a leg towards a force [FU]: the position where it begins."""
         self._at(self._last.displacement if self.states else 0.0)
+
+    def _towards(self, before: State, beyond: State | None, force: float, step: float) -> float:
+        """The next displacement [LU]: a secant over what the model has under these forces, which is nearly straight.
+
+        It is kept inside the bracket, off its ends by EDGE of it where the search does not converge, or within a step.
+        """
+        *_, former, last = [None, *self.leg]
+        expected, rate, margin = self._expected, 1.0, EDGE
+        if former and (change := expected(last.carried) - expected(former.carried)):
+            rate = (last.displacement - former.displacement) / change
+            margin *= abs(last.carried - force) > CONVERGING * abs(former.carried - force)
+        goal = last.displacement + rate * (expected(force) - expected(last.carried))
+        if beyond is None:
+            ahead = (goal - before.displacement) / step
+            return before.displacement + (min(1.0, ahead) if ahead > 0.0 else 1.0) * step
+        part = (goal - before.displacement) / (beyond.displacement - before.displacement)
+        if not 0.0 < part < 1.0:  # the model knows nothing of these states
+            part = (force - before.carried) / (beyond.carried - before.carried)
+        return before.displacement + min(max(part, margin), 1.0 - margin) * (beyond.displacement - before.displacement)
 
     def _require_within_reach(self, force: float, rises: bool, before: State, beyond: State | None) -> None:
         """Refuse a force that the branch jumps past, never reaches, or does not reach in a practicable time."""
@@ -337,19 +359,6 @@ class Branch(ContactBranch):
 
 class SecondMaximumError(UntrustedError):
     """The tension rises again after its first maximum: further load steps are needed."""
-
-
-def _secant(before: State, beyond: State | None, states: Sequence[State], force: float, step: float) -> float:
-    """The secant's displacement, kept inside the bracket or within one step [LU]."""
-    if beyond is not None:
-        part = (force - before.carried) / (beyond.carried - before.carried)
-        return before.displacement + min(max(part, 0.05), 0.95) * (beyond.displacement - before.displacement)
-    ahead = 1.0
-    if len(states) > 1 and states[-1].carried != states[-2].carried:
-        slope = (states[-1].carried - states[-2].carried) / (states[-1].displacement - states[-2].displacement)
-        needed = OVERSHOOT * (force - before.carried) / slope / step
-        ahead = min(1.0, needed) if needed > 0 else 1.0
-    return before.displacement + ahead * step
 
 
 def _is_passed(states: Sequence[State]) -> bool:

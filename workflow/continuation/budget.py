@@ -89,9 +89,14 @@ class Reduction:
         return bool(self.scene.adhesion) and self.settings.estimate.attracts
 
     @cached_property
+    def model(self) -> Reduced:
+        """The model of the chain that runs."""
+        return reduced(self.scene, self.settings)
+
+    @cached_property
     def own(self) -> Values:
-        """The results of the model of the chain that runs."""
-        return self.values(reduced(self.scene, self.settings))
+        """Its results."""
+        return self.values(self.model)
 
     def followed(self, values: Values) -> Values:
         """`lattice` of results in time; where the model does not follow the motion, by how much they differ."""
@@ -103,7 +108,7 @@ class Reduction:
         """By name of a result, its discretisation error; a result that another lattice does not have may be 0."""
         if not (self.on_lattice or self.converges):
             return {}
-        model, own = reduced(self.scene, self.settings), self.own
+        model, own = self.model, self.own
         kinks = self.scene.bodies.profile.kinks
         beside = [model.resized(factor) for factor in UNEVEN if kinks]
         if not self.converges or kinks:
@@ -154,7 +159,7 @@ def _extrapolated(coarse: float, fine: float, finest: float) -> float:
 
 def sampling_errors(case: Reduction, trace: Trace) -> Values:
     """Sampling error of each result by the steps of the scene, from the model with the same and with dense steps."""
-    model, found = reduced(case.scene, case.settings), dict[str, float]()
+    model, found = case.model, dict[str, float]()
     step = float(np.median(np.abs(np.diff(trace.displacement)))) if len(trace) > 1 else 0.0
     is_copy = case.scene.is_stepped
     while is_copy and DENSE * len(trace) * model.x.size > MOST_NUMBERS and model.x.size > FEWEST:

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from contact1d.analysis.curve_marks import closes, work_of
-from contact1d.workflow.continuation.budget import ForceErrors, budgeted, force_errors
+from contact1d.workflow.continuation.budget import ForceErrors, Reduction, budgeted, force_errors
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.driver import Driver
@@ -24,7 +24,7 @@ from contact1d.workflow.continuation.trust import doubts, require_trust
 from contact1d.workflow.deck.steps import Displace, DisplaceInTime, Phase, Row, displacements
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.experiments.thermal import CERTAIN, averaged, thermal_rows
-from contact1d.workflow.model.reduced import reduced
+from contact1d.workflow.model.reduced import Reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Path, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
@@ -59,12 +59,12 @@ class PathExperiment(Scripted[Path]):
         ends = {"deepest": max(reported, key=lambda s: s.displacement), "final": reported[-1]}
         strongest = (ends["deepest"], min(seen, key=lambda s: s.force), ends["final"])
         errors = self.force_errors(scene, settings, seen, strongest)
-        trace = of_states(seen, reduced(scene, settings))
+        trace = of_states(seen, case.model)
         kept = {id(state) for state in seen}
-        other = self._in_half_steps(context, [i for i, state in enumerate(states) if id(state) in kept])
+        other = self._in_half_steps(context, case.model, [i for i, state in enumerate(states) if id(state) in kept])
         repeated = {} if other is None else {"instability": [other]}
         results = budgeted(case, trace, errors, sampled=not self.is_statistical, repeated=repeated)
-        warnings = self._missing(results, scene, settings, phases) | doubts(scene, settings, tuple(reported))
+        warnings = self._missing(results, case, phases) | doubts(scene, settings, tuple(reported))
         warnings |= _buckling(trace, other, settings)
         return Outcome(results, tuple(reported), ends, phases, warnings)
 
@@ -91,7 +91,7 @@ class PathExperiment(Scripted[Path]):
         ends = [trace.radius(state) is None for state in (0, len(trace) - 1)]
         return ends[0] == ends[1] and closes(*trace.lists, settings.tolerance)
 
-    def _in_half_steps(self, context: RunContext, seen: Sequence[int]) -> Trace | None:
+    def _in_half_steps(self, context: RunContext, model: Reduced, seen: Sequence[int]) -> Trace | None:
         """The states of these numbers of a second run with twice as many; None where no particle can move aside.
 
         Chains that may buckle along x jump to another equilibrium between two load steps; to which depends on these.
@@ -109,7 +109,7 @@ class PathExperiment(Scripted[Path]):
             phases.append(replace(phase, rows=tuple(rows)))
         with context.aside(deck) as other, other.contact("repeating the path in half the steps") as contact:
             states = contact.replay(phases)[1::2]
-        return of_states([states[i] for i in seen], reduced(scene, deck.settings))
+        return of_states([states[i] for i in seen], model)
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """The approach, which is not evaluated, and the positions of the scene; where pairs snap also those between."""
@@ -164,14 +164,12 @@ class PathExperiment(Scripted[Path]):
         """The load steps are the scene's own."""
         return f"Use more steps in experiment.displacements; for a radius also {FINER_SPACING}"
 
-    def _missing(
-        self, results: Mapping[str, Result], scene: Scene, settings: Settings, phases: Sequence[Phase]
-    ) -> dict[str, str]:
+    def _missing(self, results: Mapping[str, Result], case: Reduction, phases: Sequence[Phase]) -> dict[str, str]:
         """Warnings of results that the path does not reach."""
-        if not settings.estimate.attracts:
+        if not case.model.estimate.attracts:
             return {}
         warnings: dict[str, str] = {}
-        if _passes_jump(scene, settings) and not any(name.startswith(LOSSES) for name in results):
+        if _passes_jump(case) and not any(name.startswith(LOSSES) for name in results):
             warnings["no_energy"] = (
                 "the path has too few load steps to tell what is lost at snap-in or separation: use more steps in "
                 "experiment.displacements"
@@ -227,9 +225,9 @@ class ThermalPath(PathExperiment):
         return closes(*trace.lists, ANY_FORCE)
 
 
-def _passes_jump(scene: Scene, settings: Settings) -> bool:
+def _passes_jump(case: Reduction) -> bool:
     """Whether a contact that is made and lost at once is so along the path."""
-    places, jumps = scene.experiment.places(), reduced(scene, settings).jumps
+    places, jumps = case.scene.experiment.places(), case.model.jumps
     return bool(jumps) and max(places) > 0.0 and (places[0] < 0.0 or min(places) < min(jumps))
 
 

@@ -178,9 +178,10 @@ class ContactEstimate:
         """Energy of a contact [FU·LU] of radius [LU] at a displacement [LU], without that of bodies apart, if known."""
         return None
 
-    def half_width(self, displacement: float, gap: float) -> float:
+    @cached_property
+    def half_width(self) -> Callable[[float, float], float]:
         """`half_widths` at one displacement."""
-        return float(self.half_widths(np.asarray([displacement]), gap)[0])
+        return cache(lambda displacement, gap: float(self.half_widths(np.asarray([displacement]), gap)[0]))
 
     def half_widths(self, displacements: Array, gap: float) -> Array:
         """Half-widths [LU] within which the undeformed gap is below `gap` [LU] at these displacements [LU].
