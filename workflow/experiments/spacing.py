@@ -48,8 +48,7 @@ def with_spacing(scene: Scene) -> Scene:
     if scene.bodies.given_spacing != "auto":
         return scene
     radius = contact_radius(scene)
-    chosen = fine_enough(partial(_spaced, scene, radius))
-    left = left_by_lattice(chosen)
+    chosen, left = fine_enough(partial(_spaced, scene, radius))
     tolerance = scene.accuracy.tolerance
     if tolerance < left < math.inf:  # without bound the run says what appears
         larger = "" if left > 0.9 * LARGEST else f"use an accuracy.tolerance of {_up(left)}, or "
@@ -63,16 +62,20 @@ def with_spacing(scene: Scene) -> Scene:
     return chosen
 
 
-def fine_enough(scene_of: Callable[[int], Scene]) -> Scene:
-    """The scene with so many particles in the contact radius that its lattice leaves LEFT of its tolerance, or MOST."""
+def fine_enough(scene_of: Callable[[int], Scene]) -> tuple[Scene, float]:
+    """The scene with so many particles in the contact radius that its lattice leaves LEFT of its tolerance, or MOST.
+
+    And what it leaves.
+    """
     count = FEWEST
     for _ in range(MOST_TRIES):
         scene = scene_of(count)
-        over = left_by_lattice(scene) / (LEFT * scene.accuracy.tolerance)
+        left = left_by_lattice(scene)
+        over = left / (LEFT * scene.accuracy.tolerance)
         if over <= 1.0 or count == MOST:
             break
         count = min(MOST, math.ceil(count * math.sqrt(over if over < math.inf else APPEARING)) + 1)
-    return scene
+    return scene, left
 
 
 def left_by_lattice(scene: Scene) -> float:
