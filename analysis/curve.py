@@ -167,7 +167,7 @@ def states_of(profiles: Sequence[Profile], kept: Sequence[int] | None = None) ->
 
 def _spread(count: int, most: int) -> NDArray[np.int64]:
     """At most `most` of the indices below `count`, evenly, both ends among them."""
-    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.int64))
+    return np.linspace(0, count - 1, min(count, most)).round().astype(np.int64)
 
 
 def write_states(path: Path, states: States) -> None:

@@ -72,9 +72,8 @@ def tensile_radius(profile: Profile) -> ContactRadius:
     Raises ValueError where no particle carries tension (use `compressive_radius`), and for fewer than 3 particles.
     """
     x, p = profile.x, profile.pressure
-    _check(profile)
-    largest = float(np.max(np.abs(p)))
-    if not float(np.min(p)) < -NEGLIGIBLE * largest:
+    least, most = _extremes(profile)
+    if not least < -NEGLIGIBLE * max(-least, most):
         raise ValueError("no particle carries tension, so there is no radius of maximum tensile stress")
     centre = _centre(x, p)
     spacing = spacing_of(x)
@@ -98,11 +97,11 @@ def compressive_radius(profile: Profile, residual: float = 0.0) -> ContactRadius
     Raises ValueError for fewer than 3 particles, and where a particle carries tension (use `tensile_radius`).
     """
     x, p = profile.x, profile.pressure
-    _check(profile)
-    largest = float(np.max(np.abs(p)))
-    if float(np.min(p)) < -NEGLIGIBLE * largest:
+    least, most = _extremes(profile)
+    largest = max(-least, most)
+    if least < -NEGLIGIBLE * largest:
         raise ValueError("particles carry tension: the radius is that of maximum tensile stress")
-    return _of_edges(x, p, p > NEGLIGIBLE * largest, partial(_zero, residual=residual))
+    return _of_edges(x, p, p > NEGLIGIBLE * largest, partial(_zero, largest=largest, residual=residual))
 
 
 def held_radius(profile: Profile) -> ContactRadius:
@@ -112,7 +111,7 @@ def held_radius(profile: Profile) -> ContactRadius:
     in a contact a few spacings wide, the edge is somewhere in its cell. See the module's docstring.
     Raises ValueError for fewer than 3 particles.
     """
-    _check(profile)
+    _extremes(profile)
     return _of_edges(profile.x, profile.pressure, profile.pressure != 0.0, _held_edge)
 
 
@@ -159,11 +158,14 @@ def _edge(x: Array, p: Array, centre: float, outwards: float) -> Place:
     return place
 
 
-def _check(profile: Profile) -> None:
+def _extremes(profile: Profile) -> tuple[float, float]:
+    """The smallest and the largest pressure."""
     if len(profile.x) < PARABOLA_POINTS:
         raise ValueError(f"a contact radius needs at least {PARABOLA_POINTS} particles, got {len(profile.x)}")
-    if not np.all(np.isfinite(profile.pressure)):
+    found = float(profile.pressure.min()), float(profile.pressure.max())
+    if not all(map(math.isfinite, found)):
         raise ValueError("a contact radius needs a finite pressure on every particle")
+    return found
 
 
 def _between(left: Place, right: Place) -> ContactRadius:
@@ -173,25 +175,32 @@ def _between(left: Place, right: Place) -> ContactRadius:
 
 
 def _of_edges(
-    x: Array, p: Array, carries: NDArray[np.bool_], edge: Callable[[Array, Array, int, int], Place]
+    x: Array, p: Array, carries: NDArray[np.bool_], edge: Callable[[list[float], list[float], int, int], Place]
 ) -> ContactRadius:
-    """Between the right `edge` of the particles that carry, first … last, and that of the mirror image."""
+    """Between the right `edge` of the particles that carry, first … last, and that of the mirror image.
+
+    An edge has x and p of the last ones alone, PARABOLA_POINTS and one more, and of the next particle if there is one.
+    """
     carrying, end = np.flatnonzero(carries), len(x) - 1
     if carrying.size == 0:
         middle = float(0.5 * (x.max() + x.min()))
         return ContactRadius(0.0, 0.5 * spacing_of(x), middle, middle, False)
     first, last = int(carrying[0]), int(carrying[-1])
-    mirrored = edge(-x[::-1], p[::-1], end - last, end - first)
-    return _between(replace(mirrored, position=-mirrored.position), edge(x, p, first, last))
+    found = []
+    for places, pressures, least, most in ((-x[::-1], p[::-1], end - last, end - first), (x, p, first, last)):
+        low = max(0, most - PARABOLA_POINTS)
+        near = slice(low, most + 2)
+        found.append(edge(places[near].tolist(), pressures[near].tolist(), least - low, most - low))
+    return _between(replace(found[0], position=-found[0].position), found[1])
 
 
-def _zero(x: Array, p: Array, first: int, last: int, residual: float) -> Place:
-    """Right edge of a contact whose loaded particles are first … last."""
+def _zero(x: list[float], p: list[float], first: int, last: int, largest: float, residual: float) -> Place:
+    """Right edge of a contact whose loaded particles are first … last; `largest` is its pressure."""
     if last == len(x) - 1:
-        return Place(float(x[last]), spacing_of(x), True)
-    inner, outer = float(x[last]), float(x[last + 1])
+        return Place(x[last], x[last] - x[last - 1], True)
+    inner, outer = x[last], x[last + 1]
     zero, other = (
-        _parabola_zero(x[: end + 1], p[: end + 1], inner, outer, residual)
+        _parabola_zero(x[end - 2 : end + 1], p[end - 2 : end + 1], inner, outer, largest, residual)
         if end - PARABOLA_POINTS >= first - 1
         else None
         for end in (last, last - 1)
@@ -203,16 +212,18 @@ def _zero(x: Array, p: Array, first: int, last: int, residual: float) -> Place:
     return Place(zero.position, min(abs(zero.position - other.position) + zero.uncertainty, outer - inner))
 
 
-def _parabola_zero(x: Array, p: Array, inner: float, outer: float, residual: float) -> Place | None:
-    """Falling zero, between inner and outer, of the parabola through the last three particles; None if there is none.
+def _parabola_zero(
+    x: list[float], p: list[float], inner: float, outer: float, largest: float, residual: float
+) -> Place | None:
+    """Falling zero, between inner and outer, of the parabola through three particles; None if there is none.
 
     c + b t + a t^2 falls with the slope -sqrt(D), D = b^2 - 4ac, at t = c/q for b < 0 and else at q/a, where
     q = -(b + sign(b) sqrt(D))/2: no difference of near numbers, so that a straight line (a cone's pressure) is no
     special case.
     """
-    width, largest = outer - inner, float(np.max(p))
-    first, second, third = ((place - inner) / width for place in x[-PARABOLA_POINTS:].tolist())
-    high, middle, low = (pressure / largest for pressure in p[-PARABOLA_POINTS:].tolist())
+    width = outer - inner
+    first, second, third = ((place - inner) / width for place in x)
+    high, middle, low = (pressure / largest for pressure in p)
     chord, slope = (low - high) / (third - first), (low - middle) / (third - second)
     a = (slope - chord) / (second - first)
     b = slope - a * (second + third)
@@ -229,13 +240,13 @@ def _parabola_zero(x: Array, p: Array, inner: float, outer: float, residual: flo
     return Place(inner + width * place, NEGLIGIBLE * (abs(inner) + width) + width * moved)
 
 
-def _held_edge(x: Array, p: Array, first: int, last: int) -> Place:
+def _held_edge(x: list[float], p: list[float], first: int, last: int) -> Place:
     """Right edge of a contact that is held from the particle first to last."""
-    spacing = spacing_of(x)
-    somewhere = Place(float(x[last]), 0.5 * spacing, last == len(x) - 1)
+    spacing = (x[-1] - x[0]) / (len(x) - 1)
+    somewhere = Place(x[last], 0.5 * spacing, last == len(x) - 1)
     if last - first <= PARABOLA_POINTS:  # the last one of them is at the other edge
         return somewhere
-    *inner, carried = p[last - PARABOLA_POINTS : last + 1].tolist()
+    *inner, carried = p[last - PARABOLA_POINTS : last + 1]
     found, straight = _share(carried, inner), _share(carried, [2.0 * inner[1] - inner[2], inner[1], inner[2]])
     if not -OUTSIDE <= found <= 1.0 + OUTSIDE:
         return somewhere

@@ -71,6 +71,7 @@ COMMON = (
 OFFSET = frozenset({"degree_Celsius", "degree_Fahrenheit"})
 """Units of temperature whose zero is not the absolute one, by pint's name."""
 LENGTH, MASS, TIME, TEMPERATURE = "[length]", "[mass]", "[time]", "[temperature]"
+CURRENT, SUBSTANCE = "[current]", "[substance]"
 """Dimensions, by pint's names."""
 ANGLES = frozenset({"radian", "degree", "turn", "gradian", "arcminute", "arcsecond", "steradian"})
 NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+(?![.\d]))?")
@@ -83,6 +84,12 @@ SYMBOLS: dict[str, tuple[int, dict[str, int]]] = {
     "N": (0, {LENGTH: 1, MASS: 1, TIME: -2}),
     "Pa": (0, {LENGTH: -1, MASS: 1, TIME: -2}),
     "J": (0, {LENGTH: 2, MASS: 1, TIME: -2}),
+    "W": (0, {LENGTH: 2, MASS: 1, TIME: -3}),
+    "Hz": (0, {TIME: -1}),
+    "V": (0, {LENGTH: 2, MASS: 1, TIME: -3, CURRENT: -1}),
+    "A": (0, {CURRENT: 1}),
+    "C": (0, {TIME: 1, CURRENT: 1}),
+    "mol": (0, {SUBSTANCE: 1}),
 }
 """Of SI: the power of ten to base units, and the dimension."""
 PREFIXES = {
