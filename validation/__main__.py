@@ -46,13 +46,16 @@ def speed(only: Only = None, out: Out = None, full: Full = False, workers: Worke
 @app.command()
 def pages() -> None:
     """VALIDATION.md, the tables and the times of docs/performance.md from the records in validation/results."""
-    from validation.page import speed_table, summary, tables_page, write_between
+    from contact1d.analysis.plots import save_figure
+    from validation.figures import margins
+    from validation.page import margins_of, speed_table, summary, tables_page, write_between
     from validation.study import read_record
 
     records = {name: read_record(RESULTS / f"{name}.json") for name in ("paper", "hard", "speed")}
     (ROOT / "VALIDATION.md").write_text(summary(records["paper"], records["hard"]), encoding="utf-8")
     (RESULTS / "tables.md").write_text(tables_page([records["paper"], records["hard"]]), encoding="utf-8")
     write_between(ROOT / "docs" / "performance.md", "speed", speed_table(records["speed"]))
+    save_figure(margins(margins_of(records["hard"])), ROOT / "docs" / "stability" / "margins.png")
 
 
 @app.command()

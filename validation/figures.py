@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -25,6 +25,8 @@ ONE, TWO = (6.4, 4.4), (9.6, 4.2)
 """Sizes of one panel and of two [inch]."""
 MOST = 12
 """Names in a legend."""
+SMALLEST, MOST_SHARE = 1e-6, 1.3
+"""Ends of an axis of shares that are allowed up to 1."""
 
 
 @dataclass(frozen=True)
@@ -121,3 +123,20 @@ def _draw(axis: Axes, panel: Panel) -> None:
     axis.set_title(panel.title, loc="left", fontsize=10)
     if len(axis.get_legend_handles_labels()[1]) <= MOST:
         axis.legend(frameon=False, fontsize=8)
+
+
+def margins(classes: Mapping[str, Sequence[float]]) -> Figure:
+    """A line of points for each class, by its name: the distance from a reference over what is allowed."""
+    figure = new_figure((9.6, 0.6 + 0.24 * len(classes)))
+    axis = figure.subplots()
+    for place, (name, shares) in enumerate(sorted(classes.items(), key=lambda one: -max(one[1]))):
+        axis.plot(np.maximum(shares, SMALLEST), np.full(len(shares), place), "|", markersize=9, color=COLOURS[0])
+        axis.text(1.1 * MOST_SHARE, place, f"{name}, {len(shares)}", fontsize=8, verticalalignment="center")
+    axis.axvline(1.0, color=THEORY, linewidth=1.0, linestyle="--")
+    axis.set(
+        xscale="log",
+        xlim=(0.5 * SMALLEST, MOST_SHARE),
+        yticks=[],
+        xlabel="distance from the reference over what the run or the bound allows",
+    )
+    return figure

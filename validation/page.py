@@ -77,6 +77,16 @@ def agreement(rows: Sequence[Row]) -> str:
     return f"{failed} of {len(rows)} rows fail" if failed else f"all {len(rows)} rows pass"
 
 
+def margins_of(record: Record) -> dict[str, list[float]]:
+    """By class, the distance of each judged row from its reference over what is allowed, 1 at most."""
+    found = {}
+    for answer in record.answers:
+        shares = [one.off / one.allowed for one in answer.rows if one.standing == "judged" and one.allowed > 0.0]
+        if kept := [share for share in shares if math.isfinite(share)]:
+            found[answer.name] = kept
+    return found
+
+
 def worst_deviation(rows: Iterable[Row]) -> float:
     """Largest |value/reference − 1|; infinite where a row has no number."""
     off = [abs(row.value / row.reference.value - 1.0) for row in rows]

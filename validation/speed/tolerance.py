@@ -85,6 +85,8 @@ def contacts() -> dict[str, Contact]:
     }
     chains["reduction"] = "geike_popov"
     marks = pull_off(ChainModel(200, 0.83, law, radius=1000.0, neighbour_stiffness=0.3), 1.0)
+    preload = f"{adhesive.pull_off_force()!r} N"
+    sticky = {"work_of_adhesion": f"{WORK!r} J/m²"}
     return {
         "Hertz's ball": Contact(
             ball(sphere, {"kind": "load", "force": f"{force!r} N"}),
@@ -96,7 +98,7 @@ def contacts() -> dict[str, Contact]:
             {"displacement": float(blunt.displacement(WIDTH)), "contact_radius": WIDTH},
         ),
         "JKR's ball": Contact(
-            ball(sphere, {"kind": "pull_off", "preload": f"{adhesive.pull_off_force()!r} N"}, adhesion={"work_of_adhesion": f"{WORK!r} J/m²"}),
+            ball(sphere, {"kind": "pull_off", "preload": preload}, adhesion=sticky),
             {"adhesion_force": adhesive.pull_off_force(), "zero_load_radius": adhesive.zero_load_radius()},
         ),
         "Mindlin's cycle": Contact(

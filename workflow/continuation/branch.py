@@ -47,8 +47,8 @@ SAME = 1e-12
 """Displacements nearer than this over the spacing are the same: a force that still differs has jumped."""
 APPROACH_STEPS = 20
 """Timesteps of a move towards a displacement that is held for a time."""
-ROWS_BEYOND_PEAK = 3
-"""Load steps beyond the force maximum that its polynomials need."""
+ROWS_BEFORE_PEAK, ROWS_BEYOND_PEAK = 2, 3
+"""Load steps before the force maximum that the model expects, and beyond the one found, for its polynomials."""
 HALVINGS_AT_PEAK = 2
 """Halvings of the increment beside the force maximum for the sake of the contact radius there."""
 PER_TOOTH, MOST_TEETH = 4.0, 400.0
@@ -248,9 +248,10 @@ class Branch(ContactBranch):
         densest = (zero.displacement - estimate.rest + float(estimate.gap[-1])) / MOST_TEETH
         step = min(self.settings.increment(), max(tooth, densest) / PER_TOOTH)
         through = tooth < math.inf or self.context.through
-        rows = [zero]
+        way = 0.0 if through else self._expected(zero.carried) - self._expected(-math.inf)
+        rows, skipped = [zero], max(0, math.floor(way / step) - ROWS_BEFORE_PEAK)
         while not _is_passed(rows) or (through and -min(s.force for s in rows) <= self._still_held(rows[-1])):
-            rows.append(self._at(zero.displacement - len(rows) * step))
+            rows.append(self._at(zero.displacement - (skipped + len(rows)) * step))
             if len(rows) > MOST_INCREMENTS:
                 raise UntrustedError("the search does not pass the force maximum")
         return step

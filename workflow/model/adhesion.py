@@ -139,7 +139,7 @@ class AdhesiveEstimate(ContactEstimate):
         last = int(np.searchsorted(x, x[-1]))
         return float(x[last]), float(h[last]), float(force[last])
 
-    @property
+    @cached_property
     def fixed_grips(self) -> tuple[float, float]:
         """(radius, displacement) [LU] at pull-off under fixed grips."""
         x, h, _, least = self._grid

@@ -38,6 +38,8 @@ FEWEST = 4.0
 ROUNDS, POINTS, SNAPPING = 5, 24, 10
 """How often the bracket of a displacement is cut, and at how many positions: so many times more at first where pairs
 snap, and the force has many maxima."""
+SIDES, LOOKS = np.asarray([-0.5, -0.1, -0.01, -1e-4, 0.0, 1e-4, 0.01, 0.1, 0.5]), 4
+"""Looks for where a force is carried, each beside the secant's place by so much of the bracket, and how many."""
 NEAREST = 1e-9
 """Distance from the limit point, over that to the largest displacement, from which positions are examined."""
 TOUCH = 1e-9
@@ -140,18 +142,36 @@ class Reduced(ABC):
         # The attraction may end within a millionth of the way: what lies near the limit point is looked at by decades.
         near = low + (high - low) * np.geomspace(NEAREST, 1.0, points)
         positions = np.union1d(np.linspace(low, high, points), near)
+        forces = self.held(positions)
         for _ in range(ROUNDS):
-            forces = self.held(positions)
-            below = np.flatnonzero(forces < force)
-            lowest, last = int(np.argmin(forces)), positions.size - 1
+            if (forces < force).any():
+                break
             # Where none is below, a lower one may lie on either side of the lowest.
-            first, end = max(lowest - 1, 0), min(lowest + 1, last)
-            if below.size:
-                first = min(int(below[-1]), last - 1)
-                end = first + 1
-            best, bracket, ends = float(positions[lowest]), positions[[first, end]], forces[[first, end]]
-            positions = np.linspace(bracket[0], bracket[1], POINTS)
-        return float(np.interp(force, ends, bracket)) if below.size else best
+            lowest = int(np.argmin(forces))
+            ends = positions[[max(lowest - 1, 0), min(lowest + 1, positions.size - 1)]]
+            positions = np.linspace(ends[0], ends[1], POINTS)
+            forces = self.held(positions)
+        else:
+            return float(positions[int(np.argmin(forces))])
+        first = min(int(np.flatnonzero(forces < force)[-1]), positions.size - 2)
+        return self._crossing(force, positions[first : first + 2], forces[first : first + 2])
+
+    def _crossing(self, force: float, places: Array, forces: Array) -> float:
+        """Where a force [FU] is carried between two places [LU] that have less and more.
+
+        Each look is at the secant's place and at SIDES beside it, a bracket of its own if the curve is straight there.
+        """
+        for _ in range(LOOKS):
+            low, high = (float(one) for one in places)
+            if not forces[0] < force < forces[1]:
+                break
+            secant = low + (high - low) * (force - forces[0]) / (forces[1] - forces[0])
+            beside = np.clip(secant + (high - low) * SIDES, low, high)
+            every = np.concatenate([[low], beside, [high]])
+            found = np.concatenate([forces[:1], self.held(beside), forces[1:]])
+            first = min(int(np.flatnonzero(found < force)[-1]), every.size - 2)
+            places, forces = every[first : first + 2], found[first : first + 2]
+        return float(np.interp(force, forces, places))
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,6 +232,12 @@ class AdheringCells(Reduced):
     def _cells(self) -> Cells:
         return self.estimate.cells(self.x, self.estimate.profile)
 
+    @cached_property
+    def _once(self) -> tuple[Cells, NDArray[np.intp]]:
+        """The cells of which both sides have one, each once, and how many there are."""
+        _, first, count = np.unique(np.abs(self.x), return_index=True, return_counts=True)
+        return Cells(*(column[first] for column in vars(self._cells).values())), count
+
     @property
     def apart(self) -> float:
         """Where fixed grips lose the contact [LU]."""
@@ -219,7 +245,8 @@ class AdheringCells(Reduced):
 
     def held(self, displacements: Array) -> Array:
         """F [FU] while it is held."""
-        return np.asarray(self._cells.forces(displacements, self.estimate.stiffness))
+        cells, count = self._once
+        return np.asarray(self.estimate.stiffness * (cells.lengths(displacements) @ count))
 
     @property
     def limits(self) -> tuple[float, ...]:
@@ -234,10 +261,9 @@ class AdheringCells(Reduced):
     def follow(self, path: Path) -> Followed:
         """Nothing is felt before touch; see `Reduced.follow`."""
         displacements = path.displacement
-        held = np.zeros(displacements.size, dtype=bool)
-        now = False
+        held, now, apart = np.zeros(displacements.size, dtype=bool), False, self.apart
         for i, displacement in enumerate(displacements.tolist()):
-            now = displacement >= -TOUCH * self.estimate.spacing or (now and displacement >= self.apart)
+            now = displacement >= -TOUCH * self.estimate.spacing or (now and displacement >= apart)
             held[i] = now
         total = np.where(held, self.held(displacements), 0.0)
 
