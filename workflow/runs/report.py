@@ -126,7 +126,7 @@ TABLE = TypeAdapter(dict[str, Any])
 class _Part(BaseModel):
     """What must hold of a part of results.json; other keys of it are not looked at."""
 
-    model_config = ConfigDict(strict=True, allow_inf_nan=False)
+    model_config = ConfigDict(strict=True, allow_inf_nan=False, defer_build=True)
 
 
 class _Number(_Part):
