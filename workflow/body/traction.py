@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from operator import itemgetter
 
 import numpy as np
@@ -64,7 +63,7 @@ class BodyPressure:
         uncertainty: of it [FU/LU²].
         contact_radius: of the body [LU]; where bodies attract, tension reaches beyond it.
         results: `central_pressure`, p(0), and `peak_pressure`, the largest one [FU/LU²]; without one that has no bound,
-            as at a cone's tip, a punch's edge or a rim; where points do not exclude a rim, with an infinite uncertainty.
+            as at a cone's tip, a punch's edge or a rim; where points leave a rim open, with an infinite uncertainty.
     """
 
     r: Array
@@ -126,9 +125,7 @@ def body_pressures(
     }
 
 
-def _pressure(
-    scene: Scene, profile: Profile, radius: ContactRadius, alone: bool, share: float
-) -> BodyPressure | None:
+def _pressure(scene: Scene, profile: Profile, radius: ContactRadius, alone: bool, share: float) -> BodyPressure | None:
     """p(r) of a state; None where too few particles carry it, or they are not alike on both sides.
 
     `alone`: springs are all that carries, on a plane; `share`: by how much results are off, relative to `_moves`.
@@ -141,10 +138,10 @@ def _pressure(
     edge = radius.value / wider if jumps or scene.interaction is None else None
     own = -(-(x.size - x.size // 2) // MOST)
 
-    def heights(one: Shape, x: Array) -> Array:
+    def heights(x: Array, one: Shape = shape) -> Array:
         return layer * scene.bodies.model_copy(update={"profile": one}).height(x)
 
-    body = partial(heights, shape) if alone and not shape.alternatives else None
+    body = heights if alone and not shape.alternatives else None
     apex = _has_apex(scene, TIP if body is None else KNOWN_TIP)
 
     def through(line: Array, stride: int) -> LineLoad | None:
@@ -160,15 +157,14 @@ def _pressure(
     inside = side[(side > 0.0) & (side < fine.edge * INSIDE)]
     r = inside if fine.has_apex else np.append(0.0, inside)
     p, *coarser = (one.pressure(r) for one in levels)
-    moves = _moves(fine, partial(heights, shape), r) if alone else np.abs(p)
+    moves = _moves(fine, heights, r) if alone else np.abs(p)
     spread = radius.uncertainty / radius.value * moves
     # Of a known shape nothing lies between the particles: where they are too few to show it, its edge alone is open.
     if coarser or body is None:
         spread += _spread(p, *coarser)
-    at = np.append(x, fine.edge)
-    beside = [heights(shape, at) - heights(one, at) for one in shape.coarser]
-    lines = [q + np.where(np.abs(x) < fine.edge, one[:-1] - one[-1], 0.0) for one in beside]
-    others = [one.pressure(r) for line in lines if (one := through(line, 1))]
+    at = np.clip(x, -fine.edge, fine.edge)
+    beside = [heights(at) - heights(at, one) for one in shape.coarser]
+    others = [one.pressure(r) for less in beside if (one := through(q + less - less[0], 1))]
     within = np.count_nonzero(side < radius.value / wider)
     told = [one for i, one in enumerate((p, *coarser)) if within >= FEWEST * 2**i]
     noise, top = NOISE * scene.accuracy.tolerance, int(p.argmax())
@@ -176,24 +172,23 @@ def _pressure(
     smooth = p[top] > 0.0 and not (shape.has_edge or any(kink < radius.value for kink in shape.kinks))
     smooth &= top == 0 or (len(told) == 3 and fine.at_edge <= noise * p[top] * fine.edge)
     around = fine.pressure(np.linspace(r[max(0, top - 1)], r[min(top + 1, r.size - 1)], BETWEEN))
-    digits = ROUND_OFF * layer
-    rim = np.inf if any(kink < radius.value for one in shape.alternatives for kink in one.kinks) else digits
-    results = {}
+    rim = np.inf if any(kink < radius.value for one in shape.alternatives for kink in one.kinks) else 0.0
+    error, results = spread + share * moves + ROUND_OFF * layer, {}
     for name, place, read, value, least, bounded in (
-        ("central_pressure", 0, itemgetter(0), p[0], digits, True),
+        ("central_pressure", 0, itemgetter(0), p[0], 0.0, True),
         ("peak_pressure", top, np.max, around.max(), rim, smooth),
     ):
         if bounded and not fine.has_apex and _converges([read(one) for one in told], noise):
-            error = least + spread[place] + share * moves[place] + sum(abs(read(one) - read(p)) for one in others)
-            results[name] = Quantity(float(value), float(error), MEAN_PRESSURE)
+            apart = sum(abs(read(one) - read(p)) for one in others)
+            results[name] = Quantity(float(value), float(error[place] + apart + least), MEAN_PRESSURE)
     return BodyPressure(r, p, spread + sum(np.abs(one - p) for one in others), radius.value / wider, results)
 
 
 def _moves(load: LineLoad, body: Callable[[Array], Array], r: Array) -> Array:
-    """|a ∂p/∂a| under springs on a plane [FU/LU²]."""
+    """|a ∂p/∂a| under springs on a plane at most, without the J/2a of a jump that grows [FU/LU²]."""
     square = (load.edge - r) * (load.edge + r)
-    rise = np.diff(body(load.edge * np.asarray([1.0 - STEP, 1.0 + STEP]))) / (2.0 * STEP)
-    return np.asarray(np.abs(rise + load.at_edge * (0.5 - load.edge**2 / square)) / (np.pi * np.sqrt(square)))
+    rise = np.diff(body(load.edge * np.asarray([1.0, 1.0 + STEP]))) / STEP
+    return (rise - load.at_edge * load.edge**2 / square) / (np.pi * np.sqrt(square))
 
 
 def _converges(levels: Sequence[float], noise: float) -> bool:
