@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import math
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,6 +21,10 @@ if TYPE_CHECKING:
 WIDTH, BESIDE = 6.4, 1.0
 """Of a figure, and the height of title and axis that its panels leave [inch]."""
 DPI = 120
+TITLE, HEADING = 11.0, 10.0
+"""Sizes of what stands above a figure and above a panel [pt]."""
+LINE, DIGIT, TICK, PAD = 13.0, 6.4, 8.0, 6.0
+"""A line of text, a digit of it, a tick with the room around it, and that around what stands above [pt]."""
 FEW_DECADES = 1e3
 """Span of a logarithmic axis up to which 2 and 5 of each decade have numbers."""
 
@@ -27,15 +32,36 @@ FEW_DECADES = 1e3
 def draw(chart: Chart) -> Figure:
     """Draw a chart; numbers and units are as they are described."""
     heights = [panel.height for panel in chart.panels]
-    figure = new_figure((WIDTH, BESIDE + sum(heights)))
+    figure = _figure_class()(figsize=(WIDTH, BESIDE + sum(heights)), dpi=DPI)
     axes = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
     legend: list[str] = []
     for one, panel in zip(axes, chart.panels, strict=True):
         draw_panel(one, chart.x, panel, panel.legend != legend)
         one.label_outer()
         legend = panel.legend
-    figure.suptitle(chart.title, fontsize=11)
-    return plain_axes(figure)
+    figure.suptitle(chart.title, fontsize=TITLE, y=1.0 - PAD / (72.0 * figure.get_figheight()))
+    _arrange(plain_axes(figure), list(axes), chart)
+    return figure
+
+
+def _arrange(figure: Figure, axes: Sequence[Axes], chart: Chart) -> None:
+    """Give panels, one below the other, and their labels the room that these take [pt].
+
+    A constrained layout measures every text for it, several times, and takes longer than the drawing.
+    """
+    ticks = [one.yaxis.get_major_formatter().format_ticks(one.yaxis.get_majorticklocs().tolist()) for one in axes]
+    beside, under = TICK + DIGIT * max(len(text) for texts in ticks for text in texts), TICK + LINE
+    above = [LINE + PAD if panel.heading else 0.0 for panel in chart.panels]
+    title, gap, more = 1.1 * LINE * len(chart.title.splitlines()), TICK + max(above[1:], default=0.0), len(axes) - 1
+    left, right, bottom, top = PAD + LINE + beside, 2.0 * PAD, PAD + LINE + under, 2.0 * PAD + title + above[0]
+    width, height = 72.0 * figure.get_size_inches()
+    inside = height - top - bottom - more * gap
+    figure.subplots_adjust(
+        left / width, bottom / height, 1.0 - right / width, 1.0 - top / height, hspace=(more + 1) * gap / inside
+    )
+    for one in axes:
+        one.yaxis.set_label_coords(-beside / (width - left - right), 0.5)
+        one.xaxis.set_label_coords(0.5, -under / (one.get_position().height * height))
 
 
 def draw_panel(axes: Axes, x: Axis, panel: Panel, legend: bool = True) -> None:
@@ -73,7 +99,7 @@ def describe(axes: Axes, x: str = "", y: str = "", title: str = "", zero: bool =
     if zero:
         axes.axhline(0.0, color=BLACK, linewidth=0.8)
     axes.set(xlabel=x, ylabel=y)
-    axes.set_title(title, loc="left", fontsize=10)
+    axes.set_title(title, loc="left", fontsize=HEADING, y=1.0)  # without a y it is measured how high labels reach
 
 
 def new_figure(size: tuple[float, float]) -> Figure:

@@ -7,12 +7,15 @@ import os
 from enum import StrEnum
 from pathlib import Path
 from shlex import quote
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from contact1d.workflow.cli.ending import CALL_IS_WRONG, FAILS, RUN_FAILED, Commands, command, read, say, stop
 from contact1d.workflow.cli.identify import identify
+
+if TYPE_CHECKING:
+    from contact1d.workflow.runs.finished import Run
 
 GARBAGE_THRESHOLD = 100_000
 """New objects between garbage collections: with 700, they take a tenth of the import time."""
@@ -123,25 +126,23 @@ def run(
     """Run a scene and print its numbers, each with its uncertainty."""
     folder = out if out is not None else Path("runs") / scene.stem
     with command("the run", folder, "no numbers were written", quiet) as progress:
-        checked = read(scene, set_, without, progress)
         from contact1d.workflow.engine.process import start_ahead
 
         if ranks == 1:
             start_ahead()  # LAMMPS loads while numpy and the rest of the program do
+        checked = read(scene, set_, without, progress)
         from contact1d.workflow.runs.advised import run as run_scene
 
-        finished = run_scene(
-            checked, folder, format_.value if figures else False, progress, time_limit, workers=workers, ranks=ranks
-        )
-    from contact1d.workflow.cli.summary import pressure_plot, quantities
+        def printed(finished: Run) -> None:
+            progress.close()
+            from contact1d.workflow.cli.summary import line_load, quantities
 
-    say(quantities(finished.document), finished.warnings)
-    if not quiet:
-        assert finished.outcome is not None
-        name, profile = next(iter(finished.outcome.profiles.items()))
-        typer.echo(f"\nline load, {name.replace('_', ' ')} state:")
-        typer.echo("\n".join(pressure_plot(profile, finished.outcome.radii[name], finished.scales)))
-        typer.echo(f"\n{finished.folder}")
+            say(quantities(finished.document), finished.warnings)
+            if not quiet:
+                say(line_load(finished), {}, finished.folder)
+
+        wanted = format_.value if figures else False
+        run_scene(checked, folder, wanted, progress, time_limit, workers=workers, ranks=ranks, printed=printed)
 
 
 def deck(
@@ -358,6 +359,7 @@ for one in (new, run, sweep, report, animate, deck, cost, identify, materials, s
 def main() -> None:
     """Entry point of the command `contact1d`."""
     gc.set_threshold(GARBAGE_THRESHOLD)
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # it looks for some in every package that is installed
     app(prog_name="contact1d")
 
 

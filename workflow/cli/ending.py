@@ -92,7 +92,7 @@ def command(what: str, folder: Path | None = None, kept: str = "", quiet: bool =
     Args:
         what: is done, for "… failed".
         folder: where files are; named if it is there when the work breaks off.
-        kept: what is left then, and what to do, as words.
+        kept: what is left then, and what to do, as words; not where its numbers were written before.
         quiet: whether no progress is shown.
     """
     from contact1d.workflow.engine.progress import Silent, choose_progress
@@ -103,7 +103,7 @@ def command(what: str, folder: Path | None = None, kept: str = "", quiet: bool =
     except typer.Exit:
         raise
     except (Exception, KeyboardInterrupt) as error:
-        left = [kept] if kept else []
+        left = [kept] if kept and not os.path.isfile(f"{folder}/results.json") else []
         if folder is not None and os.path.isdir(folder):
             left.append(f"files are kept in {folder}")
         if isinstance(error, KeyboardInterrupt):

@@ -15,6 +15,7 @@ from contact1d.workflow.units import LENGTH, LINE_PRESSURE, UNKNOWN, Quantity, S
 
 if TYPE_CHECKING:
     from contact1d.workflow.identify import MaterialRun
+    from contact1d.workflow.runs.finished import Run
 
 NAMES = {
     "adhesion_force": "adhesion force (pull-off)",
@@ -64,6 +65,16 @@ def _whose(results: Mapping[str, Any]) -> str:
     if any(name.startswith("image_") for name in results):
         return f"{reduction}: two equal spheres; image_… is of the one-dimensional image"
     return f"{reduction}: the plane model of the paper; radii are those of its image"
+
+
+def line_load(run: Run) -> list[str]:
+    """The line load of the state that is reported first."""
+    assert run.outcome is not None
+    name, profile = next(iter(run.outcome.profiles.items()))
+    return [
+        f"\nline load, {name.replace('_', ' ')} state:",
+        *pressure_plot(profile, run.outcome.radii[name], run.scales),
+    ]
 
 
 def pressure_plot(profile: Profile, radius: float, scales: Scales = UNKNOWN) -> list[str]:

@@ -14,10 +14,8 @@ import numpy as np
 
 from contact1d.analysis.pressure import Array
 from contact1d.digits import digits_apart
-from contact1d.workflow.continuation.budget import ForceErrors, budgeted
-from contact1d.workflow.continuation.outcome import LATTICE, LOSSES, Result
+from contact1d.workflow.continuation.outcome import LATTICE, LOSSES
 from contact1d.workflow.experiments import kind_of
-from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import SettingsError, settings_for
 from contact1d.workflow.scene import Path, PullOff, Scene
 
@@ -48,8 +46,7 @@ def with_spacing(scene: Scene) -> Scene:
     if scene.bodies.given_spacing != "auto":
         return scene
     radius = contact_radius(scene)
-    chosen = fine_enough(partial(_spaced, scene, radius))
-    left = left_by_lattice(chosen)
+    chosen, left = fine_enough(partial(_spaced, scene, radius))
     tolerance = scene.accuracy.tolerance
     if tolerance < left < math.inf:  # without bound the run says what appears
         larger = "" if left > 0.9 * LARGEST else f"use an accuracy.tolerance of {_up(left)}, or "
@@ -63,16 +60,20 @@ def with_spacing(scene: Scene) -> Scene:
     return chosen
 
 
-def fine_enough(scene_of: Callable[[int], Scene]) -> Scene:
-    """The scene with so many particles in the contact radius that its lattice leaves LEFT of its tolerance, or MOST."""
+def fine_enough(scene_of: Callable[[int], Scene]) -> tuple[Scene, float]:
+    """The scene with so many particles in the contact radius that its lattice leaves LEFT of its tolerance, or MOST.
+
+    And what it leaves.
+    """
     count = FEWEST
     for _ in range(MOST_TRIES):
         scene = scene_of(count)
-        over = left_by_lattice(scene) / (LEFT * scene.accuracy.tolerance)
+        left = left_by_lattice(scene)
+        over = left / (LEFT * scene.accuracy.tolerance)
         if over <= 1.0 or count == MOST:
             break
         count = min(MOST, math.ceil(count * math.sqrt(over if over < math.inf else APPEARING)) + 1)
-    return scene
+    return scene, left
 
 
 def left_by_lattice(scene: Scene) -> float:
@@ -87,24 +88,19 @@ def left_by_lattice(scene: Scene) -> float:
     case = kind_of(scene).reduction(scene, settings)
     if case is None:
         return 0.0
-    trace = case.trace(reduced(scene, settings))
-    exact = ForceErrors(np.zeros(len(trace)), np.zeros(len(trace)))
-    results = budgeted(case, trace, exact)
-    left = [
-        (SQUARED * one.errors[LATTICE] if name in RADII else one.errors[LATTICE], one.size)
-        for name, one in results.items()
-        if (not one.prescribed or name in RADII) and not _is_lost(name, one)
-    ]
-    shares = [error / size for error, size in left if size]
-    appear = any(
-        error for name, one in results.items() if (error := one.errors[LATTICE]) and not one.size and name in RADII
-    )
-    return max([0.0, *shares, math.inf if appear else 0.0])
-
-
-def _is_lost(name: str, one: Result) -> bool:
-    """Whether a loss is so small that no spacing shows it: it is not reported, and others are not to wait for it."""
-    return name.startswith(LOSSES) and one.errors[LATTICE] > LARGEST * one.size
+    trace, left, appear = case.trace(case.model), [0.0], False
+    every_other: Array = np.asarray((-1.0) ** np.arange(len(trace)), dtype=np.float64)
+    others = [case.read(trace.perturbed(radius_shift=shift)) for shift in (1.0, every_other)]
+    for name, one in case.read(trace).items():
+        read = max((abs(other[name].value - one.value) for other in others if name in other), default=0.0)
+        error = case.lattice.get(name, 0.0) + read + one.errors.get(LATTICE, 0.0)
+        size = abs(one.value) if one.scale is None else one.scale
+        if (one.prescribed and name not in RADII) or (name.startswith(LOSSES) and error > LARGEST * size):
+            continue  # a loss so small that no spacing shows it is not reported, and others are not to wait for it
+        if size:
+            left.append((SQUARED if name in RADII else 1.0) * error / size)
+        appear |= bool(error) and not size and name in RADII
+    return math.inf if appear else max(left)
 
 
 def _spaced(scene: Scene, radius: float, count: int) -> Scene:

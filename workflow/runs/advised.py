@@ -31,22 +31,24 @@ Reader = Callable[[SceneEdit], Scene]
 def run(
     scene: AnyScene,
     folder: campaign.AnyPath | None = None,
-    figures: bool | str = True,
+    figures: bool | str | None = None,
     progress: Progress | None = None,
     time_limit: float = campaign.TIME_LIMIT,
     settings: Settings | None = None,
     workers: int | None = None,
     ranks: int = 1,
+    printed: Callable[[Run], object] | None = None,
 ) -> Run:
     """As `workflow.runs.campaign.run`; where it fails, the first change that the error carries is tried.
 
     Arguments and errors are the same; an error says whether the scene gives a result with that change. Without a
-    folder it is a temporary one, which is removed with the `Run`.
+    folder it is a temporary one, which is removed with the `Run`, and figures are drawn if they are asked for: here,
+    or of the `Run` by `plot`.
     """
-    progress = progress or Silent()
+    progress, figures = progress or Silent(), folder is not None if figures is None else figures
     if folder is None:
         kept = TemporaryDirectory(prefix="contact1d-", ignore_cleanup_errors=True)
-        done = run(scene, Path(kept.name) / "run", figures, progress, time_limit, settings, workers, ranks)
+        done = run(scene, Path(kept.name) / "run", figures, progress, time_limit, settings, workers, ranks, printed)
         finalize(done, kept.cleanup)
         return done
 
@@ -54,7 +56,9 @@ def run(
         return read_scene(scene, overrides(edit), edit.without)
 
     try:
-        return campaign.run(scene, folder, figures, progress, time_limit, settings, workers=workers, ranks=ranks)
+        return campaign.run(
+            scene, folder, figures, progress, time_limit, settings, workers=workers, ranks=ranks, printed=printed
+        )
     except SceneError as error:
         raise mended(edited, error, progress) from None
     except SettingsError as error:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from os import PathLike
@@ -52,6 +52,7 @@ def run(
     retries: bool = True,
     workers: int | None = None,
     ranks: int = 1,
+    printed: Callable[[Run], object] | None = None,
 ) -> Run:
     """Run a scene in a folder.
 
@@ -65,6 +66,7 @@ def run(
         retries: whether smaller steps are tried where the bodies went through each other; a trial does without.
         workers: repeats of a thermal pull-off at a time; None: as many as there are processors.
         ranks: of MPI, that share one large contact; the numbers are those of one.
+        printed: called with the run when its numbers are written, before the figures are drawn.
 
     Raises:
         SceneError: it is no scene; nothing is written.
@@ -87,7 +89,11 @@ def run(
     with alone(folder):
         _write(deck, text, folder)
         context = RunContext(deck, folder, progress, time_limit, retries, workers or cores(), ranks)
-        return _run(context, started, figures, refine=settings is None)
+        finished = _run(context, started, figures, refine=settings is None)
+        if printed:
+            printed(finished)
+        _draw(finished, figures)
+    return finished
 
 
 def _run(context: RunContext, started: float, figures: bool | str, refine: bool) -> Run:
@@ -128,11 +134,8 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
     tables = tables_of(scene, reported(scene, outcome))
     write_tables(folder, scene, outcome, tables)
     document = results(scene, outcome, timing()) | formulas(scene, outcome.quantities)
-    finished = Run(folder, document, scene, tables, outcome)
-    _draw(finished, figures)
-    document["timing"] = timing()  # with the figures
     write_results(folder, document)
-    return finished
+    return Run(folder, document, scene, tables, outcome)
 
 
 @contextmanager

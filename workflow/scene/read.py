@@ -57,7 +57,7 @@ HINTS = {
 class Scene(Tables):
     """A whole scene, whose tables fit together: `read_scene` and `scene_from_dict` make it."""
 
-    model_config = ConfigDict(defer_build=False)
+    model_config = ConfigDict(defer_build=False)  # with all its tables, once
 
     def with_(self, changes: Mapping[str, Any] | None = None, *, without: Iterable[str] = (), **keywords: Any) -> Scene:
         """Return this scene with values changed, checked as a whole.

@@ -1,13 +1,16 @@
 """A number with a unit as text, "10 mm": exact in SI, its dimension in words, and a sentence where it is none.
 
-Numbers and factors are fractions, so that "10 mm" is the float nearest to 0.01 and no other. The units are pint's,
-which is imported when the first such text is read.
+Numbers and factors are fractions, so that "10 mm" is the float nearest to 0.01 and no other. Units with symbols of SI
+alone are read here, as pint reads them, and all others by pint, whose registry takes longer to load than a run.
 """
 
 from __future__ import annotations
 
 import math
 import re
+import unicodedata
+from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -67,9 +70,26 @@ COMMON = (
 """Units among which a misspelt one is looked for."""
 OFFSET = frozenset({"degree_Celsius", "degree_Fahrenheit"})
 """Units of temperature whose zero is not the absolute one, by pint's name."""
+LENGTH, MASS, TIME, TEMPERATURE = "[length]", "[mass]", "[time]", "[temperature]"
+"""Dimensions, by pint's names."""
 ANGLES = frozenset({"radian", "degree", "turn", "gradian", "arcminute", "arcsecond", "steradian"})
 NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+(?![.\d]))?")
 NAME = re.compile(r"[^\W\d_]+|°[CF]?|%|deg[CF]|delta_deg[CF]")
+SYMBOLS: dict[str, tuple[int, dict[str, int]]] = {
+    "m": (0, {LENGTH: 1}),
+    "g": (-3, {MASS: 1}),
+    "s": (0, {TIME: 1}),
+    "K": (0, {TEMPERATURE: 1}),
+    "N": (0, {LENGTH: 1, MASS: 1, TIME: -2}),
+    "Pa": (0, {LENGTH: -1, MASS: 1, TIME: -2}),
+    "J": (0, {LENGTH: 2, MASS: 1, TIME: -2}),
+}
+"""Of SI: the power of ten to base units, and the dimension."""
+PREFIXES = {
+    "": 0, "f": -15, "p": -12, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9,
+}  # fmt: skip
+"""Powers of ten."""
+FACTOR = re.compile(rf"({'|'.join(PREFIXES)})({'|'.join(SYMBOLS)})([²³]?)")
 POWER = re.compile(r"(\*\*|\^)?[-+⁻]?[\d⁰¹²³⁴⁵⁶⁷⁸⁹]+")
 LONGEST = 60
 """Characters of a text that may be a number with a unit."""
@@ -97,12 +117,12 @@ class Unit:
     text: str
     factor: Fraction
     zero: Fraction
-    dimension: Any
+    dimension: Mapping[str, Any]
     angular: bool = False
 
     def measures(self, unit: str) -> bool:
         """Whether it is of the dimension of this unit of SI; an angle is no number."""
-        return bool(self.dimension == _dimension(unit)) and self.angular == (unit == "rad")
+        return self.dimension == _dimension(unit) and self.angular == (unit == "rad")
 
 
 def in_words(unit: str) -> str:
@@ -206,9 +226,8 @@ def _registry() -> Any:
     return pint.UnitRegistry(non_int_type=Fraction)
 
 
-@cache
-def _dimension(unit: str) -> Any:
-    return _registry().parse_units("" if unit == "1" else _for_pint(unit)).dimensionality
+def _dimension(unit: str) -> Mapping[str, Any]:
+    return {} if unit in ("1", "rad") else _unit(unit).dimension
 
 
 def _for_pint(unit: str) -> str:
@@ -218,9 +237,27 @@ def _for_pint(unit: str) -> str:
     return re.sub(r"(?<=[^\W\d_])(-?\d+)", r"**\1", plain)
 
 
+def _of_si(text: str) -> Unit | None:
+    """A unit of symbols of SI with their prefixes, products and quotients; None where it has others."""
+    powers: Counter[str] = Counter()
+    exponent = 0
+    for sign, name in re.findall("([·/])([^·/]*)", f"·{text}"):
+        found = FACTOR.fullmatch(name)
+        if found is None:
+            return None
+        prefix, symbol, raised = found.groups()
+        power = (-1 if sign == "/" else 1) * (int(unicodedata.digit(raised)) if raised else 1)
+        ten, dimension = SYMBOLS[symbol]
+        exponent += power * (ten + PREFIXES[prefix])
+        powers.update({base: power * own for base, own in dimension.items()})
+    return Unit(text, Fraction(10) ** exponent, Fraction(0), {base: power for base, power in powers.items() if power})
+
+
 @cache
 def _unit(text: str) -> Unit:
     """What the text of a unit means. Raises UnitTextError."""
+    if found := _of_si(text):
+        return found
     unit = re.sub("°(?![CF])", "deg", text)  # pint's parser knows the sign, and its names don't
     names = [part for part in re.split(r"[\s·*×/()]+", POWER.sub("", unit)) if part]
     unknown = [name for name in names if not NAME.fullmatch(name) or not _is_known(name)]
@@ -240,7 +277,7 @@ def _unit(text: str) -> Unit:
     if relative and (unit not in names or known.isdisjoint(OFFSET)):
         raise UnitTextError("is a relative scale: give a temperature in K or °C; levels (dB) are not allowed")
     zero = registry.Quantity(Fraction(0), found).to("K").magnitude if relative else Fraction(0)
-    return Unit(text, Fraction(factor), zero, found.dimensionality, not known.isdisjoint(ANGLES))
+    return Unit(text, Fraction(factor), zero, dict(found.dimensionality), not known.isdisjoint(ANGLES))
 
 
 def _is_known(name: str) -> bool:

@@ -23,7 +23,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeVar, cast
 
-from pydantic import AfterValidator, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from contact1d.workflow.scene.effects import (
@@ -271,8 +271,6 @@ def _one_line(title: str) -> str:
 
 class Tables(Table):
     """The tables of a scene, each right by itself; `read`, whose `Scene` this is, checks that they fit together."""
-
-    model_config = ConfigDict(defer_build=True)  # built once, by that
 
     title: Annotated[str, AfterValidator(_one_line)]
     """title of the scene, one line"""
