@@ -1,8 +1,8 @@
 """What each figure of a run shows: line load (the paper's Fig. 4), force over displacement and over radius (Fig. 8).
 
-Each function returns the description of a chart, in the units of its numbers. References: JKR, F̃ = 4ã³ − 4ã^{3/2}
-(Eq. 8); Barquins' cylinder, F̃ = 2.1165 (ã² − √ã). Both are scaled on the run's own F_A and a₀, so that only the shapes
-are compared. A theory is its name with the values along x and y.
+Each function returns the description of a chart, in the units of its numbers. Reference: JKR, F̃ = 4ã³ − 4ã^{3/2}
+(Eq. 8), scaled on the run's own F_A and a₀, so that only the shapes are compared. A theory is its name with the values
+along x and y.
 """
 
 from __future__ import annotations
@@ -21,7 +21,6 @@ from contact1d.analysis.chart import (
     FILL,
     LOADING,
     TENSION,
-    THEORY,
     UNLOADING,
     Array,
     Axis,
@@ -35,9 +34,6 @@ from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius
 from contact1d.analysis.shear import stick_margin
 
-BARQUINS = 4.0 ** (4.0 / 3.0) / 3.0
-"""2.1165: makes the minimum of BARQUINS (ã² − √ã), at ã = 4^(−2/3) = 0.397, equal to −1: the 2D
-cylinder of M. Barquins, J. Adhesion 26 (1988) 1."""
 Theory = tuple[str, Array, Array]
 Legs = Sequence[tuple[str, NDArray[np.int64]]]
 """Of a path: the name of each leg's branch, and its rows of the curve."""
@@ -82,9 +78,9 @@ def path(x: Axis, along: Array, legs: Legs, *panels: Upwards, spread: Array | fl
     return Chart(x, drawn)
 
 
-def lines(*theories: Theory, colour: str = THEORY) -> list[Series]:
+def lines(*theories: Theory) -> list[Series]:
     """The lines of theories."""
-    return [Series(x, y, name, colour, look) for (name, x, y), look in zip(theories, ("--", ":"), strict=False)]
+    return [Series(x, y, name, look="--") for name, x, y in theories]
 
 
 def level(value: float, uncertainty: float, name: str) -> list[Series]:
@@ -94,10 +90,9 @@ def level(value: float, uncertainty: float, name: str) -> list[Series]:
 
 
 def reduced(largest: float) -> list[Series]:
-    """F/F_A over a/a₀ of JKR and Barquins up to a radius (the paper's Fig. 8)."""
+    """F/F_A over a/a₀ of JKR up to a radius (the paper's Fig. 8)."""
     a = np.linspace(0.0, largest, 400)
-    jkr, barquins = 4.0 * a**3 - 4.0 * a**1.5, BARQUINS * (a**2 - np.sqrt(a))
-    return lines(("JKR", a, jkr), ("Barquins (2D)", a, barquins), colour=BLACK)
+    return [Series(a, 4.0 * a**3 - 4.0 * a**1.5, "JKR", BLACK, "--")]
 
 
 def detachments(forces: Array) -> Chart:

@@ -40,7 +40,7 @@ def draw(chart: Chart) -> Figure:
         one.label_outer()
         legend = panel.legend
     figure.suptitle(chart.title, fontsize=TITLE, y=1.0 - PAD / (72.0 * figure.get_figheight()))
-    _arrange(plain_axes(figure), axes, chart)
+    _arrange(plain_axes(figure), list(axes), chart)
     return figure
 
 
@@ -49,7 +49,7 @@ def _arrange(figure: Figure, axes: Sequence[Axes], chart: Chart) -> None:
 
     A constrained layout measures every text for it, several times, and takes longer than the drawing.
     """
-    ticks = [one.yaxis.get_major_formatter().format_ticks(one.yaxis.get_majorticklocs()) for one in axes]
+    ticks = [one.yaxis.get_major_formatter().format_ticks(one.yaxis.get_majorticklocs().tolist()) for one in axes]
     beside, under = TICK + DIGIT * max(len(text) for texts in ticks for text in texts), TICK + LINE
     above = [LINE + PAD if panel.heading else 0.0 for panel in chart.panels]
     title, gap, more = 1.1 * LINE * len(chart.title.splitlines()), TICK + max(above[1:], default=0.0), len(axes) - 1

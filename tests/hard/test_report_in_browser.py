@@ -1,4 +1,4 @@
-"""The page of a run in a real browser: figures drawn, the slider moves profile, force and bodies together."""
+"""The page of runs in a real browser: figures are whole, the slider moves profile, force and bodies together."""
 
 from __future__ import annotations
 
@@ -21,6 +21,12 @@ THEORY = "#555555"
 PATIENCE = 180_000
 """Time for a page of some megabytes on a machine with other work [ms]."""
 PHONE = {"width": 390, "height": 844}
+SCREENS = (PHONE["width"], 1280)
+"""Widths of a page [px]."""
+PAPER = 680
+"""Width of A4 between margins of 1.5 cm [px]."""
+PIXEL = 1.0
+"""To which a browser rounds the place of a box [px]."""
 
 
 @pytest.fixture(scope="module")
@@ -38,6 +44,16 @@ def loop(tmp_path_factory: pytest.TempPathFactory) -> str:
     cycles = {"amplitude": "0.5 µm", "number": 2, "points": 8}
     ball.tangential("10 N", 0.3, folder / "run", cycles=cycles)
     return report([folder / "run"], folder / "report.html").as_uri()
+
+
+@pytest.fixture(scope="module")
+def overlaid(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Two loads in common panels, whose legends have long names, and a third one a thousand times as small."""
+    folder = tmp_path_factory.mktemp("overlaid")
+    ball = contact1d.sphere(radius="10 mm", contact_modulus="70 GPa", tolerance=1e-2)
+    for force in ("10 N", "5 N", "5 mN"):
+        ball.load(force, folder / f"steel ball on glass under {force}")
+    return report(sorted(folder.iterdir()), folder / "report.html").as_uri()
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +120,7 @@ def test_on_paper_the_numbers_are_there_and_the_slider_is_not(browser: Any, addr
 
 
 @pytest.mark.browser
-@pytest.mark.parametrize("width", [PHONE["width"], 1280])
+@pytest.mark.parametrize("width", SCREENS)
 def test_a_loop_is_drawn_leg_by_leg_in_si_beside_mindlins_and_its_axes_change_by_keyboard(
     browser: Any, loop: str, width: int
 ) -> None:
@@ -127,3 +143,102 @@ def test_a_loop_is_drawn_leg_by_leg_in_si_beside_mindlins_and_its_axes_change_by
     page.keyboard.press("Space")
     drawn = page.evaluate("[...document.querySelectorAll('.chart')].map(one => one.layout?.yaxis.type)")
     assert "log" in drawn
+
+
+def box_of(one: Any) -> tuple[float, float, float, float]:
+    """Left, top, right and bottom of what is on a page [px]."""
+    box = one.bounding_box()
+    return box["x"], box["y"], box["x"] + box["width"], box["y"] + box["height"]
+
+
+def apart(one: Any, other: Any) -> bool:
+    """Whether two boxes have nothing in common."""
+    a, b = box_of(one), box_of(other)
+    return any(a[i + 2] <= b[i] + PIXEL or b[i + 2] <= a[i] + PIXEL for i in range(2))
+
+
+def within(one: Any, other: Any) -> bool:
+    """Whether a box is inside of another one."""
+    a, b = box_of(one), box_of(other)
+    return all(a[i] >= b[i] - PIXEL and a[i + 2] <= b[i + 2] + PIXEL for i in range(2))
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("width", SCREENS)
+@pytest.mark.parametrize("name", ["address", "loop", "overlaid"])
+def test_the_tool_bar_covers_neither_legend_nor_plot_and_no_figure_is_cut(
+    name: str, width: int, browser: Any, request: pytest.FixtureRequest
+) -> None:
+    page = browser.new_page(viewport=PHONE | {"width": width})
+    page.goto(request.getfixturevalue(name), timeout=PATIENCE)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    panels = page.locator(".panel").all()
+    assert panels
+    for panel in panels:
+        chart, plot = panel.locator(".chart"), panel.locator(".bglayer, .nsewdrag").last
+        chart.hover()
+        tools = panel.locator(".modebar")
+        assert apart(tools, plot)
+        for legend in panel.locator(".legend").all():
+            assert apart(tools, legend)
+            assert apart(chart, legend)
+            assert within(legend, panel)
+            assert all(within(words, legend) for words in legend.locator("button").all())
+        for words in panel.locator(".xtitle, .ytitle, .xtick, .ytick, .modebar").all():
+            assert within(words, chart), words.text_content()
+
+
+@pytest.mark.browser
+def test_a_name_in_the_legend_hides_and_shows_its_lines_by_keyboard(browser: Any, address: str) -> None:
+    page = browser.new_page()
+    page.goto(address, timeout=PATIENCE)
+    figure = page.locator("figure", has_text="Force over displacement").first
+    name = figure.get_by_role("button", name="unloading", exact=True)
+
+    def shown() -> list[bool]:
+        traces = "chart => chart.data.filter(one => one.name === 'unloading').map(one => one.visible !== false)"
+        return list(figure.locator(".chart").evaluate(traces))
+
+    assert shown() == [True]
+    for pressed in (False, True):
+        name.focus()
+        page.keyboard.press("Space")
+        assert shown() == [pressed]
+        assert name.get_attribute("aria-pressed") == str(pressed).lower()
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("name", ["address", "overlaid"])
+def test_on_a_phone_a_number_is_on_one_line_and_its_quantity_stays_beside_it(
+    name: str, browser: Any, request: pytest.FixtureRequest
+) -> None:
+    """A table of several runs scrolls in its own region."""
+    page = browser.new_page(viewport=PHONE)
+    page.goto(request.getfixturevalue(name), timeout=PATIENCE)
+    region = page.locator(".scroll")
+    line = page.evaluate("parseFloat(getComputedStyle(document.querySelector('td')).lineHeight)")
+    numbers = region.locator("td .n").all()
+    assert numbers
+    assert all(number.bounding_box()["height"] <= line + PIXEL for number in numbers)
+    quantities = region.get_by_role("rowheader").all()
+    before = [box_of(one) for one in quantities]
+    if region.evaluate("one => one.scrollWidth > one.clientWidth"):
+        region.evaluate("one => one.scrollLeft = one.scrollWidth")
+        assert [box_of(one) for one in quantities] == before
+        assert all(within(row.locator("td").last, region) for row in region.locator("tbody tr").all())
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("width", SCREENS)
+def test_on_paper_a_figure_is_whole(width: int, browser: Any, overlaid: str) -> None:
+    """It was drawn for the screen, and keeps its size; the browser's own print layout is that of a narrower page."""
+    page = browser.new_page(viewport=PHONE | {"width": width})
+    page.goto(overlaid, timeout=PATIENCE)
+    page.emulate_media(media="print")
+    panels = [panel for panel in page.locator(".panel").all() if panel.is_visible()]
+    assert panels
+    for panel in panels:
+        picture = panel.locator(".main-svg").first
+        assert picture.bounding_box()["width"] <= PAPER
+        assert within(picture, panel)
+        assert all(apart(picture, legend) for legend in panel.locator(".legend").all())

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import Contact1dError, FolderError, Run, run, sweep
+from contact1d import Contact1dError, FolderError, Run, run, sphere, sweep
 from contact1d.workflow.report.animation import animate, ovito_script
 from contact1d.workflow.report.report import report
 from contact1d.workflow.scene import read_scene
@@ -102,6 +102,21 @@ def test_several_runs_are_overlaid_and_a_failed_one_says_why(finished: Run, tmp_
     assert {name.partition(",")[0] for name in names} >= {finished.scene.title, "other"}
     assert "end of the chain" in page
     assert str(other.results.adhesion_force) in page
+
+
+def test_runs_share_a_panel_where_each_has_a_twentieth_of_its_axes(tmp_path: Path) -> None:
+    """Spheres by Hertz, d ∝ F^(2/3): ten times the force is 4.6 times the displacement, a thousand times is 100."""
+    ball = sphere(radius="10 mm", contact_modulus="70 GPa", tolerance=1e-2)
+    folders = [ball.load(force, tmp_path / force).folder for force in ("10 N", "10 mN", "1 N", "100 mN")]
+    page = data_on(report(folders, tmp_path / "r.html").read_text())
+    over = "Force over displacement"
+    found = {chart["title"]: chart["data"] for chart in page["charts"] if chart["title"].startswith(over)}
+    strong, weak = ("10\u00a0N", "1\u00a0N"), ("10\u00a0mN", "100\u00a0mN")
+    assert list(found) == [f"{over}: {', '.join(names)}" for names in (strong, weak)]
+    for names, traces in zip((strong, weak), found.values(), strict=True):
+        assert {trace["name"].partition(",")[0] for trace in traces} == {*names, "Hertz"}
+    together = data_on(report([folders[0], folders[2]], tmp_path / "r.html").read_text())
+    assert over in [chart["title"] for chart in together["charts"]]
 
 
 def test_a_page_replaces_a_page_and_nothing_else(finished: Run, tmp_path: Path) -> None:

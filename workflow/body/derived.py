@@ -27,7 +27,7 @@ from contact1d.analysis.pressure import Array
 from contact1d.potentials import DoubleExponential
 from contact1d.workflow.body.reading import product
 from contact1d.workflow.body.theory import Case
-from contact1d.workflow.body.traction import BodyPressure, body_pressures, is_of_a_body
+from contact1d.workflow.body.traction import body_pressures, is_of_a_body
 from contact1d.workflow.continuation.outcome import MODEL, Outcome, Result
 from contact1d.workflow.model.pairs import row_force
 from contact1d.workflow.model.settings import Settings
@@ -40,8 +40,6 @@ RADII = ("contact_radius", "largest_radius", "zero_load_radius")
 ERRORS = ("displacement", "largest_force", *RADII)
 """Results whose relative uncertainty, that of the lattice included, is the pressure's, too; of springs on a plane,
 whose pressure is a function of the radius, that of the radius alone."""
-SWING = 2.0
-"""Relative change of a pressure over those of the results, of a body that is not known exactly."""
 WIDER = {"mdr": 1.0, "geike_popov": 4.0}
 """W π s a/w."""
 EFFECTIVE = {"mdr": 1.0, "geike_popov": 0.5}
@@ -153,16 +151,12 @@ def _pressures(scene: Scene, outcome: Outcome) -> dict[str, Quantity]:
     found = outcome.quantities
     shares = {name: one.uncertainty / abs(one.value) for name in ERRORS if (one := found.get(name)) and one.value}
     radius = next((shares[name] for name in RADII if name in shares), 0.0)
-    every = sum(shares.values()) * (SWING if scene.bodies.profile.alternatives else 1.0)
-    pressures = body_pressures(scene, {name: outcome.profiles[name] for name in reported_state(outcome)})
+    states = {name: outcome.profiles[name] for name in reported_state(outcome)}
+    pressures = body_pressures(scene, states, radius, sum(shares.values()))
     # What is not quite 0 at F = 0 is spread over the contact.
     left = {"zero_load": abs(outcome.marked["zero_load"].force)} if "zero_load" in pressures else {}
     return {
-        name: Quantity(
-            p.value,
-            p.uncertainty + _swing(pressure, name, radius, every) + left.get(state, 0.0) / pressure.contact_radius**2,
-            p.unit,
-        )
+        name: replace(p, uncertainty=p.uncertainty + left.get(state, 0.0) / pressure.contact_radius**2)
         for state, pressure in pressures.items()
         for name, p in pressure.results.items()
     }
@@ -171,13 +165,6 @@ def _pressures(scene: Scene, outcome: Outcome) -> dict[str, Quantity]:
 def reported_state(outcome: Outcome) -> list[str]:
     """The name of the state whose pressures are results; none where a run has no such state."""
     return [name for name in REPORTED if name in outcome.profiles][:1]
-
-
-def _swing(pressure: BodyPressure, name: str, radius: float, every: float) -> float:
-    """What the relative errors of the radius, or of every result, make of a pressure [FU/LU²]."""
-    if name in pressure.swings:
-        return radius * pressure.swings[name]
-    return every * abs(pressure.results[name].value)
 
 
 def _of_the_contact(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:

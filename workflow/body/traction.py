@@ -1,15 +1,21 @@
 """Pressure p(r) and shear traction q(r) under the body of three dimensions, from the line loads of a run.
 
 Each is the inverse Abel transform of its line load (`analysis.abel`, `analysis.shear`). Its error is the difference
-from what every second particle alone gives, and the edge's. Whether a pressure has a bound is decided by convergence:
-from every, every second and every fourth particle; where the differences do not shrink there is no number. Where the
-contact is too narrow for that, a largest pressure off the axis is none.
+from what every second particle alone gives, the edge's, and where points leave the shape open, the difference from
+curves through fewer of them. Whether a pressure has a bound is decided by convergence: from every, every second and
+every fourth particle; where the differences do not shrink there is no number. Where the contact is too narrow for that,
+a largest pressure off the axis is none.
+
+Under springs E* per length on a plane, of a shape g and with a jump J ∝ √a of the line load at the edge (JKR),
+
+    p(r) = (1/π) [E* ∫_r^a g′(x)/√(x² − r²) dx + J/s],   ∂p/∂a = (1/πs) [E* g′(a) + J (1/2a − a/s²)],   s² = a² − r²
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from operator import itemgetter
 
 import numpy as np
 
@@ -19,7 +25,7 @@ from contact1d.analysis.radius import ContactRadius, whole_cells
 from contact1d.analysis.shear import kinks_of, shear_load
 from contact1d.workflow.body.reading import stands_for_spheres
 from contact1d.workflow.continuation.state import radius_rule
-from contact1d.workflow.scene import Measured, Scene
+from contact1d.workflow.scene import Scene, Shape
 from contact1d.workflow.scene.tables import WIDER_THAN_SPHERES
 from contact1d.workflow.units import MEAN_PRESSURE, Quantity
 
@@ -36,10 +42,15 @@ ROUND_OFF = 2e-12
 """Error of a pressure over the stiffness of the layer: of positions beside the depth of the wall that carries them."""
 INSIDE = 1.0 - 1e-9
 """Of the edge, up to which p is given: round-off."""
+STEP = 1e-6
+"""Of the edge, over which a slope is a difference there."""
 SHRINKS = 0.45
 """|p₁ − p₂|/|p₁ − p₄| below which differences shrink: 1/(1 + 2ᵖ) of an order p, ½ of a logarithm, more of a pole."""
 NOISE = 0.1
 """Of the tolerance: differences that are smaller, relative to the pressure, are those of the minimiser."""
+NEXT = 0.25
+"""Of the difference of the second from the fourth particles, added to that of the first, which may be small by accident
+where a kink lies between particles: as much again of the second order."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,9 +63,7 @@ class BodyPressure:
         uncertainty: of it [FU/LU²].
         contact_radius: of the body [LU]; where bodies attract, tension reaches beyond it.
         results: `central_pressure`, p(0), and `peak_pressure`, the largest one [FU/LU²]; without one that has no bound,
-            as at a cone's tip, a punch's edge or a rim.
-        swings: by how much each of them changes, over the relative change of the contact radius, at most [FU/LU²]; none
-            where that is not known.
+            as at a cone's tip, a punch's edge or a rim; where points leave a rim open, with an infinite uncertainty.
     """
 
     r: Array
@@ -62,7 +71,6 @@ class BodyPressure:
     uncertainty: Array
     contact_radius: float
     results: Mapping[str, Quantity]
-    swings: Mapping[str, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,83 +100,95 @@ def is_of_a_body(scene: Scene) -> bool:
     return stands and one_body and scene.noise is None and not scene.experiment.motion_is_result
 
 
-def body_pressures(scene: Scene, profiles: Mapping[str, Profile]) -> dict[str, BodyPressure]:
-    """p(r) of the reported states in which the bodies touch over a width; none where there is no body for them."""
+def body_pressures(
+    scene: Scene, profiles: Mapping[str, Profile], of_radius: float = 0.0, of_all: float = 0.0
+) -> dict[str, BodyPressure]:
+    """p(r) of the reported states in which the bodies touch over a width; none where there is no body for them.
+
+    Args:
+        scene: what ran.
+        profiles: of the reported states.
+        of_radius: relative uncertainty of the contact radius, of which the pressure under springs is a function.
+        of_all: the sum of those of all results, for the pressure under others.
+    """
     if not is_of_a_body(scene):
         return {}
-    rule = radius_rule(scene, scene.accuracy.tolerance)
+    rule, bodies = radius_rule(scene, scene.accuracy.tolerance), scene.bodies
+    alone = bodies.lower == "rigid_plane" and scene.neighbours is None and not bodies.profile.has_edge
+    share = of_radius if alone else of_all
     return {
         name: one
         for name, profile in profiles.items()
-        if (radius := rule.of(profile)) and radius.value > 0.0 and (one := _pressure(scene, profile, radius))
+        if (radius := rule.of(profile))
+        and radius.value > 0.0
+        and (one := _pressure(scene, profile, radius, alone, share))
     }
 
 
-def _pressure(scene: Scene, profile: Profile, radius: ContactRadius) -> BodyPressure | None:
-    """p(r) of a state; None where too few particles carry it, or they are not alike on both sides."""
+def _pressure(scene: Scene, profile: Profile, radius: ContactRadius, alone: bool, share: float) -> BodyPressure | None:
+    """p(r) of a state; None where too few particles carry it, or they are not alike on both sides.
+
+    `alone`: springs are all that carries, on a plane; `share`: by how much results are off, relative to `_moves`.
+    """
     wider = WIDER_THAN_SPHERES if stands_for_spheres(scene) else 1.0
     held = scene.adhesion is not None and scene.adheres
     x, q = profile.x / wider, wider * (whole_cells(profile, radius) if held else profile.pressure)
-    jumps = scene.bodies.profile.has_edge or held
+    shape, layer = scene.bodies.profile, scene.bulk_stiffness / scene.bodies.spacing
+    jumps = shape.has_edge or held
     edge = radius.value / wider if jumps or scene.interaction is None else None
     own = -(-(x.size - x.size // 2) // MOST)
 
-    body = _body(scene)
+    def heights(x: Array, one: Shape = shape) -> Array:
+        return layer * scene.bodies.model_copy(update={"profile": one}).height(x)
+
+    body = heights if alone and not shape.alternatives else None
     apex = _has_apex(scene, TIP if body is None else KNOWN_TIP)
 
-    def load(chosen: Array) -> LineLoad:
-        return line_load(x[chosen], q[chosen], edge, not jumps, apex, body)
+    def through(line: Array, stride: int) -> LineLoad | None:
+        def load(chosen: Array) -> LineLoad:
+            return line_load(x[chosen], line[chosen], edge, not jumps, apex, body)
 
-    levels = [_through(x.size, own * stride, load) for stride in (1, 2, 4)]
-    fine = levels[0]
-    if fine is None:
+        return _through(x.size, own * stride, load)
+
+    levels = [one for stride in (1, 2, 4) if (one := through(q, stride))]
+    if not levels:
         return None
-    side = x[x.size // 2 :][::own]
+    fine, side = levels[0], x[x.size // 2 :][::own]
     inside = side[(side > 0.0) & (side < fine.edge * INSIDE)]
     r = inside if fine.has_apex else np.append(0.0, inside)
-    p = fine.pressure(r)
+    p, *coarser = (one.pressure(r) for one in levels)
+    moves = _moves(fine, heights, r) if alone else np.abs(p)
+    spread = radius.uncertainty / radius.value * moves
     # Of a known shape nothing lies between the particles: where they are too few to show it, its edge alone is open.
-    exact = levels[1] is None and fine.body is not None
-    spread = (0.0 if exact else _spread(p, levels[1], r)) + radius.uncertainty / radius.value * np.abs(p)
+    if coarser or body is None:
+        spread += _spread(p, *coarser)
+    at = np.clip(x, -fine.edge, fine.edge)
+    beside = [heights(at) - heights(at, one) for one in shape.coarser]
+    others = [one.pressure(r) for less in beside if (one := through(q + less - less[0], 1))]
     within = np.count_nonzero(side < radius.value / wider)
-    told = [level for i, level in enumerate(levels) if level is not None and within >= FEWEST * 2**i]
+    told = [one for i, one in enumerate((p, *coarser)) if within >= FEWEST * 2**i]
     noise, top = NOISE * scene.accuracy.tolerance, int(p.argmax())
-    bounded = {}
-    if not fine.has_apex:
-        if _converges([float(level.pressure([0.0])[0]) for level in told], noise):
-            bounded["central_pressure"] = 0
-        # A jump at the edge is a pole, and where the slope jumps inside p is a logarithm.
-        smooth = not (scene.bodies.profile.has_edge or any(kink < radius.value for kink in scene.bodies.kinks))
-        off_axis = smooth and top > 0 and len(told) == 3 and fine.at_edge <= noise * p[top] * fine.edge
-        if off_axis:
-            off_axis = _converges([float(level.pressure(r).max()) for level in told], noise)
-        if p[top] > 0.0 and (off_axis or (smooth and top in bounded.values())):
-            bounded["peak_pressure"] = top
-    digits = ROUND_OFF * scene.bulk_stiffness / scene.bodies.spacing
-    results = {name: Quantity(float(p[at]), float(spread[at]) + digits, MEAN_PRESSURE) for name, at in bounded.items()}
-    if bounded.get("peak_pressure"):  # it lies between two particles
-        highest = float(fine.pressure(np.linspace(r[top - 1], r[min(top + 1, r.size - 1)], BETWEEN)).max())
-        results["peak_pressure"] = Quantity(highest, float(spread[top]), MEAN_PRESSURE)
-    swings = {} if fine.body is None else {name: float(_swing(fine, r, p)[at]) for name, at in bounded.items()}
-    return BodyPressure(r, p, spread, radius.value / wider, results, swings)
+    # A jump at the edge is a pole, and where the slope jumps inside p is a logarithm.
+    smooth = p[top] > 0.0 and not (shape.has_edge or any(kink < radius.value for kink in shape.kinks))
+    smooth &= top == 0 or (len(told) == 3 and fine.at_edge <= noise * p[top] * fine.edge)
+    around = fine.pressure(np.linspace(r[max(0, top - 1)], r[min(top + 1, r.size - 1)], BETWEEN))
+    rim = np.inf if any(kink < radius.value for one in shape.alternatives for kink in one.kinks) else 0.0
+    error, results = spread + share * moves + ROUND_OFF * layer, {}
+    for name, place, read, value, least, bounded in (
+        ("central_pressure", 0, itemgetter(0), p[0], 0.0, True),
+        ("peak_pressure", top, np.max, around.max(), rim, smooth),
+    ):
+        if bounded and not fine.has_apex and _converges([read(one) for one in told], noise):
+            apart = sum(abs(read(one) - read(p)) for one in others)
+            results[name] = Quantity(float(value), float(error[place] + apart + least), MEAN_PRESSURE)
+    return BodyPressure(r, p, spread + sum(np.abs(one - p) for one in others), radius.value / wider, results)
 
 
-def _body(scene: Scene) -> Callable[[Array], Array] | None:
-    """c h(x) [FU/LU] of springs that are all that carries, on a plane; None of others, and of a table of positions."""
-    bodies = scene.bodies
-    known = not (bodies.profile.has_edge or isinstance(bodies.profile, Measured))
-    if bodies.lower != "rigid_plane" or scene.neighbours is not None or not known:
-        return None
-    layer = scene.bulk_stiffness / bodies.spacing
-    return lambda x: layer * bodies.height(x)
-
-
-def _swing(load: LineLoad, r: Array, p: Array) -> Array:
-    """|a ∂p/∂a| at most: of the shape's own pressure, ∝ a^(n − 1), and of the jump's, ∝ a^(−½) in JKR, which cancel."""
-    assert load.body is not None
-    jump = load.at_edge / (np.pi * np.sqrt((load.edge - r) * (load.edge + r)))
-    inner, outer = load.body(load.edge * np.asarray([0.5, 1.0]))
-    return max(1.0, float(np.log2(outer / inner))) * np.abs(p - jump) + np.abs(jump)
+def _moves(load: LineLoad, body: Callable[[Array], Array], r: Array) -> Array:
+    """|a ∂p/∂a| under springs on a plane at most, without the J/2a of a jump that grows [FU/LU²]."""
+    square = (load.edge - r) * (load.edge + r)
+    rise = np.diff(body(load.edge * np.asarray([1.0, 1.0 + STEP]))) / STEP
+    return (rise - load.at_edge * load.edge**2 / square) / (np.pi * np.sqrt(square))
 
 
 def _converges(levels: Sequence[float], noise: float) -> bool:
@@ -198,9 +218,10 @@ def _through(size: int, stride: int, load: Callable[[Array], LineLoad]) -> LineL
         return None
 
 
-def _spread(values: Array, coarse: LineLoad | None, r: Array) -> Array:
-    """|fine − coarse| at r; the value itself where there is no coarser one."""
-    spread = np.abs(values) if coarse is None else np.abs(values - coarse.pressure(r))
+def _spread(values: Array, *coarser: Array) -> Array:
+    """|fine − coarse|, and a part of the next difference; the value itself where there is no coarser one."""
+    levels = (values, *(coarser or (0.0,)))
+    spread = sum(share * np.abs(one - next) for share, one, next in zip((1.0, NEXT), levels, levels[1:], strict=False))
     return np.where(np.isfinite(spread), spread, np.abs(values))
 
 
@@ -241,9 +262,9 @@ def _shear(scene: Scene, profile: Profile, edge: float, kinks: Sequence[float], 
     def load(chosen: Array) -> LineLoad:
         return shear_load(profile.x[chosen], -profile.shear[chosen], edge, kinks, _has_apex(scene))
 
-    fine, coarse = (_through(profile.x.size, stride, load) for stride in (1, 2))
-    if fine is None:
+    levels = [one for stride in (1, 2) if (one := _through(profile.x.size, stride, load))]
+    if not levels:
         return None
-    r = np.unique(np.concatenate([np.linspace(0.0, edge, RADII), kinks]))[fine.has_apex :]
-    shear = fine.pressure(r)
-    return BodyShear(r, shear, _spread(shear, coarse, r), edge, stick)
+    r = np.unique(np.concatenate([np.linspace(0.0, edge, RADII), kinks]))[levels[0].has_apex :]
+    shears = [one.pressure(r) for one in levels]
+    return BodyShear(r, shears[0], _spread(*shears), edge, stick)

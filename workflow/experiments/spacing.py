@@ -16,7 +16,6 @@ from contact1d.analysis.pressure import Array
 from contact1d.digits import digits_apart
 from contact1d.workflow.continuation.outcome import LATTICE, LOSSES
 from contact1d.workflow.experiments import kind_of
-from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import SettingsError, settings_for
 from contact1d.workflow.scene import Path, PullOff, Scene
 
@@ -89,8 +88,9 @@ def left_by_lattice(scene: Scene) -> float:
     case = kind_of(scene).reduction(scene, settings)
     if case is None:
         return 0.0
-    trace, left, appear = case.trace(reduced(scene, settings)), [0.0], False
-    others = [case.read(trace.perturbed(radius_shift=shift)) for shift in (1.0, (-1.0) ** np.arange(len(trace)))]
+    trace, left, appear = case.trace(case.model), [0.0], False
+    every_other: Array = np.asarray((-1.0) ** np.arange(len(trace)), dtype=np.float64)
+    others = [case.read(trace.perturbed(radius_shift=shift)) for shift in (1.0, every_other)]
     for name, one in case.read(trace).items():
         read = max((abs(other[name].value - one.value) for other in others if name in other), default=0.0)
         error = case.lattice.get(name, 0.0) + read + one.errors.get(LATTICE, 0.0)

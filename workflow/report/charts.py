@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from html import escape
 from itertools import cycle
@@ -27,6 +27,8 @@ DASHES = {"": "solid", "-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
 INDEX = re.compile(r"(?<!\w)([^\W\d_][\u0303\u0304]?)_(\w{1,3})(?!\w)")
 TOGETHER = re.compile(r" ?= ?(?=[\d−-])|(?<=\d) (?=(?:LU|FU|[nµmkMG]?[mN]|[kMG]?Pa)\b|%)")
 EXPONENT = re.compile(r"\^(?:\{([^{}]+)\}|([−-]?\d+(?:[./]\d+)?|[a-z](?!\w)))")
+LEAST_SHARE = 0.05
+"""Of both axes of a panel that a run needs: a smaller curve beside those of other runs would be a line or a dot."""
 Data = dict[str, Any]
 """What plotly draws."""
 
@@ -39,24 +41,42 @@ def symbols(text: str) -> str:
 
 
 def charts_of(runs: Mapping[str, Mapping[str, Chart]]) -> list[Data]:
-    """A chart for each panel of each chart; those of the same name and axes are overlaid.
+    """A chart for each panel of each chart; those of the same name, axes and scale are overlaid.
 
     Args:
-        runs: by the name of a run its charts, in base units.
+        runs: by the name of a run its charts, written in base units.
     """
-    found: dict[tuple[str, ...], Chart] = {}
+    found: dict[tuple[str, ...], list[list[Chart]]] = {}
     for (run, charts), colour in zip(runs.items(), cycle(COLOURS), strict=False):
         for name, chart in charts.items():
             for panel in chart.panels:
-                key = name, panel.title, chart.x.label, panel.y.label
-                panel = _of_a_run(panel, run, colour) if len(runs) > 1 else panel
-                before = found[key].panels[0].series if key in found else ()
-                found[key] = Chart(chart.x, [replace(panel, series=[*before, *panel.series])])
-    return [drawn(chart.written(scale_of)) for chart in found.values()]
+                own = Chart(chart.x, [_of_a_run(panel, run, colour) if len(runs) > 1 else panel])
+                shared = found.setdefault((name, panel.title, chart.x.label, panel.y.label), [])
+                for overlaid in shared:
+                    if _fit([*overlaid, own]):
+                        overlaid.append(own)
+                        break
+                else:
+                    shared.append([own])
+    return [drawn(_overlaid(charts, len(runs)).written(scale_of)) for shared in found.values() for charts in shared]
+
+
+def _fit(charts: Sequence[Chart]) -> bool:
+    """Whether each chart of one panel has LEAST_SHARE of the axes that are common to them."""
+    views = np.asarray([[chart.x.view, chart.panels[0].y.view] for chart in charts])
+    return bool(np.all(np.ptp(views, axis=2) >= LEAST_SHARE * np.ptp(views, axis=(0, 2))))
+
+
+def _overlaid(charts: Sequence[Chart], runs: int) -> Chart:
+    """Charts of one panel in one; that of all runs needs no note of whose it is."""
+    panels = [chart.panels[0] for chart in charts]
+    series = [one for panel in panels for one in panel.series]
+    note = ", ".join(panel.note for panel in panels) * (not 1 < len(panels) == runs)
+    return replace(charts[0], panels=[replace(panels[0], series=series, note=note)])
 
 
 def _of_a_run(panel: Panel, run: str, colour: str) -> Panel:
-    """The panel among those of other runs: in the colour and name of its run; theories as they are."""
+    """The panel among those of other runs: in the colour of its run, whose name is the note; theories as they are."""
     series = []
     for one in panel.series:
         if one.colour not in (THEORY, BLACK):
@@ -64,7 +84,7 @@ def _of_a_run(panel: Panel, run: str, colour: str) -> Panel:
             name = f"{run}, {one.name}" if one.name else run * bars
             one = replace(one, colour=colour, name=name, opacity=0.5 if bars else one.opacity)
         series.append(one)
-    return replace(panel, series=series, note="")
+    return replace(panel, series=series, note=run)
 
 
 def drawn(chart: Chart) -> Data:

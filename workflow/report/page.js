@@ -3,15 +3,44 @@
 const data = JSON.parse(document.getElementById("data").textContent);
 const config = { responsive: true, displaylogo: false, showSendToCloud: false };
 // What all charts have in common.
-const axis = { showline: true, ticks: "outside", automargin: true };
+const axis = { showline: true, ticks: "outside", automargin: true, exponentformat: "power" };
 const common = {
   template: "none",
-  margin: { l: 70, r: 15, t: 30, b: 65 },
+  // Above is the place of the tool bar; the legend is below the plot, in words that wrap.
+  margin: { l: 70, r: 15, t: 36, b: 60 },
   hovermode: "closest",
-  legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom" },
+  hoverlabel: { namelength: -1 },
+  showlegend: false,
 };
-const draw = (id, traces, { xaxis, yaxis }) =>
+const dashes = { dash: "6 4", dot: "2 3", dashdot: "6 3 2 3" };
+const swatch = ({ mode, fill, marker, line: { color, width, dash }, opacity }) => {
+  const area = fill ? '<rect width="28" height="12"/>' : "";
+  const along = `<path d="M0 6H28" stroke="${color}" stroke-width="${width}" stroke-dasharray="${dashes[dash] ?? ""}"/>`;
+  const point = marker ? `<circle cx="14" cy="6" r="${marker.size / 2}"/>` : "";
+  const drawn = area + (mode.includes("lines") ? along : "") + (mode.includes("markers") ? point : "");
+  return `<svg viewBox="0 0 28 12" fill="${color}" opacity="${opacity}" aria-hidden="true">${drawn}</svg>`;
+};
+// A name in the legend shows and hides what has it.
+const legend = (id, traces) => {
+  const list = document.createElement("ul");
+  list.className = "legend";
+  traces.filter((trace) => trace.showlegend).forEach((trace) => {
+    const button = document.createElement("button");
+    button.innerHTML = `${swatch(trace)}<span>${trace.name}</span>`;
+    button.ariaPressed = "true";
+    button.addEventListener("click", () => {
+      button.ariaPressed = String(button.ariaPressed !== "true");
+      const named = traces.flatMap((one, i) => (one.legendgroup === trace.legendgroup ? [i] : []));
+      Plotly.restyle(id, { visible: button.ariaPressed === "true" }, named);
+    });
+    list.appendChild(document.createElement("li")).append(button);
+  });
+  if (list.hasChildNodes()) document.getElementById(id).after(list);
+};
+const draw = (id, traces, { xaxis, yaxis }) => {
   Plotly.newPlot(id, traces, { ...common, xaxis: { ...axis, ...xaxis }, yaxis: { ...axis, ...yaxis } }, config);
+  legend(id, traces);
+};
 data.charts.forEach((chart, i) => draw(`chart-${i}`, chart.data, chart.layout));
 
 // Logarithmic or linear axes, for a figure whose numbers allow it; the ranges are then those of the data.
@@ -49,8 +78,3 @@ if (data.path) {
   slider.addEventListener("input", show);
   show();
 }
-
-// On paper a figure is as wide as the page.
-window.addEventListener("beforeprint", () =>
-  document.querySelectorAll(".chart").forEach((chart) => Plotly.Plots.resize(chart)),
-);

@@ -70,7 +70,7 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
             entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
     for name in quantities.keys() - found.keys():
         for part in (quantities[name], quantities[name].get("si", {})):
-            part["value"] = None
+            part.update({key: None for key, one in part.items() if key == "value" or one == math.inf})
     if scales.known:
         quantities["units"] = {
             unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE, MASS, TIME) if scales.know(unit)

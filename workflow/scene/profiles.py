@@ -286,6 +286,11 @@ FEWEST_POINTS = 4
 """Points of a measured profile."""
 Radii = Annotated[tuple[Height, ...], Field(strict=False), MinLen(FEWEST_POINTS)]
 Heights = Annotated[tuple[Height, ...], Field(strict=False), MinLen(FEWEST_POINTS)]
+ROUGH, BESIDE = 3.0, 2
+"""Ratio of the curvatures at the four points around a cell from which on they show no smooth curve, and how many cells
+on either side do not, either."""
+SHARP = 8.0
+"""Curvature at a point, or at two beside each other, over that at both neighbours from which on the slope jumps."""
 
 
 class Measured(Shape):
@@ -297,6 +302,7 @@ class Measured(Shape):
 
     kind: Literal["table"]
     """measured points, monotone cubics between them"""
+    sharp: ClassVar[float] = SHARP
     file: str | None = None
     """CSV file with the columns r and z, or r [µm] and z [µm], read into the keys r and z; from −x to x the mean of
     both sides is taken
@@ -352,7 +358,7 @@ class Measured(Shape):
     @property
     def kinks(self) -> tuple[float, ...]:
         """Where the points show that."""
-        x, _, corners = _points(self.r or (), self.z or ())
+        x, _, corners = _points(self.r or (), self.z or (), self.sharp)
         return tuple(x[corners].tolist())
 
     @property
@@ -385,17 +391,17 @@ class Chords(Measured):
 
 
 class Corners(Measured):
-    """The same with a corner in each such cell where the chords on both sides of it meet in it."""
+    """The same with a corner in each such cell where the chords on both sides of it meet in it.
+
+    Kinks are also where the points do not exclude that the slope jumps.
+    """
+
+    sharp: ClassVar[float] = ROUGH
 
     def _curve(self) -> Any:
         return _angular(self.r or (), self.z or (), True)
 
 
-ROUGH, BESIDE = 3.0, 2
-"""Ratio of the curvatures at the four points around a cell from which on they show no smooth curve, and how many cells
-on either side do not, either."""
-SHARP = 8.0
-"""Curvature at a point, or at two beside each other, over that at both neighbours from which on the slope jumps."""
 MOST_DIGITS, NEARLY = 10, 1e-4
 """Digits of heights that are rounded, at most, and how near to a whole multiple one is one."""
 LEAST_JUMP = 1e-6
@@ -407,11 +413,11 @@ FLANK = 3
 
 
 @lru_cache(maxsize=8)
-def _points(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array, list[int]]:
+def _points(r: tuple[float, ...], z: tuple[float, ...], sharpness: float = SHARP) -> tuple[Array, Array, list[int]]:
     """Radii and heights with a point where the slope jumps between two, and the numbers of all at which it does.
 
-    It jumps at a point whose curvature is SHARP times that of its neighbours, or between two of which that holds: where
-    the parabolas of either side meet. The body goes on beyond the axis as a mirror image.
+    It jumps between two points whose curvatures are in sum `sharpness` times those beside them: where the parabolas of
+    either side meet, or at a point where they do not meet between two. The body is even in x.
     """
     import numpy as np
 
@@ -419,21 +425,24 @@ def _points(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array, l
     slope = np.diff(np.append(y[1], y)) / np.diff(np.append(-x[1], x))
     jump = np.abs(np.diff(slope))
     curvature = jump / np.append(2.0 * x[1], x[2:] - x[:-2])
-    strong = jump > LEAST_JUMP * np.abs(slope).max()
-    beside = np.maximum(curvature[:-2], curvature[2:])
-    sharp = {int(i) for i in np.flatnonzero(strong[1:-1] & (curvature[1:-1] > SHARP * beside)) + 1}
-    found = {float(x[i]): float(y[i]) for i in sharp}
-    for i in range(1, len(curvature) - 2):
-        pair = curvature[i : i + 2].sum() > SHARP * max(curvature[i - 1], curvature[i + 2])
-        if not (pair and strong[i] and strong[i + 1]) or sharp & {i - 1, i, i + 1, i + 2}:
+    curvature[jump <= LEAST_JUMP * np.abs(slope).max()] = 0.0
+    beside = np.maximum(curvature[:-3], curvature[3:])
+    excess = curvature[1:-2] + curvature[2:-1] - sharpness * beside
+    found, taken = dict[float, float](), set[int]()
+    for i in np.argsort(-excess) + 1:
+        if excess[i - 1] <= 0.0 or taken & {i, i + 1}:
             continue
+        taken |= {i, i + 1}
         left, right, step = slice(max(0, i + 1 - FLANK), i + 1), slice(i + 1, i + 1 + FLANK), x[i + 1] - x[i]
         lines = [np.polyfit((x[own] - x[i]) / step, y[own], min(2, len(x[own]) - 1)) for own in (left, right)]
         meet = [
             one.real for one in np.roots(np.polysub(*lines)) if one.imag == 0.0 and INSIDE < one.real < 1.0 - INSIDE
         ]
+        top = i + int(curvature[i + 1] > curvature[i])
         if len(meet) == 1:
             found[float(x[i] + step * meet[0])] = float(np.polyval(lines[0], meet[0]))
+        elif curvature[top] > sharpness * max(curvature[top - 1], curvature[top + 1]):
+            found[float(x[top])] = float(y[top])
     every = dict(zip(x.tolist(), y.tolist(), strict=True)) | found
     places = sorted(every)
     return np.asarray(places), np.asarray([every[one] for one in places]), [places.index(one) for one in sorted(found)]
