@@ -107,7 +107,7 @@ def _less_than(one: Result) -> str:
     """How large a result may be: "(less than 2.3 FU)" of one that may be 0, else "(± 2.3 FU)"."""
     bound, words = one.uncertainty, "±"
     if np.isinf(bound):
-        return "(without a bound if the slope jumps between points of bodies.profile: give more points)"
+        return "(not shown to have a bound: give more particles in the contact, or more points of a profile)"
     if one.uncertainty >= abs(one.value):
         bound, words = bound + abs(one.value), "less than"
     return f"({words} {float(f'{bound:.2g}'):g} {one.unit})"
