@@ -244,7 +244,7 @@ def cost(
 
         settings_for(with_spacing(checked))
         folder.mkdir(parents=True, exist_ok=True)
-        record = cost_of(checked, scene.stem, folder, repeats, workers or cores(), progress)
+        record = cost_of(checked, folder, repeats, workers or cores(), progress)
         write_report(record, folder)
     say(summary(record), {}, folder)
 

@@ -7,15 +7,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median
-from textwrap import shorten
 from typing import TYPE_CHECKING, NamedTuple
 
 from pydantic import TypeAdapter
 
 from contact1d.analysis.chart import THEORY
-from contact1d.analysis.plots import describe, new_figure, save_figure
+from contact1d.analysis.plots import new_figure, save_figure
 from contact1d.files import write_whole
 from contact1d.workflow.continuation.outcome import Result
+from contact1d.workflow.errors import SceneEdit
+from contact1d.workflow.runs.advised import in_words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,8 +25,6 @@ SAVED, SAVED_SHARE = 0.1, 0.1
 """CPU time [s], and its part of that of the scene, which a change saves at least to be recommended."""
 ROUNDED_UP = 1.05
 """A bound with two digits over the bound."""
-WIDTH = 60
-"""Characters for warnings in the table."""
 
 
 class Error(NamedTuple):
@@ -41,42 +40,36 @@ class Error(NamedTuple):
 
 @dataclass(frozen=True)
 class Measured:
-    """The runs of a scene.
+    """The runs of a scene, and how it compares with the reference.
 
     Attributes:
-        results: of all the same.
+        results: of all runs the same.
         cpu_runs: CPU time of each, of LAMMPS and the program together, without figures [s].
         warnings: names of the warnings, then of the results that miss the tolerance.
         failure: why there are no numbers, "" where there are.
+        edit: what is changed in the scene, as `contact1d run` takes it; the key that it is about first.
+        errors: of the main results, against the reference.
+        dominant: the largest source in the budget of the result with the largest error.
     """
 
     results: Mapping[str, Result] = field(default_factory=dict)
     cpu_runs: tuple[float, ...] = ()
     warnings: tuple[str, ...] = ()
     failure: str = ""
+    edit: SceneEdit = field(default_factory=SceneEdit)
+    errors: Mapping[str, Error] = field(default_factory=dict)
+    dominant: str = ""
 
     @property
     def cpu_s(self) -> float:
         """Median CPU time [s]."""
         return median(self.cpu_runs or (math.nan,))
 
-
-@dataclass(frozen=True, kw_only=True)
-class Row(Measured):
-    """A variant of the scene and what became of it.
-
-    Attributes:
-        setting, value: what is changed.
-        options: the same for `contact1d run`.
-        errors: of the main results, against the reference.
-        dominant: the largest source in the budget of the result with the largest error.
-    """
-
-    setting: str
-    value: str
-    options: str
-    errors: Mapping[str, Error] = field(default_factory=dict)
-    dominant: str = ""
+    @property
+    def change(self) -> tuple[str, str]:
+        """`accuracy.tolerance` and `0.01`; `without` and an effect."""
+        setting, value = next(iter(self.edit.values.items()), ("without", "".join(self.edit.without)))
+        return setting, str(value)
 
     @property
     def error(self) -> Error:
@@ -89,40 +82,39 @@ class CostRecord:
     """A whole study.
 
     Attributes:
-        title, scene: of the scene, and its name.
-        tolerance: of the scene.
+        title, tolerance: of the scene.
         reference_tolerance, reference: of the reference, with its main results.
         rows: tolerances from coarse to fine, the scene's own among them, then settings, then effects left out.
     """
 
     title: str
-    scene: str
     tolerance: float
     reference_tolerance: float
     reference: Mapping[str, Result]
-    rows: tuple[Row, ...]
-    versions: Mapping[str, str]
+    rows: tuple[Measured, ...]
 
     @property
-    def own(self) -> Row:
+    def own(self) -> Measured:
         """The scene as it is."""
-        return next(one for one in self.rows if not one.options)
+        return next(one for one in self.rows if one.edit.values == {"accuracy.tolerance": self.tolerance})
 
-    def new_warnings(self, one: Row) -> list[str]:
+    def new_warnings(self, one: Measured) -> list[str]:
         """What a variant warns of, and the scene as it is does not."""
         return [name for name in one.warnings if name not in self.own.warnings]
 
     @property
     def advice(self) -> str:
         """The cheapest variant within the tolerance that warns of nothing new, where it saves time."""
-        own, within = self.own, f"within the tolerance of {self.tolerance:g}"
+        own = self.own
         fit = [one for one in self.rows if one.error.relative <= self.tolerance and not self.new_warnings(one)]
         best = min(fit, key=lambda one: one.cpu_s, default=own)
         if own in fit and own.cpu_s - best.cpu_s < max(SAVED, SAVED_SHARE * own.cpu_s):
-            return f"Keep the scene as it is: no variant {within} saves {SAVED:g} s, or a tenth of the time."
+            return (
+                f"Keep the scene as it is: no variant within its tolerance saves {SAVED:g} s, or a tenth of the time."
+            )
         if not fit:
-            return f"Neither the scene as it is nor a variant is known to be {within}."
-        return f"Use {best.options}: error {best.error}, {best.cpu_s:.2g} s of CPU time in place of {own.cpu_s:.2g} s."
+            return "Neither the scene as it is nor a variant is known to be within its tolerance."
+        return f"Use {in_words(best.edit)}: error {best.error}, {best.cpu_s:.2g} s in place of {own.cpu_s:.2g} s."
 
 
 def write_report(record: CostRecord, folder: Path) -> None:
@@ -135,13 +127,13 @@ def table(record: CostRecord) -> list[tuple[str, ...]]:
     """The table of the study: a header and the rows."""
     rows: list[tuple[str, ...]] = [("setting", "value", "true error", "CPU time", "of the scene's", "dominant error")]
     for one in record.rows:
-        value = f"{one.value} (as it is)" if one is record.own else one.value
-        cells = ("", "", "", one.failure)
-        if one.errors:
-            new = shorten(", ".join(record.new_warnings(one)), WIDTH, placeholder=" …")
-            remark = f"{one.dominant}; the run warns: {new}" if new else one.dominant
-            cells = (str(one.error), f"{one.cpu_s:.2g} s", f"{one.cpu_s / record.own.cpu_s:.2f}", remark)
-        rows.append((one.setting, value, *cells))
+        setting, value = one.change
+        cells = (
+            [str(one.error), f"{one.cpu_s:.2g} s", f"{one.cpu_s / record.own.cpu_s:.2f}"] if one.errors else [""] * 3
+        )
+        remarks = [one.failure or one.dominant, ", ".join(record.new_warnings(one)[:2])]
+        cells.append("; the run warns: ".join(filter(None, remarks)))
+        rows.append((setting, value + " (as it is)" * (one is record.own), *cells))
     return rows
 
 
@@ -162,15 +154,20 @@ def cost_figure(record: CostRecord) -> Figure:
     """Error over CPU time of every row with numbers, beside its value; ↓ before that of an upper bound."""
     figure = new_figure((7.4, 5.2))
     axes = figure.subplots()
-    shown = [one for one in record.rows if one.errors]
-    for i, setting in enumerate(dict.fromkeys(one.setting for one in shown)):
-        points = [(one.cpu_s, one.error.relative) for one in shown if one.setting == setting]
-        axes.plot(*zip(*points, strict=True), "o" + "-" * (not i), linewidth=0.8, label=setting)
-    for one in shown:
-        axes.annotate(f"  {'↓' * one.error.is_bound}{one.value}", (one.cpu_s, one.error.relative), fontsize=7)
+    groups: dict[str, list[tuple[float, float]]] = {}
+    for one in record.rows:
+        if one.errors:
+            setting, value = one.change
+            at = one.cpu_s, one.error.relative
+            groups.setdefault(setting, []).append(at)
+            axes.annotate(f"  {'↓' * one.error.is_bound}{value}", at, fontsize=7)
+    for setting, points in groups.items():
+        axes.plot(
+            *zip(*points, strict=True), "o" if setting != record.own.change[0] else "o-", linewidth=0.8, label=setting
+        )
     axes.plot(record.own.cpu_s, record.own.error.relative, "k*", markersize=13, label="scene as it is")
     axes.axhline(record.tolerance, color=THEORY, linewidth=0.8, linestyle=":", label="its tolerance")
-    axes.set(xscale="log", yscale="log")
-    axes.legend(frameon=False, fontsize=8)
-    describe(axes, "CPU time of a run (s)", "largest relative error (↓ less than)", record.title, zero=False)
+    axes.loglog()
+    axes.legend(frameon=False)
+    axes.set(xlabel="CPU time of a run (s)", ylabel="largest relative error (↓ less than)", title=record.title)
     return figure

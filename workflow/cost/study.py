@@ -16,73 +16,63 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from contact1d.workflow.continuation.outcome import MODEL, Result, unmet
-from contact1d.workflow.cost.report import CostRecord, Error, Measured, Row
+from contact1d.workflow.cost.report import CostRecord, Error, Measured
 from contact1d.workflow.cost.variants import finer, variants_of
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.errors import Contact1dError, RunError
-from contact1d.workflow.experiments import kind_of
-from contact1d.workflow.model.settings import Settings
+from contact1d.workflow.runs.accuracy import main_results
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.processors import pool
-from contact1d.workflow.runs.report import versions
 from contact1d.workflow.scene import Scene
 
-LONG_RUN, LONG_REFERENCE = 4.0, 10.0
-"""CPU times [s]: of a run that is not repeated, since it is long against what disturbs a timing; of a reference after
-which there is no finer one."""
+LONG_REFERENCE, LONG_STUDY = 10.0, 60.0
+"""CPU times [s]: of a reference, after which there is no finer one; of all runs, after which none is repeated, since
+they are long against what disturbs a timing."""
 LEVELS = 4
 """References, each finer than the one before."""
 CERTAIN = 0.1
 """Uncertainty over an error up to which the error is a number; beyond it there is an upper bound."""
-Prepared = tuple[Scene, Settings | None]
-"""What is run: a scene, and settings in place of those that `run` chooses and refines."""
 
 
-def measured(prepared: Prepared, folder: Path) -> Measured:
+def measured(scene: Scene, folder: Path) -> Measured:
     """Run a scene once, in a folder of this process in `folder`; a failure is a result."""
-    scene, settings = prepared
     began = time.process_time()
     try:
-        done = run(scene, folder / str(os.getpid()), figures=False, settings=settings, workers=1)
+        done = run(scene, folder / str(os.getpid()), figures=False, workers=1)
     except Contact1dError as error:
-        return Measured(failure=" ".join(getattr(error, "message", str(error)).split()))
+        return Measured(failure=getattr(error, "message", str(error)))
     assert done.outcome is not None
     results, spent = done.outcome.results, time.process_time() - began + done.timing["lammps_cpu_s"]
     warnings = *done.warnings, *unmet(results, scene.accuracy.tolerance, (MODEL,))
     return Measured(results, (spent,), warnings)
 
 
-def measure(
-    variants: Sequence[Prepared], folder: Path, repeats: int, workers: int, progress: Progress
-) -> list[Measured]:
-    """Run every variant `repeats` times: once all, then all again, so that a slow minute hits them alike.
+def measure(scenes: Sequence[Scene], folder: Path, repeats: int, workers: int, progress: Progress) -> list[Measured]:
+    """Run every scene in turn, and all again, so that a slow minute hits them alike.
 
     Args:
-        variants: at least one.
+        scenes: at least one.
         folder: for run folders.
-        repeats: rounds; runs longer than LONG_RUN take part in the first one only.
+        repeats: rounds; none begins after LONG_STUDY.
         workers: runs at a time.
         progress: informed of each run that ends.
     """
-    done = [Measured()] * len(variants)
+    done = [Measured()] * len(scenes)
     progress.phase("runs", repeats * len(done), "run")
-    with pool(min(workers, len(done))) as executor:
-        for _ in range(repeats):
-            again = [i for i, one in enumerate(done) if not one.failure and not one.cpu_s > LONG_RUN]
-            found = executor.map(measured, [variants[i] for i in again], repeat(folder))
-            for i, one in zip(again, found, strict=True):
+    with pool(workers) as executor:
+        while repeats and sum(sum(one.cpu_runs) for one in done) < LONG_STUDY:
+            repeats -= 1
+            for i, one in enumerate(executor.map(measured, scenes, repeat(folder))):
                 done[i] = replace(one, cpu_runs=done[i].cpu_runs + one.cpu_runs)
                 progress.advance(1)
-            progress.advance(len(done) - len(again))
     return done
 
 
-def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, progress: Progress) -> CostRecord:
+def cost_of(scene: Scene, folder: Path, repeats: int, workers: int, progress: Progress) -> CostRecord:
     """True error and CPU time of a scene and of its variants.
 
     Args:
         scene: to be studied.
-        name: of it, for the record.
         folder: where run folders may be for a while; it exists.
         repeats: rounds of measurement.
         workers: runs at a time.
@@ -94,10 +84,10 @@ def cost_of(scene: Scene, name: str, folder: Path, repeats: int, workers: int, p
     with TemporaryDirectory(prefix=".cost-", dir=folder) as place:
         progress.phase("reference")
         finest, reference = reference_of(scene, Path(place))
-        variants = [one for one in variants_of(scene) if one[1].accuracy.tolerance > finest or not one[0].options]
-        done = measure([(other, None) for _, other in variants], Path(place), repeats, workers, progress)
-    rows = tuple(judged(row, one, reference) for (row, _), one in zip(variants, done, strict=True))
-    return CostRecord(scene.title, name, scene.accuracy.tolerance, finest, reference, rows, versions())
+        variants = [one for one in variants_of(scene) if one[1].accuracy.tolerance >= finest]
+        done = measure([other for _, other in variants], Path(place), repeats, workers, progress)
+    rows = tuple(judged(replace(one, edit=edit), reference) for (edit, _), one in zip(variants, done, strict=True))
+    return CostRecord(scene.title, scene.accuracy.tolerance, finest, reference, rows)
 
 
 def reference_of(scene: Scene, folder: Path) -> tuple[float, Mapping[str, Result]]:
@@ -109,35 +99,30 @@ def reference_of(scene: Scene, folder: Path) -> tuple[float, Mapping[str, Result
     finest, last, other = math.inf, dict[str, Result](), scene
     for _ in range(LEVELS):
         other = finer(other)
-        one = measured((other, None), folder)
-        if not (main := main_results(other, one.results)):
+        one = measured(other, folder)
+        main = {
+            name: replace(best, errors={**best.errors, MODEL: abs(best.value - last.get(name, best).value)})
+            for name, best in main_results(other, one.results).items()
+            if best.size
+        }
+        if not main:
             break
-        changes = {name: abs(new.value - last.get(name, new).value) for name, new in main.items()}
         finest, last = other.accuracy.tolerance, main
         if one.cpu_s > LONG_REFERENCE:
             break
     if not last:
-        reason = one.failure or "no main result differs from 0"
-        raise RunError(f"no reference of higher accuracy could be computed: {reason}", folder, kept=False)
-    return finest, {name: replace(best, errors={**best.errors, MODEL: changes[name]}) for name, best in last.items()}
+        raise RunError(f"no finer run for a reference: {one.failure or 'no main result but 0'}", folder, kept=False)
+    return finest, last
 
 
-def main_results(scene: Scene, results: Mapping[str, Result]) -> dict[str, Result]:
-    """The results by which errors are judged: neither prescribed nor without a size."""
-    found = {name: results[name] for name in kind_of(scene).main_results if name in results}
-    load = scene.experiment.load_key
-    return {name: one for name, one in found.items() if one.size and not one.prescribed and name != load}
-
-
-def judged(row: Row, done: Measured, reference: Mapping[str, Result]) -> Row:
-    """The row with what was measured; one that lacks a main result has failed."""
-    row = replace(row, **vars(done))
-    if missing := [name for name in reference if name not in row.results]:
-        return replace(row, failure=row.failure or f"no {' and no '.join(missing)}")
-    errors = {name: _error(row.results[name], best) for name, best in reference.items()}
+def judged(one: Measured, reference: Mapping[str, Result]) -> Measured:
+    """The runs of a variant with their errors; one that lacks a main result has failed."""
+    if missing := [name for name in reference if name not in one.results]:
+        return replace(one, failure=one.failure or f"no {missing[0]}")
+    errors = {name: _error(one.results[name], best) for name, best in reference.items()}
     worst = max(errors, key=errors.__getitem__)
-    budget = row.results[worst].errors
-    return replace(row, errors=errors, dominant=f"{max(budget, key=budget.__getitem__)} of {worst}")
+    budget = one.results[worst].errors
+    return replace(one, errors=errors, dominant=f"{max(budget, key=budget.__getitem__)} of {worst}")
 
 
 def _error(one: Result, best: Result) -> Error:

@@ -7,21 +7,18 @@ length.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
-from functools import reduce
+from typing import NamedTuple
 
 from contact1d.digits import EXACT, cleaned
-from contact1d.workflow.cost.report import Row
 from contact1d.workflow.errors import SceneEdit
-from contact1d.workflow.runs.advised import in_si, in_words
+from contact1d.workflow.runs.advised import in_si
 from contact1d.workflow.scene import Scene, SceneError
-from contact1d.workflow.scene.quantities import places
-from contact1d.workflow.scene.tables import TIMED
+from contact1d.workflow.scene.quantities import Place
+from contact1d.workflow.scene.tables import WHOLE
 
-TOLERANCE, METHOD, WITHOUT = "accuracy.tolerance", "experiment.method", "without"
-SPACING, PARTICLES, SEED = "bodies.spacing", "bodies.particles", "noise.seed"
+SPACING, PARTICLES = "bodies.spacing", "bodies.particles"
 POWERS = {
     SPACING: 1, "bodies.bulk_stiffness": 1, "bodies.bulk_stiffness_tangential": 1, "neighbours.stiffness": -1,
     PARTICLES: -1,
@@ -29,8 +26,7 @@ POWERS = {
 """Powers of the spacing by which numbers change with it."""
 
 
-@dataclass(frozen=True)
-class Setting:
+class Setting(NamedTuple):
     """A key of a scene file whose number costs time and buys accuracy.
 
     Attributes:
@@ -46,14 +42,12 @@ class Setting:
 
 def at_rest(scene: Scene) -> list[SceneEdit]:
     """How to find the result of a motion without time; nothing where time is physics, or there is none."""
-    timed = tuple(name for name in TIMED if name in scene.effects and name != "noise")
-    edit = SceneEdit({METHOD: "quasistatic"}, timed)
+    edit = SceneEdit({"experiment.method": "quasistatic"}, tuple(sorted({"damping", "plate"} & {*scene.effects})))
     return [edit] if scene.method == "dynamic" and edited(scene, edit) else []
 
 
-MOTION = Setting((0.5, 2.0, None), None, at_rest)
-SETTINGS: Mapping[str, Setting] = {
-    TOLERANCE: Setting((100.0, 30.0, 10.0, 3.0, 1.0, 0.1, 0.01), 0.1),
+SETTINGS = {
+    "accuracy.tolerance": Setting((100.0, 30.0, 10.0, 3.0, 1.0, 0.1, 0.01), 0.1),
     # A chain that is allowed no other length is the body.
     PARTICLES: Setting((0.7, 1.4, None), 1.2, lambda scene: edited(scene, SceneEdit({PARTICLES: "auto"}))),
     # The spacing of opposite particles is physics, and masses and drags belong to one spacing.
@@ -61,18 +55,16 @@ SETTINGS: Mapping[str, Setting] = {
         (4.0, 2.0, 0.5, None), 0.5, lambda scene: scene.bodies.lower == "rigid_plane" and scene.method == "quasistatic"
     ),
     # Without attraction displacements are measured from the cutoff.
-    "interaction.cutoff": Setting(
-        (0.8, None), None, lambda scene: scene.interaction is not None and scene.interaction.attraction
-    ),
+    "interaction.cutoff": Setting((0.8, None), None, lambda scene: scene.adheres),
     "experiment.displacements.steps": Setting((0.25, 0.5, 2.0), 2.0),
-    **dict.fromkeys(("damping.coefficient", "plate.mass", "plate.damping"), MOTION),
+    "damping.coefficient": Setting((0.5, 2.0, None), None, at_rest),
+    "noise.seed": Setting((), 3.0),
 }
 
 
 def numbers_of(scene: Scene) -> dict[str, float]:
     """The numbers that stand in a scene, by dotted keys; what it leaves to the program is not among them."""
-    found = places(Scene, scene.model_dump(by_alias=True, exclude_none=True))
-    return {".".join(map(str, one.keys)): one.value for one in found if isinstance(one.value, int | float)}
+    return {one.path: one.value for one in Place(scene.model_dump(by_alias=True), WHOLE) if one.is_number}
 
 
 def settings_of(scene: Scene) -> dict[str, Setting]:
@@ -81,19 +73,11 @@ def settings_of(scene: Scene) -> dict[str, Setting]:
     return {key: one for key, one in SETTINGS.items() if key in numbers and one.is_numerical(scene)}
 
 
-def variants_of(scene: Scene) -> list[tuple[Row, Scene]]:
-    """The variants of a scene as rows without numbers, itself among them; those that are no scenes are left out."""
-    settings = settings_of(scene).items()
-    edits = [(key, scaled(scene, key, factor)) for key, one in settings for factor in one.factors]
-    edits += [(METHOD, edit) for edit in at_rest(scene)]
-    edits += [(WITHOUT, SceneEdit(without=(effect,))) for effect in scene.effects]
-    found = []
-    for setting, edit in edits:
-        shown = in_si(scene, edit, EXACT)
-        if other := edited(scene, edit):
-            value = str(shown.values.get(setting, "".join(edit.without)))
-            found.append((Row(setting=setting, value=value, options=in_words(shown) if other != scene else ""), other))
-    return found
+def variants_of(scene: Scene) -> list[tuple[SceneEdit, Scene]]:
+    """The variants of a scene, itself among its tolerances; those that are no scenes are left out."""
+    edits = [scaled(scene, key, factor) for key, one in settings_of(scene).items() for factor in one.factors]
+    edits += [*at_rest(scene), *(SceneEdit(without=(effect,)) for effect in scene.effects)]
+    return [(in_si(scene, edit, EXACT), other) for edit in edits if (other := edited(scene, edit))]
 
 
 def edited(scene: Scene, edit: SceneEdit) -> Scene | None:
@@ -104,15 +88,17 @@ def edited(scene: Scene, edit: SceneEdit) -> Scene | None:
 
 
 def scaled(scene: Scene, key: str, factor: float | None) -> SceneEdit:
-    """A number of a scene times a factor, None: "auto"; a count changes by an even number, a spacing with its POWERS."""
+    """A number of a scene changed by a factor, a count by an even number, a spacing with its POWERS; None: "auto"."""
     if factor is None:
         return SceneEdit({key: "auto"})
-    powers = POWERS if key == SPACING else {key: 1}
     values: dict[str, object] = {}
-    for one, number in numbers_of(scene).items():
-        if one in powers:
-            change, count = factor ** powers[one], isinstance(number, int)
-            values[one] = number + 2 * round(0.5 * number * (change - 1.0)) if count else cleaned(number * change)
+    numbers = numbers_of(scene)
+    for one, power in (POWERS if key == SPACING else {key: 1}).items():
+        number, change = numbers.get(one), factor**power
+        if isinstance(number, int):
+            values[one] = number + 2 * round(0.5 * number * (change - 1.0))
+        elif number:
+            values[one] = cleaned(number * change)
     return SceneEdit(values)
 
 
@@ -120,6 +106,6 @@ def finer(scene: Scene) -> Scene:
     """The scene with everything finer, as far as allowed: tolerance, spacing, steps; without time where this is no
     physics, with noise of another seed.
     """
-    edits = [scaled(scene, key, one.finer) for key, one in settings_of(scene).items()]
-    edits += [SceneEdit({SEED: seed + 1}) for key, seed in numbers_of(scene).items() if key == SEED]
-    return reduce(lambda found, edit: edited(found, edit) or found, [*edits, *at_rest(scene)], scene)
+    for edit in [*(scaled(scene, key, one.finer) for key, one in settings_of(scene).items()), *at_rest(scene)]:
+        scene = edited(scene, edit) or scene
+    return scene

@@ -131,7 +131,7 @@ def in_si(scene: Scene, edit: SceneEdit, digits: int = 3) -> SceneEdit:
     if not scales.known or material is None or material.length_unit is None or material.force_unit is None:
         return edit
     tables = scene.model_dump(by_alias=True, exclude_none=True)
-    units = {".".join(map(str, place.keys)): place.unit.name for place in places(Scene, tables)}
+    units = {place.path: place.unit.name for place in places(Scene, tables)}
     values = dict(edit.values)
     for key, value in values.items():
         unit = units.get(key, NUMBER)
