@@ -109,9 +109,8 @@ class CostRecord:
         fit = [one for one in self.rows if one.error.relative <= self.tolerance and not self.new_warnings(one)]
         best = min(fit, key=lambda one: one.cpu_s, default=own)
         if own in fit and own.cpu_s - best.cpu_s < max(SAVED, SAVED_SHARE * own.cpu_s):
-            return (
-                f"Keep the scene as it is: no variant within its tolerance saves {SAVED:g} s, or a tenth of the time."
-            )
+            least = f"{SAVED:g} s and {SAVED_SHARE:.0%} of the time"
+            return f"Keep the scene as it is: no variant within its tolerance saves {least}."
         if not fit:
             return "Neither the scene as it is nor a variant is known to be within its tolerance."
         return f"Use {in_words(best.edit)}: error {best.error}, {best.cpu_s:.2g} s in place of {own.cpu_s:.2g} s."

@@ -84,7 +84,7 @@ def cost_of(scene: Scene, folder: Path, repeats: int, workers: int, progress: Pr
     with TemporaryDirectory(prefix=".cost-", dir=folder) as place:
         progress.phase("reference")
         finest, reference = reference_of(scene, Path(place))
-        variants = [one for one in variants_of(scene) if one[1].accuracy.tolerance >= finest]
+        variants = [one for one in variants_of(scene) if one[1].accuracy.tolerance > finest or one[1] == scene]
         done = measure([other for _, other in variants], Path(place), repeats, workers, progress)
     rows = tuple(judged(replace(one, edit=edit), reference) for (edit, _), one in zip(variants, done, strict=True))
     return CostRecord(scene.title, scene.accuracy.tolerance, finest, reference, rows)

@@ -73,8 +73,9 @@ def unknown(scene: Scene, outcome: Outcome) -> dict[str, Result]:
 
 def main_results(scene: Scene, results: Mapping[str, Result]) -> dict[str, Result]:
     """The main results as far as they are found, and neither prescribed nor the load."""
+    load = scene.experiment.load_key if scene.experiment.compression is not None else None
     found = {name: results[name] for name in kind_of(scene).main_results if name in results}
-    return {name: one for name, one in found.items() if not one.prescribed and name != scene.experiment.load_key}
+    return {name: one for name, one in found.items() if not one.prescribed and name != load}
 
 
 def require_results(scene: Scene, outcome: Outcome) -> None:
