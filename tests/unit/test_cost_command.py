@@ -96,8 +96,18 @@ def test_the_command_prints_a_table_and_leaves_two_files(tmp_path: Path, monkeyp
     assert found.advice in done.stdout
 
 
-def test_a_scene_of_which_nothing_finer_runs_ends_with_the_reason(tmp_path: Path) -> None:
-    call = ["cost", str(SCENES / "jkr.toml"), "--out", str(tmp_path / "new"), "--set", "experiment.preload=1e9"]
+@pytest.mark.parametrize(
+    ("scene", "change", "code", "words"),
+    [
+        ("hertz_plane", "experiment.displacements={from=-2.0,to=-1.0,steps=2}", 3, "its main results are all 0"),
+        ("jkr", "experiment.preload=1e9", 2, "Lower adhesion.work_of_adhesion, the load or the displacement"),
+    ],
+)
+def test_a_scene_without_a_reference_ends_with_the_reason(
+    scene: str, change: str, code: int, words: str, tmp_path: Path
+) -> None:
+    call = ["cost", str(SCENES / f"{scene}.toml"), "--out", str(tmp_path / "new"), "--set", change]
     done = CliRunner().invoke(app, call)
-    assert done.exit_code in (2, 3)
-    assert "Traceback" not in done.stderr
+    assert (done.exit_code, done.stdout) == (code, "")
+    assert words in done.stderr
+    assert not list(tmp_path.glob("new/*"))

@@ -111,7 +111,8 @@ def reference_of(scene: Scene, folder: Path) -> tuple[float, Mapping[str, Result
         if one.cpu_s > LONG_REFERENCE:
             break
     if not last:
-        raise RunError(f"no finer run for a reference: {one.failure or 'no main result but 0'}", folder, kept=False)
+        reason = one.failure or "its main results are all 0"
+        raise RunError(f"a reference that is finer than the scene gives no numbers: {reason}", folder, kept=False)
     return finest, last
 
 
