@@ -178,8 +178,9 @@ def _pressure(scene: Scene, profile: Profile, radius: ContactRadius, alone: bool
         ("central_pressure", 0, itemgetter(0), p[0], False, True),
         ("peak_pressure", top, np.max, around.max(), hidden, smooth),
     ):
-        if may_have and not fine.has_apex:
-            known = not is_open and _converges([read(one) for one in told], noise)
+        known = _converges([read(one) for one in told], noise)
+        if may_have and not fine.has_apex and (known or shape.alternatives):
+            known &= not is_open
             off = error[place] + sum(abs(read(one) - read(p)) for one in others) if known else np.inf
             results[name] = Quantity(float(value), float(off), MEAN_PRESSURE)
     return BodyPressure(r, p, spread + sum(np.abs(one - p) for one in others), radius.value / wider, results)
