@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,11 +56,16 @@ MARKED = f"^'('*[{FIRST}])"
 def write_columns(path: Path, columns: Mapping[str, Column], units: Mapping[str, str] | None = None) -> None:
     """Write a CSV file; the header has the unit of SI of a column, `force [N]`; 17 digits, NaN as an empty cell."""
     with whole(path) as part, part.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(headed(columns, units or {}))
-        for start in range(0, max(map(len, columns.values())), CHUNK):
-            cells = [_cells(column[start : start + CHUNK]) for column in columns.values()]
-            writer.writerows(zip(*cells, strict=True))
+        put_columns(file, columns, units or {})
+
+
+def put_columns(file: TextIO, columns: Mapping[str, Column], units: Mapping[str, str]) -> None:
+    """Write columns to an open file; see `write_columns`."""
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(headed(columns, units))
+    for start in range(0, max(map(len, columns.values()), default=0), CHUNK):
+        cells = [_cells(column[start : start + CHUNK]) for column in columns.values()]
+        writer.writerows(zip(*cells, strict=True))
 
 
 def headed(names: Iterable[str], units: Mapping[str, str]) -> list[str]:

@@ -133,9 +133,7 @@ def save_figure(figure: Figure, path: Path) -> None:
     if layout := plain_axes(figure).get_layout_engine():
         layout.execute(figure)
         figure.set_layout_engine(None)  # savefig would draw it twice, to find the layout again
-    form = path.suffix[1:]
-    quick: dict[str, Any] = {}
-    if form == "png":  # a third of the time, a tenth larger
-        quick["pil_kwargs"] = {"compress_level": 1}
+    form = path.suffix[1:]  # a PNG a tenth larger, in two thirds of the time
+    quick: dict[str, Any] = {"pil_kwargs": {"compress_level": 1}} if form == "png" else {}
     with whole(path) as part:
         figure.savefig(part, format=form, **quick)

@@ -6,8 +6,10 @@ import errno
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from os import PathLike
 from pathlib import Path
 
+AnyPath = str | PathLike[str]
 LARGEST = 8_000_000
 """Bytes of a text file that is read: a scene with a measured profile of 1e5 points has half of them."""
 PART = ".part"

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import re
 import subprocess
 import sys
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -13,6 +16,7 @@ from typer.testing import CliRunner
 
 from contact1d.workflow.cli.app import app
 
+ROOT = Path(__file__).parents[2]
 SCENE = """
 title = "plane"
 [bodies]
@@ -69,6 +73,35 @@ def test_a_run_that_fails_exits_with_3_and_says_why_in_words() -> None:
     assert done.exit_code == 3
     assert "end of the chain" in done.stderr
     assert "±" not in done.stdout
+
+
+def test_numbers_are_printed_though_no_figure_can_be_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "no space", "pressure.png")
+
+    monkeypatch.setattr("contact1d.workflow.runs.campaign.draw", full)
+    done = contact1d("run", "plane.toml")
+    assert done.exit_code == 3
+    assert "±" in done.stdout
+    assert done.stderr.endswith("the run failed: the disk is full (pressure.png); files are kept in runs/plane\n")
+
+
+def test_a_load_that_nothing_carries_is_refused_before_it_runs() -> None:
+    done = contact1d("run", str(ROOT / "lammps_inputs/scenes/load.toml"), "--set", "experiment.force=1e6")
+    assert done.exit_code == 2
+    assert "a load of 1e+06 FU exceeds what the repulsion can carry" in done.stderr
+    assert "the bodies go through each other. Lower the load, or use a stronger repulsion" in done.stderr
+    assert "LAMMPS" not in done.stderr
+    assert not Path("runs").exists()
+
+
+def test_what_to_cite_is_said_as_in_the_repository() -> None:
+    done, kept = contact1d("--cite"), (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert done.exit_code == 0, done.stderr
+    cited = re.findall(r"doi *= \{(.*)\}", done.stdout)
+    assert cited == re.findall(r"doi: (.*)", kept)
+    assert f"version = {{{version('contact1d')}}}" in done.stdout
+    assert f"version: {version('contact1d')}\n" in kept
 
 
 def test_deck_writes_and_does_not_run() -> None:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import csv
 import json
+import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import contact1d
-from contact1d import FolderError, Run, RunError, Scene, load_run, run
+from contact1d import Contact1dError, FolderError, Quantity, Run, RunError, Scene, load_run, run
+from contact1d.workflow.runs.export import latex
 from tests.sweeps import BROKEN
 
 MakeScene = Callable[..., Scene]
@@ -82,6 +86,55 @@ def test_a_run_draws_its_figures_and_gives_its_atoms(finished: Run) -> None:
             one.plot("friction")
         np.testing.assert_array_equal(one.atoms().positions, contact1d.atoms(finished.folder).positions)
         assert len(one.atoms(0)) == 160
+
+
+def test_numbers_are_there_before_the_figures(plane: MakeScene, tmp_path: Path) -> None:
+    seen: list[Run] = []
+
+    def printed(run: Run) -> None:
+        assert json.loads((run.folder / "results.json").read_text())["status"] == "done"
+        assert not [*run.folder.glob("*.png")]
+        seen.append(run)
+
+    assert seen == [run(plane(), tmp_path / "run", printed=printed)]
+    assert (tmp_path / "run" / "pressure.png").is_file()
+
+
+def test_results_and_tables_go_to_other_programs(finished: Run, tmp_path: Path) -> None:
+    force = finished.results.adhesion_force
+    assert finished.to_json(tmp_path / "a.json") == (finished.folder / "results.json").read_text()
+    assert (tmp_path / "a.json").read_text() == finished.to_json()
+    assert finished.to_csv(table="curve") == (finished.folder / "curve.csv").read_text()
+    assert finished.to_csv(tmp_path / "a.csv").startswith("name,value,uncertainty,unit\nadhesion_force,")
+    with (tmp_path / "a.csv").open(newline="") as file:
+        (row,) = (row for row in csv.DictReader(file) if row["name"] == "adhesion_force")
+    assert (float(row["value"]), float(row["uncertainty"]), row["unit"]) == (force.value, force.uncertainty, "N")
+    with pytest.raises(ValueError, match="no table 'kurve', it has results, curve, profile, pressure_3d"):
+        finished.to_csv(table="kurve")
+
+
+def test_results_are_a_table_of_latex() -> None:
+    given = {"adhesion_force": Quantity(1.234e-7, 1.2e-9, "N"), "pressure": Quantity(2e-14, 0.0, "FU/LU²"),
+             "ratio": Quantity(0.5, 0.1, "1")}  # fmt: skip
+    assert latex(given).splitlines() == [
+        r"\begin{tabular}{ll}",
+        r"adhesion force & $123.4 \pm 1.2\,\mathrm{nN}$ \\",
+        r"pressure & $2\cdot 10^{-14}\,\mathrm{FU}/\mathrm{LU}^2$ \\",
+        r"ratio & $0.50 \pm 0.10$ \\",
+        r"\end{tabular}",
+    ]
+
+
+def test_a_table_is_a_dataset_of_xarray_where_that_is_installed(finished: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "xarray", None)
+    with pytest.raises(Contact1dError, match=r"needs xarray: install it with pip install 'contact1d\[tables\]'"):
+        finished.to_xarray()
+    monkeypatch.setitem(sys.modules, "xarray", SimpleNamespace(Dataset=lambda variables, attrs: (variables, attrs)))
+    variables, attributes = finished.to_xarray()
+    dimension, column, own = variables["force"]
+    assert (dimension, own) == ("row", {"units": "N"})
+    np.testing.assert_array_equal(column, finished.curve.force)
+    assert attributes["adhesion_force"] == str(finished.results.adhesion_force)
 
 
 def test_a_run_that_failed_raises_its_own_message(plane: MakeScene, tmp_path: Path) -> None:

@@ -113,7 +113,10 @@ def test_what_is_shown_is_what_is_printed(page: str, name: str, command: str, li
 
 def test_readme_has_what_effects_cost_by_the_records_of_cost_studies() -> None:
     """Time of a run with an effect over that without it, and the largest change of a main result."""
-    rows = ["| effect | scene | time with it over without | change of the results without it |", "| --- | --- | --- | --- |"]
+    rows = [
+        "| effect | scene | time with it over without | change of the results without it |",
+        "| --- | --- | --- | --- |",
+    ]
     for path in sorted((ROOT / "validation" / "results" / "costs").glob("*.json")):
         record = read_record(path)
         for one in record.rows:

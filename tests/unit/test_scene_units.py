@@ -8,12 +8,13 @@ import tomllib
 from fractions import Fraction
 from pathlib import Path
 
+import pint
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from contact1d.workflow.scene import SceneError, read_scene, scene_from_dict, scene_to_toml
-from contact1d.workflow.scene.si_text import UnitTextError, si_value
+from contact1d.workflow.scene.si_text import UnitTextError, quantity, si_value
 from contact1d.workflow.units import Scales
 from tests.scenes import STEEL_ON_GLASS
 
@@ -54,6 +55,18 @@ SLIDE = {
 )  # fmt: skip
 def test_a_text_is_the_number_in_si_that_is_nearest_to_it(text: str, unit: str, value: float) -> None:
     assert float(si_value(text, unit)[0]) == value
+
+
+@pytest.mark.parametrize("symbol", ["m", "g", "s", "K", "N", "Pa", "J", "W", "Hz", "V", "A", "C", "mol"])
+def test_a_symbol_of_si_is_what_pint_says_with_every_prefix(symbol: str) -> None:
+    registry = pint.UnitRegistry(non_int_type=Fraction)
+    base = {"g": "kg"}.get(symbol, symbol)
+    for prefix in ("", "f", "p", "n", "u", "µ", "\u03bc", "m", "c", "k", "M", "G"):
+        for name, power in ((f"{prefix}{symbol}", 1), (f"{prefix}{symbol}²/m·s", 2)):
+            wanted = base if power == 1 else f"{base}²/m·s"
+            size = registry.Quantity(Fraction(1), f"{prefix}{symbol}").to(base).magnitude
+            assert quantity(f"1 {name}")[0] == size**power
+            assert quantity(f"1 {name}")[1].measures(wanted)
 
 
 def test_a_scene_in_si_has_numbers_in_metres_and_newtons_and_says_so() -> None:

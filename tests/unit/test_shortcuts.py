@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +32,38 @@ def test_a_sphere_pulls_off_as_jkr_has_it() -> None:
     near(run, "zero_load_radius", (4.5 * math.pi * W * R**2 / MODULUS) ** (1 / 3), "m")
     assert run.curve.units["force"] == "N"
     assert float(-run.curve.force.min()) == pytest.approx(run.results.adhesion_force.value, rel=1e-2)
+
+
+def test_the_scene_of_a_pull_off_is_the_one_that_runs() -> None:
+    ball = contact1d.sphere("2 mm", work_of_adhesion="80 mJ/m²", **PAIR)
+    assert ball.scene("pull_off").experiment == ball.pull_off().scene.experiment
+    assert ball.scene("pull_off", preload="1 mN").experiment.compression == 1e-3
+
+
+def test_a_list_of_loads_as_texts_or_numbers_is_a_run_for_each(tmp_path: Path) -> None:
+    runs = contact1d.sphere("2 mm", **PAIR).load(["1 mN", 2e-3], tmp_path)
+    assert [run.scene.experiment.compression for run in runs] == [1e-3, 2e-3]
+    assert [run.folder for run in runs] == [tmp_path / "1", tmp_path / "2"]
+    for run, load in zip(runs, (1e-3, 2e-3), strict=True):
+        near(run, "contact_radius", (0.75 * load * R / MODULUS) ** (1 / 3), "m")
+
+
+def test_figures_are_drawn_when_they_are_asked_for() -> None:
+    code = (
+        "import sys, contact1d;"
+        f"run = contact1d.sphere('2 mm', **{PAIR}).load('1 mN');"
+        "assert not [*run.folder.glob('*.png')];"
+        "assert not {'matplotlib', 'pint'} & set(sys.modules);"
+        "assert run.plot()._repr_png_().startswith(bytes([137]) + b'PNG')"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
+
+
+def test_what_is_implausible_comes_first() -> None:
+    run = contact1d.sphere("2 mm", work_of_adhesion="80 J/m²", **PAIR).load("1 mN")
+    warning = "warning implausible_surface_energy: adhesion.work_of_adhesion is 80 J/m², where 0.04 to 6 are usual"
+    assert warning in repr(run).splitlines()[1]
+    assert run._repr_html_().index("80 J/m²") < run._repr_html_().index("contact radius")
 
 
 def test_a_stiff_tip_has_one_answer_at_both_doors(tmp_path: Path) -> None:

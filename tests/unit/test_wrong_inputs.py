@@ -98,6 +98,7 @@ WRONG = [
     odd(R, "1e mm", "1e mm has an exponent that is not an integer", "1e1 mm"),
     odd(R, "1O mm", "1O mm has an unknown unit, O", "10 mm"),
     odd(R, "1e999 m", "1e999 m exceeds the range of floating-point numbers", "10 mm"),
+    odd(R, "1e308 m", "1e308 m is beyond 1e+300, the largest number that is calculated with", "10 mm"),
     odd(R, "-10 mm", "must be greater than 0 (m)", "10 mm"),
     odd(H, "0 nm", 'must be greater than 0 (m), or "auto"', "4 µm"),
     odd(F, '"10"', 'must be a number (N); write a number without quotes, or with its unit: "10 N"', "10 N"),

@@ -40,10 +40,19 @@ def _version(wanted: bool) -> None:
         raise typer.Exit
 
 
+def _cite(wanted: bool) -> None:
+    if wanted:
+        typer.echo(Path(__file__).with_name("citation.bib").read_text(encoding="utf-8"), nl=False)
+        raise typer.Exit
+
+
 @app.callback()
 def contact1d(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+    cite: Annotated[
+        bool, typer.Option("--cite", callback=_cite, is_eager=True, help="Show what to cite, in BibTeX, and exit.")
     ] = False,
 ) -> None:
     """Contact, adhesion and friction with the one-dimensional particle model of Geike and Popov, on LAMMPS.

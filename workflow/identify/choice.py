@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from contact1d.files import AnyPath
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.experiments.spacing import contact_curve, contact_radius, with_spacing
 from contact1d.workflow.identify.contact import AnyContact, AskedContact, read_contact
@@ -17,7 +18,6 @@ from contact1d.workflow.identify.theories import (
     require_size,
 )
 from contact1d.workflow.runs import advised
-from contact1d.workflow.runs.campaign import AnyPath
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.scene.read import plain_data

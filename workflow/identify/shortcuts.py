@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import Any, overload
 
+from contact1d.files import AnyPath
 from contact1d.workflow.identify.choice import on_plane, usual_preload
 from contact1d.workflow.identify.contact import AskedContact, read_contact
 from contact1d.workflow.runs.advised import run
-from contact1d.workflow.runs.campaign import AnyPath
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene
 
@@ -28,19 +29,33 @@ class Contact:
     def scene(self, kind: str, friction: float | None = None, **experiment: Any) -> Scene:
         """The scene of an experiment with the keys of docs/scene.md, to run, to sweep or to print.
 
+        A pull-off has by default a preload of 0.7 of the theory's pull-off force.
+
         Raises:
             SceneError: with every problem at once.
         """
+        if kind == "pull_off" and experiment.get("preload") is None:
+            experiment["preload"] = usual_preload(self.asked)
         tables: dict[str, Any] = {} if friction is None else {"friction": {"coefficient": friction}}
         return on_plane(self.asked, experiment | {"kind": kind}, **tables)
 
-    def load(self, force: str | float, folder: AnyPath | None = None) -> Run:
-        """Press with a force; negative: pull. The folder is temporary where none is given."""
+    @overload
+    def load(self, force: str | float, folder: AnyPath | None = None) -> Run: ...
+
+    @overload
+    def load(self, force: list[Any], folder: AnyPath | None = None) -> list[Run]: ...
+
+    def load(self, force: Any, folder: AnyPath | None = None) -> Run | list[Run]:
+        """Press with a force; negative: pull. The folder is temporary where none is given.
+
+        Of a list of forces a run for each, in folders 1, 2, … of the folder.
+        """
+        if isinstance(force, list):
+            return [self.load(one, folder and Path(folder) / str(i)) for i, one in enumerate(force, 1)]
         return run(self.scene("load", force=force), folder)
 
     def pull_off(self, preload: str | float | None = None, folder: AnyPath | None = None) -> Run:
-        """Press with a preload, by default 0.7 of the theory's pull-off force, and pull until the bodies separate."""
-        preload = usual_preload(self.asked) if preload is None else preload
+        """Press with a preload, and pull until the bodies separate; see `scene`."""
         return run(self.scene("pull_off", preload=preload), folder)
 
     def path(self, displacements: Any, folder: AnyPath | None = None) -> Run:

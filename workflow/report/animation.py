@@ -14,11 +14,10 @@ import numpy as np
 from contact1d.analysis.chart import Chart, Panel
 from contact1d.analysis.curve import States, read_states
 from contact1d.analysis.plots import DPI, WIDTH, describe, draw_panel, new_figure, plain_axes
-from contact1d.files import whole, write_whole
+from contact1d.files import AnyPath, whole, write_whole
 from contact1d.workflow.deck.steps import STATES
 from contact1d.workflow.errors import Contact1dError, FolderError
 from contact1d.workflow.report.charts import moving
-from contact1d.workflow.runs.campaign import AnyPath
 from contact1d.workflow.runs.finished import Run, load_run
 
 if TYPE_CHECKING:

@@ -17,11 +17,10 @@ from zipfile import BadZipFile
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 
 from contact1d.analysis.curve import read_states
-from contact1d.files import write_whole
+from contact1d.files import AnyPath, write_whole
 from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.errors import FolderError
 from contact1d.workflow.report.charts import Data, charts_of, path_of, symbols
-from contact1d.workflow.runs.campaign import AnyPath
 from contact1d.workflow.runs.finished import Run, charts, read_run
 from contact1d.workflow.runs.report import results_in
 from contact1d.workflow.scene import Scene, Table, scene_to_toml

@@ -8,6 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from weakref import finalize
 
+from contact1d.files import AnyPath
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, RunError, SceneEdit, UntrustedError
 from contact1d.workflow.experiments.spacing import with_spacing
@@ -30,7 +31,7 @@ Reader = Callable[[SceneEdit], Scene]
 
 def run(
     scene: AnyScene,
-    folder: campaign.AnyPath | None = None,
+    folder: AnyPath | None = None,
     figures: bool | str | None = None,
     progress: Progress | None = None,
     time_limit: float = campaign.TIME_LIMIT,

@@ -9,7 +9,6 @@ from functools import cached_property
 from html import escape
 from itertools import pairwise
 from math import nan, pi
-from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +24,7 @@ from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius
 from contact1d.analysis.theory.indenters import Ellipsoid, PowerLaw
 from contact1d.analysis.theory.mindlin import mindlin_path
+from contact1d.files import AnyPath
 from contact1d.workflow.body.derived import REPORTED
 from contact1d.workflow.body.reading import IMAGE, stands_for_spheres
 from contact1d.workflow.body.theory import Case, applying, drawn_along, in_words, sliding_contact
@@ -32,7 +32,9 @@ from contact1d.workflow.body.traction import row_of
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.state import radius_rule
 from contact1d.workflow.errors import FolderError, RunError
-from contact1d.workflow.runs.report import COLUMN_UNITS, FILES, in_units, quantities_in, read_results
+from contact1d.workflow.runs.export import csv_text, dataset, kept, latex, listed
+from contact1d.workflow.runs.plausibility import IMPLAUSIBLE
+from contact1d.workflow.runs.report import COLUMN_UNITS, FILES, as_json, in_units, quantities_in, read_results
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
 from contact1d.workflow.scene.tables import SPHERES, WIDER_THAN_SPHERES
@@ -41,6 +43,7 @@ from contact1d.workflow.units import FORCE, LENGTH, MASS, NUMBER, Quantity, Scal
 if TYPE_CHECKING:
     from ase import Atoms
     from matplotlib.figure import Figure
+    from xarray import Dataset
 
 
 Array = NDArray[np.float64]
@@ -193,24 +196,57 @@ class Run:
         """Return a reported state as ase.Atoms, by default the last; see `contact1d.atoms`."""
         return atoms(self.folder, state)
 
+    def to_json(self, path: AnyPath | None = None) -> str:
+        """What results.json holds; also written to a path."""
+        return kept(as_json(self.document), path)
+
+    def to_csv(self, path: AnyPath | None = None, table: str = "results") -> str:
+        """Name, value, uncertainty and unit of the results, or one of `tables`: "curve"; also written to a path."""
+        return kept(csv_text(self._table(table)), path)
+
+    def to_latex(self, path: AnyPath | None = None) -> str:
+        """The results as a tabular; also written to a path."""
+        return kept(latex(self.results), path)
+
+    def to_xarray(self, table: str = "curve") -> Dataset:
+        """One of `tables` as an xarray.Dataset with units, the results in its attributes as text.
+
+        Raises Contact1dError where xarray isn't installed.
+        """
+        said = {name: str(quantity) for name, quantity in self.results.items()}
+        return dataset(self._table(table), {"title": self.scene.title, **said})
+
+    def _table(self, name: str) -> Columns:
+        known = {"results": listed(self.results), **self.tables}
+        if name not in known:
+            raise ValueError(f"the run has no table {name!r}, it has {', '.join(known)}")
+        return known[name]
+
     def __repr__(self) -> str:
-        """A few lines: title, status, folder, results with the closed forms beside, warnings."""
+        """A few lines: title, status, folder, results with the closed forms beside, warnings.
+
+        What is implausible comes first, since every result follows from it.
+        """
         lines = [f"Run {self.scene.title!r}: {self.status}, {self.folder}"]
         for name, quantity in self.results.items():
             beside = ", ".join(in_words(self.document, name))
             lines.append(f"  {name:<18} {quantity!s:<24} {beside}".rstrip())
-        return "\n".join(lines + [f"  warning {name}: {message}" for name, message in self.warnings.items()])
+        for name, message in self.warnings.items():
+            place = 1 if name.startswith(IMPLAUSIBLE) else len(lines)
+            lines.insert(place, f"  warning {name}: {message}")
+        return "\n".join(lines)
 
     def _repr_html_(self) -> str:
         """The same as a table, for notebooks."""
         cells = [(name.replace("_", " "), str(quantity)) for name, quantity in self.results.items()]
-        cells += [(f"warning: {name}", message) for name, message in self.warnings.items()]
+        for name, message in self.warnings.items():
+            cells.insert(0 if name.startswith(IMPLAUSIBLE) else len(cells), (f"warning: {name}", message))
         rows = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in cells)
         caption = f"{escape(self.scene.title)}: {self.status}<br><code>{escape(str(self.folder))}</code>"
         return f"<table><caption>{caption}</caption>{rows}</table>"
 
 
-def load_run(folder: str | PathLike[str]) -> Run:
+def load_run(folder: AnyPath) -> Run:
     """Read a run from its folder.
 
     Raises:

@@ -8,8 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 from traceback import format_exc
 
+from contact1d.files import AnyPath
 from contact1d.workflow.errors import Contact1dError, RunError
-from contact1d.workflow.runs.campaign import AnyPath, run
+from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.runs.processors import cores, pool
 from contact1d.workflow.scene import AnyScene

@@ -17,6 +17,8 @@ from contact1d.workflow.units import LENGTH, Quantity, Scales
 
 SOFTEST, STIFFEST = 1e3, 2e12
 """Moduli [Pa]: of the softest gels that are pressed, and above those of diamond, 1.2e12."""
+IMPLAUSIBLE = "implausible"
+"""How the names of warnings about values begin from which all results follow."""
 ATOM = 1e-10
 """Radius of an atom [m]."""
 
@@ -75,14 +77,14 @@ def _moduli(scene: Scene) -> Iterator[tuple[str, str]]:
     for key, modulus in moduli.items():
         if modulus < SOFTEST:
             meant = f": was {modulus:g} GPa meant?" if modulus >= 0.01 else ": check its unit"
-            yield "implausible_modulus", f"{key} is {modulus:g} Pa, softer than any gel{meant}"
+            yield f"{IMPLAUSIBLE}_modulus", f"{key} is {modulus:g} Pa, softer than any gel{meant}"
     if moduli and min(moduli.values()) > STIFFEST:  # one rigid body beside another one is usual
         least = f"{min(moduli.values()):g} Pa"
-        yield "implausible_modulus", f"{' and '.join(moduli)}: {least} is stiffer than diamond: check its unit"
+        yield f"{IMPLAUSIBLE}_modulus", f"{' and '.join(moduli)}: {least} is stiffer than diamond: check its unit"
     for name, body in bodies.items():
         if body is not None and body.poisson_ratio < 0.0:
             ratio = f"{name}.poisson_ratio is {body.poisson_ratio:g}"
-            yield "implausible_poisson_ratio", f"{ratio}, and few materials have one below 0: check its sign"
+            yield f"{IMPLAUSIBLE}_poisson_ratio", f"{ratio}, and few materials have one below 0: check its sign"
 
 
 def _numbers(scene: Scene, scales: Scales) -> Iterator[tuple[str, str]]:
@@ -97,7 +99,7 @@ def _numbers(scene: Scene, scales: Scales) -> Iterator[tuple[str, str]]:
         value /= float(BOLTZMANN) if usual.unit == "K" else 1.0
         if not usual.least <= value <= usual.most:
             what = usual.low if value < usual.least else usual.high
-            yield f"implausible_{usual.name}", f"{key} is {value:.4g} {usual.unit}, {what}: check its unit"
+            yield f"{IMPLAUSIBLE}_{usual.name}", f"{key} is {value:.4g} {usual.unit}, {what}: check its unit"
 
 
 def _radii(scales: Scales, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:

@@ -188,9 +188,14 @@ def read_results(folder: Path) -> dict[str, Any]:
         raise FolderError(f"{reason}; give the folder of a finished run, or run its scene again") from None
 
 
+def as_json(document: Mapping[str, Any]) -> str:
+    """The text of results.json."""
+    return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
 def write_results(folder: Path, document: Mapping[str, Any]) -> None:
     """Write results.json."""
-    write_whole(folder / RESULTS, json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+    write_whole(folder / RESULTS, as_json(document))
 
 
 COLUMN_UNITS = {

@@ -110,7 +110,7 @@ NO_UNIT = {
 }
 """How what follows a number begins where it is no unit, and what it is."""
 LARGEST = 1e300
-"""Numbers beyond it are none."""
+"""Its products with units and with other numbers of a scene are finite mostly."""
 
 
 class UnitTextError(ValueError):
@@ -165,7 +165,8 @@ def quantity(text: str) -> tuple[Fraction, Unit]:
     number, given = split(text)
     unit, size = _unit(given), float(number)
     if not -LARGEST < size < LARGEST:
-        raise UnitTextError("exceeds the range of floating-point numbers")
+        finite = f"is beyond {LARGEST:g}, the largest number that is calculated with"
+        raise UnitTextError(finite if math.isfinite(size) else "exceeds the range of floating-point numbers")
     exact = Fraction(number) if size else Fraction(0)  # 1e-999999999 is 0, and no fraction of so many digits
     return exact * unit.factor + unit.zero, unit
 
