@@ -29,7 +29,7 @@ MOST_ROUNDS = 60
 """Refinements of a force maximum, each of which may halve the increment beside it: a sharp one needs some."""
 SEPARATION_ROWS = 1_000.0
 """Load steps in which an unloading comes from any displacement to where nothing is felt any more."""
-FORCE_ACCURACY = 5e-4
+FORCE_ACCURACY = 1e-3
 """How near to a wanted force a search must come, over the tolerance."""
 EDGE, CONVERGING = 0.05, 0.1
 """How near to the ends of a bracket a search looks, over it; where it misses its force by less than this share of what
@@ -117,7 +117,8 @@ class Branch(ContactBranch):
         Raises:
             UntrustedError: see `require_trust`; also where the force cannot be held.
         """
-        near = FORCE_ACCURACY * self.settings.tolerance * scale
+        # Where pairs snap the force at a displacement is known no better.
+        near = (0.5 if self.settings.is_smooth else 1.0) * FORCE_ACCURACY * self.settings.tolerance * scale
         rises = not self.states or force - self._last.carried > near
         direction = 1 if rises else -1
         self._turn(rises)

@@ -260,9 +260,7 @@ def budgeted(
             errors["input"] = errors.get("input", 0.0) + inputs[name]
         if name in between:
             errors["sampling"] = max(errors.get("sampling", 0.0), between[name])
-        # A value that is not 0 is compared with itself.
-        scale = one.scale if sum(errors.values()) >= abs(one.value) else None
-        found[name] = Result(one.value, one.unit, errors, scale, one.prescribed, read[name])
+        found[name] = Result(one.value, one.unit, errors, one.scale, one.prescribed, read[name])
     return found
 
 

@@ -96,7 +96,11 @@ class TangentialExperiment(Scripted[Tangential]):
             "normal_force": Reading(
                 force, FORCE, {"solver": ROUND_OFF * abs(force)}, prescribed=scene.experiment.compression is not None
             ),
-            "tangential_force": Reading(last.force, FORCE, {"solver": error, LATTICE: unseen}, scale=strongest),
+            # One that is not 0 is compared with itself.
+            "tangential_force": Reading(
+                last.force, FORCE, {"solver": error, LATTICE: unseen},
+                scale=strongest if abs(last.force) <= error + unseen else None,
+            ),
             "contact_radius": Reading(radius, LENGTH, prescribed=radius == 0.0),
             "stick_radius": Reading(
                 last.stick.value + trace.shift_of(last.state) * last.stick.uncertainty, LENGTH,

@@ -33,12 +33,9 @@ from contact1d.workflow.runs.refinement import Refined, refined
 from contact1d.workflow.runs.report import FILES, FORMATS, failure, results, tables_of, write_results, write_tables
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import AnyScene, Scene, read_scene, scene_to_toml
-from contact1d.workflow.scene.remedies import less_compression
 from contact1d.workflow.units import Scales
 
 LOCK = ".running"
-BEYOND = 10.0
-"""Displacement over that at which pairs at the apex coincide from which on no neighbour springs hold the bodies."""
 TIME_LIMIT = 3600.0
 """Wall time after which LAMMPS is stopped, for each pass of a search [s]."""
 
@@ -228,26 +225,8 @@ def alone(folder: Path, busy: str = "another run is active in") -> Iterator[None
             (folder / LOCK).unlink(missing_ok=True)
 
 
-def _require_carried(deck: Deck) -> None:
-    """Refuse a load at which the pairs at the apex, by themselves, would be far beyond the place where they coincide.
-
-    Raises:
-        SettingsError: with the load at which they do.
-    """
-    scene, estimate = deck.scene, deck.settings.estimate
-    coincide, load = estimate.rest - float(estimate.gap[0]), scene.experiment.compression or 0.0
-    if scene.interaction and load and deck.settings.largest_displacement > BEYOND * coincide:
-        most = estimate.contact_force(coincide)
-        raise SettingsError(
-            f"a load of {load:.4g} FU exceeds what the repulsion can carry: from about {most:.4g} FU on the particles "
-            "at the apex coincide, and the bodies go through each other. Lower the load, or use a stronger repulsion",
-            changes=less_compression(scene, most),
-        )
-
-
 def _planned_text(deck: Deck) -> str:
     """in.lammps with the planned schedule. Raises SettingsError where its path or one of its rows is too long."""
-    _require_carried(deck)
     require_way(deck.scene, deck.settings)
     phases = planned(deck.scene, deck.settings)
     require_steps(getattr(row, "steps", 0) for phase in phases for row in phase.rows)
