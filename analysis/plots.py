@@ -23,7 +23,7 @@ WIDTH, BESIDE = 6.4, 1.0
 DPI = 120
 TITLE, HEADING = 11.0, 10.0
 """Sizes of what stands above a figure and above a panel [pt]."""
-LINE, DIGIT, TICK, PAD = 13.0, 6.4, 8.0, 6.0
+LINE, DIGIT, TICK, PAD = 13.0, 6.4, 10.0, 6.0
 """A line of text, a digit of it, a tick with the room around it, and that around what stands above [pt]."""
 FEW_DECADES = 1e3
 """Span of a logarithmic axis up to which 2 and 5 of each decade have numbers."""

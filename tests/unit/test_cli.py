@@ -86,15 +86,6 @@ def test_numbers_are_printed_though_no_figure_can_be_drawn(monkeypatch: pytest.M
     assert done.stderr.endswith("the run failed: the disk is full (pressure.png); files are kept in runs/plane\n")
 
 
-def test_a_load_that_nothing_carries_is_refused_before_it_runs() -> None:
-    done = contact1d("run", str(ROOT / "lammps_inputs/scenes/load.toml"), "--set", "experiment.force=1e6")
-    assert done.exit_code == 2
-    assert "a load of 1e+06 FU exceeds what the repulsion can carry" in done.stderr
-    assert "the bodies go through each other. Lower the load, or use a stronger repulsion" in done.stderr
-    assert "LAMMPS" not in done.stderr
-    assert not Path("runs").exists()
-
-
 def test_what_to_cite_is_said_as_in_the_repository() -> None:
     done, kept = contact1d("--cite"), (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     assert done.exit_code == 0, done.stderr
