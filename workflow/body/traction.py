@@ -157,7 +157,8 @@ def _pressure(scene: Scene, profile: Profile, radius: ContactRadius, alone: bool
     inside = side[(side > 0.0) & (side < fine.edge * INSIDE)]
     r = inside if fine.has_apex else np.append(0.0, inside)
     p, *coarser = (one.pressure(r) for one in levels)
-    moves = _moves(fine, heights, r) if alone else np.abs(p)
+    # Where g is flat up to an edge that lies between two particles, p is that of a punch, ∝ 1/a.
+    moves = np.maximum(np.abs(p), _moves(fine, heights, r) if alone else 0.0)
     spread = radius.uncertainty / radius.value * moves
     # Of a known shape nothing lies between the particles: where they are too few to show it, its edge alone is open.
     if coarser or body is None:
