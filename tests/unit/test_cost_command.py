@@ -1,22 +1,21 @@
-"""contact1d cost from end to end: two files, failures as rows, mistakes told."""
+"""Claim: the error that `contact1d cost` states is the true one, and its command leaves a table and two files."""
 
 from __future__ import annotations
 
-import json
-from dataclasses import replace
+import math
 from pathlib import Path
 
 import pytest
+from click.testing import Result
 from typer.testing import CliRunner
 
-from contact1d import read_scene
 from contact1d.workflow.cli.app import app
-from contact1d.workflow.cost.measure import measure
-from contact1d.workflow.engine.progress import Silent
-from contact1d.workflow.model.settings import settings_for
+from contact1d.workflow.cost.report import CostRecord
 from tests.costs import read_record
-from tests.unit.test_cost import SCENES, MakeScene
+from tests.unit.test_cost import SCENES, SPACING, STEPS, TOLERANCE
 
+CERTAIN = 0.1
+"""Of an error that is stated as a number."""
 TINY = """
 title = "tiny"
 [bodies]
@@ -35,44 +34,80 @@ displacements = { from = 0.0, to = 0.5, steps = 2 }
 """
 
 
-def test_a_variant_that_fails_is_listed_and_does_not_stop_the_others(make_scene: MakeScene, tmp_path: Path) -> None:
-    scene = make_scene(bodies={"particles": "auto"})
-    usual = settings_for(scene)
-    loose = replace(usual, forces=replace(usual.forces, residual=1e3))
-    ready = {"loose": (scene, loose), "usual": (scene, usual)}
-    done = measure(ready, tmp_path, repeats=2, workers=1, progress=Silent())
-    assert "not converged" in done["loose"].failure
-    assert not done["usual"].failure
-    assert len(done["usual"].cpu_runs) == 2
-    assert done["usual"].cpu_s > 0.0
-    assert not list(tmp_path.iterdir())
+def cost(scene: Path | str, folder: Path, *options: str) -> tuple[Result, CostRecord]:
+    call = ["cost", str(scene), "--repeats", "1", "--workers", "1", "--out", str(folder), *options]
+    done = CliRunner().invoke(app, call)
+    assert done.exit_code == 0, done.stderr
+    return done, read_record(folder / "cost.json")
 
 
-def test_the_command_studies_a_scene_from_end_to_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def require_true(record: CostRecord, exact: dict[str, float]) -> None:
+    """Every stated error is that against the exact value, in its units, within a tenth or below the bound."""
+    for one in record.rows:
+        for name, value in exact.items():
+            true, stated = abs(one.results[name].value / value - 1.0), one.errors[name]
+            if stated.is_bound:
+                assert true <= stated.relative
+            else:
+                assert true == pytest.approx(stated.relative, rel=CERTAIN), (name, one.edit)
+
+
+def test_the_errors_of_jkr_are_those_against_its_closed_form(tmp_path: Path) -> None:
+    """F_A = 3πWR/2, a₀ = (9πWR²/2E*)^(1/3), E* = k/h = 1."""
+    work, radius = 0.005, 100.0
+    exact = {
+        "adhesion_force": 1.5 * math.pi * work * radius,
+        "zero_load_radius": (4.5 * math.pi * work * radius**2) ** (1 / 3),
+    }
+    done, found = cost(SCENES / "jkr.toml", tmp_path)
+    require_true(found, exact)
+    errors = {
+        float(str(one.edit.values[SPACING])): one.error.relative for one in found.rows if SPACING in one.edit.values
+    }
+    assert errors[0.8] > errors[0.4] > found.own.error.relative > errors[0.1]
+    assert found.own.dominant.startswith("discretisation")
+    assert found.own.error.relative > 0.0
+    assert "Keep the scene as it is" in done.stdout
+
+
+def test_with_an_automatic_spacing_the_error_of_hertz_follows_the_tolerance(tmp_path: Path) -> None:
+    """d = (9F²/16RE*²)^(1/3), a = √(Rd)."""
+    force, radius = 10.0, 10e-3
+    modulus = 1.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.22**2) / 70e9)
+    displacement = (9.0 * force**2 / (16.0 * radius * modulus**2)) ** (1 / 3)
+    _, found = cost(SCENES / "steel_on_glass.toml", tmp_path, "--set", "bodies.spacing=auto")
+    require_true(found, {"displacement": displacement, "contact_radius": math.sqrt(radius * displacement)})
+    errors = {one.edit.values[TOLERANCE]: one.error.relative for one in found.rows}
+    assert errors[1e-3] > 10.0 * errors[1e-5]
+
+
+def test_the_command_prints_a_table_and_leaves_two_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "tiny.toml").write_text(TINY, encoding="utf-8")
-    done = CliRunner().invoke(app, ["cost", "tiny.toml", "--repeats", "1"])
+    done = CliRunner().invoke(app, ["cost", "tiny.toml", "--repeats", "1", "--workers", "1"])
     assert done.exit_code == 0, done.stderr
-    assert "Keep it" in done.stdout
-    assert "gave numbers" not in done.stdout  # the shortest chains are too short, which nobody asked for
     folder = tmp_path / "costs" / "tiny"
     assert {path.name for path in folder.iterdir()} == {"cost.json", "cost.png"}
     found = read_record(folder / "cost.json")
-    assert {knob.name for knob in found.knobs} == {
-        "accuracy.tolerance",
-        "bodies.particles",
-        "experiment.displacements.steps",
-        "experiment.method",
-        "bodies.spacing",
-    }
-    assert not [one.label for one in found.variants if one.failure]
-    assert [one.name for one in found.effect_costs] == ["neighbours"]
-    assert found.effect_costs[0].without_us > 0.0
-    assert json.loads((folder / "cost.json").read_text(encoding="utf-8"))["reference"].startswith("quasistatic")
+    assert not [one.failure for one in found.rows if one.failure]
+    assert {one.change[0] for one in found.rows} == {TOLERANCE, SPACING, STEPS, "without"}
+    assert found.own.cpu_s > 0.0
+    assert f"{found.tolerance:g} (as it is)" in done.stdout
+    assert found.advice in done.stdout
 
 
-def test_a_variant_that_its_run_refuses_is_a_row_with_the_reason(tmp_path: Path) -> None:
-    """A lower chain that is too short for the sliding distance is found as the run begins."""
-    scene = read_scene(SCENES / "slide.toml", ["bodies.particles=34"])
-    done = measure({"short": (scene, settings_for(scene))}, tmp_path, 1, 1, Silent())
-    assert "too short for the sliding distance" in done["short"].failure
+@pytest.mark.parametrize(
+    ("scene", "change", "code", "words"),
+    [
+        ("hertz_plane", "experiment.displacements={from=-2.0,to=-1.0,steps=2}", 3, "its main results are all 0"),
+        ("jkr", "experiment.preload=1e9", 2, "Lower adhesion.work_of_adhesion, the load or the displacement"),
+    ],
+)
+def test_a_scene_without_a_reference_ends_with_the_reason(
+    scene: str, change: str, code: int, words: str, tmp_path: Path
+) -> None:
+    call = ["cost", str(SCENES / f"{scene}.toml"), "--out", str(tmp_path / "new"), "--set", change]
+    done = CliRunner().invoke(app, call)
+    assert (done.exit_code, done.stdout) == (code, "")
+    assert words in done.stderr
+    assert not list(tmp_path.glob("new/*"))

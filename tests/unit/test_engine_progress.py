@@ -76,3 +76,20 @@ def test_the_engine_loads_neither(module: str) -> None:
     code = f"import sys, {modules}; sys.exit({module!r} in sys.modules)"
     root = Path(__file__).parents[2]
     assert subprocess.run([sys.executable, "-c", code], cwd=root, check=False).returncode == 0
+
+
+PHASE, PART, SECONDS = 400, 100, 30.0
+"""Steps of a phase, of which a quarter took half a minute."""
+
+
+def test_what_is_left_of_a_phase_takes_as_long_as_what_is_done(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A quarter took half a minute, so that three of them are left: a minute and a half."""
+    now = [0.0]
+    monkeypatch.setattr("contact1d.workflow.engine.progress.time.monotonic", lambda: now[0])
+    lines = Lines(sys.stdout, quiet=1.0)
+    lines.phase("loading", PHASE)
+    now[0] = SECONDS
+    lines.advance(PART)
+    assert "step 100 of 400, 3.33 a second, about 90 s left" in capsys.readouterr().out

@@ -113,6 +113,15 @@ def test_a_corner_is_met_at_a_point_and_between_two(count: int) -> None:
     np.testing.assert_allclose(profile.transformed(x), transformed(x), rtol=0.0, atol=1e-8)
 
 
+@pytest.mark.parametrize("share", [0.0, 0.01, 0.05, 0.09, 0.5, 0.93, 0.99])
+@pytest.mark.parametrize("inner", [math.inf, 2000.0])
+def test_a_corner_is_met_however_near_to_a_point(share: float, inner: float) -> None:
+    """A ball worn to another radius: the parabolas of both sides are exact, and so is where they meet."""
+    r, b = np.arange(61.0), 20.0 + share
+    worn = np.minimum(r, b) ** 2 / (2.0 * inner) + np.maximum(r**2 - b**2, 0.0) / 200.0
+    assert table(r, worn).kinks == pytest.approx((b,), rel=1e-9)
+
+
 @pytest.mark.parametrize("count", [4, 25, 100, 2000])
 @pytest.mark.parametrize("name", RATES)
 def test_transform_of_a_table_is_the_defining_integral_of_its_cubics(name: str, count: int) -> None:

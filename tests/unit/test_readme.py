@@ -19,6 +19,7 @@ from contact1d import read_scene
 from contact1d.workflow.cli.app import app
 from contact1d.workflow.identify.contact import read_contact
 from contact1d.workflow.sweep.axes import read_sweep
+from tests.costs import read_record
 from tests.pages import require_shown
 
 ROOT = Path(__file__).parents[2]
@@ -108,6 +109,21 @@ def test_what_is_shown_is_what_is_printed(page: str, name: str, command: str, li
     output = printed(f"contact1d {command}/{name}.toml").splitlines()
     chosen = [line for line in output if re.match(lines, line.strip())]
     require_shown(page, name, "\n".join(["```text", *chosen, "```", ""]))
+
+
+def test_readme_has_what_effects_cost_by_the_records_of_cost_studies() -> None:
+    """Time of a run with an effect over that without it, and the largest change of a main result."""
+    rows = [
+        "| effect | scene | time with it over without | change of the results without it |",
+        "| --- | --- | --- | --- |",
+    ]
+    for path in sorted((ROOT / "validation" / "results" / "costs").glob("*.json")):
+        record = read_record(path)
+        for one in record.rows:
+            effects, ratio = ", ".join(one.edit.without), record.own.cpu_s / one.cpu_s
+            if effects and not any(f"| {effects} |" in row for row in rows):
+                rows.append(f"| {effects} | `{path.stem}` | {ratio:.2g} | {one.error.relative:.1g} |")
+    require_shown("README.md", "effects", "\n".join([*rows, ""]), exactly=True)
 
 
 def test_a_page_that_shows_another_number_or_unit_is_noticed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

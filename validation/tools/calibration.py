@@ -18,18 +18,19 @@ from __future__ import annotations
 import csv
 import json
 import math
+import os
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, field, fields, replace
+from itertools import repeat
 from pathlib import Path
 from statistics import geometric_mean
 from typing import Any
 
-from contact1d.workflow.cost.knobs import at_tolerance, changed
-from contact1d.workflow.cost.measure import Measured, measure
-from contact1d.workflow.cost.study import reference_of
+from contact1d.workflow.continuation.outcome import LATTICE, MODEL, Result, unmet
 from contact1d.workflow.engine.progress import choose_progress
+from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.model.settings import (
     CALIBRATION,
     FILE,
@@ -39,8 +40,10 @@ from contact1d.workflow.model.settings import (
     meanings,
     settings_for,
 )
+from contact1d.workflow.runs.accuracy import main_results
+from contact1d.workflow.runs.campaign import run
+from contact1d.workflow.runs.processors import pool
 from contact1d.workflow.scene import Scene, read_scene
-from contact1d.workflow.units import Quantity
 
 ROOT = Path(__file__).parents[2]
 RECORD = ROOT / "validation" / "results" / "calibration.csv"
@@ -54,8 +57,10 @@ PROMISED = {"residual": (1e-3, "on a rigid plane forces are promised to 1e-6, te
 """Largest value of a share that something other than the tolerance allows, and what."""
 TOGETHER = "together"
 """In place of a share's name, of runs with all shares as chosen."""
-ROUNDS, WORKERS = 1, 2
-"""Of each run, since a cost is the mean over all scenes and tolerances; and how many at a time."""
+WORKERS = 2
+"""Runs at a time; none is repeated, since a cost is the mean over all scenes and tolerances."""
+REFERENCES = (1e-7, 1e-6, 1e-5)
+"""Tolerances of a reference, of which the first is taken that works."""
 LADDERS = {
     "cutoff": (3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1),
     "table": (0.01, 0.1, 0.3, 1.0, 3.0, 10.0),
@@ -117,6 +122,52 @@ class Row:
     trouble: str
 
 
+@dataclass(frozen=True)
+class Found:
+    """What a run gave.
+
+    Attributes:
+        results: by name; none of a run that failed.
+        cpu_s, steps: processor time in LAMMPS [s]; minimiser iterations or timesteps.
+        warnings: by name, of the experiment.
+        failure: why it failed, else "".
+    """
+
+    results: Mapping[str, Result] = field(default_factory=dict)
+    cpu_s: float = math.nan
+    steps: int = 0
+    warnings: frozenset[str] = frozenset()
+    failure: str = ""
+
+    def open_results(self, tolerance: float) -> set[str]:
+        """The results that the settings leave more uncertain than the tolerance."""
+        return {*unmet(self.results, tolerance, (LATTICE, "input", MODEL))}
+
+
+def found(scene: Scene, settings: Settings, folder: Path) -> Found:
+    """Run a scene with these settings, in a folder of this process in `folder`."""
+    try:
+        done = run(scene, folder / str(os.getpid()), figures=False, settings=settings, workers=1)
+    except Contact1dError as error:
+        return Found(failure=getattr(error, "message", str(error)))
+    assert done.outcome is not None
+    results, warnings = done.outcome.results, frozenset(done.outcome.warnings)
+    return Found(results, done.timing["lammps_cpu_s"], int(done.timing["steps"]), warnings)
+
+
+def at_tolerance(scene: Scene, tolerance: float) -> Scene:
+    """The scene with another tolerance, and as long as that needs."""
+    return scene.with_({"accuracy.tolerance": tolerance, "bodies.particles": "auto"})
+
+
+def reference_of(scene: Scene, folder: Path) -> dict[str, Result]:
+    """The main results of the scene without time, at the smallest of REFERENCES that works."""
+    timed = [name for name in ("damping", "plate") if name in scene.effects]
+    still = scene.with_({"experiment.method": "quasistatic"}, without=timed)
+    finer = (at_tolerance(still, tolerance) for tolerance in REFERENCES)
+    return next(main for one in finer if (main := main_results(one, found(one, settings_for(one), folder).results)))
+
+
 def studied(name: str, shares: Mapping[str, Sequence[Calibration]]) -> list[Row]:
     """Run a scene of SCENES at every tolerance of TARGETS with these shares; the first of each list is the finest."""
     file, keys, without = SCENES[name]
@@ -124,23 +175,25 @@ def studied(name: str, shares: Mapping[str, Sequence[Calibration]]) -> list[Row]
     rows: list[Row] = []
     in_time = scene.method == "dynamic" and scene.experiment.kind == "pull_off"
     with tempfile.TemporaryDirectory() as place:
-        _, reference = reference_of(scene, Path(place))
+        reference = reference_of(scene, Path(place))
         for tolerance in TARGETS:
-            asked = changed(scene, at_tolerance(scene, tolerance))
+            asked = at_tolerance(scene, tolerance)
             chosen = {
                 (share, one): settings_for(asked, calibration=one) for share, many in shares.items() for one in many
             }
             same = {key: _effective(asked, settings) for key, settings in chosen.items()}
-            ready = {same[key]: (asked, settings) for key, settings in chosen.items()}
+            ready = {same[key]: settings for key, settings in chosen.items()}
             progress = choose_progress()
-            progress.phase(f"{name}, tolerance {power(tolerance)}", ROUNDS * len(ready))
-            done = measure(ready, Path(place), ROUNDS, WORKERS, progress)
+            progress.phase(f"{name}, tolerance {power(tolerance)}: {len(ready)} runs")
+            with pool(WORKERS) as executor:
+                runs = executor.map(found, repeat(asked), ready.values(), repeat(Path(place)))
+                done = dict(zip(ready, runs, strict=True))
             progress.close()
             for share, many in shares.items():
                 if len({same[share, one] for one in many}) > 1 or share == TOGETHER:
-                    found = [done[same[share, one]] for one in many]
+                    mine = [done[same[share, one]] for one in many]
                     values = [getattr(one, share, math.nan) for one in many]
-                    rows += _rows((name, tolerance, share), values, found, reference, claims=not in_time)
+                    rows += _rows((name, tolerance, share), values, mine, reference, claims=not in_time)
     return rows
 
 
@@ -162,25 +215,26 @@ def _effective(scene: Scene, settings: Settings) -> str:
 def _rows(
     key: tuple[str, float, str],
     values: Sequence[float],
-    found: Sequence[Measured],
-    reference: Mapping[str, Quantity],
+    runs: Sequence[Found],
+    reference: Mapping[str, Result],
     claims: bool,
 ) -> Iterator[Row]:
-    tolerance, finest = key[1], found[0]
+    tolerance, finest = key[1], runs[0]
     if finest.failure:
         return
-    for value, one in zip(values, found, strict=True):
-        if trouble := one.failure or next((f"no {name}" for name in reference if name not in one.quantities), ""):
+    for value, one in zip(values, runs, strict=True):
+        if trouble := one.failure or next((f"no {name}" for name in reference if name not in one.results), ""):
             yield Row(*key, value, math.nan, math.nan, math.nan, 0, " ".join(trouble.split()))
             continue
-        known = {name: best.value for name, best in reference.items() if f"tolerance {name}" not in finest.warnings}
+        left = finest.open_results(tolerance)
+        known = {name: best.value for name, best in reference.items() if name not in left}
         mine, base = (
-            {name: abs(it.quantities[name].value / best - 1.0) / tolerance for name, best in known.items()}
+            {name: abs(it.results[name].value / best - 1.0) / tolerance for name, best in known.items()}
             for it in (one, finest)
         )
         added = max((mine[name] - base[name] for name in known), default=0.0)
-        error, more = max(mine.values(), default=0.0), one.warnings - finest.warnings
-        warned = sorted(name for name in more if claims or not name.startswith("tolerance "))
+        error, open_ = max(mine.values(), default=0.0), one.open_results(tolerance) - left if claims else ()
+        warned = sorted([*(one.warnings - finest.warnings), *(f"tolerance {name}" for name in open_)])
         yield Row(*key, value, max(added, 0.0), error, one.cpu_s, one.steps, ", ".join(warned))
 
 

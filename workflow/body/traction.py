@@ -63,7 +63,7 @@ class BodyPressure:
         uncertainty: of it [FU/LU²].
         contact_radius: of the body [LU]; where bodies attract, tension reaches beyond it.
         results: `central_pressure`, p(0), and `peak_pressure`, the largest one [FU/LU²]; without one that has no bound,
-            as at a cone's tip, a punch's edge or a rim; where points leave a rim open, with an infinite uncertainty.
+            as at a cone's tip, a punch's edge or a rim; with an infinite uncertainty where that is open.
     """
 
     r: Array
@@ -172,15 +172,17 @@ def _pressure(scene: Scene, profile: Profile, radius: ContactRadius, alone: bool
     smooth = p[top] > 0.0 and not (shape.has_edge or any(kink < radius.value for kink in shape.kinks))
     smooth &= top == 0 or (len(told) == 3 and fine.at_edge <= noise * p[top] * fine.edge)
     around = fine.pressure(np.linspace(r[max(0, top - 1)], r[min(top + 1, r.size - 1)], BETWEEN))
-    rim = np.inf if any(kink < radius.value for one in shape.alternatives for kink in one.kinks) else 0.0
+    hidden = any(kink < radius.value for one in shape.alternatives for kink in one.kinks)
     error, results = spread + share * moves + ROUND_OFF * layer, {}
-    for name, place, read, value, least, bounded in (
-        ("central_pressure", 0, itemgetter(0), p[0], 0.0, True),
-        ("peak_pressure", top, np.max, around.max(), rim, smooth),
+    for name, place, read, value, is_open, may_have in (
+        ("central_pressure", 0, itemgetter(0), p[0], False, True),
+        ("peak_pressure", top, np.max, around.max(), hidden, smooth),
     ):
-        if bounded and not fine.has_apex and _converges([read(one) for one in told], noise):
-            apart = sum(abs(read(one) - read(p)) for one in others)
-            results[name] = Quantity(float(value), float(error[place] + apart + least), MEAN_PRESSURE)
+        known = _converges([read(one) for one in told], noise)
+        if may_have and not fine.has_apex and (known or shape.alternatives):
+            known &= not is_open
+            off = error[place] + sum(abs(read(one) - read(p)) for one in others) if known else np.inf
+            results[name] = Quantity(float(value), float(off), MEAN_PRESSURE)
     return BodyPressure(r, p, spread + sum(np.abs(one - p) for one in others), radius.value / wider, results)
 
 

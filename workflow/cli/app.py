@@ -238,24 +238,23 @@ def cost(
     repeats: Annotated[int, typer.Option(min=1, help="Runs of each variant; times are their medians.")] = 3,
     workers: Annotated[int | None, typer.Option(min=1, help="Runs in parallel.", show_default="processors")] = None,
 ) -> None:
-    """Measure the cost of accuracy: error and CPU time of every numerical setting and effect of a scene.
+    """Measure the cost of accuracy: true error and CPU time of a scene over its tolerance, settings and effects.
 
-    Prints a row for each: its value, the value that is enough, errors, times, what to do. Leaves cost.json and
-    cost.png, a work-precision figure. The scene itself is not changed.
+    Prints a row for each: error against a run that is finer in all, time, the dominant error; then what to do. Leaves
+    cost.json and cost.png, a work-precision figure. The scene itself is not changed.
     """
     folder = out if out is not None else Path("costs") / scene.stem
     with command("the study", kept="run it again from the start") as progress:
-        asked = read(scene, set_, without)
+        checked = read(scene, set_, without)
         from contact1d.workflow.cost.report import summary, write_report
         from contact1d.workflow.cost.study import cost_of
         from contact1d.workflow.experiments.spacing import with_spacing
         from contact1d.workflow.model.settings import settings_for
         from contact1d.workflow.runs.processors import cores
 
-        checked = with_spacing(asked)
-        settings_for(checked)
+        settings_for(with_spacing(checked))
         folder.mkdir(parents=True, exist_ok=True)
-        record = cost_of(checked, scene.stem, folder, repeats, workers or cores(), progress)
+        record = cost_of(checked, folder, repeats, workers or cores(), progress)
         write_report(record, folder)
     say(summary(record), {}, folder)
 

@@ -1,1 +1,1 @@
-"""The cost of accuracy: error and CPU time of every numerical setting of a scene, measured in one run."""
+"""The cost of accuracy: true error and CPU time of a scene, over its tolerance, its settings and its effects."""

@@ -71,6 +71,13 @@ def unknown(scene: Scene, outcome: Outcome) -> dict[str, Result]:
     return missing
 
 
+def main_results(scene: Scene, results: Mapping[str, Result]) -> dict[str, Result]:
+    """The main results as far as they are found, and neither prescribed nor the load."""
+    load = scene.experiment.load_key if scene.experiment.compression is not None else None
+    found = {name: results[name] for name in kind_of(scene).main_results if name in results}
+    return {name: one for name, one in found.items() if not one.prescribed and name != load}
+
+
 def require_results(scene: Scene, outcome: Outcome) -> None:
     """Raise UntrustedError where a run has main results and none of them can be reported.
 
@@ -78,9 +85,8 @@ def require_results(scene: Scene, outcome: Outcome) -> None:
     """
     if scene.experiment.way_is_given:
         return
-    main = [name for name in kind_of(scene).main_results if name in outcome.results]
-    main = [name for name in main if not outcome.results[name].prescribed and name != scene.experiment.load_key]
-    if main and not set(main) - unknown(scene, outcome).keys():
+    main = main_results(scene, outcome.results)
+    if main and not main.keys() - unknown(scene, outcome).keys():
         raise UntrustedError(accuracy_warnings(scene, outcome)["unknown"])
 
 
@@ -88,12 +94,6 @@ def reported(scene: Scene, outcome: Outcome) -> Outcome:
     """The outcome without results that are not reported."""
     missing = unknown(scene, outcome)
     return replace(outcome, results={name: one for name, one in outcome.results.items() if name not in missing})
-
-
-def open_results(scene: Scene, outcome: Outcome) -> dict[str, float]:
-    """Results whose uncertainty exceeds the tolerance, without the discretisation error; with noise none."""
-    left_out = (LATTICE, "input", MODEL)
-    return {} if kind_of(scene).is_statistical else unmet(outcome.results, scene.accuracy.tolerance, left_out)
 
 
 def _kind(name: str, one: Result) -> str:
@@ -107,7 +107,7 @@ def _less_than(one: Result) -> str:
     """How large a result may be: "(less than 2.3 FU)" of one that may be 0, else "(± 2.3 FU)"."""
     bound, words = one.uncertainty, "±"
     if np.isinf(bound):
-        return "(without a bound if the slope jumps between points of bodies.profile: give more points)"
+        return "(not shown to have a bound: give more particles in the contact, or more points of a profile)"
     if one.uncertainty >= abs(one.value):
         bound, words = bound + abs(one.value), "less than"
     return f"({words} {float(f'{bound:.2g}'):g} {one.unit})"

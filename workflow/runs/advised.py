@@ -105,7 +105,7 @@ def _tried(reader: Reader, error: Contact1dError, progress: Progress) -> str:
             scene = reader(edit)
         except SceneError:  # the same failure of another experiment, which has no such key
             continue
-        edits.append((_in_si(scene, edit), scene))
+        edits.append((in_si(scene, edit), scene))
     if not edits:
         return ""
     (first, scene), *others = edits
@@ -126,19 +126,19 @@ def _attempt(scene: Scene) -> None:
         campaign.run(chosen, Path(folder) / "trial", False, time_limit=TRIAL, settings=settings, retries=False)
 
 
-def _in_si(scene: Scene, edit: SceneEdit) -> SceneEdit:
+def in_si(scene: Scene, edit: SceneEdit, digits: int = 3) -> SceneEdit:
     """The edit with units, "33.3pN", where LU and FU are known: a scene file that has them takes no plain number."""
     material, scales = scene.material, scales_of(scene, {})
     if not scales.known or material is None or material.length_unit is None or material.force_unit is None:
         return edit
     tables = scene.model_dump(by_alias=True, exclude_none=True)
-    units = {".".join(map(str, place.keys)): place.unit.name for place in places(Scene, tables)}
+    units = {place.path: place.unit.name for place in places(Scene, tables)}
     values = dict(edit.values)
     for key, value in values.items():
         unit = units.get(key, NUMBER)
         if isinstance(value, float) and unit != NUMBER and scales.know(unit):
             factor, name = scales.written(value, unit)
-            values[key] = f"{value * factor:.3g}{name}"
+            values[key] = f"{value * factor:.{digits}g}{name}"
     return replace(edit, values=values)
 
 

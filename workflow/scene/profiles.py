@@ -432,17 +432,17 @@ def _points(r: tuple[float, ...], z: tuple[float, ...], sharpness: float = SHARP
     for i in np.argsort(-excess) + 1:
         if excess[i - 1] <= 0.0 or taken & {i, i + 1}:
             continue
-        taken |= {i, i + 1}
         left, right, step = slice(max(0, i + 1 - FLANK), i + 1), slice(i + 1, i + 1 + FLANK), x[i + 1] - x[i]
         lines = [np.polyfit((x[own] - x[i]) / step, y[own], min(2, len(x[own]) - 1)) for own in (left, right)]
         meet = [
             one.real for one in np.roots(np.polysub(*lines)) if one.imag == 0.0 and INSIDE < one.real < 1.0 - INSIDE
         ]
-        top = i + int(curvature[i + 1] > curvature[i])
         if len(meet) == 1:
+            taken |= {i, i + 1}
             found[float(x[i] + step * meet[0])] = float(np.polyval(lines[0], meet[0]))
-        elif curvature[top] > sharpness * max(curvature[top - 1], curvature[top + 1]):
-            found[float(x[top])] = float(y[top])
+    single = curvature[1:-1] > sharpness * np.maximum(curvature[:-2], curvature[2:])
+    for i in {*(np.flatnonzero(single) + 1)} - taken:
+        found[float(x[i])] = float(y[i])
     every = dict(zip(x.tolist(), y.tolist(), strict=True)) | found
     places = sorted(every)
     return np.asarray(places), np.asarray([every[one] for one in places]), [places.index(one) for one in sorted(found)]
