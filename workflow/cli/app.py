@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from contact1d.workflow.runs.finished import Run
 
 GARBAGE_THRESHOLD = 300_000
-"""New objects between garbage collections: a run with its figures makes fewer; with 700, they take a tenth of its time."""
+"""New objects between garbage collections: a run with its figures makes fewer; with 700 they take a tenth of it."""
 
 app = typer.Typer(
     cls=Commands,
