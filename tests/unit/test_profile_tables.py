@@ -184,3 +184,13 @@ def test_transform_of_many_places_is_that_of_each() -> None:
     np.testing.assert_allclose(profile.transformed(x)[chosen], profile.transformed(x[chosen]), rtol=ROUND_OFF, atol=0.0)
     assert profile.transformed(np.empty(0)).shape == (0,)
     assert profile.height(np.empty(0)).shape == (0,)
+
+
+@pytest.mark.parametrize("count", [41, 42])
+def test_a_table_is_as_sure_as_without_every_second_point(count: int) -> None:
+    """Each inner point is missing once, and the ends stay."""
+    given = table(np.linspace(0.0, 40.0, count), np.linspace(0.0, 40.0, count) ** 2)
+    points, fewer = set(given.r), [set(other.r) for other in given.coarser]
+    assert len(fewer) == 2
+    assert set.union(*fewer) == points
+    assert set.intersection(*fewer) == {0.0, 40.0}

@@ -36,7 +36,7 @@ def accuracy_warnings(scene: Scene, outcome: Outcome) -> dict[str, str]:
             f"{_advice(scene, outcome, missing)}"
         )
     if by_lattice:
-        warnings["lattice"] = _lattice_message(scene, by_lattice)
+        warnings["lattice"] = _lattice_message(scene, by_lattice, bool(_by_lattice(missing, tolerance)))
     if others:
         ended = f" ({outcome.refinement.ended})" if outcome.refinement and outcome.refinement.ended else ""
         warnings["tolerance"] = (
@@ -130,11 +130,12 @@ def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, fl
     return unmet(found, tolerance)
 
 
-def _lattice_message(scene: Scene, shares: Mapping[str, float]) -> str:
+def _lattice_message(scene: Scene, shares: Mapping[str, float], others_unknown: bool) -> str:
+    """A spacing is named, by the second order, unless other results are so uncertain that no order holds."""
     tolerance = scene.accuracy.tolerance
     spacing = scene.bodies.spacing * np.sqrt(0.5 * tolerance / min(1.0, max(shares.values())))
     return (
         f"relative discretisation errors above the tolerance of {tolerance:g}: {in_words(shares, tolerance)}. "
-        f"Use a smaller bodies.spacing, about {spacing:.2g} LU, at the same stiffness and energy per "
-        "length, or give bodies.particles if this discrete chain is intended"
+        f"Use a smaller bodies.spacing{'' if others_unknown else f', about {spacing:.2g} LU'}, at the same stiffness "
+        "and energy per length, or give bodies.particles if this discrete chain is intended"
     )
