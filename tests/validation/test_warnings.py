@@ -23,9 +23,7 @@ def contact(folder: Path, **bodies: Any) -> Run:
     experiment = {"kind": "load", "force": 3.0}
     spacing = bodies.setdefault("spacing", 1.0)
     law = (LAW[0] * spacing, LAW[1], LAW[2] * spacing, LAW[3])
-    scene = chains(
-        200.0, 0.83 * spacing, law, experiment=experiment, accuracy={"tolerance": TOLERANCE}, bodies=bodies
-    )
+    scene = chains(200.0, 0.83 * spacing, law, experiment=experiment, accuracy={"tolerance": TOLERANCE}, bodies=bodies)
     if "lower" in bodies:
         del scene["interaction"]
     return run(scene, folder, figures=False)
