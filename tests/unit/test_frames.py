@@ -33,7 +33,7 @@ def test_atoms_come_by_their_id_and_reading_goes_on_at_the_end(tmp_path: Path) -
 def test_frames_that_are_not_whole_are_refused(cut: int, tmp_path: Path) -> None:
     path = dump(tmp_path / "a.bin", [[[2, 5.0, 6.0], [1, 3.0, 4.0]], [[2, 9.0, 10.0], [1, 7.0, 8.0]]])
     path.write_bytes(path.read_bytes()[:-cut])
-    with pytest.raises(ValueError, match="are not 2 frames of 2 atoms|change their order"):
+    with pytest.raises(ValueError, match=r"are not 2 frames|change their order"):
         last_frames(path, 2, 2, 3, 0)
 
 
