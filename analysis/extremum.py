@@ -237,6 +237,8 @@ def _minimum(
     """
     points, values = x[under], y[under]
     origin, width, depth = float(points.sum()) / len(points), float(np.ptp(points)), float(np.abs(values).max())
+    if depth == 0.0:
+        return math.nan, math.nan
     matrix = fitting((points - origin) / width, degree or len(points) - 1)
     start = None if near is None else (near - origin) / width
     t, bend = lowest_minimum(matrix @ (values / depth), (low - origin) / width, (high - origin) / width, start)

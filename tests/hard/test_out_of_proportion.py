@@ -33,6 +33,10 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "a spacing far below the ranges": (chains(100.0, bodies={"spacing": 1e-6}, experiment=LOAD), r"would interact"),
     "a spacing far above the radius": (chains(100.0, bodies={"spacing": 1e6}, experiment=LOAD), r"too sharp"),
     "a load that a planet carries": (chains(100.0, experiment={"kind": "load", "force": 1e9}), r"particles per body"),
+    "a body sunk a million times deeper than its forces reach": (
+        chains(1000.0, neighbours={"stiffness": 0.3}, experiment={"kind": "load", "force": 1e6}),
+        r"box of .* LU by .* LU, and their forces reach over .* LU only: use a smaller load",
+    ),
     "more pairs than any memory holds": (
         chains(100.0, law=(0.18, 0.13, 0.09, 150.0), bodies={"particles": 10_000_000}, experiment=LOAD),
         r"GB of memory, and this machine has",

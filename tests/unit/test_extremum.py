@@ -33,6 +33,14 @@ def test_three_samples_that_tie_leave_a_quarter_of_their_extent() -> None:
     assert 0.25 * 2 * SPACING <= place.uncertainty <= 4 * SPACING
 
 
+def test_a_side_on_which_nothing_pulls_has_its_minimum_anywhere() -> None:
+    """A body pressed on so hard that one side alone has a particle under tension."""
+    x, y, _ = sampled([0.0] * 20 + [-2e-4] + [1.0] * 40 + [0.0] * 20)
+    place = place_of_minimum(x, y, np.arange(40, 81))
+    assert abs(place.position - x[71]) <= 2.0 * SPACING
+    assert place.uncertainty >= 9.5 * SPACING
+
+
 def test_five_samples_on_each_side_are_enough_to_converge() -> None:
     """With four the polynomials through seven samples decide, which know less."""
     t = np.arange(-5.0, 6.0) + 0.3

@@ -27,7 +27,7 @@ from contact1d.analysis.pressure import Array
 from contact1d.potentials import DoubleExponential
 from contact1d.workflow.body.reading import product
 from contact1d.workflow.body.theory import Case
-from contact1d.workflow.body.traction import body_pressures, is_of_a_body
+from contact1d.workflow.body.traction import BodyPressure, body_pressures, is_of_a_body
 from contact1d.workflow.continuation.outcome import MODEL, Outcome, Result
 from contact1d.workflow.model.pairs import row_force
 from contact1d.workflow.model.settings import Settings
@@ -135,31 +135,30 @@ def _work(law: DoubleExponential, spacing: float) -> Quantity:
     return Quantity(fine, abs(fine - work(force[1::2], 2.0 * end / POINTS)), ENERGY)
 
 
-def with_body(scene: Scene, outcome: Outcome) -> Outcome:
-    """The outcome with the results of the body: p(0), the largest pressure, mean pressure, stiffness, adhesion energy.
-
-    A pressure that has no bound is left out.
-    """
-    if not is_of_a_body(scene):
-        return outcome
-    found = outcome.quantities
-    return _with(outcome, _pressures(scene, outcome) | _of_the_contact(scene, found) | _adhesion_energy(scene, found))
-
-
-def _pressures(scene: Scene, outcome: Outcome) -> dict[str, Quantity]:
-    """p(0) and the largest pressure of the reported state, as uncertain as its radius makes them besides."""
+def pressures_of(scene: Scene, outcome: Outcome) -> dict[str, BodyPressure]:
+    """p(r) of the reported states of the body, as uncertain as the results of which it is a function."""
     found = outcome.quantities
     shares = {name: one.uncertainty / abs(one.value) for name in ERRORS if (one := found.get(name)) and one.value}
     radius = next((shares[name] for name in RADII if name in shares), 0.0)
-    states = {name: outcome.profiles[name] for name in reported_state(outcome)}
-    pressures = body_pressures(scene, states, radius, sum(shares.values()))
-    # What is not quite 0 at F = 0 is spread over the contact.
-    left = {"zero_load": abs(outcome.marked["zero_load"].force)} if "zero_load" in pressures else {}
-    return {
-        name: replace(p, uncertainty=p.uncertainty + left.get(state, 0.0) / pressure.contact_radius**2)
-        for state, pressure in pressures.items()
-        for name, p in pressure.results.items()
-    }
+    return body_pressures(scene, outcome.profiles, radius, sum(shares.values()))
+
+
+def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> Outcome:
+    """The outcome with the results of the body: p(0), the largest pressure, mean pressure, stiffness, adhesion energy.
+
+    `pressures`: of its states. One that has no bound is left out.
+    """
+    if not is_of_a_body(scene):
+        return outcome
+    found, of_pressure = outcome.quantities, {}
+    for name in reported_state(outcome):
+        if pressure := pressures.get(name):
+            # What is not quite 0 at F = 0 is spread over the contact.
+            left = abs(outcome.marked[name].force) / pressure.contact_radius**2 if name == "zero_load" else 0.0
+            of_pressure = {
+                key: replace(one, uncertainty=one.uncertainty + left) for key, one in pressure.results.items()
+            }
+    return _with(outcome, of_pressure | _of_the_contact(scene, found) | _adhesion_energy(scene, found))
 
 
 def reported_state(outcome: Outcome) -> list[str]:

@@ -15,6 +15,7 @@ from contact1d.workflow.deck.effects import LEAST_SLENDERNESS, Contribution, Sta
 from contact1d.workflow.deck.effects.interaction import SKIN
 from contact1d.workflow.deck.lattice import bodies
 from contact1d.workflow.deck.units import DeckUnits
+from contact1d.workflow.model.chain import MIX_UP, SettingsError
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
@@ -62,15 +63,28 @@ def bins(scene: Scene, settings: Settings, brought: Sequence[Contribution]) -> l
     """The edge of a bin with which the box has MOST_BINS at most; none where it has no more as LAMMPS chooses it.
 
     LAMMPS's own choice is half the reach of the forces, where nothing that is `brought` has chosen another one.
+
+    Raises:
+        SettingsError: even the largest bins are more than LAMMPS can count.
     """
     chosen = [float(part.variables[name]) for part in brought for name in CHOSEN_BINS if name in part.variables]
     atoms = [group for body in bodies(scene, settings) for group in (body.particles, body.anchors, body.far_anchors)]
     everywhere = np.concatenate(atoms)
     edges = np.ptp(everywhere, axis=0) + 2.0 * np.asarray(margins(scene, settings), dtype=np.float64)
     own = edge = max([*chosen, 0.5 * reach(scene, settings)])
-    while np.log(np.maximum(edges / edge, 1.0)).sum() > math.log(MOST_BINS):  # the number itself may overflow
+
+    def exceed(edge: float, most: float) -> bool:
+        return bool(np.log(np.maximum(edges / edge, 1.0)).sum() > math.log(most))  # the number itself may overflow
+
+    while exceed(edge, MOST_BINS):
         edge *= 2.0
     least = min(edge, float(edges.min()) / LEAST_SLENDERNESS)
+    if exceed(least, COUNTED_BINS):
+        raise SettingsError(
+            f"the bodies would fill a box of {edges[0]:.3g} LU by {edges[2]:.3g} LU, and their forces reach over "
+            f"{reach(scene, settings):.3g} LU only: use a smaller load or displacement, stiffer springs or a larger "
+            f"radius. {MIX_UP}"
+        )
     return [] if edge == own else [Contribution("bins", Stage.MOTION, ("bins",), {"bin_edge": number(least)})]
 
 
@@ -117,6 +131,8 @@ BIN_MARGIN = 1e-3
 """Least free space over the length of a long bond: LAMMPS wants no box much thinner than its bins."""
 MOST_BINS = 4_000_000
 """Bins beyond which they are made larger: some 100 MB of them."""
+COUNTED_BINS = 2**31 / 27
+"""Bins of a box that LAMMPS can count: it adds others on each side of each edge."""
 
 Lengths = tuple[float, float, float]
 

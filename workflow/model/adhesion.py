@@ -236,7 +236,7 @@ class AdhesiveEstimate(ContactEstimate):
         places, forces = self._rising
         return float(np.interp(force, forces, places))
 
-    def stiffness_under(self, force: float) -> float:
+    def _stiffness_under(self, force: float) -> float:
         """dF/dd [FU/LU] under a force [FU]; a tension above SOFTEST of the largest counts as that."""
         places, forces = self._rising
         return float(np.interp(max(force, -SOFTEST * self.pull_off_force()), forces, np.gradient(forces, places)))

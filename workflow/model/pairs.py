@@ -212,8 +212,12 @@ class ContactEstimate:
         """Largest tension of the predictor [FU]; 0 without attraction."""
         return max(0.0, self._largest_tension[1])
 
-    def stiffness_under(self, force: float) -> float:
+    @cached_property
+    def stiffness_under(self) -> Callable[[float], float]:
         """Contact stiffness dF/dd [FU/LU] under a force [FU]; above SOFTEST_SHARE of the force maximum: there."""
+        return cache(self._stiffness_under)
+
+    def _stiffness_under(self, force: float) -> float:
         if force > 0.0:
             deepest = self.displacement_at(force)
             step = DIFFERENCE * (deepest - self._apart)

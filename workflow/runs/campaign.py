@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from contact1d.files import PART, AnyPath, write_whole
-from contact1d.workflow.body.derived import formulas, with_body, with_implied
+from contact1d.workflow.body.derived import formulas, pressures_of, with_body, with_implied
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.trust import UntrustedError
@@ -127,9 +127,10 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
         where = f" [phase {context.phase}, step {context.timestep}]"
         raise RunError(f"{facts['message']}{_hint(str(facts['message']))}{where}", folder) from error
     outcome = with_implied(scene, last.deck.settings, last.outcome)
-    outcome = with_body(scene, outcome)
+    pressures = pressures_of(scene, outcome)
+    outcome = with_body(scene, outcome, pressures)
     write_whole(folder / "in.lammps", last.deck.text(outcome.phases))
-    tables = tables_of(scene, reported(scene, outcome))
+    tables = tables_of(scene, reported(scene, outcome), pressures)
     write_tables(folder, scene, outcome, tables)
     document = results(scene, outcome, timing()) | formulas(scene, outcome.quantities)
     write_results(folder, document)
@@ -149,7 +150,7 @@ def _in_its_units(scene: Scene) -> Iterator[Scales]:
 def _write_what_is_left(outcome: Outcome, scene: Scene, folder: Path, figures: bool | str) -> None:
     """Tables and figures of a run that gives no numbers, to see why."""
     left = replace(outcome, results={})
-    tables = tables_of(scene, left)
+    tables = tables_of(scene, left, pressures_of(scene, left))
     write_tables(folder, scene, left, tables)
     _draw(Run(folder, {}, scene, tables, left), figures)
 

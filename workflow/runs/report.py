@@ -26,7 +26,7 @@ from contact1d.files import UnreadableError, read_text, write_whole
 from contact1d.workflow.body.derived import reported_state
 from contact1d.workflow.body.reading import doubt_of_the_image, of_the_body
 from contact1d.workflow.body.theory import theory
-from contact1d.workflow.body.traction import body_pressures, body_shears
+from contact1d.workflow.body.traction import BodyPressure, body_shears
 from contact1d.workflow.body.validity import checks
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.errors import FolderError
@@ -213,7 +213,7 @@ OF_A_BODY = {"pressure": MEAN_PRESSURE, "pressure_uncertainty": MEAN_PRESSURE}
 """In place of these in pressure_3d.csv: a pressure, where the chain has a line load."""
 
 
-def tables_of(scene: Scene, outcome: Outcome) -> dict[str, Columns]:
+def tables_of(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> dict[str, Columns]:
     """The tables of a run by the names of their files, in SI where the units are known.
 
     curve: the measured states in order; a radius is NaN where the bodies do not touch. profile: of the reported states,
@@ -239,7 +239,6 @@ def tables_of(scene: Scene, outcome: Outcome) -> dict[str, Columns]:
         along = {name: np.asarray(column) for name, column in outcome.columns.items()}
         shears = body_shears(scene, outcome.profiles, along, contact_radius)
         tables["shear_3d"] = below({name: (one.r, one.shear, one.uncertainty) for name, one in shears.items()}, SHEAR)
-    pressures = body_pressures(scene, outcome.profiles)
     stacked = {name: (one.r, one.pressure, one.uncertainty) for name, one in pressures.items()}
     tables["pressure_3d"] = below(stacked, PRESSURE)
     scales = scales_of(scene, outcome.quantities)
