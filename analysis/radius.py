@@ -191,7 +191,8 @@ def _of_edges(
         low = max(0, most - PARABOLA_POINTS)
         near = slice(low, most + 2)
         found.append(edge(places[near].tolist(), pressures[near].tolist(), least - low, most - low))
-    return _between(replace(found[0], position=-found[0].position), found[1])
+    mirrored, right = found
+    return _between(Place(-mirrored.position, mirrored.uncertainty, mirrored.at_end), right)
 
 
 def _zero(x: list[float], p: list[float], first: int, last: int, largest: float, residual: float) -> Place:

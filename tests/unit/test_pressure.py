@@ -10,11 +10,14 @@ import pytest
 from contact1d.analysis.pressure import (
     Profile,
     end_pressure_share,
+    left_out,
     mean_pressure,
     penetration_depth,
     pressure_profile,
     smallest_distance,
 )
+from contact1d.potentials import DoubleExponential, Exponential
+from contact1d.potentials.table import table_for
 
 ROUND_OFF = 1e-14  # relative; a few operations on doubles
 TABLE_DIGITS = 0.5  # MPa; the 784 MPa are given to three digits
@@ -117,3 +120,20 @@ def test_the_share_at_the_ends_counts_tension_and_compression() -> None:
     assert end_pressure_share(profile(x, np.zeros(4))) == 0.0
     for scale in (2.0**-60, 2.0**60):
         assert end_pressure_share(profile(x, scale * np.array([0.25, -4.0, 2.0, -0.125]))) == 0.0625
+
+
+@pytest.mark.parametrize("cutoff", [1.1, 2.6])
+def test_what_a_table_leaves_out_is_summed_over_all_pairs(cutoff: float) -> None:
+    """Beyond the cutoff up to five ranges all of the force, below it the table's error; each along z."""
+    law = DoubleExponential(Exponential(0.18, 0.13), Exponential(0.09, 0.26))
+    table, x = table_for(law, cutoff, 0.2, 1e-3), 0.4 * np.arange(15)
+    state = Profile(x, 0.01 * np.sin(x), 0.3 + 0.02 * (x - 2.0) ** 2, np.ones(15), np.zeros(15))
+    total = 0.0
+    for i in range(15):
+        for j in range(15):
+            up = state.z_upper[i] - state.z_lower[j]
+            r = math.hypot(x[i] - x[j], up)
+            if r < cutoff + 5.0 * 0.26:
+                kept = float(table.force(np.asarray([r]))[0]) if r <= cutoff else 0.0
+                total += abs(kept - float(law.force(r))) * up / r
+    assert left_out(law, table, state) == pytest.approx(total, rel=1e-9, abs=0.0)
