@@ -44,8 +44,9 @@ NARROWEST = 1e-12
 """Heights in which a particle separates that does so at once, over the spacing: no formula may divide by 0."""
 NEAR_AN_END = 0.1
 """Place of the middle of a cell between its ends, as h sees it, beyond which its bend would turn the share around."""
-BENDS, WHOLE = 401, 0.999
-"""Values of κ that are tried for the cell of the limit point, and share from which on it is held as a whole."""
+BENDS, WHOLE = 401, 1.0 - 1e-9
+"""Values of κ that are tried for the cell of the limit point, and share from which on it is held as a whole: a contact
+whose edge comes to rest at a kink between two cells lacks what is left of it, where no other lattice shows that."""
 SOFTEST = 0.998
 """Tension over the largest one at which a contact counts as softest."""
 
