@@ -102,9 +102,10 @@ class TangentialExperiment(Scripted[Tangential]):
                 scale=strongest if abs(last.force) <= error + unseen else None,
             ),
             "contact_radius": Reading(radius, LENGTH, prescribed=radius == 0.0),
+            # Of a contact that slips as far as its particles show, another lattice may have one that sticks.
             "stick_radius": Reading(
                 last.stick.value + trace.shift_of(last.state) * last.stick.uncertainty, LENGTH,
-                prescribed=last.stick.value == last.stick.uncertainty == 0.0,
+                prescribed=radius == 0.0, scale=radius if last.stick.value == 0.0 else None,
             ),
             "dissipated_energy": _energy(rows, lost, scene),
         }  # fmt: skip
