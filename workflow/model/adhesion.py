@@ -45,8 +45,8 @@ NARROWEST = 1e-12
 NEAR_AN_END = 0.1
 """Place of the middle of a cell between its ends, as h sees it, beyond which its bend would turn the share around."""
 BENDS, WHOLE = 401, 1.0 - 1e-9
-"""Values of κ that are tried for the cell of the limit point, and share from which on it is held as a whole: a contact
-whose edge comes to rest at a kink between two cells lacks what is left of it, where no other lattice shows that."""
+"""Values of κ that are tried for the cell of the limit point, and share from which on it is held as a whole. The rest
+of the share is an error of the force: at a kink between two cells all lattices have the same one, so none shows it."""
 SOFTEST = 0.998
 """Tension over the largest one at which a contact counts as softest."""
 
