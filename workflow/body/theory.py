@@ -95,7 +95,7 @@ class Case:
 
     @property
     def range(self) -> float:
-        """h₀ [LU]: given or assumed, or of a Lennard-Jones surface with an interaction's force-free distance; else 0."""
+        """h₀ [LU]: given or assumed, or of Lennard-Jones surfaces with an interaction's force-free distance; else 0."""
         if self.scene.adhesion is not None:
             return self.scene.adhesion.range or (ASSUMED_RANGE / self.scales.length if self.scales.known else 0.0)
         law = interaction_law(self.scene)
