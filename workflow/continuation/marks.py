@@ -130,12 +130,16 @@ def _zero_load_reach(branch: Trace) -> Reading | None:
     """c where the force crosses 0, likewise; None where the attraction has no range."""
     d, force = branch.lists
     index, place = crossing(d, force, 0.0)
-    ends = [branch.reach(i) for i in (min(index + 1, len(d) - 1), index)]
-    if None in ends:
+    near = (min(index + 1, len(d) - 1), index)
+    if branch.reach(index) is None:
         return None
-    line = float(np.interp(place, [d[min(index + 1, len(d) - 1)], d[index]], ends))
-    reach = _through_nearest(branch, smooth_crossing(d, force, 0.0), lambda i: branch.reach(i) or 0.0)
-    return Reading(reach, LENGTH, {"sampling": abs(reach - line)})
+
+    def reach(state: int) -> float:
+        return branch.reach(state) or 0.0
+
+    line = float(np.interp(place, [d[i] for i in near], [reach(i) for i in near]))
+    value = _through_nearest(branch, smooth_crossing(d, force, 0.0), reach)
+    return Reading(value, LENGTH, {"sampling": abs(value - line)})
 
 
 def early_loss(branch: Trace, peak: Peak, settings: Settings) -> float:
