@@ -89,7 +89,7 @@ def test_a_cohesive_zone_ends_where_the_gap_is_the_range(run_tables: RunTables) 
 
 
 def test_a_stiff_contact_has_no_limit_point_but_that_of_the_attraction(run_tables: RunTables) -> None:
-    """Snap-in at d = −h₀, and states with a = 0 on the way out, which attract each other; a soft one loses all at once."""
+    """Snap-in at d = −h₀, and attracted states with a = 0 on the way out; a soft one is lost at once."""
     for tabor, gradual in ((0.1, True), (5.0, False)):
         reach = (R * W**2 / E**2) ** (1.0 / 3.0) / tabor
         path = {"kind": "path", "displacements": {"from": -1.5 * reach - 0.3, "to": 0.2, "steps": 200}}
