@@ -3,11 +3,15 @@
 The zone is a < r < c. With the body's transform g, s = sqrt(c^2 - a^2), t = arccos(a/c), kappa = 2W/(E* h_0),
 
     d = g(a) - kappa s,    F = 2E* [a g(a) - int_0^a g dx] - (2W/h_0) (a s + t c^2)
-    h_0 = (2/pi) [int_0^t (g(c cos phi) - g(a)) dphi + kappa (s t - c + a)]
+    h_0 = (2/pi) [H + kappa (s t - c + a)],    H = int_a^c (g - g(a))/sqrt(c^2 - x^2) dx
 
 which are the Abel transforms of the pressure and of the gap at c, with f(c) = (2/pi) int_0^c g/sqrt(c^2 - x^2) dx put
-in: every term of the gap is positive, so that nothing is lost for c -> a. c rises with h_0 at every a. With
-G = int_0^t g'(c cos phi) cos phi dphi the same two equations give d'(a) and F'(a). Before contact the zone stands alone,
+in: both terms of the gap are positive and rise with c, so that c is unique at every a. With g as an integral of f',
+
+    H = int_0^a f'(r) [arctan(s/sqrt(a^2 - r^2)) - t a/sqrt(a^2 - r^2)] dr + (pi/2) [f(c) - f(a)]
+    G = dH/dc = (c/s) int_0^a f'(r) sqrt(a^2 - r^2)/(c^2 - r^2) dr - a g(a)/(c s) + (pi/2) f'(c)
+
+and H, G and g' give d'(a) and F'(a). Before contact the zone stands alone,
 
     d = f(c) - h_0 - (2 kappa/pi) c,    F = -pi c^2 W/h_0
 
@@ -28,12 +32,16 @@ from scipy.optimize import brentq
 
 from validation.references.axisymmetric import Body, Contact
 
-ACCURACY = 1e-11
-"""Relative accuracy asked of each piece of a quadrature."""
+ACCURACY, ACCEPTED = 1e-11, 1e-8
+"""Relative accuracy asked of each piece of a quadrature, and what one may have that round-off beside a kink stops."""
+FINE = 1e-13
+"""Accuracy asked of a piece beside what it is added to."""
 SCAN, DECADES = 12, (4.0, 3.0)
 """Radii per decade of the first search, and decades below and above the guess."""
 CLOSE = 1e-9
 """Relative distance from a kink at which a radius counts as beside it."""
+BEYOND = 1.01
+"""Radius over that without a load, inside of which limit points are."""
 DOUBLINGS = 600
 """How often a search may double or halve its first guess."""
 
@@ -77,9 +85,14 @@ class Cohesive:
 
     def gap(self, a: float, s: float) -> float:
         """The gap at c [length] of a contact with sqrt(c^2 - a^2) = s."""
-        t, c, inner = math.atan2(s, a), math.hypot(a, s), self.body.transformed(a)
-        opened = self._over(lambda x, _: self.body.transformed(x) - inner, a, c, t)
-        return 2.0 / math.pi * (opened + self._kappa * c * (t * math.sin(t) - 2.0 * math.sin(0.5 * t) ** 2))
+        t, c = math.atan2(s, a), math.hypot(a, s)
+
+        def opened(r: float, phi: float) -> float:
+            return self.body.slope(r) * (math.cos(phi) * math.atan2(s, a * math.cos(phi)) - t)
+
+        outside = 0.5 * math.pi * self._rise(a, c)
+        stretched = self._kappa * c * (t * math.sin(t) - 2.0 * math.sin(0.5 * t) ** 2)
+        return 2.0 / math.pi * (a * self._over(opened, a, self.reach / a if a else 0.0) + outside + stretched)
 
     def zone(self, a: float) -> float:
         """s = sqrt(c^2 - a^2) [length] of a contact; a >= 0."""
@@ -99,7 +112,7 @@ class Cohesive:
         s = self.zone(a)
         t, c = math.atan2(s, a), math.hypot(a, s)
         cos, sin, rise = a / c, s / c, self.body.rise(a) / a
-        zone = self._over(lambda x, phi: self.body.rise(x) / x * math.cos(phi), a, c, t)
+        zone = self._widening(a, s)
         of_a = cos * zone - t * rise - self._kappa * cos * 2.0 * math.sin(0.5 * t) ** 2
         of_s = sin * zone + self._kappa * (t - sin * (1.0 - cos))
         widening = -of_a / of_s
@@ -113,14 +126,27 @@ class Cohesive:
         d = self.body.height(c) - self.reach - 2.0 / math.pi * self._kappa * c
         return State(0.0, c, d, -math.pi * c * c * self.stress)
 
-    def _over(self, function: Callable[[float, float], float], a: float, c: float, t: float) -> float:
-        """int_0^t function(c cos phi, phi) dphi between the kinks; x = c cos phi stays above a."""
-        ends = [0.0, *(math.acos(b / c) for b in reversed(self.body.kinks) if a < b < c), t]
+    def _over(self, function: Callable[[float, float], float], a: float, scale: float) -> float:
+        """int_0^(pi/2) function(r, phi) dphi, r = a sin phi, between the kinks; the scale is what it is added to."""
         return sum(
-            float(quad(lambda phi: function(max(a, c * math.cos(phi)), phi), low, high,
-                       epsrel=ACCURACY, epsabs=1e-300, limit=200)[0])
-            for low, high in pairwise(ends)
-        )  # fmt: skip
+            _integral(lambda phi: function(a * math.sin(phi), phi), *two, scale)
+            for two in pairwise(self.body.angles(a))
+        )
+
+    def _rise(self, a: float, c: float) -> float:
+        """f(c) - f(a) [length]."""
+        ends = [a, *(b for b in self.body.kinks if a < b < c), c]
+        return sum(_integral(self.body.slope, *two, self.reach) for two in pairwise(ends))
+
+    def _widening(self, a: float, s: float) -> float:
+        """G [1]."""
+        c = math.hypot(a, s)
+
+        def inside(r: float, phi: float) -> float:
+            return self.body.slope(r) / (1.0 + (s / (a * math.cos(phi))) ** 2)
+
+        part = c * self._over(inside, a, 0.0) - a / c * self.body.transformed(a)
+        return part / s + 0.5 * math.pi * self.body.slope(c)
 
     @cached_property
     def _grid(self) -> list[float]:
@@ -146,19 +172,19 @@ class Cohesive:
     @cached_property
     def fold(self) -> float | None:
         """a of the outermost minimum of d [length], where a contact snaps out; None where it shrinks to a = 0."""
-        found = self._turns(False, self._near)
+        found = self._turns(False, self._inside)
         return found[0] if found else None
 
     @cached_property
-    def _near(self) -> list[float]:
-        """Radii of the search below twice the guess."""
-        return [a for a in self._grid if a < 2.0 * self.guess]
+    def _inside(self) -> list[float]:
+        """Radii of the search inside of the contact without a load."""
+        return [a for a in self._grid if a < BEYOND * self.free.a]
 
     @cached_property
     def critical(self) -> State:
         """The largest tension of the contacts that fixed grips hold, and of the zone that is left of them."""
         last = self.fold
-        within = [a for a in self._near if last is None or a > last]
+        within = [a for a in self._inside if last is None or a > last]
         states = [self.state(a) for a in self._turns(True, within)]
         states.append(self.state(0.0 if last is None else last))
         return min(states, key=lambda one: one.force)
@@ -170,7 +196,7 @@ class Cohesive:
 
     def under(self, force: float) -> State:
         """The largest contact that carries a force."""
-        return self._outermost(lambda one: one.force - force)
+        return self._outermost(lambda one: one.force - force, [0.0] if force >= 0.0 else [self.critical.a])
 
     def at(self, displacement: float) -> State | None:
         """The largest contact at a displacement, or the zone of bodies that have been in contact; None if parted."""
@@ -180,7 +206,7 @@ class Cohesive:
         if self.fold is None and displacement < self.state(0.0).displacement:
             low, high = last.c, self.state(0.0).c
             return self.alone(_root(lambda c: self.alone(c).displacement - displacement, low, high))
-        return self._outermost(lambda one: one.displacement - displacement)
+        return self._outermost(lambda one: one.displacement - displacement, [self.fold or 0.0])
 
     @cached_property
     def snap_out(self) -> State:
@@ -191,56 +217,76 @@ class Cohesive:
 
     @cached_property
     def narrowest(self) -> float:
-        """c of the zone alone at which d has its minimum, f'(c) = 2 kappa/pi [length]; at a kink where f' jumps over it."""
+        """c of the zone alone at the minimum of d [length]: f' falls to 2 kappa/pi, continuously or at a kink."""
         wide, wanted = self.state(0.0).c, 2.0 / math.pi * self._kappa
-        if self.body.slope(wide) < wanted:
+        if self.body.slope(wide) <= wanted:
             return wide
-        low = wide
-        while self.body.slope(low) >= wanted:
-            low *= 0.5
-            if low < 1e-12 * wide:
-                return 0.0
-        for b in self.body.kinks:
-            if low < b < wide and self.body.slope(b * (1.0 - CLOSE)) < wanted <= self.body.slope(b):
-                return b
-        return _root(lambda c: self.body.slope(c) - wanted, low, wide)
+        ends = [0.0, *(b for b in self.body.kinks if b < wide), wide]
+        for low, high in reversed(list(pairwise(ends))):
+            inside = low + CLOSE * (high - low)
+            if self.body.slope(high * (1.0 - CLOSE)) < wanted:
+                return high
+            if self.body.slope(inside) < wanted:
+                return _root(lambda c: self.body.slope(c) - wanted, inside, high * (1.0 - CLOSE))
+        return 0.0
 
-    def _outermost(self, function: Callable[[State], float]) -> State:
-        """The largest a >= 0 at which a function of the state falls to 0 inwards; positive far outside."""
-        grid, outer = self._grid, 0.0
-        values = iter(grid)
-        start = next((i for i, a in enumerate(grid) if a <= 1.3 * self.guess), 0)
-        while start > 0 and function(self.state(grid[start])) <= 0.0:
-            start -= 1
-        if start == 0 and function(self.state(grid[0])) <= 0.0:
-            raise ValueError("the contact would cover the body")
-        del values
-        outer = grid[start]
-        for inner in [*grid[start + 1 :], 0.0]:
+    def _outermost(self, function: Callable[[State], float], limits: Sequence[float]) -> State:
+        """The largest a >= 0 at which a function of the state, positive far outside, falls to 0 inwards.
+
+        A dip at one of the `limits` may be narrower than the grid.
+        """
+        grid = self._grid
+        first = next(i for i, a in enumerate(grid) if a <= self.guess)
+        while min(function(one := self.state(grid[first])), one.force) <= 0.0:
+            first -= 1
+            if first < 0:
+                raise ValueError("the contact would cover the body")
+        for outer, inner in pairwise(sorted({*grid[first:], *limits, 0.0}, reverse=True)):
             if function(self.state(inner)) <= 0.0:
                 return self.state(_root(lambda a: function(self.state(a)), inner, outer))
-            outer = inner
         raise ValueError("no contact has so little")
 
-    def pressure(self, r: float, a: float) -> float:
+    def pressure(self, r: float, state: State) -> float:
         """p(r) [stress], 0 < r < a, of a body without kinks of the slope inside: Hertz's part less that of the zone."""
-        s = self.zone(a)
-        pressed = Contact(self.body, self.modulus).pressure(r, a)
-        return pressed - 2.0 * self.stress / math.pi * math.atan2(s, math.sqrt((a - r) * (a + r)))
+        pressed = Contact(self.body, self.modulus).pressure(r, state.a)
+        return pressed - self._of_zone(math.sqrt((state.a - r) * (state.a + r)), state)
 
-    def central_pressure(self, a: float) -> float:
+    def central_pressure(self, state: State) -> float:
         """p(0) [stress]; inf under a tip."""
-        return Contact(self.body, self.modulus).central_pressure(a) - 2.0 * self.stress / math.pi * math.atan2(
-            self.zone(a), a
-        )
+        return Contact(self.body, self.modulus).central_pressure(state.a) - self._of_zone(state.a, state)
 
-    def work_along(self, outer: float, inner: float) -> float:
-        """-int F dd [energy] from a contact of radius `outer` to one of `inner`: the change of the energy."""
-        ends = [outer, *(b for b in reversed(self.body.kinks) if inner < b < outer), inner]
-        return -sum(
-            float(quad(lambda a: self.state(a).force * self.slopes(a)[0], low, high, epsrel=1e-8, limit=100)[0])
-            for high, low in pairwise(ends)
-        ) * -1.0  # fmt: skip
+    def _of_zone(self, inside: float, state: State) -> float:
+        s = math.sqrt((state.c - state.a) * (state.c + state.a))
+        return 2.0 * self.stress / math.pi * math.atan2(s, inside)
+
+    def energy_change(self, outer: State, inner: State) -> float:
+        """int F dd [energy] of an unloading from one state to another, in contact and then of the zone alone."""
+        found = self._inwards(lambda a: self.state(a).force * self.slopes(a)[0], outer.a, inner.a)
+        if inner.a > 0.0:
+            return found
+        first, bias = outer if outer.a == 0.0 else self.state(0.0), 2.0 / math.pi * self._kappa
+        return found + self._inwards(lambda c: self.alone(c).force * (self.body.slope(c) - bias), first.c, inner.c)
+
+    @cached_property
+    def loop(self) -> float:
+        """What a loop from parted into contact loses [energy]: they meet at d = -h_0 and part in their last state."""
+        touched = self.at(-self.reach)
+        return 0.0 if touched is None else self.energy_change(touched, self.snap_out)
+
+    def _inwards(self, function: Callable[[float], float], start: float, end: float) -> float:
+        """The integral from a radius to a smaller one, between the kinks."""
+        ends = [end, *(b for b in self.body.kinks if end < b < start), start]
+        return -sum(_integral(function, low, high) for low, high in pairwise(ends))
+
+
+def _integral(function: Callable[[float], float], low: float, high: float, scale: float = 0.0) -> float:
+    """Adaptively. Raises ArithmeticError where it is not exact enough beside a scale."""
+    if low == high:
+        return 0.0
+    value, error, *_ = quad(function, low, high, epsrel=ACCURACY, epsabs=FINE * scale, limit=200, full_output=1)
+    if error > ACCEPTED * max(abs(value), scale):
+        raise ArithmeticError(f"an integral of {value:g} is off by {error:g}")
+    return float(value)
 
 
 def _root(function: Callable[[float], float], low: float, high: float) -> float:
