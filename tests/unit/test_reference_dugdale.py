@@ -14,7 +14,7 @@ import pytest
 from scipy.integrate import quad, simpson
 from scipy.special import ellipkm1
 
-from validation.references.axisymmetric import Body
+from validation.references.axisymmetric import Body, Contact
 from validation.references.dugdale import Cohesive, State
 from validation.references.dugdale_elements import Elements, pressed_down
 from validation.references.interaction import Floats
@@ -88,6 +88,12 @@ def test_a_wide_zone_is_dmt_s_and_a_narrow_one_jkr_s() -> None:
     assert -soft.snap_out.load == pytest.approx(5.0 / 6.0, rel=1e-8)
 
 
+def test_the_energy_is_jkr_s_where_the_zone_is_narrow() -> None:
+    one = paraboloid(1000.0)
+    last = one.snap_out
+    assert one.energy(last) == pytest.approx(Contact(PARABOLA, 1.0, 1.0).energy(last.a), rel=3e-3)
+
+
 @pytest.mark.parametrize("parameter", [10.0, 30.0, 100.0])
 def test_the_pull_off_force_comes_near_jkr_s_as_the_square(parameter: float) -> None:
     """0.10920 is the limit; the next order is about −0.1/λ of it at λ = 10."""
@@ -134,7 +140,7 @@ def test_slopes_are_those_of_the_states(body: Body, mu: float) -> None:
 
 
 @pytest.mark.parametrize("body", [PARABOLA, CONE, QUARTIC])
-@pytest.mark.parametrize("mu", [0.1, 1.0, 5.0])
+@pytest.mark.parametrize("mu", [0.1, 5.0])
 def test_the_surface_under_the_pressure_has_no_gap_in_contact_and_the_range_at_c(body: Body, mu: float) -> None:
     """u(r) = (4/πE*) ∫ p s K(k)/(r + s) ds, 1 − k² = ((r − s)/(r + s))²: no transform at all."""
     one, a = tip_of(body, mu), 0.8
@@ -148,14 +154,13 @@ def test_the_surface_under_the_pressure_has_no_gap_in_contact_and_the_range_at_c
             return 4.0 / math.pi * pressure(s) * s / (r + s) * float(ellipkm1(((r - s) / (r + s)) ** 2))
 
         ends = sorted({0.0, a, state.c, *([r] if r < state.c else [])})
-        pieces = (quad(ring, low, high, epsrel=1e-8, limit=200)[0] for low, high in pairwise(ends))
+        pieces = (quad(ring, low, high, epsrel=1e-7, limit=200)[0] for low, high in pairwise(ends))
         return float(sum(pieces))
 
     def gap(r: float) -> float:
         return body.height(r) - state.displacement + down(r)
 
-    for r in (0.2, 0.6):
-        assert gap(r) == pytest.approx(0.0, abs=1e-6 * one.reach)
+    assert gap(0.6) == pytest.approx(0.0, abs=1e-6 * one.reach)
     assert gap(state.c) == pytest.approx(one.reach, rel=1e-6)
     assert 0.0 < gap(0.5 * (a + state.c)) < one.reach < gap(1.1 * state.c)
 
@@ -207,6 +212,10 @@ def test_the_zone_before_contact_goes_over_into_the_contact(body: Body) -> None:
         gaps = np.array([0.0, body.height(c)]) - zone.displacement + down
         assert gaps[1] == pytest.approx(one.reach, rel=1e-12)
         assert gaps[0] == pytest.approx(0.0, abs=1e-12) if c == touching.c else gaps[0] > 0.0
+    middle, width = 0.5 * (narrow + touching.c), 1e-4 * touching.c
+    wide, close = (one.alone(middle + side * width) for side in (1.0, -1.0))
+    work = (one.energy(wide) - one.energy(close)) / (wide.displacement - close.displacement)
+    assert work == pytest.approx(one.alone(middle).force, rel=1e-6)
     assert one.snap_out == one.alone(narrow)
     assert one.snap_out.displacement < -one.reach
     assert min(one.alone(narrow * k).displacement for k in (0.97, 1.03)) > one.snap_out.displacement
@@ -214,7 +223,7 @@ def test_the_zone_before_contact_goes_over_into_the_contact(body: Body) -> None:
 
 @pytest.mark.parametrize("mu", [0.3, 3.0])
 @pytest.mark.parametrize("body", [PARABOLA, WORN])
-def test_a_state_is_found_by_its_force_and_displacement_and_a_loop_is_its_area(body: Body, mu: float) -> None:
+def test_a_state_is_found_by_its_force_and_displacement_and_a_loop_loses_its_area(body: Body, mu: float) -> None:
     one = tip_of(body, mu)
     for state in (one.state(1.8), one.free, one.under(0.5 * one.critical.force)):
         assert one.at(state.displacement) is not None
@@ -225,4 +234,6 @@ def test_a_state_is_found_by_its_force_and_displacement_and_a_loop_is_its_area(b
     u = np.linspace(0.0, 1.0, 17)
     width = -one.reach - last.displacement
     forces = np.array([(one.at(float(last.displacement + width * x**2)) or last).force for x in u])
-    assert one.loop == pytest.approx(-float(simpson(forces * 2.0 * width * u, u)), rel=1e-4)
+    assert one.touched is not None
+    lost = one.energy(last) - one.energy(one.touched)
+    assert lost == pytest.approx(-float(simpson(forces * 2.0 * width * u, u)), rel=1e-4)

@@ -259,19 +259,26 @@ class Cohesive:
         s = math.sqrt((state.c - state.a) * (state.c + state.a))
         return 2.0 * self.stress / math.pi * math.atan2(s, inside)
 
-    def energy_change(self, outer: State, inner: State) -> float:
-        """int F dd [energy] of an unloading from one state to another, in contact and then of the zone alone."""
-        found = self._inwards(lambda a: self.state(a).force * self.slopes(a)[0], outer.a, inner.a)
-        if inner.a > 0.0:
-            return found
-        first, bias = outer if outer.a == 0.0 else self.state(0.0), 2.0 / math.pi * self._kappa
-        return found + self._inwards(lambda c: self.alone(c).force * (self.body.slope(c) - bias), first.c, inner.c)
+    def energy(self, state: State) -> float:
+        """Elastic and of adhesion, 0 where the bodies are apart [energy].
+
+        Of the zone alone -pi c^2 W + sigma_0 (int_0^c 2 pi r f dr - pi c^2 d) - (8/3) sigma_0^2 c^3/E*; of a contact
+        that of a = 0, less the work of the force up to there.
+        """
+        if state.a > 0.0:
+            return self.energy(self.state(0.0)) - self._inwards(
+                lambda a: self.state(a).force * self.slopes(a)[0], state.a, 0.0
+            )
+        c, area = state.c, math.pi * state.c**2
+        ends = [0.0, *(b for b in self.body.kinks if b < c), c]
+        moment = sum(_integral(lambda r: self.body.slope(r) * r * r, *two) for two in pairwise(ends))
+        opened = area * (self.body.height(c) - state.displacement) - math.pi * moment
+        return self.stress * opened - area * self.work - 8.0 / 3.0 * self.stress**2 * c**3 / self.modulus
 
     @cached_property
-    def loop(self) -> float:
-        """What a loop from parted into contact loses [energy]: they meet at d = -h_0 and part in their last state."""
-        touched = self.at(-self.reach)
-        return 0.0 if touched is None else self.energy_change(touched, self.snap_out)
+    def touched(self) -> State | None:
+        """The state that bodies come into where they meet, at d = -h_0; None if they part at once."""
+        return self.at(-self.reach)
 
     def _inwards(self, function: Callable[[float], float], start: float, end: float) -> float:
         """The integral from a radius to a smaller one, between the kinks."""
