@@ -145,7 +145,7 @@ class Cohesive:
         def inside(r: float, phi: float) -> float:
             return self.body.slope(r) / (1.0 + (s / (a * math.cos(phi))) ** 2)
 
-        part = c * self._over(inside, a, 0.0) - a / c * self.body.transformed(a)
+        part = c * self._over(inside, a, self._kappa * s / c) - a / c * self.body.transformed(a)
         return part / s + 0.5 * math.pi * self.body.slope(c)
 
     @cached_property
