@@ -18,7 +18,7 @@ from validation.references.axisymmetric import Body, Contact
 from validation.references.dugdale import Cohesive, State
 from validation.references.dugdale_elements import Elements, pressed_down
 from validation.references.interaction import Floats
-from validation.references.maugis import OF_THE_RANGE, Reduced, of_tabor
+from validation.references.maugis import LAMBDA_OVER_TABOR, Reduced, of_tabor
 
 TABOR = (0.01, 0.03, 0.1, 0.3, 0.5, 1.0, 3.0, 10.0, 30.0, 100.0)
 LAND = 1.0
@@ -79,7 +79,7 @@ def test_maugis_s_own_form_in_many_digits(parameter: float, t: float) -> None:
 
 
 def test_a_wide_zone_is_dmt_s_and_a_narrow_one_jkr_s() -> None:
-    assert -Reduced(OF_THE_RANGE * 0.01).critical.load == pytest.approx(2.0, rel=2e-3)
+    assert -Reduced(LAMBDA_OVER_TABOR * 0.01).critical.load == pytest.approx(2.0, rel=2e-3)
     rigid, soft = Reduced(1e-4), Reduced(1e4)
     assert -rigid.critical.load == pytest.approx(2.0, rel=1e-5)
     assert rigid.free.a == pytest.approx(math.cbrt(2.0), rel=1e-4)

@@ -21,10 +21,8 @@ from functools import cached_property
 from scipy.optimize import brentq
 from scipy.special import spherical_jn
 
-LAMBDA_OVER_TABOR = 32.0 / (9.0 * math.sqrt(3.0)) * math.cbrt(9.0 / (16.0 * math.pi))
-"""For the largest stress of Lennard-Jones, 16 W/(9 sqrt3 z_0) (Maugis 1992)."""
-OF_THE_RANGE = 2.0 * math.cbrt(9.0 / (16.0 * math.pi))
-"""lambda over Tabor's mu, where mu is of Dugdale's own range."""
+LAMBDA_OVER_TABOR = 2.0 * math.cbrt(9.0 / (16.0 * math.pi))
+"""For the stress W/h_0 (Maugis 1992)."""
 JKR_SIDE, DMT_SIDE = 1e-3, 1e-7
 """t (1 + lambda) of a contact much wider than one without a load; pi/2 - t, over lambda below 1, of one much narrower
 than that of the largest tension."""
@@ -147,7 +145,7 @@ class Paraboloid:
     @property
     def reduced(self) -> Reduced:
         """In reduced form."""
-        return Reduced(OF_THE_RANGE * self.tabor)
+        return Reduced(LAMBDA_OVER_TABOR * self.tabor)
 
     def state(self, reduced: State) -> State:
         """a, c [length], F [force], d [length]."""

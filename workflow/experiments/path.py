@@ -66,7 +66,7 @@ class PathExperiment(Scripted[Path]):
         results = budgeted(case, trace, errors, sampled=not self.is_statistical, repeated=repeated)
         warnings = self._missing(results, case, phases) | doubts(scene, settings, tuple(reported))
         warnings |= _buckling(trace, other, settings)
-        return Outcome(results, tuple(reported), ends, phases, warnings)
+        return Outcome(results, tuple(reported), ends, phases, warnings, moves=case.moves)
 
     def states(self, contact: Contact, positions: Positions) -> list[State]:
         """A state at each of the positions; in time when particles are at rest."""
@@ -171,8 +171,8 @@ class PathExperiment(Scripted[Path]):
         warnings: dict[str, str] = {}
         if _passes_jump(case) and not any(name.startswith(LOSSES) for name in results):
             warnings["no_energy"] = (
-                "the path has too few load steps to tell what is lost at snap-in or separation: use more steps in "
-                "experiment.displacements"
+                "the path has too few load steps to tell what is lost at snap-in or separation, so that there is neither "
+                "dissipated_energy nor instability_energy: use more steps in experiment.displacements"
             )
         marks = {"adhesion_force", "zero_load_radius"}
         if not any(phase.name.startswith("unloading") for phase in phases) and not marks & results.keys():
