@@ -38,8 +38,10 @@ ASKED, FINE = 1e-3, 1e-5
 """Relative error that is asked for, also of πWR, and the tolerance at which 0.109/λ² is to be seen."""
 RADIUS, WORK = 1000.0, 5e-3
 """R [LU], W [FU/LU] of the paraboloid; E* = 1 FU/LU²."""
-PARTICLES, STEPS = 30.0, 60
-"""In a₁ = (3πWR²/4E*)^(1/3), and steps of a path."""
+PARTICLES, STEPS, DENSE = 30.0, 60, 200
+"""In a₁ = (3πWR²/4E*)^(1/3), steps of a path, and those of its end."""
+ASIDE = (0.937, 1.043)
+"""Where that end begins and ends, over the displacement at which the bodies part, which is in none of its middles."""
 SOFT, EXCESS = 10.0, 0.1092
 """λ from which F_A/F_JKR − 1 is EXCESS/λ², to a share of 1/λ^NEXT."""
 NEXT = 1.5
@@ -86,8 +88,12 @@ def _paraboloids(bench: Bench) -> list[Row]:
 def _along(bench: Bench, one: Paraboloid, words: str, profile: Scene, spacing: float, mu: float) -> list[Row]:
     """The unloading from a contact of twice a₁ to beyond the last state; where it ends."""
     last = one.state(one.reduced.snap_out)
-    ends = one.state(one.reduced.of_radius(2.0)).displacement, 1.1 * min(last.displacement, -one.reach)
-    way = {"from": ends[0], "to": ends[1], "steps": STEPS, "return": False}
+    start, near, end = (
+        one.state(one.reduced.of_radius(2.0)).displacement,
+        0.95 * last.displacement,
+        1.05 * last.displacement,
+    )
+    way = [*np.linspace(start, near, STEPS, endpoint=False).tolist(), *np.linspace(near, end, DENSE).tolist()]
     run = bench.run(f"path_{mu:g}", scene(profile, one, spacing, ASKED, {"kind": "path", "displacements": way}))
     marks = _off(f"{words}: fixed_grips_displacement", run, "fixed_grips_displacement", last.displacement)
 
@@ -95,7 +101,7 @@ def _along(bench: Bench, one: Paraboloid, words: str, profile: Scene, spacing: f
         reduced = one.reduced
         return one.state(reduced.of_radius(a / one.unit_radius) if a > 0.0 else reduced.alone(c / one.unit_radius))
 
-    return [*_compared(words, run, of, one.unit_force, MAUGIS), *([marks] if one.reduced.has_fold else [])]
+    return [*_compared(words, run, of, one.unit_force, MAUGIS), marks]
 
 
 def _limits(

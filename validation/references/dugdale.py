@@ -262,28 +262,25 @@ class Cohesive:
     def energy(self, state: State) -> float:
         """Elastic and of adhesion, 0 where the bodies are apart [energy].
 
-        Of the zone alone -pi c^2 W + sigma_0 (int_0^c 2 pi r f dr - pi c^2 d) - (8/3) sigma_0^2 c^3/E*; of a contact
-        that of a = 0, less the work of the force up to there.
+        E* int_0^a (d - g)^2 dx - (4 sigma_0^2/E*) int_a^c (c^2 - x^2) dx + 4 sigma_0 int_a^c (g - d) sqrt(c^2 - x^2) dx
+        - pi c^2 W: the springs, and W less sigma_0 h in the zone, whose gap h is the transform of g - d + q/E*.
         """
-        if state.a > 0.0:
-            return self.energy(self.state(0.0)) - self._inwards(
-                lambda a: self.state(a).force * self.slopes(a)[0], state.a, 0.0
-            )
-        c, area = state.c, math.pi * state.c**2
-        ends = [0.0, *(b for b in self.body.kinks if b < c), c]
-        moment = sum(_integral(lambda r: self.body.slope(r) * r * r, *two) for two in pairwise(ends))
-        opened = area * (self.body.height(c) - state.displacement) - math.pi * moment
-        return self.stress * opened - area * self.work - 8.0 / 3.0 * self.stress**2 * c**3 / self.modulus
+        a, c, d = state.a, state.c, state.displacement
+        ends = sorted({0.0, a, *(b for b in self.body.kinks if b < c), c})
+
+        def density(x: float) -> float:
+            g = self.body.transformed(x) - d
+            if x < a:
+                return self.modulus * g * g
+            square = (c - x) * (c + x)
+            return 4.0 * self.stress * (g * math.sqrt(square) - self.stress / self.modulus * square)
+
+        return sum(_integral(density, *two, self.work * c) for two in pairwise(ends)) - math.pi * c * c * self.work
 
     @cached_property
     def touched(self) -> State | None:
         """The state that bodies come into where they meet, at d = -h_0; None if they part at once."""
         return self.at(-self.reach)
-
-    def _inwards(self, function: Callable[[float], float], start: float, end: float) -> float:
-        """The integral from a radius to a smaller one, between the kinks."""
-        ends = [end, *(b for b in self.body.kinks if end < b < start), start]
-        return -sum(_integral(function, low, high) for low, high in pairwise(ends))
 
 
 def _integral(function: Callable[[float], float], low: float, high: float, scale: float = 0.0) -> float:
