@@ -2,6 +2,7 @@
 
 from validation.hard import (
     coarse_paths,
+    cohesive,
     extremes,
     faults,
     forces,
@@ -32,4 +33,5 @@ STUDIES: tuple[Study, ...] = (
     friction.FRICTION, similarity.SIMILARITY, forces.FORCES, motion.MOTION, modes.EQUIPARTITION, *thermal.CLASSES,
     extremes.EXTREMES, *pressed.CLASSES, plane_adhesive.ADHESIVE, slides.SLIDES, faults.FAULTS, fuzz.FUZZ,
     random_plane.RANDOM_PLANE, *kinks.CLASSES, coarse_paths.COARSE_PATHS, lateral.LATERAL, transient.TRANSIENT,
+    cohesive.COHESIVE,
 )  # fmt: skip
