@@ -99,8 +99,8 @@ def _particles(contact: AskedContact, theories: Theories | None, doubts: dict[st
     """Two chains, whose interaction is to give JKR's F_A and a₀."""
     if contact.scene.shares:
         raise IdentifyError(
-            f'model = "particles" fits an interaction to values alone, and {", ".join(contact.scene.shares)} has ±: leave '
-            "one of the two out"
+            f'model = "particles" fits an interaction to values alone, and {", ".join(contact.scene.shares)} has ±: '
+            "leave one of the two out"
         )
     if theories is None or contact.radius is None or contact.shape.kind != "parabola":
         raise IdentifyError(

@@ -32,6 +32,8 @@ BEFORE = 1000
 """Points of the curve before contact, where d(c) is explicit."""
 APART = -1.0
 """Place on the curve of bodies that do not feel each other."""
+ENERGY_PLACES = 4000
+"""Positions of the two integrals of an energy."""
 SAME = 1e-9
 """Fall of d over its range that is one: others are round-off."""
 
@@ -225,8 +227,21 @@ class CohesiveEstimate(AdhesiveEstimate):
         """Nothing: where the edge would jump, the curve has a limit point."""
 
     def energy(self, displacement: float, radius: float) -> float | None:
-        """Not known."""
-        return None
+        """E* ∫₀ᵃ (d−g)² dx − (4σ₀²/E*) ∫ₐᶜ (c²−x²) dx + 4σ₀ ∫ₐᶜ (g−d) √(c²−x²) dx − πc²W [FU·LU], 0 of bodies apart."""
+        law, d, a = self.law, displacement, radius
+        width = (float(self.profile.height(np.asarray([a]))[0]) - d) / law.ratio
+        c = math.hypot(a, width) if a > 0.0 else float(self.reaches(np.asarray([d]))[0])
+        if d < self.held.displacement[0]:
+            return 0.0
+        inner, outer = (
+            np.linspace(0.0, a, ENERGY_PLACES),
+            c * np.sin(np.linspace(math.asin(a / c), 0.5 * math.pi, ENERGY_PLACES)),
+        )
+        pressed = self.modulus * float(np.trapezoid((d - self.profile.height(inner)) ** 2, inner))
+        root = np.sqrt((c - outer) * (c + outer))
+        drawn = 4.0 * law.stress * float(np.trapezoid((self.profile.height(outer) - d) * root, outer))
+        disc = c * c * (c - a) - (c**3 - a**3) / 3.0
+        return pressed - 4.0 * law.stress**2 / self.modulus * disc + drawn - math.pi * c * c * self.work
 
     def zones(self, x: Array) -> Cells:
         """The cells of particles at positions x, (n,) [LU]."""
@@ -295,12 +310,14 @@ def _with_range(jkr: AdhesiveEstimate, reach: float, surface: Profile, wanted: f
     Raises:
         SettingsError: the attraction would reach past the body.
     """
-    known = jkr.known
+    own = {one.name: getattr(jkr, one.name) for one in fields(jkr)} | {"range": reach, "surface": surface}
+    end = CohesiveEstimate(**own | {"known": jkr.profile.reach}).law.widest()
+    known = min(jkr.known, end)
     while True:
-        own = {one.name: getattr(jkr, one.name) for one in fields(jkr)} | {"known": known}
-        estimate = CohesiveEstimate(**own, range=reach, surface=surface)
-        if estimate.is_beyond(wanted, load):
+        estimate = CohesiveEstimate(**own | {"known": known})
+        _, displacement, force = estimate.end
+        if estimate.is_beyond(wanted, load) or (known == end and displacement >= wanted and force >= load):
             return estimate
-        if 2.0 * known >= jkr.profile.reach:
+        if known == end:
             raise covered(jkr.profile.reach)
-        known *= 2.0
+        known = min(2.0 * known, end)

@@ -32,6 +32,8 @@ FIRST, PLACES = 1e-6, 2000
 """Positions between which G is one quadrature each, and the first of them over the last."""
 DOUBLINGS = 200
 """Most of a bracket, and of cuts of it."""
+INSIDE = 1.0 - 1e-6
+"""Of a body, up to which an attraction may reach: the transform of a circle has no bound at its end."""
 TINY = float(np.finfo(np.float64).tiny)
 
 
@@ -67,6 +69,27 @@ class Dugdale:
     stress: float
     range: float
     known: float
+
+    @property
+    def end(self) -> float:
+        """Where the body ends [LU]."""
+        return self.profile.reach * INSIDE
+
+    def widest(self) -> float:
+        """Largest a [LU] whose attraction ends on the body. Raises SettingsError where there is none."""
+        from scipy.optimize import elementwise
+
+        if self.end == math.inf:
+            return math.inf
+
+        def error(edge: Array) -> Array:
+            width = np.sqrt((self.end - edge) * (self.end + edge))
+            return self.gap_error(edge, width, self.profile.height(edge) - self.ratio * width)
+
+        if float(error(np.zeros(1))[0]) < 0.0:
+            raise covered(self.end)
+        found = elementwise.find_root(error, (np.zeros(1), np.full(1, self.end)), maxiter=DOUBLINGS)
+        return float(found.x[0])
 
     @property
     def ratio(self) -> float:
@@ -131,14 +154,15 @@ class Dugdale:
         def error(width: Array, edge: Array) -> Array:
             return self.gap_error(edge, width, self.profile.height(edge) - self.ratio * width)
 
-        high = np.full_like(edge, self.range / max(self.ratio, TINY) + math.sqrt(self.range * self.known))
+        most = np.sqrt((self.end - edge) * (self.end + edge))
+        high = np.minimum(self.range / max(self.ratio, TINY) + math.sqrt(self.range * self.known), most)
         for _ in range(DOUBLINGS):
             short = error(high, edge) < 0.0
             if not short.any():
                 break
-            if (np.hypot(edge, high)[short] > self.profile.reach).any():
-                raise covered(self.profile.reach)
-            high[short] *= 2.0
+            if (high >= most)[short].any():
+                raise covered(self.end)
+            high = np.where(short, np.minimum(2.0 * high, most), high)
         found = elementwise.find_root(error, (np.zeros_like(edge), high), args=(edge,), maxiter=DOUBLINGS)
         return np.asarray(found.x)
 
